@@ -4,9 +4,9 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
-use marching_particles::field::Field;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
+use marching_particles::field::{Field, Frame};
 use marching_particles::math::Sym3;
 use rand_core::Rng;
 use std::hint::black_box;
@@ -31,7 +31,8 @@ fn evaluation(criterion: &mut Criterion) {
     group.warm_up_time(std::time::Duration::from_millis(200));
     group.measurement_time(std::time::Duration::from_millis(600));
     for id in ["ellipsoid", "tanglecube", "barth-sextic", "gyroid"] {
-        let mut field = field(id);
+        let field = field(id);
+        let mut field = field.evaluator(Frame::default());
         group.bench_function(BenchmarkId::new("values", id), |bench| {
             bench.iter(|| field.values(black_box(&points), &mut value));
         });

@@ -10,9 +10,9 @@
 mod solid_table;
 
 use core::f64::consts::PI;
-use marching_particles::field::Branched;
+use marching_particles::field::Evaluator;
 use marching_particles::particles::Particles;
-use marching_particles::{Bounds, Field, Formula, MeshFormat, Method, Run, Settings, sample};
+use marching_particles::{Bounds, Formula, MeshFormat, Method, Run, Settings, sample};
 use solid_table::SOLIDS;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -58,11 +58,11 @@ fn solids() -> Vec<Solid> {
 }
 
 /// Largest distance of a row on a crease from the surface of its patch, over the spacing.
-fn off_the_edge(particles: &Particles, field: &mut Formula) -> f64 {
+fn off_the_edge(particles: &Particles, field: &mut dyn Evaluator) -> f64 {
     let mut farthest = 0.0_f64;
     for row in 0..particles.twins.len() {
-        field.select_branch(particles.patch_of(row));
-        let (value, gradient) = field.value_and_gradient(particles.place(row));
+        let place = particles.position[row].as_dvec3();
+        let (value, gradient) = field.on(particles.patch_of(row)).value_and_gradient(place);
         let spacing = 2.0 * f64::from(particles.radius[row]);
         farthest = farthest.max(value.abs() / gradient.length() / spacing);
     }
@@ -84,7 +84,7 @@ fn write_row(
         while run.step(65_536).stop_reason.is_none() {}
         seconds = seconds.min(start.elapsed().as_secs_f64());
         let particles = run.particles().clone();
-        off = off_the_edge(&particles, &mut run.into_field());
+        off = off_the_edge(&particles, &mut *run.evaluator());
     }
     let sample = sample(solid.field.clone(), settings).expect("particles");
     let report = sample.report();

@@ -127,12 +127,13 @@ impl Mesher {
     fn run(&mut self) -> usize {
         let [nx, ny, nz] = self.size;
         let place = |k: u32, half: f32| (k as f32 - 1.0) * self.step - half;
+        let mut field = self.field.evaluator(marching_particles::field::Frame::default());
         for (row, values) in self.values.chunks_exact_mut(nx as usize).enumerate() {
             let (y, z) = (place(row as u32 % ny, HALF[1]), place(row as u32 / ny, HALF[2]));
             for (i, point) in self.points.iter_mut().enumerate() {
                 *point = Vec3::new(place(i as u32, HALF[0]), y, z);
             }
-            self.field.values(&self.points, values);
+            field.values(&self.points, values);
         }
         surface_nets(&self.values, &self.shape, [0; 3], [nx - 1, ny - 1, nz - 1], &mut self.buffer);
         self.buffer.positions.len()

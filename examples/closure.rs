@@ -3,7 +3,7 @@
 //! `cargo run --release --example closure -- horn.glb`
 
 use marching_particles::glam::DVec3;
-use marching_particles::{FnField, MeshFormat, Settings, sample};
+use marching_particles::{MeshFormat, Settings, sample};
 use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
@@ -19,7 +19,7 @@ fn horn(p: DVec3) -> f64 {
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args_os().nth(1).map_or(std::env::temp_dir().join("horn.glb"), PathBuf::from);
 
-    let sample = sample(FnField::new(horn), &Settings::with_count(4_000).refined())?;
+    let sample = sample(horn, &Settings::with_count(4_000).refined())?;
     sample.write_mesh(MeshFormat::Glb, &mut BufWriter::new(File::create(&path)?))?;
 
     for component in &sample.mesh().topology.components {

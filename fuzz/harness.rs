@@ -3,8 +3,9 @@
 //! libFuzzer calls them (`targets/`), and so does `tests/it/fuzz.rs`, with mutations of the files in `seeds/`.
 
 use glam::{DVec3, Vec3};
+use marching_particles::field::Frame;
 use marching_particles::field::formula::Formula;
-use marching_particles::field::{Bounded, Enclosure, Field, Jet};
+use marching_particles::field::{Enclosure, Field, Jet};
 use marching_particles::math::{Bounds, Interval, Sym3};
 use marching_particles::pointcloud::job::Job;
 use marching_particles::pointcloud::read::Reader;
@@ -80,7 +81,11 @@ pub fn formula(bytes: &[u8]) {
 /// The bounds of a sum over a box around a point hold the value there, and say where it has none.
 pub fn check_value(field: &mut Formula, p: DVec3, below: DVec3, above: DVec3) {
     let mut out = [Enclosure::UNKNOWN];
-    field.enclose(0, &[Bounds::new(p - below, p + above)], &mut out);
+    field.evaluator(Frame::default()).bounded().expect("a formula has bounds").enclose(
+        0,
+        &[Bounds::new(p - below, p + above)],
+        &mut out,
+    );
     let [Enclosure { value: bounds, defined, .. }] = out;
     let value = field.jet(p).value;
     let context = || format!("{} at {p}, {below} {above}: {value}, {out:?}", field.text());
@@ -97,7 +102,11 @@ pub fn check_value(field: &mut Formula, p: DVec3, below: DVec3, above: DVec3) {
 pub fn check_enclosure(field: &mut Formula, lo: DVec3, size: DVec3, places: [DVec3; 2]) {
     let mut out = [Enclosure::UNKNOWN];
     let around = Bounds::new(lo, lo + size);
-    field.enclose(0, &[around], &mut out);
+    field.evaluator(Frame::default()).bounded().expect("a formula has bounds").enclose(
+        0,
+        &[around],
+        &mut out,
+    );
     let [known] = out;
     if !(known.defined && known.continuous) {
         return;
@@ -111,7 +120,11 @@ pub fn check_enclosure(field: &mut Formula, lo: DVec3, size: DVec3, places: [DVe
         assert!(is_within, "{}: {gradient} at {p}, not in {known:?}", field.text());
     }
     let mut second = [Sym3::splat(Interval::EVERYTHING)];
-    field.enclose_second(0, &[around], &mut second);
+    field.evaluator(Frame::default()).bounded().expect("a formula has bounds").enclose_second(
+        0,
+        &[around],
+        &mut second,
+    );
     let h = field.transformed_jet(p).hessian;
     for (bounds, exact) in second[0].entries().into_iter().zip(h.entries()) {
         let is_within = !known.smooth || !exact.is_finite() || bounds.holds(exact);
@@ -136,7 +149,11 @@ pub fn check_enclosure(field: &mut Formula, lo: DVec3, size: DVec3, places: [DVe
 /// How far rounding may move the value at a point, by the bounds there: terms may be millions of times as large as their sum.
 fn rounding(field: &mut Formula, p: DVec3) -> f64 {
     let mut out = [Enclosure::UNKNOWN];
-    field.enclose(0, &[Bounds::point(p)], &mut out);
+    field.evaluator(Frame::default()).bounded().expect("a formula has bounds").enclose(
+        0,
+        &[Bounds::point(p)],
+        &mut out,
+    );
     out[0].value.hi - out[0].value.lo
 }
 
@@ -168,10 +185,10 @@ fn check_batch(field: &mut Formula, first: Vec3, length: usize) {
     let points: Vec<Vec3> = (0..length).map(|k| first * (k as f32 * 0.01 + 1.0)).collect();
     let (mut value, mut gradient) = (vec![0.0; length], vec![Vec3::ZERO; length]);
     let mut hessian = vec![Sym3::default(); length];
-    field.hessians(&points, &mut value, &mut gradient, &mut hessian);
+    field.evaluator(Frame::default()).hessians(&points, &mut value, &mut gradient, &mut hessian);
     let k = length / 2;
     let (mut alone, mut slope, mut second) = ([0.0], [Vec3::ZERO], [Sym3::default()]);
-    field.hessians(&points[k..=k], &mut alone, &mut slope, &mut second);
+    field.evaluator(Frame::default()).hessians(&points[k..=k], &mut alone, &mut slope, &mut second);
     let same = |a: f32, b: f32| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
     let is_same = same(value[k], alone[0])
         && (0..3).all(|axis| same(gradient[k][axis], slope[0][axis]))

@@ -11,7 +11,7 @@
 //! * *Undefined*: where ∇f vanishes, where anything is not finite, and where |∇f|² leaves the range of the numbers (in
 //!   single precision |∇f| below 10⁻¹⁹ or above 10¹⁹), every entry is NaN; see [`Curvature::is_defined`].
 
-use crate::field::{BATCH, Field, Jet};
+use crate::field::{BATCH, Evaluator, Jet};
 use crate::math::{LANES, Lanes, Real, Sym3, frame_of};
 use glam::{DVec3, Vec3};
 
@@ -71,7 +71,7 @@ pub fn exact_curvature(jet: &Jet) -> Curvature<f64, DVec3> {
 /// # Panics
 ///
 /// If `out` is shorter than `points`.
-pub fn curvatures(field: &mut dyn Field, points: &[Vec3], out: &mut [Curvature]) {
+pub fn curvatures(field: &mut dyn Evaluator, points: &[Vec3], out: &mut [Curvature]) {
     let mut value = [0.0; BATCH];
     let mut gradient = [Vec3::ZERO; BATCH];
     let mut hessian = [Sym3::default(); BATCH];

@@ -1,7 +1,7 @@
 //! Evenly spaced particles on an implicit surface f(x, y, z) = 0.
 //!
-//! A [`Field`] is a [`Formula`], a surface of the [gallery], a closure ([`FnField`]), a model from
-//! points, or anything that implements one method of the trait. [`sample`] covers its zero set with
+//! A [`Field`] is a [`Formula`], a surface of the [gallery], a closure, a model from points, or
+//! anything that implements one method of the trait. [`sample`] covers its zero set with
 //! particles: a front grows over the surface in hexagons, generation level by generation level, and a
 //! few relaxation steps even the spacing out. A [`Sample`] holds the particles, a report on them and
 //! their mesh. A [`Run`] does the same in steps, for a caller that draws or cancels.
@@ -74,13 +74,13 @@
 //! |---|---|
 //! | the job | [`sample`], [`Sample`], [`Run`], [`Start`], [`Progress`], [`Phase`], [`StopReason`], [`Reporting`] |
 //! | its settings | [`Settings`], [`Sampling`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Bounds`], [`Reach`] |
-//! | formulas | [`Formula`], [`Parameter`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [gallery] |
-//! | fields of a program | [`Field`], [`FnField`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [glam] |
+//! | formulas | [`Formula`], [`Expr`], [`Parameter`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [gallery] |
+//! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [glam] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
 //! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
 //! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measures`], [`Cut`] |
 //! | its figures | [`Figures`] with the groups in [figures], [`Histogram`], [`Places`], [`Pair`], [`Hole`], [`Measurements`] |
-//! | what may be wrong | [`Warning`], [`Doubt`], [`Refusal`], [`Spot`] |
+//! | what may be wrong | [`Warning`], [`Severity`], [`Doubt`], [`Refusal`], [`Spot`] |
 //! | why there is no result | [`Error`], [`SettingsError`], [`BoxError`]; of points [`JobError`], [`ReadError`], [`InputFormat`], [`CloudError`], [`FitError`] |
 //! | files | [`Format`], [`ParticleFile`], [`MeshFormat`], [`MeshFile`], [`Vertices`], [`Placement`], [`Unit`], [`UpAxis`], [`RecordText`] |
 //!
@@ -127,7 +127,7 @@ pub mod slices;
 pub mod spatial;
 #[doc(hidden)]
 pub mod topology;
-#[cfg(target_arch = "wasm32")]
+#[cfg(all(target_arch = "wasm32", feature = "bindings"))]
 #[doc(hidden)]
 pub mod web;
 
@@ -135,12 +135,15 @@ pub use export::{
     Format, MeshBuffers, MeshFile, MeshFormat, ParticleFile, Placement, RecordText, Unit, UpAxis, Vertices,
 };
 pub use extent::Reach;
-pub use field::formula::{Formula, FormulaError, FormulaErrorKind, Mended, Parameter};
+pub use field::formula::{Expr, Formula, FormulaError, FormulaErrorKind, Mended, Parameter};
 #[cfg(feature = "points")]
 pub use field::model::{CENTRES, GivenMesh, GivenTopology, ModelInfo, NormalSource};
 #[cfg(feature = "points")]
 pub use field::rbf::RbfField;
-pub use field::{Bounded, Enclosure, Field, FnField, Jet, UnitCell, gallery};
+pub use field::{
+    BatchField, Bounded, Enclosure, Evaluator, Facts, Field, FieldError, FnField, Frame, IntoField, Jet,
+    SharedError, UnitCell, gallery,
+};
 pub use glam;
 pub use math::{Bounds, BoxError, Interval, Sym3};
 pub use mesh::build::Triangulation;
@@ -159,7 +162,7 @@ pub use pointcloud::read::{InputFormat, ReadError};
 pub use quality::{Figures, Histogram, Hole, Measurements, Pair, Places, figures};
 pub use run::{
     Cut, Error, Growth, Measures, MeshAnswer, MeshComponent, Proof, Radii, Report, Reporting, Run, Sample,
-    Start, Warning, sample,
+    Severity, Start, Warning, sample,
 };
 pub use sampler::{
     Doubt, FateCounts, FollowError, GapPolicy, LawKind, Method, Phase, Progress, Refusal, Sampled, Sampling,

@@ -26,10 +26,10 @@ pub struct Particles {
     pub level: Vec<u32>,
     /// Fates of the slots around the particle: see [`SlotFate`].
     pub slots: Vec<Slots>,
-    /// For each row, the patch of the surface on which it lies, by the number of its branch: see [`Branched::branch_at`]. Empty if the
+    /// For each row, the patch of the surface on which it lies, by the number of its branch: see [`Patches::branch_at`]. Empty if the
     /// surface has neither creases nor particles at tips.
     ///
-    /// [`Branched::branch_at`]: crate::field::Branched::branch_at
+    /// [`Patches::branch_at`]: crate::field::Patches::branch_at
     pub patch: Vec<u32>,
     /// For each of the first rows, the first row of the same particle. A particle on a crease has a row for each patch that meets
     /// there: all with its position, each with the normal of its patch. One at the tip of a cone has a row for each of the sheets that end

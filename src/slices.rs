@@ -13,7 +13,11 @@ use core::pin::{Pin, pin};
 use core::task::{Context, Poll, Waker};
 
 /// A computation under way, which may borrow what it works on.
+#[cfg(not(target_arch = "wasm32"))]
 pub type Work<'a, T> = Pin<Box<dyn Future<Output = T> + Send + 'a>>;
+/// A computation under way, which may borrow what it works on, a function of JavaScript among it.
+#[cfg(target_arch = "wasm32")]
+pub type Work<'a, T> = Pin<Box<dyn Future<Output = T> + 'a>>;
 
 /// Items in a slice of work, of 10 to 50 µs, of which each takes up to a microsecond or two: they search a tree, or evaluate a field.
 pub const HEAVY: usize = 32;

@@ -149,11 +149,12 @@ const ROOMS: [Room; 4] = [
         &[
             ("formula", &[]),
             ("descent", &[]),
+            ("evaluator", &[]),
             ("function", &[]),
+            ("given", &["function"]),
             ("gallery", &["formula"]),
             ("model", &[]),
             ("rbf", &[]),
-            ("scaled", &[]),
         ],
     ),
 ];

@@ -1,9 +1,9 @@
-//! Test that a warm field evaluates without allocating.
+//! Test that a warm evaluator does not allocate.
 #![allow(unsafe_code, reason = "counting what is allocated takes an allocator")]
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::gallery::SURFACES;
-use marching_particles::field::{Bounded, Enclosure, Field};
+use marching_particles::field::{Enclosure, Field, Frame};
 use marching_particles::math::{Bounds, Sym3};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -33,23 +33,21 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 #[test]
-fn a_warm_field_evaluates_and_takes_new_parameters_without_allocating() {
+fn a_warm_evaluator_does_not_allocate() {
     let points: Vec<Vec3> = (0..777).map(|k| Vec3::new(0.001, 0.002, -0.001) * k as f32).collect();
     let mut value = vec![0.0; points.len()];
     let mut gradient = vec![Vec3::ZERO; points.len()];
     let mut hessian = vec![Sym3::default(); points.len()];
     let mut enclosure = [Enclosure::UNKNOWN];
     for surface in SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
+        let mut field = field.evaluator(Frame::default());
         let mut work = || {
-            if let Some(parameter) = surface.parameters.first() {
-                field.set_parameter(&parameter.name, parameter.max).expect("the gallery's own parameter");
-            }
             field.values(&points, &mut value);
             field.gradients(&points, &mut value, &mut gradient);
             field.hessians(&points, &mut value, &mut gradient, &mut hessian);
             field.jet(DVec3::splat(0.3));
-            field.enclose(0, &[Bounds::cube(0.3)], &mut enclosure);
+            field.bounded().expect("a formula has bounds").enclose(0, &[Bounds::cube(0.3)], &mut enclosure);
         };
         work();
         let before = CALLS.get();

@@ -66,27 +66,29 @@ const COLUMNS: usize = 12 + 12 + 4 + 4 + 4 + 4;
 /// Number of particles of a run, and its peak memory in bytes.
 fn peak_of(settings: Settings) -> (usize, usize) {
     let surface = gallery::find("ellipsoid").expect("the gallery has the ellipsoid");
-    let mut field = surface.field();
+    let field = surface.field();
     let settings = settings!(max_particles: 4_000_000; ..settings);
     let before = USED.load(Ordering::Relaxed);
     PEAK.store(before, Ordering::Relaxed);
     let mut sampler = Sampler::default();
     let smooth = Some(Creases::default());
-    sampler.begin(&mut field, &surface.bounds, &settings, smooth).expect("room for the particles");
-    while sampler.step(&mut field, 65_536).stop_reason.is_none() {}
+    sampler
+        .begin(&field, glam::DVec3::ZERO, &surface.bounds, &settings, smooth)
+        .expect("room for the particles");
+    while sampler.step(&field, 65_536).stop_reason.is_none() {}
     (sampler.particles().len(), PEAK.load(Ordering::Relaxed) - before)
 }
 
 /// Holds the memory that a run is expected to take to what it does take, `bytes` per particle.
 fn assert_expected(settings: Settings, bytes: f64) {
     let surface = gallery::find("ellipsoid").expect("the gallery has the ellipsoid");
-    let mut field = surface.field();
+    let field = surface.field();
     let settings = settings!(size_mode: SizeMode::Count, count: 40_000; ..settings);
     for (limit, is_refused) in [(1.0 - ESTIMATE, true), (1.0 + ESTIMATE, false)] {
         let mut sampler = Sampler::default();
         sampler.limit_memory((f64::from(settings.count) * bytes * limit) as usize);
         let refused = matches!(
-            sampler.begin(&mut field, &surface.bounds, &settings, Some(Creases::default())),
+            sampler.begin(&field, glam::DVec3::ZERO, &surface.bounds, &settings, Some(Creases::default())),
             Err(SettingsError::Memory { particles: 40_000 })
         );
         assert_eq!(

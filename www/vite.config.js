@@ -58,7 +58,7 @@ const lessonPage = {
           outDir: lessonPage.folder ?? '',
           emptyOutDir: false,
           copyPublicDir: false,
-          rollupOptions: { input: join('learn', 'index.html') },
+          rollupOptions: { input: [join('learn', 'index.html'), join('learn', 'cards', 'index.html')] },
         },
       });
     },

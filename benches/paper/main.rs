@@ -346,7 +346,7 @@ fn figure_5(album: &mut Album, plan: &Plan) -> io::Result<()> {
     let report = quality::measure(
         &before.position,
         &before.normal,
-        &mut *surface.field(),
+        &*surface.field(),
         Some(&surface.bounds),
         &options,
     );

@@ -12,7 +12,7 @@ mod scan;
 
 pub(crate) use sampled::{CELLS, defined_share};
 
-use crate::field::Field;
+use crate::field::{Bounded, Field, Frame};
 use crate::math::Bounds;
 use crate::slices::{self, pause};
 use glam::DVec3;
@@ -95,26 +95,28 @@ impl Extent {
     }
 }
 
-/// Finds the box of the surface of a field, whose [origin](Field::origin) is zero.
+/// Finds the box of the surface of a field.
 #[must_use]
-pub fn find(field: &mut dyn Field) -> Extent {
+pub fn find(field: &dyn Field) -> Extent {
     slices::complete(find_in_slices(field))
 }
 
 /// [`find`] in slices of some 32 cells each.
-pub(crate) async fn find_in_slices(field: &mut dyn Field) -> Extent {
-    let operations = field.bounded().map_or(SHORT, |bounded| bounded.operations());
-    let cells = MOST_CELLS * SHORT / operations.max(SHORT);
-    let found = scanned(field, cells).await;
-    match (found.reach, of_periods(field.periods())) {
+pub(crate) async fn find_in_slices(field: &dyn Field) -> Extent {
+    let mut evaluator = field.evaluator(Frame::default());
+    let found = match evaluator.bounded() {
+        Some(bounded) => scanned(field, bounded).await,
+        None => sampled::find(field).await,
+    };
+    match (found.reach, of_periods(field.facts().periods)) {
         (Reach::Endless | Reach::Unknown, Some(bounds)) => Extent { bounds, reach: found.reach },
         _ => found,
     }
 }
 
-/// Finds the box of a surface in at most so many cells.
-async fn scanned(field: &mut dyn Field, cells: usize) -> Extent {
-    let Some(bounded) = field.bounded() else { return sampled::find(field).await };
+/// Finds the box of a surface by the bounds of its field.
+async fn scanned(field: &dyn Field, bounded: &mut dyn Bounded) -> Extent {
+    let cells = MOST_CELLS * SHORT / bounded.operations().max(SHORT);
     // A plain scan that decides nothing may have visited all of its cells.
     let (mut left, mut more) = (cells, cells);
     let mut bends: Option<Bounds> = None;
@@ -185,7 +187,7 @@ fn of_periods(periods: [Option<f64>; 3]) -> Option<Bounds> {
 /// holds all of the surface. This one has its corners away from the surface, where |f| is largest on a grid, and its faces away from
 /// planes of symmetry, which often touch the surface: creases are plain curves then.
 #[must_use]
-pub fn unit_cell(field: &mut dyn Field, periods: [Option<f64>; 3], bounds: &Bounds) -> Bounds {
+pub fn unit_cell(field: &dyn Field, periods: [Option<f64>; 3], bounds: &Bounds) -> Bounds {
     /// Places of the corner along each axis. On six random surfaces |f| at the corner is 97 % of the largest in the cell, with half as many
     /// places 84 %, with twice as many 98 %.
     const SIDE: u32 = 8;
@@ -198,6 +200,7 @@ pub fn unit_cell(field: &mut dyn Field, periods: [Option<f64>; 3], bounds: &Boun
         let share = DVec3::new(k.into(), (k / SIDE).into(), (k / SIDE.pow(2)).into()) % f64::from(SIDE);
         first + periods * ((share.floor() + ASIDE) / f64::from(SIDE))
     };
+    let mut field = field.evaluator(Frame::default());
     let mut best = (first, -1.0);
     for corner in (0..SIDE.pow(3)).map(corner) {
         let (value, _) = field.value_and_gradient(corner);

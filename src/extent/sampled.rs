@@ -1,7 +1,7 @@
 //! The box of a surface whose field has no useful bounds, by the signs of f on grids.
 
 use super::{Extent, FALLBACK, HALVES, Reach, placeable};
-use crate::field::{BATCH, Field};
+use crate::field::{BATCH, Evaluator, Field, Frame};
 use crate::math::Bounds;
 use crate::slices::pause;
 use glam::{DVec3, Vec3};
@@ -14,15 +14,10 @@ const FULL: f64 = 0.6;
 
 /// Finds the smallest cube through whose faces the surface does not pass, and its box in it. The surface goes on if the grid of a larger cube
 /// shows more.
-pub(super) async fn find(field: &mut dyn Field) -> Extent {
+pub(super) async fn find(field: &dyn Field) -> Extent {
     // In single precision rounding decides the sign far from the origin, where terms nearly cancel.
-    field.use_double(Some(1.0));
-    let found = find_on_grids(field).await;
-    field.use_double(None);
-    found
-}
-
-async fn find_on_grids(field: &mut dyn Field) -> Extent {
+    let mut evaluator = field.evaluator(Frame { double: Some(1.0), ..Frame::default() });
+    let field = &mut *evaluator;
     let mut seen = None;
     let mut halves = HALVES.into_iter().rev();
     while let Some(half) = halves.next() {
@@ -58,7 +53,7 @@ async fn find_on_grids(field: &mut dyn Field) -> Extent {
 }
 
 /// Share of the nodes of all grids at which f has a value.
-pub(crate) fn defined_share(field: &mut dyn Field) -> f64 {
+pub(crate) fn defined_share(field: &mut dyn Evaluator) -> f64 {
     let mut values = [0.0; BATCH];
     let (mut defined, mut nodes) = (0, 0);
     for (half, k) in HALVES.into_iter().flat_map(|half| (0..NODES).map(move |k| (half, k))) {
@@ -83,7 +78,7 @@ fn layer_of(over: &Bounds, k: usize) -> Vec<Vec3> {
 }
 
 /// The box of the cells at whose corners f changes its sign, with a cell of room, and whether one of them lies at the faces.
-async fn changes(field: &mut dyn Field, over: &Bounds) -> Option<(Bounds, bool)> {
+async fn changes(field: &mut dyn Evaluator, over: &Bounds) -> Option<(Bounds, bool)> {
     let (lo, step) = (over.lo(), over.size() / CELLS as f64);
     let mut below = vec![f32::NAN; NODES * NODES];
     let mut layer = below.clone();

@@ -5,7 +5,7 @@ use crate::field::formula::Formula;
 
 fn extent(text: &str) -> Extent {
     let field = Formula::as_written(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"));
-    find(&mut field.without_powers())
+    find(&field.without_powers())
 }
 
 /// Asserts that the box holds `lo` to `hi` and is larger by less than 5 % of its longest side.
@@ -140,9 +140,10 @@ fn a_scan_finds_what_is_within_but_a_fiftieth_of_its_half_width() {
             let [x, y, z] = centre;
             let text =
                 format!("(x-({x}))^2 + (y-({y}))^2 + (z-({z}))^2 = {}", (0.005 * half) * (0.005 * half));
-            let mut field = Formula::as_written(&text, &[]).expect("a formula");
-            let found =
-                crate::slices::complete(scan::scan(&mut field, half, scan::Effort::Plain, &mut 10_000));
+            let field = Formula::as_written(&text, &[]).expect("a formula");
+            let mut evaluator = field.evaluator(Frame::default());
+            let bounded = evaluator.bounded().expect("a formula has bounds");
+            let found = crate::slices::complete(scan::scan(bounded, half, scan::Effort::Plain, &mut 10_000));
             let scan::Scan::Inside(hull) = found else { panic!("{text} within {half}: {found:?}") };
             let reach = if axis < 3 { hull.max[axis] } else { -hull.min[axis - 3] };
             assert!((0.978 * half..0.981 * half).contains(&reach), "{text}: {hull:?}");
@@ -194,8 +195,8 @@ fn the_room_is_a_twentieth_and_three_radii() {
 #[test]
 fn budgets_do_not_change_the_box() {
     let text = "x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8";
-    let mut field = Formula::as_written(text, &[]).expect("a formula");
-    let mut fit = core::pin::pin!(find_in_slices(&mut field));
+    let field = Formula::as_written(text, &[]).expect("a formula");
+    let mut fit = core::pin::pin!(find_in_slices(&field));
     let mut steps = 0;
     let slowly = loop {
         steps += 1;
@@ -211,11 +212,11 @@ fn budgets_do_not_change_the_box() {
 fn a_field_without_bounds_is_looked_at_on_a_grid() {
     struct Blob;
     impl Field for Blob {
-        fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+        fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
             (p.length() - 2.5, p.normalize_or_zero())
         }
     }
-    let extent = find(&mut Blob);
+    let extent = find(&Blob);
     assert_eq!(extent.reach, Reach::Bounded);
     assert!(extent.bounds.max.iter().all(|end| (2.5..3.0).contains(end)), "{extent:?}");
 }

@@ -11,7 +11,7 @@
 //!   `sampler::discovery::audit` stays in a plane on its way.
 //! * `sampler::discovery::singular` looks for a zero of the gradient, and `field::formula::creases` for one of two functions at once.
 
-use super::{BATCH, Field};
+use super::{BATCH, Evaluator};
 use glam::Vec3;
 
 /// Below this |∇f|, its square is subnormal and has lost digits.
@@ -54,7 +54,7 @@ pub(crate) trait Descents {
     /// Evaluates the field at `points`, whose indices in the batch are `which`.
     fn evaluate(
         &mut self,
-        field: &mut dyn Field,
+        field: &mut dyn Evaluator,
         which: &[u32],
         points: &[Vec3],
         value: &mut [f32],
@@ -85,7 +85,7 @@ impl Descents for [Descent; BATCH] {
 /// `descents`. A point is given up after `max_steps` evaluations, when it has moved too far, and where the field is
 /// undefined or its gradient is not above `min_gradient`; it stays where its last step has led.
 pub(crate) fn descend(
-    field: &mut dyn Field,
+    field: &mut dyn Evaluator,
     points: &mut [Vec3],
     normal: &mut [Vec3],
     ok: &mut [bool],

@@ -332,7 +332,13 @@ impl Lesson {
     fn begin_chapter(&mut self) {
         let before = self.course.run.particles.len();
         self.snapshots.add(self.chapters.len(), &self.course);
-        let Some(kind) = self.course.begin_chapter() else {
+        let kind = self.course.begin_chapter();
+        let evaluations = self.course.run.surface.evaluations;
+        // The search for the next seed belongs to the chapter before it: where no seed is left, it ends the placing.
+        if let Some(last) = self.chapters.last_mut() {
+            last.evaluations = evaluations;
+        }
+        let Some(kind) = kind else {
             self.is_done = true;
             return;
         };
@@ -347,7 +353,7 @@ impl Lesson {
             largest_move: None,
             fissions: 0,
             deaths: 0,
-            evaluations: self.course.run.surface.evaluations,
+            evaluations,
             is_over: false,
         });
     }

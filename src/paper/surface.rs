@@ -6,8 +6,7 @@ use crate::math::Bounds;
 use crate::particles::SlotFate;
 use core::f64::consts::PI;
 use glam::DVec3;
-use std::cell::RefCell;
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Largest number of evaluations in Newton's method. From a good guess it takes two. With six of them three of 24 random
 /// surfaces get other particles, with 24 none, or one where particles are large.
@@ -24,7 +23,7 @@ const MAX_THETA_RAD: f64 = PI * 5.0 / 9.0;
 /// "Require: an implicit surface": f = 0 in a box. Clones share the field, and count their evaluations apart.
 #[derive(Clone)]
 pub struct ImplicitSurface {
-    field: Rc<RefCell<Box<dyn Field>>>,
+    field: Arc<dyn Field>,
     pub(crate) bounds: Bounds,
     /// Evaluations of the field.
     pub(crate) evaluations: u64,
@@ -86,13 +85,13 @@ impl ImplicitSurface {
     /// The zeros of `field` in a box.
     #[must_use]
     pub fn new(field: Box<dyn Field>, bounds: &Bounds) -> Self {
-        Self { field: Rc::new(RefCell::new(field)), bounds: *bounds, evaluations: 0 }
+        Self { field: field.into(), bounds: *bounds, evaluations: 0 }
     }
 
     /// f, ∇f and ∇∇f at a point.
     pub(crate) fn jet(&mut self, p: DVec3) -> Jet {
         self.evaluations += 1;
-        self.field.borrow_mut().jet(p)
+        self.field.jet(p)
     }
 
     /// §4.3: moves a child along the circle until it has converged on the surface.

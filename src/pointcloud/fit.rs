@@ -12,8 +12,8 @@
 use super::solve::{Decomposition, SingularMatrix};
 use super::thin::check_spread;
 use super::{Cloud, CloudError, ModelInfo};
-use crate::field::Field;
 use crate::field::rbf::{CentredFrame, RbfData, RbfField};
+use crate::field::{Field, Frame};
 use crate::math::{Bounds, sort_numbers};
 use crate::slices::{HEAVY, LIGHT, pause, ranges};
 use glam::{BVec3, DVec3, Vec3};
@@ -139,8 +139,8 @@ pub async fn approximate(
     if condition.is_nan() || condition >= MAX_CONDITION {
         return Err(FitError::Singular { condition });
     }
-    let mut field = field_of(&x, &centres, &frame)?;
-    let (residuals, farthest) = residuals(&mut field, given, |share| tell(end + (1.0 - end) * share)).await;
+    let field = field_of(&x, &centres, &frame)?;
+    let (residuals, farthest) = residuals(&field, given, |share| tell(end + (1.0 - end) * share)).await;
     let info = ModelInfo {
         farthest: farthest.to_array(),
         points: given.len().max(cloud.len()) as u32,
@@ -149,7 +149,7 @@ pub async fn approximate(
         condition,
         ..info
     };
-    Ok(reported(&mut field, given, residuals, info))
+    Ok(reported(&field, given, residuals, info))
 }
 
 /// A point in local coordinates.
@@ -201,8 +201,8 @@ async fn smoothing(points: &[CellPoint], centres: &[DVec3], tell: impl Fn(f64)) 
     for trial in 0..SMOOTHING_TRIALS {
         tell(f64::from(trial) / f64::from(SMOOTHING_TRIALS));
         let (x, _) = system.clone().solve(Smoothing { value: tried, distance_sq }, |_| {}).await?;
-        let mut field = field_of(&x, centres, &CentredFrame::default())?;
-        let error = error_at(&mut field, &left_out, distance_sq).await;
+        let field = field_of(&x, centres, &CentredFrame::default())?;
+        let error = error_at(&field, &left_out, distance_sq).await;
         if error.is_nan() || error >= least {
             break;
         }
@@ -213,7 +213,8 @@ async fn smoothing(points: &[CellPoint], centres: &[DVec3], tell: impl Fn(f64)) 
 }
 
 /// Sum of f² and `distance_sq` |∇f − n|² over the points.
-async fn error_at(field: &mut RbfField, points: &[CellPoint], distance_sq: f64) -> f64 {
+async fn error_at(field: &RbfField, points: &[CellPoint], distance_sq: f64) -> f64 {
+    let mut field = field.evaluator(Frame::default());
     let mut sum = 0.0;
     for points in points.chunks(HEAVY) {
         let positions: Vec<Vec3> = points.iter().map(|point| point.position.as_vec3()).collect();
@@ -242,7 +243,7 @@ fn field_of(x: &DVector<f64>, centres: &[DVec3], frame: &CentredFrame) -> Result
 }
 
 /// The fit with its report.
-fn reported(field: &mut RbfField, given: &[DVec3], mut residuals: Vec<f32>, mut info: ModelInfo) -> Fit {
+fn reported(field: &RbfField, given: &[DVec3], mut residuals: Vec<f32>, mut info: ModelInfo) -> Fit {
     let centres = field.data().centres.iter().map(|&c| DVec3::from_array(c));
     let bounds = Bounds::around(given.iter().copied().chain(centres));
     let diagonal = bounds.diagonal();
@@ -366,7 +367,8 @@ impl System {
 }
 
 /// Residuals |f|/|∇f| of the points, and the point with the largest one. There is none where ∇f vanishes.
-async fn residuals(field: &mut RbfField, points: &[DVec3], tell: impl Fn(f64)) -> (Vec<f32>, DVec3) {
+async fn residuals(field: &RbfField, points: &[DVec3], tell: impl Fn(f64)) -> (Vec<f32>, DVec3) {
+    let mut field = field.evaluator(Frame::default());
     let mut residuals = Vec::with_capacity(points.len());
     let (mut largest, mut farthest) = (0.0, DVec3::ZERO);
     for range in ranges(points.len(), HEAVY) {

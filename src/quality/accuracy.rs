@@ -2,7 +2,7 @@
 
 use super::figures::Accuracy;
 use super::moments::Moments;
-use crate::field::{Field, difference_step};
+use crate::field::{Evaluator, difference_step};
 use glam::{DVec3, Vec3};
 
 /// Returns the first-order height f/|∇f| of a point above the surface; its size is the distance.
@@ -12,8 +12,8 @@ pub(super) fn first_order_height(value: f64, slope: f64) -> f64 {
 
 /// Returns the height f/slope of a place where f has this value and no gradient, as at the tip of a cone: with the slope to the steeper
 /// side along the unit normal.
-pub(super) fn height_along(field: &mut dyn Field, place: DVec3, normal: Vec3, value: f64) -> f64 {
-    let h = difference_step(field.origin() + place);
+pub(super) fn height_along(field: &mut dyn Evaluator, place: DVec3, normal: Vec3, value: f64) -> f64 {
+    let h = difference_step(field.frame().place(place));
     let mut slope =
         |way: f64| (field.value_and_gradient(place + way * normal.as_dvec3()).0 - value).abs() / h;
     let slope = slope(h).max(slope(-h));

@@ -1,6 +1,6 @@
 //! The border along which a clip box cuts the surface, and the points near it.
 
-use crate::field::Field;
+use crate::field::Evaluator;
 use crate::math::{Bounds, NONE};
 use crate::slices::pause;
 use crate::spatial::tree::Tree;
@@ -31,7 +31,7 @@ pub(super) struct Border {
 impl Border {
     /// Finds the border on those faces of `bounds` that are near a point of `tree`; the points have a spacing of about
     /// `d_hex`.
-    pub(super) async fn new(field: &mut dyn Field, bounds: &Bounds, tree: &Tree, d_hex: f64) -> Self {
+    pub(super) async fn new(field: &mut dyn Evaluator, bounds: &Bounds, tree: &Tree, d_hex: f64) -> Self {
         let margin = MARGIN * d_hex;
         let mut curve = Vec::new();
         if bounds.is_valid() && margin > 0.0 && margin.is_finite() {
@@ -112,7 +112,7 @@ impl Face {
     }
 
     /// Appends the points where the sign changes on the edges of a row of the grid and on those from the row before.
-    fn cross(&mut self, field: &mut dyn Field, row: usize, curve: &mut Vec<Vec3>) {
+    fn cross(&mut self, field: &mut dyn Evaluator, row: usize, curve: &mut Vec<Vec3>) {
         for column in 0..=self.columns {
             self.points[column] = self.node(column, row).as_vec3();
         }
@@ -145,7 +145,7 @@ impl Face {
 /// The surface is approximated to second order. From `p` along the unit tangent t that rises fastest beyond the face,
 /// whose outward normal is e, the height over the face is s (t·e) − s² κ (n·e)/2, where κ is the normal curvature along
 /// t.
-fn is_cut(field: &mut dyn Field, p: DVec3, step: f64, axis: usize, sign: f64, d_hex: f64) -> bool {
+fn is_cut(field: &mut dyn Evaluator, p: DVec3, step: f64, axis: usize, sign: f64, d_hex: f64) -> bool {
     let jet = field.jet(p);
     let slope = jet.gradient.length();
     // This excludes poles and jumps, where the sign changes too.

@@ -1,6 +1,6 @@
 //! The rows of particles on creases: which are of one patch, and which of one particle.
 
-use crate::field::Field;
+use crate::field::Evaluator;
 use crate::math::{Bounds, NONE, sort_pairs, unkey};
 use crate::mesh::build;
 use crate::particles::Particles;
@@ -147,7 +147,7 @@ impl CreaseRows {
     /// f and ∇f at the points of a range, each on its own patch.
     pub(super) fn exact_gradients(
         &self,
-        field: &mut dyn Field,
+        field: &mut dyn Evaluator,
         range: Range<usize>,
         position: &[Vec3],
         value: &mut [f64],
@@ -161,30 +161,23 @@ impl CreaseRows {
         while done < position.len() {
             // Near points are on few patches, in long runs.
             let run = patch[done..].iter().take_while(|&&other| other == patch[done]).count();
-            field.select_branch(Some(patch[done]));
             let end = done + run;
-            field.exact_gradients(&position[done..end], &mut value[done..end], &mut gradient[done..end]);
+            field.on(Some(patch[done])).exact_gradients(
+                &position[done..end],
+                &mut value[done..end],
+                &mut gradient[done..end],
+            );
             done = end;
         }
-        field.select_branch(None);
     }
 
-    /// Has the field evaluated on the patch of point `i`, until [`CreaseRows::release`].
-    pub(super) fn select(&self, field: &mut dyn Field, i: usize) {
-        if let Some(&patch) = self.patch.get(i) {
-            field.select_branch(Some(patch));
-        }
-    }
-
-    /// Has the field evaluated as it is.
-    pub(super) fn release(&self, field: &mut dyn Field) {
-        if !self.is_empty() {
-            field.select_branch(None);
-        }
+    /// The evaluator of the patch of point `i`.
+    pub(super) fn on<'e>(&self, field: &'e mut dyn Evaluator, i: usize) -> &'e mut dyn Evaluator {
+        field.on(self.patch.get(i).copied())
     }
 
     /// Whether a place is on the patch of point `i`, and not on what lies beyond its creases.
-    pub(super) fn reaches(&self, field: &mut dyn Field, i: usize, p: Vec3) -> bool {
+    pub(super) fn reaches(&self, field: &mut dyn Evaluator, i: usize, p: Vec3) -> bool {
         self.patch.get(i).is_none_or(|&patch| field.branch_at(p.as_dvec3()) == patch)
     }
 

@@ -4,7 +4,7 @@
 use super::points::MeasuredPoints;
 use super::projection::STEPS;
 use crate::field::descent::{Descent, descend};
-use crate::field::{BATCH, Field};
+use crate::field::{BATCH, Evaluator};
 use crate::math::{Bounds, sort_few};
 use crate::slices::{MEDIUM, pause, ranges};
 use glam::Vec3;
@@ -50,7 +50,7 @@ pub(super) struct Gaps<'a> {
 
 impl Gaps<'_> {
     /// Keeps the triangles that lead across no gap.
-    pub(super) async fn drop_across(&self, field: &mut dyn Field, triangles: &mut Vec<[u32; 3]>) {
+    pub(super) async fn drop_across(&self, field: &mut dyn Evaluator, triangles: &mut Vec<[u32; 3]>) {
         let (mut is_across, mut long) = (Vec::new(), Vec::new());
         let mut kept = 0;
         for range in ranges(triangles.len(), MEDIUM) {
@@ -89,7 +89,7 @@ impl Gaps<'_> {
     }
 
     /// Notes the triangles of which an edge has its middle not near the surface in the box.
-    fn look_across(&self, field: &mut dyn Field, edges: &[LongEdge], is_across: &mut [bool]) {
+    fn look_across(&self, field: &mut dyn Evaluator, edges: &[LongEdge], is_across: &mut [bool]) {
         let (mut at, mut normal, mut ok) = ([Vec3::ZERO; BATCH], [Vec3::ZERO; BATCH], [false; BATCH]);
         let mut limits = [Descent::default(); BATCH];
         for (k, edge) in edges.iter().enumerate() {

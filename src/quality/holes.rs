@@ -6,7 +6,7 @@ use super::places::{Hole, WIDE};
 use super::projection::{LAST_STEP, is_reached, project};
 use super::sizes::WantedRadii;
 use super::triangles::area_vector;
-use crate::field::{BATCH, Field};
+use crate::field::{BATCH, Evaluator};
 use crate::math::NONE;
 use crate::slices::{HEAVY, pause};
 use crate::spatial::tree::{PointsInBox, Tree};
@@ -96,7 +96,7 @@ pub(super) struct Holes {
 /// Measures the holes by about `count` random samples on the triangles, by their Voronoi corners and at `crossings`, random samples of the
 /// surface.
 pub(super) async fn measure(
-    field: &mut dyn Field,
+    field: &mut dyn Evaluator,
     cover: &Cover<'_>,
     count: usize,
     crossings: &[Vec3],
@@ -215,7 +215,7 @@ impl HoleSearch {
     }
 
     /// Takes in a batch of samples once they are projected, of which the statistics are made if they are `random`.
-    fn add(&mut self, field: &mut dyn Field, cover: &Cover, batch: &mut Batch, random: bool) {
+    fn add(&mut self, field: &mut dyn Evaluator, cover: &Cover, batch: &mut Batch, random: bool) {
         project(field, &mut batch.position, &batch.leash, LAST_STEP);
         for ((&p, &leash), triangle) in batch.position.iter().zip(&batch.leash).zip(&batch.triangle) {
             if !cover.counts(p) {
@@ -255,10 +255,10 @@ impl HoleSearch {
     }
 
     /// Takes in the Voronoi corners on the surface: the projected circumcentres of the triangles.
-    async fn add_corners(&mut self, field: &mut dyn Field, cover: &Cover<'_>) {
+    async fn add_corners(&mut self, field: &mut dyn Evaluator, cover: &Cover<'_>) {
         let mut batch = Batch::default();
         for triangles in cover.patches() {
-            cover.creases.select(field, triangles[0][0] as usize);
+            let field = cover.creases.on(field, triangles[0][0] as usize);
             for chunk in triangles.chunks(BATCH) {
                 for &triangle in chunk {
                     if let Some((centre, radius)) = circumcentre(&cover.tree.position, triangle) {
@@ -269,12 +269,11 @@ impl HoleSearch {
                 pause().await;
             }
         }
-        cover.creases.release(field);
     }
 
     /// Takes in about `count` random samples: uniform on the triangles, one in each of `count` equal shares of their
     /// area, and projected onto the surface.
-    async fn add_samples(&mut self, field: &mut dyn Field, cover: &Cover<'_>, count: usize) {
+    async fn add_samples(&mut self, field: &mut dyn Evaluator, cover: &Cover<'_>, count: usize) {
         let position = &cover.tree.position;
         let total: f64 = cover.mesh.iter().map(|&t| area_vector(position, t).length()).sum();
         let share = total / count as f64;
@@ -285,7 +284,7 @@ impl HoleSearch {
         let mut next = share * unit();
         let mut stratum = 1.0;
         for triangles in cover.patches() {
-            cover.creases.select(field, triangles[0][0] as usize);
+            let field = cover.creases.on(field, triangles[0][0] as usize);
             for &triangle in triangles {
                 passed += area_vector(position, triangle).length();
                 while next < passed && stratum <= count as f64 {
@@ -310,7 +309,6 @@ impl HoleSearch {
             }
         }
         self.add(field, cover, &mut batch, true);
-        cover.creases.release(field);
     }
 }
 
@@ -342,11 +340,13 @@ impl Batch {
 mod tests {
     use super::*;
     use crate::field::formula::Formula;
+    use crate::field::{Field, Frame};
     use crate::slices::complete;
 
     #[test]
     fn corners_that_do_not_come_to_the_surface_are_no_holes() {
-        let mut field = Formula::as_written("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
+        let field = Formula::as_written("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
+        let field = &mut *field.evaluator(Frame::default());
         let at = |y: f32, z: f32| Vec3::new(1.0, y, z).normalize_or_zero();
         // These are almost on a great circle: their circumcentre is near that of the sphere, far from the surface.
         let flat = [at(-0.1, 0.001), at(0.0, 0.0), at(0.1, 0.001)];
@@ -364,7 +364,7 @@ mod tests {
                 lattice: 1.0,
             };
             let mut search = HoleSearch::default();
-            complete(search.add_corners(&mut field, &cover));
+            complete(search.add_corners(field, &cover));
             let widest = search.widest_sq.sqrt();
             assert!(holes.contains(&widest), "{widest}");
         }
@@ -372,7 +372,8 @@ mod tests {
 
     #[test]
     fn a_hole_is_measured_by_the_largest_of_the_discs_around_it() {
-        let mut field = Formula::as_written("z = 0", &[]).expect("a formula");
+        let field = Formula::as_written("z = 0", &[]).expect("a formula");
+        let field = &mut *field.evaluator(Frame::default());
         // The circumcentre of the long triangle of three small discs is beside the large one.
         let tree = Tree::new(
             &[[-0.1, 0.0], [0.0, 0.01], [0.1, 0.0], [0.0, -0.45]].map(|[x, y]| Vec3::new(x, y, 0.0)),
@@ -391,7 +392,7 @@ mod tests {
             lattice: 1.0,
         };
         let mut search = HoleSearch::default();
-        complete(search.add_corners(&mut field, &cover));
+        complete(search.add_corners(field, &cover));
         let relative = search.relative_sq.sqrt();
         assert!((0.8..1.0).contains(&relative), "{relative}");
     }

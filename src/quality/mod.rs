@@ -46,8 +46,7 @@ pub use options::MeasureOptions;
 pub use places::{CROWDED, Hole, Pair, Places, WIDE};
 pub use spacing::Histogram;
 
-use crate::field::Field;
-use crate::field::scaled::{Scaled, comfortable_scale};
+use crate::field::{Evaluator, Field, Frame};
 use crate::math::{Bounds, NONE, SQRT_3};
 use crate::mesh::facing::{Inside, facing};
 use crate::slices::{self, MEDIUM, pause, ranges};
@@ -135,10 +134,12 @@ pub(crate) struct Opening {
 pub fn measure(
     position: &[Vec3],
     normal: &[Vec3],
-    field: &mut dyn Field,
+    field: &dyn Field,
     bounds: Option<&Bounds>,
     options: &MeasureOptions,
 ) -> Measurements {
+    let frame = Frame::default().scaled_to(&field, position.iter().copied());
+    let field = &mut *field.evaluator(frame);
     slices::complete(in_slices(position, normal, field, bounds, options, &mut None))
 }
 
@@ -147,13 +148,11 @@ pub fn measure(
 pub(crate) async fn in_slices(
     position: &[Vec3],
     normal: &[Vec3],
-    field: &mut dyn Field,
+    field: &mut dyn Evaluator,
     bounds: Option<&Bounds>,
     options: &MeasureOptions<'_>,
     crossings: &mut Option<Vec<Vec3>>,
 ) -> Measurements {
-    let factor = comfortable_scale(field, position.iter().copied());
-    let field: &mut dyn Field = &mut Scaled::new(field, factor);
     let prepared = Prepared::new(position, normal, field, bounds, options).await;
     let DistinctFigures { mut figures, component, energy, mut pairs, holes, opening, inside } =
         figures_of(&prepared, field, bounds, options, crossings).await;
@@ -178,16 +177,13 @@ pub(crate) async fn in_slices(
         report.component[i] = component[k];
     }
     for i in (0..n).filter(|&i| drop[i] && position[i].is_finite()) {
-        if let Some(patch) = options.rows.and_then(|rows| rows.patch_of(i)) {
-            field.select_branch(Some(patch));
-        }
+        let field = field.on(options.rows.and_then(|rows| rows.patch_of(i)));
         let place = position[i].as_dvec3();
         let jet = field.jet(place);
         let mut height = first_order_height(jet.value, jet.gradient.length());
         if !height.is_finite() {
             height = height_along(field, place, normal.get(i).copied().unwrap_or_default(), jet.value);
         }
-        points.creases.release(field);
         report.residual[i] = height.abs() as f32;
         let (_, equal) = points.tree.nearest(position[i], NONE, f32::INFINITY);
         report.component[i] = component.get(equal as usize).copied().unwrap_or(Measurements::NO_COMPONENT);
@@ -224,7 +220,7 @@ struct DistinctFigures {
 /// Measures the points; `crowded` is left for the duplicates to be added.
 async fn figures_of(
     prepared: &Prepared,
-    field: &mut dyn Field,
+    field: &mut dyn Evaluator,
     bounds: Option<&Bounds>,
     options: &MeasureOptions<'_>,
     crossings: &mut Option<Vec<Vec3>>,
@@ -386,7 +382,7 @@ fn opening(topology: &Topology, mesh: &[[u32; 3]], inner: &[bool], position: &[V
 /// Measures the holes. Returns the wide ones.
 async fn measure_holes(
     cover: &Cover<'_>,
-    field: &mut dyn Field,
+    field: &mut dyn Evaluator,
     crossings: &[Vec3],
     figures: &mut Figures,
 ) -> Vec<Hole> {

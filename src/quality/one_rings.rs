@@ -2,7 +2,7 @@
 
 use super::cell::{MOST_POINTS, VoronoiCell};
 use super::sheets::Sheets;
-use crate::field::Field;
+use crate::field::Evaluator;
 use crate::math::{LANES, key, tangent_frame, unkey};
 use crate::slices::pause;
 use crate::spatial::tree::{Leaf, PointsInBox, Tree};
@@ -39,7 +39,7 @@ struct RingBuffers {
 
 impl OneRings {
     /// Finds the one-rings of the points. The field tells near sheets apart.
-    pub(super) async fn new(sheets: &Sheets<'_>, field: &mut dyn Field) -> Self {
+    pub(super) async fn new(sheets: &Sheets<'_>, field: &mut dyn Evaluator) -> Self {
         let n = sheets.tree.len();
         let mut rings = Self {
             start: Vec::with_capacity(n + 1),
@@ -65,7 +65,7 @@ impl OneRings {
     fn add_leaf(
         &mut self,
         sheets: &Sheets,
-        field: &mut dyn Field,
+        field: &mut dyn Evaluator,
         leaf: Leaf,
         RingBuffers { cell, nearby, keys, asked }: &mut RingBuffers,
     ) {
@@ -105,7 +105,7 @@ impl OneRings {
                 f64::INFINITY
             };
             asked.clear();
-            creases.select(field, i);
+            let field = creases.on(field, i);
             let mut is_stranger = |j: usize| {
                 if creases.is_tip(i) || creases.is_tip(j) {
                     return false;
@@ -136,7 +136,6 @@ impl OneRings {
             }
             self.neighbour
                 .extend(cell.edges(known_sq).map(|(j, certain)| if certain { j | PROVEN } else { j }));
-            creases.release(field);
             self.closed.push(closed);
             self.start.push(self.neighbour.len() as u32);
         }

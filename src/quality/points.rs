@@ -4,7 +4,7 @@ use super::accuracy::{NormalAngles, first_order_height, height_along};
 use super::creases::CreaseRows;
 use super::one_rings::OneRings;
 use super::sheets::Sheets;
-use crate::field::Field;
+use crate::field::Evaluator;
 use crate::particles::Particles;
 use crate::slices::{HEAVY, pause, ranges};
 use crate::spatial::tree::Tree;
@@ -29,7 +29,7 @@ impl MeasuredPoints {
     pub(super) async fn new(
         position: &[Vec3],
         given: &[Vec3],
-        field: &mut dyn Field,
+        field: &mut dyn Evaluator,
         has_duplicate: &[bool],
         drop: &[bool],
         rows: Option<&Particles>,
@@ -57,9 +57,7 @@ impl MeasuredPoints {
                 normal.push(unit.or_else(|| given.try_normalize()).unwrap_or(Vec3::Z));
                 let mut own = first_order_height(value, slope);
                 if !own.is_finite() {
-                    creases.select(field, k);
-                    own = height_along(field, tree.position[k].as_dvec3(), given, value);
-                    creases.release(field);
+                    own = height_along(creases.on(field, k), tree.position[k].as_dvec3(), given, value);
                 }
                 height.push(own);
             }

@@ -5,7 +5,7 @@ use super::gaps::{Gaps, spacing_of};
 use super::options::MeasureOptions;
 use super::points::MeasuredPoints;
 use super::triangles::{Triangles, area};
-use crate::field::Field;
+use crate::field::Evaluator;
 use crate::math::{Bounds, IndexTable, SINGLE_ROUNDING, hash};
 use crate::slices::pause;
 use glam::Vec3;
@@ -30,7 +30,7 @@ impl Prepared {
     pub(super) async fn new(
         position: &[Vec3],
         normal: &[Vec3],
-        field: &mut dyn Field,
+        field: &mut dyn Evaluator,
         bounds: Option<&Bounds>,
         options: &MeasureOptions<'_>,
     ) -> Self {
@@ -123,6 +123,7 @@ fn drop_close(points: &MeasuredPoints, limit: f32, drop: &mut [bool]) -> bool {
 mod tests {
     use super::*;
     use crate::field::formula::Formula;
+    use crate::field::{Field, Frame};
     use crate::slices::complete;
     use glam::DVec3;
 
@@ -159,9 +160,10 @@ mod tests {
                 DVec3::new(r * c, r * s, z).as_vec3()
             })
             .collect();
-        let mut sphere = Formula::as_written("x^2+y^2+z^2-1", &[]).expect("a formula");
+        let sphere = Formula::as_written("x^2+y^2+z^2-1", &[]).expect("a formula");
+        let sphere = &mut *sphere.evaluator(Frame::default());
         let options = MeasureOptions::default();
-        let prepared = complete(Prepared::new(&points, &points, &mut sphere, None, &options));
+        let prepared = complete(Prepared::new(&points, &points, sphere, None, &options));
         let (found, position) = (prepared.mesh, prepared.points.tree.position);
         assert_eq!(found.len(), 2 * points.len() - 4);
         let mut edges: Vec<[u32; 2]> = found.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();

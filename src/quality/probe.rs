@@ -6,7 +6,7 @@
 //! whole surface.
 
 use super::projection::project;
-use crate::field::{BATCH, Field};
+use crate::field::{BATCH, Evaluator};
 use crate::math::Bounds;
 use crate::slices::{MEDIUM, pause};
 use glam::{DVec3, Vec3};
@@ -28,7 +28,7 @@ const RESIDUAL: f32 = 1e-2;
 const STREAM: u64 = 0x6c69_6e65_7300_0000;
 
 /// Returns random samples of the surface in `bounds`, uniform over its area; at most a few for each line.
-pub(super) async fn crossings(field: &mut dyn Field, bounds: &Bounds) -> Vec<Vec3> {
+pub(super) async fn crossings(field: &mut dyn Evaluator, bounds: &Bounds) -> Vec<Vec3> {
     let mut found = Vec::new();
     if bounds.is_valid() {
         let mut random = Pcg32::seed_from_u64(STREAM);
@@ -58,7 +58,7 @@ struct SignChanges {
 
 impl SignChanges {
     /// Adds those on the next [`LINES_AT_ONCE`] lines.
-    fn add_lines(&mut self, field: &mut dyn Field, bounds: &Bounds, random: &mut Pcg32) {
+    fn add_lines(&mut self, field: &mut dyn Evaluator, bounds: &Bounds, random: &mut Pcg32) {
         let mut points = [Vec3::ZERO; MEDIUM];
         let mut values = [0.0_f32; MEDIUM];
         for line in points.chunks_exact_mut(STATIONS) {
@@ -84,7 +84,7 @@ impl SignChanges {
     }
 
     /// Appends those to `found` that lead to the surface, and forgets all.
-    fn settle(&mut self, field: &mut dyn Field, bounds: &Bounds, found: &mut Vec<Vec3>) {
+    fn settle(&mut self, field: &mut dyn Evaluator, bounds: &Bounds, found: &mut Vec<Vec3>) {
         // All steps are taken: near a pole they lead away from it, by as much again at each step.
         project(field, &mut self.position, &self.leash, 0.0);
         let mut value = vec![0.0; self.position.len()];

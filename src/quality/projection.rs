@@ -1,7 +1,7 @@
 //! Projection of sample points onto the surface.
 
 use crate::field::descent::{Descent, descend};
-use crate::field::{BATCH, Field};
+use crate::field::{BATCH, Evaluator};
 use glam::Vec3;
 
 /// Largest number of Newton steps of a projection. With two the figures of 4 of 34 random surfaces change in the sixth digit,
@@ -16,7 +16,7 @@ pub(super) const LAST_STEP: f32 = 0.05;
 /// Moves each sample onto the surface along the gradient, by at most [`STEPS`] Newton steps. A step shorter than the
 /// share `last` of the sample's `leash` is its last one. A sample that would move farther than its leash stays where it
 /// is.
-pub(super) fn project(field: &mut dyn Field, sample: &mut [Vec3], leash: &[f32], last: f32) {
+pub(super) fn project(field: &mut dyn Evaluator, sample: &mut [Vec3], leash: &[f32], last: f32) {
     for (sample, leash) in sample.chunks_mut(BATCH).zip(leash.chunks(BATCH)) {
         let mut moved = [Vec3::ZERO; BATCH];
         moved[..sample.len()].copy_from_slice(sample);
@@ -38,7 +38,7 @@ pub(super) fn project(field: &mut dyn Field, sample: &mut [Vec3], leash: &[f32],
 
 /// Returns whether a projected sample is on the surface, up to another last step. The circumcentre of an almost flat
 /// triangle, as there are some along the border of a box, is far from the surface, and its projection may fail.
-pub(super) fn is_reached(field: &mut dyn Field, sample: Vec3, leash: f32) -> bool {
+pub(super) fn is_reached(field: &mut dyn Evaluator, sample: Vec3, leash: f32) -> bool {
     let (mut value, mut gradient) = ([0.0], [Vec3::ZERO]);
     field.gradients(&[sample], &mut value, &mut gradient);
     value[0].abs() <= LAST_STEP * leash * gradient[0].length()
@@ -48,19 +48,21 @@ pub(super) fn is_reached(field: &mut dyn Field, sample: Vec3, leash: f32) -> boo
 mod tests {
     use super::*;
     use crate::field::formula::Formula;
+    use crate::field::{Field, Frame};
 
     #[test]
     fn a_sample_is_led_onto_a_surface_that_bends_by_more_than_one_step() {
-        let mut field = Formula::as_written("x^2 + y^2 + z^2 - 1", &[]).expect("a formula");
+        let field = Formula::as_written("x^2 + y^2 + z^2 - 1", &[]).expect("a formula");
+        let field = &mut *field.evaluator(Frame::default());
         let mut sample = [Vec3::new(0.0, 0.48, 0.64), Vec3::new(-1.3, 0.0, 0.0), Vec3::new(3.0, 0.0, 0.0)];
-        project(&mut field, &mut sample, &[0.5; 3], LAST_STEP);
+        project(field, &mut sample, &[0.5; 3], LAST_STEP);
         // One step ends at 1.025 and at 1.035.
         for p in &sample[..2] {
             assert!((p.length() - 1.0).abs() < 1e-3, "{p}");
-            assert!(is_reached(&mut field, *p, 0.5));
+            assert!(is_reached(field, *p, 0.5));
         }
         // Beyond its leash it stays where it is, and is known not to have come to the surface.
         assert_eq!(sample[2], Vec3::new(3.0, 0.0, 0.0));
-        assert!(!is_reached(&mut field, sample[2], 0.5));
+        assert!(!is_reached(field, sample[2], 0.5));
     }
 }

@@ -8,7 +8,7 @@
 //! The points are taken to lie where their residuals say, so that the lift does not suffer from their distances from the surface.
 
 use super::creases::CreaseRows;
-use crate::field::Field;
+use crate::field::Evaluator;
 use crate::math::SINGLE_ROUNDING;
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
@@ -53,7 +53,7 @@ impl Sheets<'_> {
 
     /// Whether two points that face the same way are on two sheets, where one that faces the other way is `facing_away` from the
     /// first: if doubtful, whether the way along the surface from one leads past the other.
-    pub(super) fn are_two(&self, field: &mut dyn Field, i: usize, j: usize, facing_away: f64) -> bool {
+    pub(super) fn are_two(&self, field: &mut dyn Evaluator, i: usize, j: usize, facing_away: f64) -> bool {
         if facing_away == f64::INFINITY {
             return false;
         }

@@ -1,6 +1,6 @@
 //! Whether the gradient that a field gives is that of its values.
 
-use crate::field::{Field, difference_step};
+use crate::field::{Evaluator, difference_step};
 use crate::math::Bounds;
 use glam::DVec3;
 
@@ -12,14 +12,14 @@ const SIDE: usize = 3;
 /// are told; with half of this share 99 %, with twice 96 %.
 const DIFFERENT: f64 = 0.02;
 
-/// A point of the box, counted from the origin of the field, at which the gradient differs from the differences of f; none if it
+/// A point of the box, counted from the origin of the frame, at which the gradient differs from the differences of f; none if it
 /// differs at fewer than half of the points, as at the kinks of a field that is right.
-pub(super) fn wrong_gradient(field: &mut dyn Field, bounds: &Bounds) -> Option<DVec3> {
+pub(super) fn wrong_gradient(field: &mut dyn Evaluator, bounds: &Bounds) -> Option<DVec3> {
     let mut wrong = Vec::new();
     let mut looked_at = 0;
     for p in bounds.spread(SIDE) {
         let (_, given) = field.value_and_gradient(p);
-        let h = difference_step(field.origin() + p);
+        let h = difference_step(field.frame().place(p));
         let mut along = |d: DVec3| {
             (field.value_and_gradient(p + h * d).0 - field.value_and_gradient(p - h * d).0) / (2.0 * h)
         };

@@ -1,6 +1,6 @@
 //! Measurement of the particles of a run, in slices of work.
 
-use crate::field::Field;
+use crate::field::{Evaluator, Field, Frame};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::quality::{self, Figures};
@@ -65,7 +65,7 @@ pub(super) fn measured_columns(particles: &Particles) -> Particles {
 /// [`quality::measure`], a slice at a time; see [`quality::in_slices`] for `crossings`.
 pub(super) async fn measure(
     particles: &Particles,
-    field: &mut dyn Field,
+    field: &mut dyn Evaluator,
     bounds: &Bounds,
     sampling: Sampling,
     crossings: &mut Option<Vec<Vec3>>,
@@ -94,12 +94,14 @@ pub(super) struct MeasuringInput {
 
 // These functions are not generic, so that the measurement is compiled once and not with every type of field.
 impl MeasuringInput {
-    /// The measurement in slices.
-    pub(super) fn work(self, mut field: Box<dyn Field>) -> Work<'static, MeasuringResult> {
-        Box::pin(async move { self.in_slices(&mut *field).await })
+    /// The measurement in slices, of a field in the frame of the particles.
+    pub(super) fn work(self, field: Arc<dyn Field>, frame: Frame) -> Work<'static, MeasuringResult> {
+        Box::pin(async move { self.in_slices(&field, frame).await })
     }
 
-    pub(super) async fn in_slices(self, field: &mut dyn Field) -> MeasuringResult {
+    pub(super) async fn in_slices(self, field: &dyn Field, frame: Frame) -> MeasuringResult {
+        let mut evaluator = field.evaluator(frame);
+        let field = &mut *evaluator;
         let Self { front, now, bounds, sampling } = self;
         let crossings = &mut None;
         let front = match front {

@@ -13,16 +13,16 @@ mod warning;
 pub use mesh::{MeshAnswer, MeshComponent};
 pub use report::{Cut, Growth, Measures, Proof, Radii, Report, Reporting};
 pub use sample::{Sample, sample};
-pub use warning::Warning;
+pub use warning::{Severity, Warning};
 
 use crate::differential::{self, Curvature};
 use crate::extent::{self, Reach};
-use crate::field::Field;
+use crate::field::{Creased, Evaluator, Field, FieldError, Frame, IntoField};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::quality;
 use crate::sampler::{
-    self, Creases, FollowError, Phase, Progress, Sampler, Settings, SettingsError, StopReason,
+    self, FollowError, FoundCreases, Phase, Progress, Sampler, Settings, SettingsError, StopReason,
     bytes_per_particle,
 };
 use crate::slices::{self, Work};
@@ -31,6 +31,7 @@ use glam::DVec3;
 use measuring::Measuring;
 use mesh::Meshing;
 use serde::Serialize;
+use std::sync::Arc;
 
 /// Bytes of a particle that is kept after the front: its position, normal and radius.
 const KEPT_BYTES: usize = 12 + 12 + 4;
@@ -57,6 +58,9 @@ pub enum Error {
         /// Share of the nodes of the grids at which f has a value.
         defined: f64,
     },
+    /// A function of the program has failed: its error.
+    #[error("the function that is sampled has failed: {0}")]
+    Field(FieldError),
     /// No particle could be placed.
     #[error("{message}")]
     Nothing {
@@ -116,8 +120,7 @@ enum Known {
 
 /// The sampling of one surface, in steps.
 ///
-/// A run owns its field, or borrows it where `F` is a mutable reference, so that every step and every measurement is made of the
-/// same one. A budget is a count of work, never a time: however a run is cut into steps, its particles are the same to the last bit.
+/// A run owns its field, or borrows it where `F` is a reference. A budget is a count of work, never a time: however a run is cut into steps, its particles are the same to the last bit.
 ///
 /// ```
 /// use marching_particles::{Formula, Run, Settings};
@@ -134,15 +137,15 @@ enum Known {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Run<F> {
-    field: F,
-    /// The clip box, in the coordinates of the field before it was given an origin.
+    field: RunField<F>,
+    /// The clip box, in the coordinates of the field.
     bounds: Bounds,
     /// Whether the surface is bounded, if its box was fitted; none if the box was given.
     reach: Option<Reach>,
     sampler: Sampler,
     known: Known,
     /// The creases of the surface in the box, if they were found before the start.
-    creases: Option<Creases>,
+    creases: Option<FoundCreases>,
     /// Limit on the number of particles: a run that expects more is refused.
     most_particles: usize,
     /// The report on the start.
@@ -150,6 +153,26 @@ pub struct Run<F> {
     last: Option<Progress>,
     measuring: Measuring,
     meshing: Meshing,
+}
+
+/// The field of a run.
+struct RunField<F> {
+    given: F,
+    /// The function that is sampled in its place, see [`FoundCreases::function`].
+    creased: Option<Arc<dyn Creased>>,
+}
+
+impl<F: Field> RunField<F> {
+    fn function(&self) -> &dyn Field {
+        self.creased.as_ref().map_or(&self.given, |creased| creased)
+    }
+
+    /// This field with another one in its place, of whose branches is known what is known of those of this one.
+    fn followed_by(&self, given: F) -> Self {
+        let both = given.creased().zip(self.creased.as_deref());
+        let creased = both.map(|(given, known)| given.with_branches_of(known));
+        Self { given, creased }
+    }
 }
 
 impl<F> Debug for Run<F> {
@@ -166,25 +189,28 @@ impl<F: Field> Run<F> {
     ///
     /// # Errors
     ///
-    /// If a setting or the box is out of its range, or the memory does not hold the particles to expect.
-    pub fn start(mut field: F, settings: &Settings) -> Result<Self, Error> {
+    /// If a setting or the box is out of its range, the memory does not hold the particles to expect, or a function of the program fails.
+    pub fn start<Kind>(field: impl IntoField<Kind, Field = F>, settings: &Settings) -> Result<Self, Error> {
         settings.validate()?;
+        let field = field.into_field();
         let (bounds, reach) = match settings.bounds {
             Some(bounds) => (bounds, None),
             None => {
-                let extent = extent::find(&mut field);
+                let extent = extent::find(&field);
                 (extent.with_room(|_| settings.largest_share()), Some(extent.reach))
             }
         };
         let mut run = Self { reach, ..Self::idle(field, bounds) };
-        run.begin(settings)?;
+        let begun = run.begin(settings);
+        run.check_field()?;
+        begun?;
         Ok(run)
     }
 
     /// A run that has not begun.
     pub(crate) fn idle(field: F, bounds: Bounds) -> Self {
         Self {
-            field,
+            field: RunField { given: field, creased: None },
             bounds,
             reach: None,
             sampler: Sampler::default(),
@@ -203,14 +229,17 @@ impl<F: Field> Run<F> {
         settings.validate()?;
         self.bounds.check()?;
         self.sampler.limit_memory(self.most_particles.saturating_mul(bytes_per_particle(settings)));
-        self.field.set_origin(self.bounds.local_origin());
         self.sampler.set_box_given(self.reach.is_none());
-        let bounds = self.bounds.relative_to(self.field.origin());
+        let origin = self.bounds.local_origin();
+        let bounds = self.bounds.relative_to(origin);
         let creases = (self.known != Known::Survey).then(|| {
             let known = self.creases.take();
-            known.unwrap_or_else(|| slices::complete(sampler::find_creases(&mut self.field, &bounds)))
+            let search = || slices::complete(sampler::find_creases(&self.field.given, origin, &bounds));
+            let FoundCreases { creases, function } = known.unwrap_or_else(search);
+            self.field.creased = function;
+            creases
         });
-        let start = self.sampler.begin(&mut self.field, &bounds, settings, creases)?;
+        let start = self.sampler.begin(self.field.function(), origin, &bounds, settings, creases)?;
         self.known = Known::Survey;
         self.last = None;
         self.measuring = Measuring::default();
@@ -234,9 +263,13 @@ impl<F: Field> Run<F> {
     }
 
     /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's share of a relaxation step. It
-    /// returns early now and then, so that a caller can show the particles. The run has ended when [`Progress::stop_reason`] is set.
+    /// returns early now and then, so that a caller can show the particles. The run has ended when [`Progress::stop_reason`] is set: it is
+    /// [cancelled](StopReason::Cancelled) where a function of the program [has failed](Run::check_field).
     pub fn step(&mut self, budget: u32) -> Progress {
-        let progress = self.sampler.step(&mut self.field, budget);
+        let progress = self.sampler.step(self.field.function(), budget);
+        if self.field.given.failure().is_some() && progress.stop_reason.is_none() {
+            return self.cancel();
+        }
         if progress.phase == Phase::Relaxation && progress.relax_step == 0 && progress.relax_steps > 0 {
             self.measuring.keep_front(self.sampler.particles(), progress.rows);
         }
@@ -271,9 +304,9 @@ impl<F: Field> Run<F> {
     /// assert!(run.particles().identity.iter().filter(|&&number| number < 1_000).count() > 900);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn follow(&mut self, mut field: F) -> Result<(), FollowError> {
-        field.set_origin(self.particles().origin);
-        let before = core::mem::replace(&mut self.field, field);
+    pub fn follow(&mut self, field: F) -> Result<(), FollowError> {
+        let next = self.field.followed_by(field);
+        let before = core::mem::replace(&mut self.field, next);
         let followed = self.follow_field(false);
         if followed.is_err() {
             self.field = before;
@@ -284,8 +317,8 @@ impl<F: Field> Run<F> {
     /// [`Run::follow`] to the surface of the field that the run has, in its box: both may have changed since the last step.
     /// `is_closed`: no particle is born, and none dies but where it does not come to the surface.
     pub(crate) fn follow_field(&mut self, is_closed: bool) -> Result<(), FollowError> {
-        let bounds = self.bounds.relative_to(self.field.origin());
-        self.sampler.follow(&mut self.field, &bounds, is_closed)?;
+        let bounds = self.local_bounds();
+        self.sampler.follow(self.field.function(), &bounds, is_closed)?;
         self.known = Known::Particles;
         self.creases = None;
         self.remember(self.sampler.progress());
@@ -308,14 +341,15 @@ impl<F: Field> Run<F> {
     pub fn cancel(&mut self) -> Progress {
         self.sampler.cancel();
         // Marks the particles next to singular points.
-        let progress = self.sampler.step(&mut self.field, 0);
+        let progress = self.sampler.step(self.field.function(), 0);
         self.remember(progress)
     }
 
     fn remember(&mut self, mut progress: Progress) -> Progress {
         self.forget_results();
         if progress.stop_reason == Some(StopReason::Constant)
-            && let (Some(message), Some(cause)) = (&mut progress.message, self.field.why_constant())
+            && let (Some(message), Some(cause)) =
+                (&mut progress.message, self.field.given.facts().why_constant)
         {
             *message = format!("{message} {cause}");
         }
@@ -333,10 +367,11 @@ impl<F: Field> Run<F> {
     ///
     /// # Errors
     ///
-    /// If there is no particle: the error says why.
+    /// If there is no particle, or a function of the program has failed: the error says why.
     pub fn finish(mut self) -> Result<Sample, Error> {
         self.check_not_empty()?;
         let report = self.report();
+        self.check_field()?;
         Ok(Sample::new(self, report))
     }
 
@@ -353,16 +388,25 @@ impl<F: Field> Run<F> {
         Ok(Sample::new(self, report))
     }
 
-    /// Returns the reason if there is no particle.
+    /// The error of a function of the program that has failed. The run has ended then, and its particles are those of before.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Field`], if it has.
+    pub fn check_field(&self) -> Result<(), Error> {
+        self.field.given.failure().map_or(Ok(()), |error| Err(Error::Field(error)))
+    }
+
+    /// Returns the reason if there is no particle, or its field has failed.
     pub(crate) fn check_not_empty(&mut self) -> Result<(), Error> {
+        self.check_field()?;
         if self.count() > 0 {
             return Ok(());
         }
         let progress = self.last.clone().unwrap_or_else(|| self.sampler.progress());
         let is_cancelled = progress.stop_reason == Some(StopReason::Cancelled);
         if self.reach == Some(Reach::Unknown) && !is_cancelled && self.sampler.shows_nothing() {
-            self.field.set_origin(DVec3::ZERO);
-            let defined = extent::defined_share(&mut self.field);
+            let defined = extent::defined_share(&mut *self.field.given.evaluator(Frame::default()));
             return Err(Error::NoBox { halves: &extent::HALVES, cells: extent::CELLS, defined });
         }
         let mut message = progress.message.unwrap_or_else(|| "no particle could be placed".to_owned());
@@ -416,16 +460,22 @@ impl<F: Field> Run<F> {
         self.last.as_ref()
     }
 
-    /// The field. Its [origin](Field::origin) is that of the particles.
+    /// The field, as it was given.
     #[must_use]
     pub fn field(&self) -> &F {
-        &self.field
+        &self.field.given
+    }
+
+    /// An evaluator of the field in the frame of the particles: places are counted from their origin. It knows the patches of the surface.
+    #[must_use]
+    pub fn evaluator(&self) -> Box<dyn Evaluator + '_> {
+        self.field.function().evaluator(self.sampler.frame())
     }
 
     /// Ends the run and returns the field.
     #[must_use]
     pub fn into_field(self) -> F {
-        self.field
+        self.field.given
     }
 
     /// Refuses, from now on, runs that need more than about `bytes` with the report on them.
@@ -436,11 +486,12 @@ impl<F: Field> Run<F> {
     }
 
     /// Principal curvatures (κ₁, κ₂) at the particles from `from` on, in inverse units of length; NaN where the surface has none.
-    pub fn curvatures(&mut self, from: usize) -> Vec<[f32; 2]> {
+    pub fn curvatures(&self, from: usize) -> Vec<[f32; 2]> {
         let count = self.rows();
         let positions = &self.sampler.particles().position[from.min(count)..count];
         let mut curvatures = vec![Curvature::default(); positions.len()];
-        differential::curvatures(&mut self.field, positions, &mut curvatures);
+        let field = &mut *self.evaluator();
+        differential::curvatures(field, positions, &mut curvatures);
         curvatures.iter().map(|curvature| [curvature.k1, curvature.k2]).collect()
     }
 
@@ -474,20 +525,13 @@ impl<F: Field> Run<F> {
 
     /// Takes another field for the next start. The particles stay until then. A field that `is_same` gives the same surface: the
     /// survey stays good.
-    pub(crate) fn set_field(&mut self, mut field: F, is_same: bool) {
-        if is_same {
-            field.use_double(self.sampler.double());
-        } else {
+    pub(crate) fn set_field(&mut self, field: F, is_same: bool) {
+        if !is_same {
             self.end();
         }
-        self.replace_field(field);
-        self.creases = None;
-    }
-
-    fn replace_field(&mut self, mut field: F) {
-        field.set_origin(self.particles().origin);
-        self.field = field;
+        self.field = self.field.followed_by(field);
         self.measuring.stop();
+        self.creases = None;
     }
 
     /// Whether the next start has nothing to find out about the creases of the surface.
@@ -495,24 +539,19 @@ impl<F: Field> Run<F> {
         self.known == Known::Survey || self.creases.is_some()
     }
 
-    /// Finds the creases of the surface in the box, in slices, on a copy of the field, which [`Run::know_creases`] takes.
-    pub(crate) fn find_creases(&self) -> Work<'static, (F, Creases)>
+    /// Finds the creases of the surface in the box, in slices, for [`Run::know_creases`].
+    pub(crate) fn find_creases(&self) -> Work<'static, FoundCreases>
     where
         F: Clone + 'static,
     {
-        let (mut field, origin) = (self.field.clone(), self.bounds.local_origin());
+        let (field, origin) = (self.field.given.clone(), self.bounds.local_origin());
         let bounds = self.bounds.relative_to(origin);
-        Box::pin(async move {
-            field.set_origin(origin);
-            let creases = sampler::find_creases(&mut field, &bounds).await;
-            (field, creases)
-        })
+        Box::pin(async move { sampler::find_creases(&field, origin, &bounds).await })
     }
 
-    /// Takes the creases of the surface for the next start, and the field in which they were found.
-    pub(crate) fn know_creases(&mut self, (field, creases): (F, Creases)) {
-        self.replace_field(field);
-        self.creases = Some(creases);
+    /// Takes the creases of the surface for the next start.
+    pub(crate) fn know_creases(&mut self, found: FoundCreases) {
+        self.creases = Some(found);
     }
 
     /// Ends the run on a field or a box that is about to change: nothing that the sampler knows of them holds any more.

@@ -3,7 +3,7 @@
 use super::measuring::{Measuring, MeasuringInput, MeasuringResult, measure, measured_columns};
 use super::{Run, Warning};
 use crate::extent::Reach;
-use crate::field::Field;
+use crate::field::{Creased, Field};
 use crate::math::Forest;
 use crate::mesh::facing::Inside;
 use crate::particles::{Particles, SlotFate, Slots};
@@ -12,6 +12,7 @@ use crate::sampler::{Blur, FateCounts, Sampled, Sampling, Search, StopReason};
 use crate::slices::{self, Work};
 use glam::Vec3;
 use serde::{Serialize, Serializer};
+use std::sync::Arc;
 
 /// Report on a run: its particles, how they were placed, the proof of completeness, quality and warnings.
 #[derive(Clone, Debug, Serialize)]
@@ -214,22 +215,28 @@ impl<F: Field> Run<F> {
         Reporting(Box::pin(async move {
             if self.measuring.facing.is_none() {
                 self.measuring.stop();
-                let measured = self.measuring_input().in_slices(&mut self.field).await;
+                let measured =
+                    self.measuring_input().in_slices(self.field.function(), self.sampler.frame()).await;
                 self.keep(measured);
             }
             self.reported()
         }))
     }
 
-    /// [`Run::report`] in slices, up to `budget` of them, of a copy of the field, so that the run is free between them: the report, once it is
-    /// complete. A measurement that anything comes between is given up, and the next call begins anew.
+    /// [`Run::report`] in slices, up to `budget` of them, with the run free between them: the report, once it is complete. A measurement that anything comes between is given up, and the next call begins anew.
     pub(crate) fn measure_copy(&mut self, budget: u32) -> Option<Report>
     where
         F: Clone + 'static,
     {
         if self.measuring.facing.is_none() {
             let begun = self.measuring.work.take();
-            let work = begun.unwrap_or_else(|| self.measuring_input().work(Box::new(self.field.clone())));
+            let work = begun.unwrap_or_else(|| {
+                let field: Arc<dyn Field> = match &self.field.creased {
+                    Some(creased) => Arc::<dyn Creased>::clone(creased),
+                    None => Arc::new(self.field.given.clone()),
+                };
+                self.measuring_input().work(field, self.sampler.frame())
+            });
             let measured = slices::advance(self.measuring.work.insert(work).as_mut(), budget)?;
             self.measuring.work = None;
             self.keep(measured);
@@ -242,8 +249,9 @@ impl<F: Field> Run<F> {
     pub fn measure_placed(&mut self, placed: &Particles, sampling: Sampling) -> Measures {
         self.measuring.stop();
         let bounds = self.local_bounds();
-        self.measuring.measured =
-            slices::complete(measure(placed, &mut self.field, &bounds, sampling, &mut None));
+        let measured =
+            slices::complete(measure(placed, &mut *self.evaluator(), &bounds, sampling, &mut None));
+        self.measuring.measured = measured;
         Measures { quality_before: None, ..self.measures() }
     }
 
@@ -277,8 +285,8 @@ impl<F: Field> Run<F> {
 
     /// The report, with the measurements that are there.
     fn reported(&mut self) -> Report {
-        let is_overflowing = self.sampler.is_open_by_overflow(&mut self.field);
-        let blur = self.sampler.blur(&mut self.field);
+        let is_overflowing = self.sampler.is_open_by_overflow(self.field.function());
+        let blur = self.sampler.blur(self.field.function());
         let particles = self.sampler.particles();
         let count = particles.count();
         let measured = &self.measuring.measured;

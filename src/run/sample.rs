@@ -2,18 +2,22 @@
 
 use super::mesh::joined;
 use super::{Error, Report, Run, Warning};
-use crate::export::{self, MeshBuffers, MeshFile, ParticleFile, Vertices};
-use crate::field::Field;
+use crate::export::{self, Format, MeshBuffers, MeshFile, MeshFormat, ParticleFile, Vertices};
+use crate::field::{Field, IntoField};
 use crate::math::Bounds;
 use crate::mesh::build::Triangulation;
 use crate::particles::Particles;
 use crate::quality;
 use crate::sampler::Settings;
 use crate::slices;
-use std::io::{self, Write};
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
 use std::sync::OnceLock;
 
-/// Samples the surface f = 0 of a field with evenly spaced particles, and measures them.
+/// Samples the surface f = 0 of a field with evenly spaced particles, and measures them. The field is anything that [`IntoField`] lists: a
+/// [`Formula`](crate::Formula), a reference or an `Arc` of a field, a closure.
 ///
 /// The surface is sampled in the box of the settings, or in one that fits it: around all of a bounded surface, and of one that goes
 /// on for ever a part. The box of a field without [bounds](crate::Bounded) is fitted to what grids show ([`FnField`](crate::FnField)): give it
@@ -22,8 +26,8 @@ use std::sync::OnceLock;
 ///
 /// # Errors
 ///
-/// If a setting or the box is out of its range, the memory does not hold the particles to expect, or no particle could be placed: the
-/// error says why. Anything else that a field may do wrong is a [`Warning`] in the report.
+/// If a setting or the box is out of its range, the memory does not hold the particles to expect, no particle could be placed, or a
+/// function of the program fails: the error says why. Anything else that a field may do wrong is a [`Warning`] in the report.
 ///
 /// ```
 /// use marching_particles::{Formula, Format, Settings, sample};
@@ -36,7 +40,7 @@ use std::sync::OnceLock;
 /// assert_eq!(sample.mesh().topology.components.len(), 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn sample(field: impl Field, settings: &Settings) -> Result<Sample, Error> {
+pub fn sample<Kind>(field: impl IntoField<Kind>, settings: &Settings) -> Result<Sample, Error> {
     let mut run = Run::start(field, settings)?;
     while run.step(u32::MAX).stop_reason.is_none() {}
     run.finish()
@@ -119,8 +123,8 @@ impl Sample {
     /// # Errors
     ///
     /// The errors of `out`.
-    pub fn write(&self, file: impl Into<ParticleFile>, out: &mut dyn Write) -> io::Result<()> {
-        export::write(&file.into(), &self.particles, &self.measured, out)
+    pub fn write(&self, file: impl Into<ParticleFile>, mut out: impl Write) -> io::Result<()> {
+        export::write(&file.into(), &self.particles, &self.measured, &mut out)
     }
 
     /// The [mesh](Sample::mesh) as lists of vertices and triangles, as its files have it.
@@ -152,7 +156,53 @@ impl Sample {
     /// # Errors
     ///
     /// The errors of `out`, and an error if the 32-bit counters of the format are too small.
-    pub fn write_mesh(&self, file: impl Into<MeshFile>, out: &mut dyn Write) -> io::Result<()> {
-        export::write_mesh(&file.into(), &self.particles, &self.measured, self.mesh(), out)
+    pub fn write_mesh(&self, file: impl Into<MeshFile>, mut out: impl Write) -> io::Result<()> {
+        export::write_mesh(&file.into(), &self.particles, &self.measured, self.mesh(), &mut out)
+    }
+
+    /// Writes a file of the format that its extension names: the mesh as `glb`, `3mf`, `stl` or `obj`, the particles as `ply`, `csv`, `npy` or
+    /// `xyz`. A PLY file of the mesh is what [`Sample::write_mesh`] writes.
+    ///
+    /// # Errors
+    ///
+    /// If the extension is none of these, and the errors of the file.
+    pub fn save(&self, path: impl AsRef<Path>) -> io::Result<()> {
+        let path = path.as_ref();
+        let extension = path.extension().and_then(OsStr::to_str).unwrap_or_default();
+        let particles = Format::of_extension(extension);
+        let mesh = MeshFormat::of_extension(extension);
+        if particles.is_none() && mesh.is_none() {
+            let known = Format::ALL.iter().map(|(name, _)| *name);
+            let meshes = MeshFormat::ALL.iter().map(|(name, _)| *name);
+            let names: Vec<&str> = meshes.filter(|name| *name != "ply").chain(known).collect();
+            let message = format!("{} has none of the extensions {}", path.display(), names.join(", "));
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+        }
+        let mut file = BufWriter::new(File::create(path)?);
+        match (particles, mesh) {
+            (Some(format), _) => self.write(format, &mut file)?,
+            (None, Some(format)) => self.write_mesh(format, &mut file)?,
+            (None, None) => {}
+        }
+        file.flush()
+    }
+
+    /// Positions of the particles in the coordinates of the field, for a buffer of a graphics card. A particle on a crease is there once for each
+    /// patch, with the normal of each.
+    #[must_use]
+    pub fn positions(&self) -> Vec<[f32; 3]> {
+        (0..self.particles.len()).map(|i| self.particles.place(i).as_vec3().to_array()).collect()
+    }
+
+    /// Unit normals at [`Sample::positions`].
+    #[must_use]
+    pub fn normals(&self) -> &[[f32; 3]] {
+        bytemuck::cast_slice(&self.particles.normal)
+    }
+
+    /// The triangles of the [mesh](Sample::mesh), as indices of [`Sample::positions`].
+    #[must_use]
+    pub fn indices(&self) -> &[[u32; 3]] {
+        &self.mesh().triangles
     }
 }

@@ -208,6 +208,64 @@ pub enum Warning {
     Overflow,
 }
 
+/// How much a warning says about the result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Severity {
+    /// What was found or done; the result is whole.
+    Note,
+    /// The result may be incomplete, or less even than it could be.
+    Caution,
+    /// A part of the surface is missing or wrong.
+    Fault,
+}
+
+impl Warning {
+    /// A name by which a program tells warnings apart. It stays when the words of a warning change.
+    #[must_use]
+    pub fn code(&self) -> &'static str {
+        self.kind().0
+    }
+
+    /// How much the warning says about the result.
+    #[must_use]
+    pub fn severity(&self) -> Severity {
+        self.kind().1
+    }
+
+    fn kind(&self) -> (&'static str, Severity) {
+        use Severity::{Caution, Fault, Note};
+        match self {
+            Self::Limit { .. } => ("limit", Caution),
+            Self::Touches => ("touches", Note),
+            Self::Bare { .. } => ("bare", Caution),
+            Self::Beyond { .. } => ("beyond", Caution),
+            Self::SampledAs { .. } => ("sampled_as", Note),
+            Self::Gradient { .. } => ("gradient", Fault),
+            Self::Count { .. } => ("count", Caution),
+            Self::NotRefined(_) => ("not_refined", Caution),
+            Self::Unpaired { .. } => ("unpaired", Caution),
+            Self::Children { .. } => ("children", Caution),
+            Self::CloseSheets { .. } => ("close_sheets", Caution),
+            Self::Meets { .. } => ("meets", Note),
+            Self::Crosses { .. } => ("crosses", Note),
+            Self::Moved => ("moved", Note),
+            Self::EndedEarly { .. } => ("ended_early", Fault),
+            Self::SmallFeatures { .. } => ("small_features", Caution),
+            Self::WithoutParticle { .. } => ("without_particle", Fault),
+            Self::Open { .. } => ("open", Fault),
+            Self::MeshDiffers { .. } => ("mesh_differs", Fault),
+            Self::MeshHoles { .. } => ("mesh_holes", Fault),
+            Self::MeshLeavesOut { .. } => ("mesh_leaves_out", Caution),
+            Self::LargerInside(_) => ("larger_inside", Note),
+            Self::FileDiffers { .. } => ("file_differs", Caution),
+            Self::Unproven { .. } => ("unproven", Caution),
+            Self::Digits { .. } => ("digits", Caution),
+            Self::Overflow => ("overflow", Caution),
+        }
+    }
+}
+
 impl Serialize for Warning {
     /// Writes the warning as its sentence.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -264,19 +322,20 @@ impl<F: Field> Run<F> {
         }
         // Derivatives of a field that has bounds are derived, not given.
         let bounds = self.local_bounds();
-        if self.field.bounded().is_none()
-            && let Some(at) = check::wrong_gradient(&mut self.field, &bounds)
+        let field = &mut *self.evaluator();
+        if field.bounded().is_none()
+            && let Some(at) = check::wrong_gradient(field, &bounds)
         {
             let position = self.place(at.to_array());
             warnings.push(Warning::Gradient { position, length: self.bounds.diagonal() });
         }
-        warnings.extend(self.field.sampled_as().map(|equation| Warning::SampledAs { equation }));
+        warnings.extend(self.field.given.facts().sampled_as.map(|equation| Warning::SampledAs { equation }));
         warnings
     }
 
     /// The warning about the faces of a cell across an axis, if particles lie on them, and not the same ones.
     fn unpaired(&self, axis: usize) -> Option<Warning> {
-        let cell = self.field.unit_cell()?;
+        let cell = self.field.given.facts().unit_cell?.relative_to(self.particles().origin);
         let Particles { position, opposite, .. } = self.particles();
         let faces = [cell.bounds.min[axis], cell.bounds.max[axis]].map(|at| at as f32);
         let is_paired = opposite.iter().any(|faces| usize::from(faces.axis) == axis);

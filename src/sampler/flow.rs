@@ -21,7 +21,7 @@
 //! * Velocities are not integrated: a particle goes to the new surface by Newton's method, so that it never drifts from it.
 //! * Radii are those of the run and do not adapt (their §4.3); fission is a birth in a gap.
 
-use crate::field::Field;
+use crate::field::Evaluator;
 use crate::math::functions::{atan2, cos, sin};
 use crate::math::{Bounds, place_text, refill, sort_few, tangent_frame};
 use crate::particles::{Particles, SlotFate, Slots};
@@ -39,7 +39,7 @@ use crate::sampler::sizing::Sizing;
 use crate::spatial::Neighbour;
 use core::f32::consts::{FRAC_PI_3, PI, TAU};
 use core::f64::consts::E;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 /// Frames from one balance to the next. On the twelve sweeps of `benches/flow.rs` more of the first particles live to the end than with half of
 /// it, and holes stay smaller than with half as much again.
@@ -108,14 +108,6 @@ pub enum FollowError {
         "no particles cover the surface, of a run with these settings that has come to its end: start one"
     )]
     NotCovered,
-    /// The particles are counted from another point than the coordinates of the new field, which cannot be counted from there.
-    #[error(
-        "the new field cannot count its coordinates from {origin}, as the particles are: start a run on it"
-    )]
-    Origin {
-        /// The origin of the particles.
-        origin: DVec3,
-    },
     /// The old or the new surface has creases, or the new one may have some in the box.
     #[error(
         "the surface has creases or tips in the box, on which particles cannot follow: start a run on the new one"
@@ -682,7 +674,7 @@ fn direction_angle(x: f32, y: f32) -> f32 {
 ///
 /// If they are too many.
 pub(crate) fn is_leap(
-    field: &mut dyn Field,
+    field: &mut dyn Evaluator,
     particles: &Particles,
     length: f64,
 ) -> Result<bool, FollowError> {

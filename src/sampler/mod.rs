@@ -36,8 +36,7 @@ pub(crate) use attempt::COUNT_TOLERANCE;
 pub(crate) use discovery::precision::Blur;
 pub(crate) use discovery::singular::{SingularKind, SingularPlace};
 
-use crate::field::scaled::{Scaled, comfortable_scale, spread};
-use crate::field::{BranchNumbers, Branched, Field};
+use crate::field::{Creased, Evaluator, Field, Frame, Patches};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::slices::Work;
@@ -59,6 +58,7 @@ use refine::CoarseFronts;
 use relaxation::Relaxation;
 use run::RunInput;
 use sizing::Sizing;
+use std::sync::Arc;
 
 /// Bytes per particle that have to be free before a run: the columns, neighbour lists and grid of a front, and most of what its
 /// relaxation adds; of a refined run the columns and the last two levels of its mesh, with the wanted sizes where these differ.
@@ -78,6 +78,8 @@ pub struct Sampler {
     settings: Settings,
     bounds: Bounds,
     survey: Survey,
+    /// The frame in which the field is evaluated.
+    frame: Frame,
     creases: Creases,
     /// The singular points near those of the survey.
     singular: Vec<Singular>,
@@ -120,38 +122,48 @@ struct Output {
     fraction: f64,
 }
 
-/// Finds the creases of the surface of a field in a box, in slices. From then on branches of the field that meet smoothly on the surface
-/// are one.
-pub(crate) fn find_creases<'a>(field: &'a mut dyn Field, bounds: &Bounds) -> Work<'a, Creases> {
+/// The creases of a surface in a box, and the function whose patches they separate.
+#[derive(Clone, Default)]
+pub(crate) struct FoundCreases {
+    pub(crate) creases: Creases,
+    /// The function that is sampled in the place of the field: branches of it that meet smoothly on the surface are one. None for the
+    /// field itself.
+    pub(crate) function: Option<Arc<dyn Creased>>,
+}
+
+/// Finds the creases of the surface of a field in a box, which is counted from `origin`, in slices.
+pub(crate) fn find_creases<'a>(
+    field: &'a dyn Field,
+    origin: DVec3,
+    bounds: &Bounds,
+) -> Work<'a, FoundCreases> {
     let bounds = *bounds;
     Box::pin(async move {
-        let Some(branched) = field.branched() else { return Creases::default() };
-        let cells = branched.crease_cells(&bounds, Creases::width(&bounds), BranchNumbers::New).await;
-        if cells.is_empty() {
-            return Creases::default();
-        }
-        let PointScale { scale, .. } = PointScale::of(field, &bounds);
-        let field = &mut Scaled::new(field, scale);
-        Creases::find(&mut Probe::new(field, &mut ProbeMemory::default()), &bounds, &cells).await
+        let Some(creased) = field.creased() else { return FoundCreases::default() };
+        let outward = Frame::around(origin).outward(&bounds);
+        let (cells, function) = creased.creases_in(&outward, Creases::width(&bounds)).await;
+        let creases = if cells.is_empty() {
+            Creases::default()
+        } else {
+            let cells: Vec<Bounds> = cells.iter().map(|cell| cell.relative_to(origin)).collect();
+            let unit_cell = function.facts().unit_cell.map(|cell| cell.relative_to(origin));
+            let mut evaluator = function.evaluator(frame_for(&function, origin, &bounds));
+            let mut memory = ProbeMemory::default();
+            let probe = &mut Probe::new(&mut *evaluator, &mut memory);
+            Creases::find(probe, &bounds, &cells, unit_cell).await
+        };
+        FoundCreases { creases, function: Some(function) }
     })
 }
 
-/// How values and gradients of a field at points are brought within reach of the numbers they are computed with.
-struct PointScale {
-    /// The constant of [`Scaled`].
-    scale: f32,
-    /// The scale that [`Field::use_double`] takes; none to compute in single precision.
-    double: Option<f64>,
-}
-
-impl PointScale {
-    /// Finds the scale, and has the field compute in double precision where it is to.
-    fn of(field: &mut dyn Field, bounds: &Bounds) -> Self {
-        field.use_double(None);
-        let double = precision::double_scale(field, bounds);
-        field.use_double(double);
-        Self { scale: comfortable_scale(field, spread(bounds)), double }
-    }
+/// The frame that brings values and gradients of a field at points of a box within reach of the numbers they are computed with.
+fn frame_for(field: &dyn Field, origin: DVec3, bounds: &Bounds) -> Frame {
+    /// Points along each axis: 125 of them, off the faces of the box and its planes of symmetry, fill one batch.
+    const SIDE: usize = 5;
+    let frame = Frame { length: bounds.diagonal(), ..Frame::around(origin) };
+    let double = precision::double_scale(&mut *field.evaluator(frame), bounds);
+    let spread: Vec<Vec3> = bounds.spread(SIDE).map(|p| p.as_vec3()).collect();
+    Frame { double, ..frame }.scaled_to(field, spread.into_iter())
 }
 
 impl Sampler {
@@ -245,9 +257,10 @@ impl Sampler {
         places
     }
 
-    /// The scale at which the field of the last start is evaluated in double precision, if it is.
-    pub(crate) fn double(&self) -> Option<f64> {
-        self.survey.double
+    /// The frame in which the field of the last start is evaluated.
+    #[must_use]
+    pub fn frame(&self) -> Frame {
+        self.frame
     }
 
     /// The settings of the run.
@@ -257,15 +270,17 @@ impl Sampler {
     }
 
     /// Starts a run, with valid settings in a valid box: surveys the field (about 40,000 evaluations, 80,000 where a field has no bounds to
-    /// prove by) and fixes the radius. Particles of an earlier run are dropped. `creases` are those of the surface in the box; without
-    /// them all that is known of field and box is kept from the last start, with its survey.
+    /// prove by) and fixes the radius. Particles of an earlier run are dropped. The box is counted from `origin`, as particles will be.
+    /// `creases` are those of the surface in the box; without them all that is known of field and box is kept from the last start, with
+    /// its survey.
     ///
     /// # Errors
     ///
     /// If there is no memory for the particles to expect; there is no run then.
     pub fn begin(
         &mut self,
-        field: &mut dyn Field,
+        field: &dyn Field,
+        origin: DVec3,
         bounds: &Bounds,
         settings: &Settings,
         creases: Option<Creases>,
@@ -273,7 +288,7 @@ impl Sampler {
         self.settings = *settings;
         self.bounds = *bounds;
         self.output.particles.clear();
-        self.output.particles.origin = field.origin();
+        self.output.particles.origin = origin;
         self.output.inside = None;
         self.output.corners = Vec::new();
         self.tools.coarse = CoarseFronts::default();
@@ -281,15 +296,14 @@ impl Sampler {
         self.counts = Counts::default();
         self.tools.memory.evaluations = 0;
         self.look_over(field, creases);
+        let field = &mut *field.evaluator(self.frame);
         let sizing = (settings.sampling == Sampling::Adaptive).then(|| {
-            let field = &mut Scaled::new(field, self.survey.scale);
             let probe = &mut Probe::new(field, &mut self.tools.memory);
             Sizing::new(probe, bounds, settings, &self.survey, &self.creases)
         });
         self.counts.seeding_evaluations = self.tools.memory.evaluations;
         self.attempt = Attempt::first(settings, self.survey.area, bounds.diagonal(), sizing);
         if settings.method == Method::Refined {
-            let field = &mut Scaled::new(field, self.survey.scale);
             let mut curvature = refine::largest_curvatures(field, &self.survey.position);
             for (curvature, &p) in curvature.iter_mut().zip(&self.survey.position) {
                 if self.tips.iter().any(|tip| tip.explains(p, *curvature)) {
@@ -320,7 +334,7 @@ impl Sampler {
 
     /// Surveys the field, unless creases are not given and the last survey holds. Where the survey finds no point, the search is carried
     /// to its end at once: the area is then that of spheres with the curvature at the points that it finds.
-    fn look_over(&mut self, field: &mut dyn Field, creases: Option<Creases>) {
+    fn look_over(&mut self, function: &dyn Field, creases: Option<Creases>) {
         // A survey that has found nothing by itself is made again: what it was given since depends on the run.
         let is_known = self.survey.area > 0.0 && !self.survey.is_adopted;
         let creases = creases.or_else(|| (!is_known).then(|| core::mem::take(&mut self.creases)));
@@ -329,11 +343,10 @@ impl Sampler {
             self.tips.clear();
             self.tools.memory.evaluations += creases.evaluations;
             self.creases = creases;
-            let PointScale { scale, double } = PointScale::of(field, &self.bounds);
+            self.frame = frame_for(function, self.output.particles.origin, &self.bounds);
+            let field = &mut *function.evaluator(self.frame);
             let is_dense = field.bounded().is_none();
-            let scaled = &mut Scaled::new(field, scale);
-            self.survey = survey(&mut Probe::new(scaled, &mut self.tools.memory), &self.bounds, is_dense);
-            (self.survey.scale, self.survey.double) = (scale, double);
+            self.survey = survey(&mut Probe::new(field, &mut self.tools.memory), &self.bounds, is_dense);
             self.survey.absence = match self.survey.absence {
                 Absence::Undefined if precision::overflows_double(field, &self.bounds) => Absence::TooLarge,
                 Absence::Constant if precision::varies(field, &self.bounds) => Absence::NotSeen,
@@ -341,19 +354,16 @@ impl Sampler {
             };
             // Where f touches zero only, all of the surface is singular.
             if !is_dense && !self.survey.touches {
-                let scaled = &mut Scaled::new(field, scale);
-                self.find_singular_points(&mut Probe::new(scaled, &mut ProbeMemory::default()));
+                self.find_singular_points(&mut Probe::new(field, &mut ProbeMemory::default()));
                 let singular = self.singular.clone();
-                self.find_bare_place(scaled, &singular);
+                self.find_bare_place(field, &singular);
             }
-        } else {
-            field.use_double(self.survey.double);
         }
+        let field = &mut *function.evaluator(self.frame);
         self.components.begin(field, &self.bounds, &self.singular);
         self.components.leave_out_bare(self.bare_place().map(|_| bare_size(spacing(&self.bounds))));
         self.components.expect(0.0);
         if self.survey.area == 0.0 {
-            let field = &mut Scaled::new(field, self.survey.scale);
             let (tolerance, least_gap) = (self.survey.tolerance(), self.least_gap());
             let probe = &mut Probe::new(field, &mut self.tools.memory);
             while self.components.search(probe, &self.bounds, tolerance, least_gap, u32::MAX) == 0 {}
@@ -373,7 +383,7 @@ impl Sampler {
 
     /// Looks for a zero of f on a curve, or a point by itself, among singular points, if none is
     /// known.
-    fn find_bare_place(&mut self, field: &mut dyn Field, singular: &[Singular]) {
+    fn find_bare_place(&mut self, field: &mut dyn Evaluator, singular: &[Singular]) {
         if self.bare_place().is_none() {
             let probe = &mut Probe::new(field, &mut self.tools.memory);
             let extrema = singular.iter().filter(|point| !point.has_two_signs);
@@ -395,7 +405,7 @@ impl Sampler {
         }
         for (place, points) in (0_u32..).zip(patches).filter(|(_, points)| !points.is_empty()) {
             let patch = place.checked_sub(1);
-            probe.select(patch);
+            let probe = &mut probe.on(patch);
             let mut near = singular::near_survey(probe.field, &points, spacing, &self.bounds);
             self.find_tips(probe, patch, &near, spacing);
             // At a tip another branch may be zero, too.
@@ -407,7 +417,6 @@ impl Sampler {
             });
             self.singular.extend_from_slice(&near.points);
         }
-        probe.select(None);
     }
 
     /// Finds the tips among the singular points of a patch, and those near bends at which f has no second derivative.
@@ -466,14 +475,14 @@ impl Sampler {
     }
 
     /// Whether the search for components was left open in a box where f is beyond double precision in places.
-    pub(crate) fn is_open_by_overflow(&self, field: &mut dyn Field) -> bool {
+    pub(crate) fn is_open_by_overflow(&self, field: &dyn Field) -> bool {
         self.undecided_cells().is_some_and(|cells| cells > 0)
-            && precision::overflows_double(field, &self.bounds)
+            && precision::overflows_double(&mut *field.evaluator(self.frame), &self.bounds)
     }
 
     /// The particle that rounding in double precision moves most, where it does by more than a particle may lie off the surface.
-    pub(crate) fn blur(&self, field: &mut dyn Field) -> Option<Blur> {
-        precision::blur(field, &self.output.particles)
+    pub(crate) fn blur(&self, field: &dyn Field) -> Option<Blur> {
+        precision::blur(&mut *field.evaluator(self.frame), &self.output.particles)
     }
 
     /// Refuses runs that need more than about `bytes` from now on.
@@ -516,7 +525,7 @@ impl Sampler {
     /// If the particles cannot follow. Nothing has changed then.
     pub(crate) fn follow(
         &mut self,
-        field: &mut dyn Field,
+        field: &dyn Field,
         bounds: &Bounds,
         is_closed: bool,
     ) -> Result<(), FollowError> {
@@ -532,18 +541,14 @@ impl Sampler {
         if !covers || particles.len() < 2 {
             return Err(FollowError::NotCovered);
         }
-        if particles.origin != field.origin() {
-            return Err(FollowError::Origin { origin: particles.origin });
-        }
+        let mut evaluator = field.evaluator(self.frame);
         let has_several =
-            |field: &mut dyn Branched| field.branches_in(bounds).is_none_or(|all| all.len() > 1);
+            |patches: &mut dyn Patches| patches.branches_in(bounds).is_none_or(|all| all.len() > 1);
         let is_smooth = particles.patch.is_empty() && !self.creases.are_there();
-        if !is_smooth || field.branched().is_some_and(has_several) {
+        if !is_smooth || evaluator.patches().is_some_and(has_several) {
             return Err(FollowError::Creased);
         }
-        field.use_double(self.survey.double);
-        let scaled = &mut Scaled::new(field, self.survey.scale);
-        let is_leap = flow::is_leap(scaled, particles, self.attempt.radius)?;
+        let is_leap = flow::is_leap(&mut *evaluator, particles, self.attempt.radius)?;
         self.tools.flow.begin(&mut self.output.particles);
         if is_leap {
             self.tools.flow.leap();
@@ -558,19 +563,17 @@ impl Sampler {
     }
 
     /// Surveys a surface that has moved. The packing stays as measured, and what was proven of the surface before no longer holds.
-    fn look_again(&mut self, field: &mut dyn Field) {
+    fn look_again(&mut self, function: &dyn Field) {
         let bounds = &{ self.bounds };
-        let PointScale { scale, double } = PointScale::of(field, bounds);
-        let scaled = &mut Scaled::new(field, scale);
-        let probe = &mut Probe::new(scaled, &mut self.tools.memory);
-        let known = core::mem::replace(&mut self.survey, survey(probe, bounds, false));
-        (self.survey.scale, self.survey.double) = (scale, double);
-        if self.survey.area == 0.0 {
+        let frame = frame_for(function, self.output.particles.origin, bounds);
+        let field = &mut *function.evaluator(frame);
+        let probe = &mut Probe::new(field, &mut self.tools.memory);
+        let seen = survey(probe, bounds, false);
+        if seen.area == 0.0 {
             // What remains is not seen on the grid.
-            probe.field.use_double(known.double);
-            self.survey = known;
             return;
         }
+        (self.survey, self.frame) = (seen, frame);
         let sizing = (self.settings.sampling == Sampling::Adaptive)
             .then(|| Sizing::new(probe, bounds, &self.settings, &self.survey, &self.creases));
         let (area, growth) = (self.survey.area, self.tools.flow.growth());
@@ -593,8 +596,8 @@ impl Sampler {
     /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's share of a relaxation step.
     /// Returns early where the search or the relaxation begins, so that the caller can show the particles of the front, and now
     /// and then during both.
-    pub fn step(&mut self, field: &mut dyn Field, budget: u32) -> Progress {
-        let field = &mut Scaled::new(field, self.survey.scale);
+    pub fn step(&mut self, field: &dyn Field, budget: u32) -> Progress {
+        let field = &mut *field.evaluator(self.frame);
         let mut left = budget;
         let first = self.phase.name();
         while self.is_under_way() && left > 0 && (self.phase.name() == first || !self.is_turning()) {
@@ -604,7 +607,7 @@ impl Sampler {
             self.next(RunInput::Work { field, left: &mut left });
         }
         // The refinement makes its particles anew.
-        self.output.particles.origin = field.origin();
+        self.output.particles.origin = self.frame.origin;
         self.look_inside();
         let progress = self.progress();
         (self.output.moved, self.output.fraction) = (false, progress.fraction);

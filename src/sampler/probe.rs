@@ -2,7 +2,7 @@
 
 pub(crate) use crate::field::BATCH;
 
-use crate::field::Field;
+use crate::field::Evaluator;
 use crate::field::descent::Descent;
 use crate::math::newton::step_to_surface;
 use crate::math::{Bounds, Sym3};
@@ -16,19 +16,17 @@ pub(crate) struct ProbeMemory {
     pub(super) gradient: Vec<Vec3>,
     /// Number of field evaluations so far, one for each point and call.
     pub(crate) evaluations: u64,
-    /// The branch that the field evaluates; none if it is f.
-    selected: Option<u32>,
 }
 
 /// A field with the memory to evaluate it at a batch of points, and the count of these evaluations.
 pub(crate) struct Probe<'a> {
     /// The field. Evaluations made of it directly are not counted.
-    pub(crate) field: &'a mut dyn Field,
+    pub(crate) field: &'a mut dyn Evaluator,
     pub(super) memory: &'a mut ProbeMemory,
 }
 
 impl<'a> Probe<'a> {
-    pub(crate) fn new(field: &'a mut dyn Field, memory: &'a mut ProbeMemory) -> Self {
+    pub(crate) fn new(field: &'a mut dyn Evaluator, memory: &'a mut ProbeMemory) -> Self {
         memory.value.resize(BATCH, 0.0);
         memory.gradient.resize(BATCH, Vec3::ZERO);
         Self { field, memory }
@@ -39,17 +37,14 @@ impl<'a> Probe<'a> {
         self.memory.evaluations
     }
 
-    /// Makes all evaluations those of a branch of f, or of f.
-    pub(crate) fn select(&mut self, branch: Option<u32>) {
-        if self.memory.selected != branch {
-            self.memory.selected = branch;
-            self.field.select_branch(branch);
-        }
+    /// The smooth function of a patch in the place of f; f itself where there is no patch.
+    pub(crate) fn on(&mut self, patch: Option<u32>) -> Probe<'_> {
+        Probe { field: self.field.on(patch), memory: &mut *self.memory }
     }
 
-    /// Whether a point of the sheet of a patch, with its normal there, lies on the patch, which is
-    /// selected; a surface without creases has none, and every point does. `size` is about the size
-    /// of a particle there.
+    /// Whether a point of the sheet of a patch, with its normal there, lies on the patch, whose
+    /// function this is; a surface without creases has none, and every point does. `size` is about
+    /// the size of a particle there.
     ///
     /// It is asked a little outside: within a solid, where its bodies share a plane, each of two branches gives f on its inner side alone.
     pub(crate) fn is_on_patch(&mut self, point: Vec3, normal: Vec3, size: f32, patch: Option<u32>) -> bool {
@@ -71,7 +66,7 @@ impl<'a> Probe<'a> {
 
     /// Whether a patch may have points in a box: the zeros of √(u² + v²) on the edge of other patches are none.
     pub(crate) fn may_have_zeros(&mut self, patch: Option<u32>, bounds: &Bounds) -> bool {
-        let known = self.field.branched().and_then(|field| field.branches_in(bounds));
+        let known = self.field.branches_in(bounds);
         patch.zip(known).is_none_or(|(patch, known)| known.contains(&patch))
     }
 
@@ -249,7 +244,7 @@ impl<'a> Probe<'a> {
         landed
     }
 
-    /// Writes values, gradients and Hessians at `points`, as [`Field::hessians`] does.
+    /// Writes values, gradients and Hessians at `points`, as [`Evaluator::hessians`] does.
     pub(crate) fn hessians(
         &mut self,
         points: &[Vec3],

@@ -1,7 +1,7 @@
 //! The state machine of a run: the work of every phase, and the transitions between them.
 
 use super::{Output, Sampler, Tools};
-use crate::field::Field;
+use crate::field::Evaluator;
 use crate::sampler::attempt::{Attempt, Refining};
 use crate::sampler::constraint::tips::{self, Tip};
 use crate::sampler::discovery::audit::holds_any;
@@ -39,7 +39,7 @@ pub(super) enum RunInput<'a> {
     /// The caller ends the run.
     Cancel,
     /// The caller gives a budget; `left` is the rest of it.
-    Work { field: &'a mut dyn Field, left: &'a mut u32 },
+    Work { field: &'a mut dyn Evaluator, left: &'a mut u32 },
 }
 
 impl Sampler {
@@ -83,9 +83,7 @@ impl Sampler {
             },
             RunInput::Work { field, left } => {
                 let mut memory = core::mem::take(&mut self.tools.memory);
-                let probe = &mut Probe::new(field, &mut memory);
-                let next = self.work(probe, left, phase);
-                probe.select(None);
+                let next = self.work(&mut Probe::new(field, &mut memory), left, phase);
                 self.tools.memory = memory;
                 next
             }
@@ -176,10 +174,10 @@ impl Sampler {
             };
             *left -= 1;
             let patch = self.patch_at(probe, point.position);
-            probe.select(patch);
             let front = &mut self.tools.front;
-            let is_seed = !front.is_covered(probe, &self.output.particles, point, patch)
-                && self.survey.is_zero(probe, point);
+            let own = &mut probe.on(patch);
+            let is_seed = !front.is_covered(own, &self.output.particles, point, patch)
+                && self.survey.is_zero(own, point);
             self.counts.seeding_evaluations += probe.evaluations() - start;
             if is_seed && let Some(next) = self.begin_front(probe, point, Some(cursor)) {
                 return next;
@@ -236,8 +234,8 @@ impl Sampler {
             return Some(PhaseState::Search);
         }
         let patch = self.patch_at(probe, seed.position);
-        probe.select(patch);
         if patch.is_some() {
+            let probe = &mut probe.on(patch);
             // Where branches are equal, on creases and where bodies share a plane, no front begins but those of the creases.
             let (place, size) = (seed.position, self.attempt.front_radius() as f32);
             let normal = probe.gradient(place).1.normalize_or_zero();
@@ -748,7 +746,7 @@ impl Sampler {
     }
 
     /// Marks the particles next to singular points, where there are any.
-    fn mark(&mut self, field: &mut dyn Field, reason: StopReason) -> PhaseState {
+    fn mark(&mut self, field: &mut dyn Evaluator, reason: StopReason) -> PhaseState {
         if !self.components.singular().is_empty() {
             singular::mark(field, self.components.singular(), &mut self.output.particles);
             self.output.moved = true;

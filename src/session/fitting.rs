@@ -7,7 +7,7 @@ use crate::field::Field;
 use crate::field::formula::Formula;
 use crate::field::gallery::Surface;
 use crate::math::Bounds;
-use crate::sampler::{Creases, Settings, SettingsError};
+use crate::sampler::{FoundCreases, Settings, SettingsError};
 use crate::slices::{self, Work};
 use core::ops::RangeInclusive;
 use glam::DVec3;
@@ -110,9 +110,8 @@ impl SolidSettings {
         if self.box_cell == BoxCell::Lone || !is_free {
             return Some(bounds);
         }
-        let mut solid = self.made_of(field.clone(), None);
-        solid.set_origin(DVec3::ZERO);
-        Some(extent::unit_cell(&mut solid, field.surface_periods(), &bounds))
+        let solid = self.made_of(field.clone(), None);
+        Some(extent::unit_cell(&solid, field.surface_periods(), &bounds))
     }
 
     /// The box that a surface of the gallery brings with it. Around a surface that is closed without it, there is room for the sheet.
@@ -137,9 +136,8 @@ impl BoxSearch {
     fn step(&mut self, field: impl FnOnce() -> Formula, budget: u32) -> Option<Extent> {
         if self.found.is_none() {
             let search = self.search.get_or_insert_with(|| {
-                let mut field = field();
-                field.set_origin(DVec3::ZERO);
-                Box::pin(async move { extent::find_in_slices(&mut field).await })
+                let field = field();
+                Box::pin(async move { extent::find_in_slices(&field).await })
             });
             self.found = Some(slices::advance(search.as_mut(), budget)?);
             self.search = None;
@@ -148,7 +146,7 @@ impl BoxSearch {
     }
 }
 
-type CreaseSearch = Work<'static, (Source, Creases)>;
+type CreaseSearch = Work<'static, FoundCreases>;
 
 /// State of the searches.
 #[derive(Default)]
@@ -228,7 +226,7 @@ impl Session {
         let (mut bounds, mut reach_in) = (clip, reach);
         if let Some(field) = field {
             let is_cell = closing.is_some() && choice.box_cell == BoxCell::Periodic;
-            let present = (field.thickness(), field.closing_box(), field.unit_cell().is_some());
+            let present = (field.thickness(), field.closing_box(), field.facts().unit_cell.is_some());
             if present != (choice.sheet(), closing, is_cell) {
                 let solid = choice.made_of(field.clone(), closing.as_ref());
                 self.fitting.closed = BoxSearch::default();

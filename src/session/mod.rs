@@ -24,7 +24,7 @@ use crate::field::rbf::{Pull, RbfData, RbfField, pulled_box};
 use crate::math::Bounds;
 use crate::run::{Error, Report, Run, Sample, Start, Warning};
 use crate::sampler::{FollowError, Settings, SettingsError};
-use core::ops::{Deref, DerefMut};
+use core::ops::Deref;
 use fitting::Fitting;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -104,15 +104,6 @@ impl Deref for Source {
     type Target = dyn Field;
 
     fn deref(&self) -> &Self::Target {
-        match self {
-            Self::Formula(field) => field,
-            Self::Points { field, .. } => field,
-        }
-    }
-}
-
-impl DerefMut for Source {
-    fn deref_mut(&mut self) -> &mut Self::Target {
         match self {
             Self::Formula(field) => field,
             Self::Points { field, .. } => field,

@@ -36,15 +36,15 @@ pub struct Lesson {
     run: Option<lesson::Lesson>,
 }
 
-/// A field that is only asked for jets. Evaluation in lanes and bounds over boxes stay out of the bundle.
+/// A field that is asked for jets alone. Evaluation in lanes and bounds over boxes stay out of the bundle.
 struct Pointwise<F>(F);
 
 impl<F: Field> Field for Pointwise<F> {
-    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+    fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
         self.0.value_and_gradient(p)
     }
 
-    fn jet(&mut self, p: DVec3) -> Jet {
+    fn jet(&self, p: DVec3) -> Jet {
         self.0.jet(p)
     }
 }

@@ -3,7 +3,7 @@
 //! Through JSON text the core would be larger by 61 kB (gzip) and not by 29: half of that would be code and tables for decimal
 //! digits.
 
-#[cfg(any(feature = "core", feature = "lesson"))]
+#[cfg(any(feature = "page-core", feature = "page-lesson"))]
 use crate::session::{Fault, FaultKind};
 use js_sys::Reflect;
 use serde::Serialize;
@@ -11,7 +11,7 @@ use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::JsValue;
 
 /// The value that a plain object describes, or the fault of this kind that it does not.
-#[cfg(any(feature = "core", feature = "lesson"))]
+#[cfg(any(feature = "page-core", feature = "page-lesson"))]
 pub(super) fn read<T: serde::de::DeserializeOwned>(value: JsValue, kind: FaultKind) -> Result<T, Fault> {
     serde_wasm_bindgen::from_value(value).map_err(|error| Fault::new(kind, &error))
 }

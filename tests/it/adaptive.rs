@@ -24,10 +24,10 @@ fn on_ripples_about_as_wide_as_particles_they_do_not_crowd() {
     let bounds = Bounds::cube(1.5);
     let settings = settings!(sampling: Sampling::Adaptive, chord_error: 5e-4; ..Settings::default());
     for (ripple, most) in [("0.004*sin(50x)", 10), ("0.003*sin(80x)", 20)] {
-        let mut field = Formula::as_written(&format!("x^2+y^2+z^2-1+{ripple}"), &[]).expect("a formula");
-        let sampler = sampled(&mut field, &bounds, &settings, 100_000);
+        let field = Formula::as_written(&format!("x^2+y^2+z^2-1+{ripple}"), &[]).expect("a formula");
+        let sampler = sampled(&field, &bounds, &settings, 100_000);
         let particles = sampler.particles();
-        let figures = figures(&mut field, &bounds, particles, Some(&particles.radius));
+        let figures = figures(&field, &bounds, particles, Some(&particles.radius));
         assert!(figures.edges.overlap_min > 0.6, "{ripple}: {}", figures.edges.overlap_min);
         assert!(
             figures.spacing.crowded.is_some_and(|crowded| crowded <= most),
@@ -131,11 +131,11 @@ fn the_bunny_is_even_after_ten_steps() {
     use marching_particles::pointcloud::fit_model;
     let bunny = model::find("bunny").expect("a built-in model");
     let fit = fit_model(bunny);
-    let mut field = RbfField::new(fit.data).expect("the data is whole");
+    let field = RbfField::new(fit.data).expect("the data is whole");
     let settings = settings!(sampling: Sampling::Adaptive, chord_error: 1e-4; ..Settings::default());
-    let sampler = sampled(&mut field, &fit.bounds, &settings, 10_000);
+    let sampler = sampled(&field, &fit.bounds, &settings, 10_000);
     let particles = sampler.particles();
-    let figures = figures(&mut field, &fit.bounds, particles, Some(&particles.radius));
+    let figures = figures(&field, &fit.bounds, particles, Some(&particles.radius));
     let context = format!("{} particles: {figures:?}", particles.len());
     assert!(figures.edges.size_cv <= 0.12, "{context}");
     assert!(figures.coverage.cover_local <= 1.6, "{context}");
@@ -158,7 +158,7 @@ fn how_a_run_is_cut_into_steps_does_not_change_it() {
     for surface in ["ellipsoid", "gyroid", "torus"] {
         let surface = gallery::find(surface).expect("a gallery surface");
         let settings = settings!(count: 2_000, relax_steps: 3; ..settings());
-        sampled_in_any_steps(&mut surface.field(), &surface.bounds, &settings);
+        sampled_in_any_steps(&surface.field(), &surface.bounds, &settings);
     }
 }
 
@@ -217,17 +217,17 @@ fn the_limit_and_the_stop_button_leave_whole_particles() {
     assert!(capped.counts().fates.capped > 0);
 
     let surface = gallery::find("torus").expect("a gallery surface");
-    let mut field = surface.field();
+    let field = surface.field();
     let settings = settings();
-    let mut sampler = begun(&mut field, &surface.bounds, &settings);
+    let mut sampler = begun(&field, &surface.bounds, &settings);
     let settled = loop {
-        let progress = sampler.step(&mut field, 37);
+        let progress = sampler.step(&field, 37);
         if progress.particles > 500 && progress.phase == Phase::Generation {
             break progress.particles;
         }
     };
     sampler.cancel();
-    let progress = sampler.step(&mut field, 1);
+    let progress = sampler.step(&field, 1);
     assert_eq!(progress.stop_reason, Some(StopReason::Cancelled));
     assert_eq!((progress.particles, sampler.particles().len()), (settled, settled));
 }
@@ -235,9 +235,9 @@ fn the_limit_and_the_stop_button_leave_whole_particles() {
 #[test]
 fn every_run_on_the_gallery_ends_with_particles_inside_the_box() {
     for surface in gallery::SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
         let settings = settings!(count: 1_500, relax_steps: 2; ..settings());
-        let sampler = sampled(&mut field, &surface.bounds, &settings, 10_000);
+        let sampler = sampled(&field, &surface.bounds, &settings, 10_000);
         let particles = sampler.particles();
         let context = format!("{}, {} particles", surface.id, particles.len());
         assert!(particles.len() > 500, "{context}");

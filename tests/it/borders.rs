@@ -16,8 +16,8 @@ fn settings(method: Method, count: u32, seed: u64) -> Settings {
 }
 
 fn refined(formula: &str, bounds: &Bounds, count: u32) -> Sampler {
-    let mut field = Formula::as_written(formula, &[]).expect("a formula");
-    sampled(&mut field, bounds, &settings(Method::Refined, count, 0), 10_000)
+    let field = Formula::as_written(formula, &[]).expect("a formula");
+    sampled(&field, bounds, &settings(Method::Refined, count, 0), 10_000)
 }
 
 fn mesh_of(particles: &Particles, bounds: &Bounds) -> Triangulation {
@@ -50,13 +50,13 @@ fn half_space(z: f64) -> Bounds {
 fn gyroid_and_schwarz_surface_come_out_in_order() {
     for id in ["gyroid", "schwarz-p"] {
         let surface = gallery::find(id).expect("a surface of the gallery");
-        let mut field = surface.field();
+        let field = surface.field();
         let settings = settings(Method::Refined, 20_000, 0);
-        let sampler = sampled(&mut field, &surface.bounds, &settings, 10_000);
+        let sampler = sampled(&field, &surface.bounds, &settings, 10_000);
         let (counts, particles) = (sampler.counts(), sampler.particles());
         assert_eq!((counts.refusal, counts.refined_levels), (None, Some(2)), "{id}");
         assert!((particles.len() as f64 / 20_000.0 - 1.0).abs() <= 0.01, "{id}: {}", particles.len());
-        let f = figures(&mut field, &surface.bounds, particles, None);
+        let f = figures(&field, &surface.bounds, particles, None);
         assert!(f.order.six >= 0.96, "{id}: six {}", f.order.six);
         assert!(f.angles.ang_min_mean >= 55.5, "{id}: mean smallest angle {}", f.angles.ang_min_mean);
         assert!(
@@ -158,11 +158,11 @@ fn a_sliver_in_a_corner_of_the_box_is_on_the_surface() {
         + 0.489*sin(1.819*x-1.653*y-2.218*z+0.169) + 0.528*cos(-2.271*x+1.143*y+2.634*z+4.389) = 0.21";
     let bounds = Bounds { min: [0.9, 1.0, -1.1], max: [1.6, 1.6, 0.0] };
     for count in [1_500, 2_500] {
-        let mut field = Formula::as_written(waves, &[]).expect("a formula");
+        let field = Formula::as_written(waves, &[]).expect("a formula");
         let settings = settings!(sampling: Sampling::Adaptive; ..settings(Method::Refined, count, 0));
-        let sampler = sampled(&mut field, &bounds, &settings, 10_000);
+        let sampler = sampled(&field, &bounds, &settings, 10_000);
         assert_eq!(sampler.counts().refusal, None, "{count}");
-        let found = figures(&mut field, &bounds, sampler.particles(), None);
+        let found = figures(&field, &bounds, sampler.particles(), None);
         assert!(found.accuracy.err_max <= 1e-3, "{count}: residual {}", found.accuracy.err_max);
     }
 }
@@ -224,26 +224,26 @@ fn a_field_that_ends_at_the_box_is_refined_to_its_end() {
 
 #[test]
 fn any_cut_into_steps_gives_the_same_particles_at_a_border() {
-    let mut field = Formula::as_written("z = 0.1 sin(3 x)", &[]).expect("a formula");
+    let field = Formula::as_written("z = 0.1 sin(3 x)", &[]).expect("a formula");
     let bounds = Bounds::cube(1.0);
-    let sampler = sampled_in_any_steps(&mut field, &bounds, &settings(Method::Refined, 2_000, 1));
+    let sampler = sampled_in_any_steps(&field, &bounds, &settings(Method::Refined, 2_000, 1));
     assert_eq!(sampler.counts().refusal, None);
 }
 
 #[test]
 fn what_is_cancelled_has_no_particle_outside_the_box() {
     let gyroid = gallery::find("gyroid").expect("a surface of the gallery");
-    let mut field = gyroid.field();
+    let field = gyroid.field();
     let mut has_cut_front = false;
     for steps in [5, 20, 60, 200, 600, 1_000] {
         let settings = settings(Method::Refined, 8_000, 0);
-        let mut sampler = begun(&mut field, &gyroid.bounds, &settings);
+        let mut sampler = begun(&field, &gyroid.bounds, &settings);
         for _ in 0..steps {
-            sampler.step(&mut field, 1_000);
+            sampler.step(&field, 1_000);
         }
         let is_marching = sampler.progress().phase == Phase::Generation;
         sampler.cancel();
-        let last = sampler.step(&mut field, 0);
+        let last = sampler.step(&field, 0);
         assert!(last.stop_reason.is_some());
         // What was beyond the box is gone.
         has_cut_front |= is_marching && last.moved;
@@ -267,11 +267,11 @@ proptest! {
         size in prop::array::uniform3(0.4_f64..1.8),
     ) {
         let bounds = Bounds { min: lo, max: core::array::from_fn(|k| lo[k] + size[k]) };
-        let mut field = Formula::as_written("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
-        let sampler = sampled(&mut field, &bounds, &settings(Method::Refined, 900, 0), 10_000);
+        let field = Formula::as_written("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
+        let sampler = sampled(&field, &bounds, &settings(Method::Refined, 900, 0), 10_000);
         assert_inside(sampler.particles(), &bounds);
         if sampler.counts().refined_levels.is_some() {
-            let front = sampled(&mut field, &bounds, &settings(Method::Front, 900, 0), 10_000);
+            let front = sampled(&field, &bounds, &settings(Method::Front, 900, 0), 10_000);
             // Wherever the front has a particle, there is one.
             let reach = 3.0 * sampler.radius() as f32;
             for &p in &front.particles().position {
@@ -286,11 +286,11 @@ proptest! {
 #[test]
 fn what_a_coarse_front_places_beyond_the_box_is_not_shown() {
     let surface = gallery::find("gyroid").expect("a surface of the gallery");
-    let mut field = surface.field();
-    let mut sampler = begun(&mut field, &surface.bounds, &settings(Method::Refined, 8_000, 0));
+    let field = surface.field();
+    let mut sampler = begun(&field, &surface.bounds, &settings(Method::Refined, 8_000, 0));
     let mut shown: Vec<Vec3> = Vec::new();
     loop {
-        let progress = sampler.step(&mut field, 300);
+        let progress = sampler.step(&field, 300);
         let particles = sampler.particles();
         assert_eq!(particles.position.len(), particles.slots.len());
         assert!(progress.particles <= particles.len());

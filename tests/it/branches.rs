@@ -3,19 +3,31 @@
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery::SURFACES;
-use marching_particles::field::{BranchNumbers, Branched, Field};
+use marching_particles::field::{Creased, Evaluator, Field, Frame};
 use marching_particles::math::{Bounds, Sym3};
 use marching_particles::slices::complete;
 use proptest::prelude::*;
+use std::sync::Arc;
 
 fn field(text: &str) -> Formula {
     Formula::parse(text).unwrap_or_else(|error| panic!("{text}: {error:?}"))
 }
 
+fn at_work(field: &Formula) -> Box<dyn Evaluator + '_> {
+    field.evaluator(Frame::default())
+}
+
+/// The field with its branches as they are in a box, and the cells of the box that may have creases.
+fn creased(field: &Formula, bounds: &Bounds) -> (Arc<dyn Creased>, Vec<Bounds>) {
+    let (cells, field) = complete(field.creases_in(bounds, 0.05));
+    (field, cells)
+}
+
 const CUBE: &str = "max(abs(x), abs(y), abs(z)) - 1";
 
 /// Numbers of the branches at points of a grid, each once.
-fn branches_of(field: &mut Formula) -> Vec<u32> {
+fn branches_of(field: &Formula) -> Vec<u32> {
+    let mut field = at_work(field);
     let mut numbers: Vec<u32> = spread(&Bounds::cube(1.5)).map(|p| field.branch_at(p)).collect();
     numbers.sort_unstable();
     numbers.dedup();
@@ -32,7 +44,7 @@ fn spread(bounds: &Bounds) -> impl Iterator<Item = DVec3> {
 }
 
 /// f by every way of evaluating it at one point: single precision, then double.
-fn values_of(field: &mut dyn Field, p: Vec3) -> ([f32; 3], [f64; 3]) {
+fn values_of(field: &mut dyn Evaluator, p: Vec3) -> ([f32; 3], [f64; 3]) {
     let ([mut v], [mut w], [mut h]) = ([0.0], [0.0], [0.0]);
     let ([mut g], [mut second]) = ([Vec3::ZERO], [Sym3::splat(0.0)]);
     field.values(&[p], core::slice::from_mut(&mut v));
@@ -51,23 +63,21 @@ fn values_of(field: &mut dyn Field, p: Vec3) -> ([f32; 3], [f64; 3]) {
 
 #[test]
 fn a_cube_has_six_linear_branches() {
-    let mut cube = field(CUBE);
-    assert_eq!(branches_of(&mut cube), [0, 1, 2, 3, 4, 5]);
+    let cube = field(CUBE);
+    assert_eq!(branches_of(&cube), [0, 1, 2, 3, 4, 5]);
     let faces = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
     for (number, face) in (0..).zip(faces) {
-        assert_eq!(cube.branch_at(face + DVec3::splat(0.1)), number, "{face}");
-        cube.select_branch(Some(number));
+        assert_eq!(at_work(&cube).branch_at(face + DVec3::splat(0.1)), number, "{face}");
         // Far from the face, where other branches give f, and in every way of evaluating it.
         for p in [Vec3::ZERO, Vec3::new(-3.0, 8.0, 5.5), Vec3::new(2.0, -0.25, -9.0)] {
             let wanted = p.as_dvec3().dot(face) - 1.0;
             for double in [None, Some(1.0)] {
-                cube.use_double(double);
-                let (single, exact) = values_of(&mut cube, p);
+                let mut cube = cube.evaluator(Frame { double, ..Frame::default() });
+                let (single, exact) = values_of(cube.on(Some(number)), p);
                 let scaled = double.map_or(wanted, |_| libm::asinh(wanted)) as f32;
                 assert_eq!((single, exact), ([scaled; 3], [wanted; 3]), "{face} at {p}");
             }
-            cube.use_double(None);
-            let jet = cube.jet(p.as_dvec3());
+            let jet = at_work(&cube).on(Some(number)).jet(p.as_dvec3());
             assert_eq!((jet.gradient, jet.hessian), (face, Sym3::splat(0.0)), "{face} at {p}");
         }
     }
@@ -75,7 +85,8 @@ fn a_cube_has_six_linear_branches() {
 
 #[test]
 fn a_box_has_the_branches_of_the_faces_that_meet_it() {
-    let mut cube = field(CUBE);
+    let cube = field(CUBE);
+    let mut cube = at_work(&cube);
     let around = |p: DVec3| Bounds::new(p - 0.1, p + 0.1);
     let [x, y, z] = DVec3::AXES.map(|axis| cube.branch_at(axis));
     let mut listed = |p: DVec3| cube.branches_in(&around(p));
@@ -91,7 +102,8 @@ fn a_box_has_the_branches_of_the_faces_that_meet_it() {
 
 #[test]
 fn a_box_at_a_tie_has_both_branches() {
-    let mut slabs = field("abs(x) + y");
+    let slabs = field("abs(x) + y");
+    let mut slabs = at_work(&slabs);
     assert_eq!(slabs.branches_in(&Bounds::new(DVec3::new(0.0, -1.0, 0.0), DVec3::ONE)), Some(vec![0, 1]));
     assert_eq!(slabs.branches_in(&Bounds::new(DVec3::new(-1.0, -1.0, 0.0), DVec3::Y)), Some(vec![0, 1]));
     assert_eq!((slabs.branch_at(DVec3::ZERO), slabs.branch_at(-DVec3::X)), (0, 1));
@@ -103,7 +115,8 @@ const DISTANCE: &str = "hypot(max(abs(x) - 1, 0), max(abs(y) - 1, 0), max(abs(z)
 
 #[test]
 fn the_distance_to_a_box_has_the_zeros_of_its_faces_alone() {
-    let mut distance = field(DISTANCE);
+    let distance = field(DISTANCE);
+    let mut distance = at_work(&distance);
     let [x, y, z] = DVec3::AXES.map(|axis| distance.branch_at(1.1 * axis));
     // The same function inside, outside, and where neither side is taken.
     for at in [0.9, 1.0] {
@@ -121,8 +134,8 @@ fn the_distance_to_a_box_has_the_zeros_of_its_faces_alone() {
 
 #[test]
 fn too_many_branches_are_not_listed() {
-    let mut waves =
-        field("abs(x) + abs(y) + abs(z) + abs(x + y) + abs(y + z) + abs(z + x) + abs(x + y + z) = 1");
+    let waves = field("abs(x) + abs(y) + abs(z) + abs(x + y) + abs(y + z) + abs(z + x) + abs(x + y + z) = 1");
+    let mut waves = at_work(&waves);
     assert_eq!(waves.branches_in(&Bounds::cube(1.0)), None);
     assert_eq!(waves.branches_in(&Bounds::new(DVec3::splat(0.05), DVec3::ONE)), Some(vec![0]));
 }
@@ -149,8 +162,8 @@ fn equal_functions_are_one_branch() {
         ("max(p, 2) x + y + z", 1),
         ("x^2 + y^2 + z^2 - 1", 1),
     ] {
-        let mut field = Formula::as_written(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"));
-        let found = branches_of(&mut field);
+        let field = Formula::as_written(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"));
+        let found = branches_of(&field);
         assert_eq!(found.len(), count, "{text}: {found:?}");
     }
 }
@@ -158,36 +171,32 @@ fn equal_functions_are_one_branch() {
 #[test]
 fn the_absolute_value_of_a_power_is_no_choice() {
     for p in [1.5, 3.0, 4.0] {
-        let mut smooth = field("abs(x)^p + abs(y)^p + z^2 - 1").with("p", p).expect("a parameter");
-        assert_eq!(branches_of(&mut smooth), [0], "{p}");
-        smooth.select_branch(Some(0));
-        let at = |x: f64| smooth.clone().value_and_gradient(DVec3::new(x, 0.5, 0.25)).0;
+        let smooth = field("abs(x)^p + abs(y)^p + z^2 - 1").with("p", p).expect("a parameter");
+        assert_eq!(branches_of(&smooth), [0], "{p}");
+        let at = |x: f64| at_work(&smooth).on(Some(0)).value_and_gradient(DVec3::new(x, 0.5, 0.25)).0;
         assert_eq!(at(-0.75).to_bits(), at(0.75).to_bits(), "{p}");
     }
-    assert_eq!(branches_of(&mut field("abs(x)^3 + y + z")), [0]);
+    assert_eq!(branches_of(&field("abs(x)^3 + y + z")), [0]);
 }
 
 #[test]
 fn parameters_change_branches_and_not_their_numbers() {
-    let mut cube = field("max(abs(x), abs(y), abs(z)) - a");
-    cube.select_branch(Some(3));
+    let cube = field("max(abs(x), abs(y), abs(z)) - a");
     let p = DVec3::new(0.5, -4.0, 0.5);
-    assert_eq!((cube.branch_at(p), cube.value_and_gradient(p).0), (3, 3.0));
-    cube.set_parameter("a", 0.25).expect("a parameter");
-    let mut copy = cube.clone();
-    for cube in [&mut cube, &mut copy] {
-        let (single, exact) = values_of(cube, p.as_vec3());
-        assert_eq!((cube.branch_at(p), single, exact), (3, [3.75; 3], [3.75; 3]));
-    }
-    copy.select_branch(None);
-    assert_eq!(copy.value_and_gradient(DVec3::splat(2.0)).0, 1.75);
-    assert_eq!(cube.value_and_gradient(DVec3::splat(2.0)).0, -2.25);
+    assert_eq!(at_work(&cube).branch_at(p), 3);
+    assert_eq!(at_work(&cube).on(Some(3)).value_and_gradient(p).0, 3.0);
+    let small = cube.clone().with("a", 0.25).expect("a parameter");
+    assert_eq!(at_work(&small).branch_at(p), 3);
+    assert_eq!(values_of(at_work(&small).on(Some(3)), p.as_vec3()), ([3.75; 3], [3.75; 3]));
+    assert_eq!(small.value_and_gradient(DVec3::splat(2.0)).0, 1.75);
+    assert_eq!(at_work(&small).on(Some(3)).value_and_gradient(DVec3::splat(2.0)).0, -2.25);
+    // The other one has not changed.
+    assert_eq!(at_work(&cube).on(Some(3)).value_and_gradient(p).0, 3.0);
     // A blend that gets a width is no choice any more.
-    let mut blend = field("smin(x, y, k) + z").with("k", 0.0).expect("a parameter");
-    assert_eq!(branches_of(&mut blend), [0, 1]);
-    blend.select_branch(Some(1));
-    blend.set_parameter("k", 1.0).expect("a parameter");
-    assert_eq!(branches_of(&mut blend), [0]);
+    let blend = field("smin(x, y, k) + z").with("k", 0.0).expect("a parameter");
+    assert_eq!(branches_of(&blend), [0, 1]);
+    let blend = blend.with("k", 1.0).expect("a parameter");
+    assert_eq!(branches_of(&blend), [0]);
     let value = blend.value_and_gradient(DVec3::new(0.25, 0.25, 0.0)).0;
     assert!((value - (0.25 - 1.0 / 6.0)).abs() < 1e-15, "{value}");
 }
@@ -196,7 +205,8 @@ fn parameters_change_branches_and_not_their_numbers() {
 fn numbers_do_not_depend_on_what_was_asked_before() {
     let text = "max(abs(x) + abs(y), min(abs(z), x + y), abs(x - z)) - 1";
     let points: Vec<DVec3> = spread(&Bounds::cube(1.5)).collect();
-    let (mut forward, mut backward) = (field(text), field(text));
+    let (forward, backward) = (field(text), field(text));
+    let (mut forward, mut backward) = (at_work(&forward), at_work(&backward));
     let numbers: Vec<u32> = points.iter().map(|&p| forward.branch_at(p)).collect();
     let others: Vec<u32> = points.iter().rev().map(|&p| backward.branch_at(p)).collect();
     assert!(numbers.iter().eq(others.iter().rev()));
@@ -204,49 +214,71 @@ fn numbers_do_not_depend_on_what_was_asked_before() {
 }
 
 #[test]
-fn a_field_is_itself_again_when_no_branch_is_selected() {
+fn a_field_is_itself_beside_the_evaluators_of_its_branches() {
     let points: Vec<Vec3> = spread(&Bounds::cube(1.5)).map(|p| p.as_vec3()).collect();
-    let (mut used, mut fresh) = (field(CUBE), field(CUBE));
-    used.select_branch(Some(4));
-    used.select_branch(None);
+    let (used, fresh) = (field(CUBE), field(CUBE));
+    let (mut used, mut fresh) = (at_work(&used), at_work(&fresh));
     for p in points {
-        assert_eq!(values_of(&mut used, p), values_of(&mut fresh, p), "{p}");
+        let [of_branch, other] = [used.on(Some(4)).jet(DVec3::Z), used.on(Some(1)).jet(DVec3::Z)];
+        assert_eq!((of_branch.value, other.value), (0.0, -1.0));
+        assert_eq!(values_of(&mut *used, p), values_of(&mut *fresh, p), "{p}");
     }
 }
 
 #[test]
+fn evaluators_on_several_threads_tell_the_same_branches() {
+    let field = field("max(abs(x) + abs(y), min(abs(z), x + y), abs(x - z)) - 1");
+    let numbers = |reverse: bool| {
+        let mut evaluator = at_work(&field);
+        let mut points: Vec<DVec3> = spread(&Bounds::cube(1.5)).collect();
+        if reverse {
+            points.reverse();
+        }
+        let mut numbers: Vec<u32> = points.into_iter().map(|p| evaluator.branch_at(p)).collect();
+        if reverse {
+            numbers.reverse();
+        }
+        numbers
+    };
+    std::thread::scope(|scope| {
+        let threads: Vec<_> =
+            [false, true, false, true].map(|reverse| scope.spawn(move || numbers(reverse))).into();
+        let found: Vec<Vec<u32>> =
+            threads.into_iter().map(|thread| thread.join().expect("numbers")).collect();
+        assert!(found.iter().all(|own| *own == found[0]));
+    });
+}
+
+#[test]
 fn an_origin_counts_for_branches_too() {
-    let mut cube = field(CUBE);
-    cube.set_origin(DVec3::new(1.0, 1.0, 0.0));
+    let cube = field(CUBE);
+    let mut cube = cube.evaluator(Frame::around(DVec3::new(1.0, 1.0, 0.0)));
     assert_eq!(cube.branch_at(DVec3::new(0.0, 0.1, 0.0)), 2);
     assert_eq!(cube.branches_in(&Bounds::cube(0.1)), Some(vec![0, 2]));
-    cube.select_branch(Some(2));
-    assert_eq!(values_of(&mut cube, Vec3::Y), ([1.0; 3], [1.0; 3]));
+    assert_eq!(values_of(cube.on(Some(2)), Vec3::Y), ([1.0; 3], [1.0; 3]));
 }
 
 #[test]
 fn the_branch_at_a_point_gives_the_value_of_the_gallery_there() {
     for surface in SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
         for p in spread(&surface.bounds) {
-            agrees(&mut field, p, surface.id);
+            agrees(&field, p, surface.id);
         }
     }
 }
 
 /// Checks that the branch at `p` has the value of f there and is among those of boxes around `p`, if f is 0 in them.
-fn agrees(field: &mut Formula, p: DVec3, text: &str) {
-    field.select_branch(None);
+fn agrees(field: &Formula, p: DVec3, text: &str) {
+    let mut field = at_work(field);
     let wanted = field.value_and_gradient(p).0;
     let number = field.branch_at(p);
-    field.select_branch(Some(number));
-    let value = field.value_and_gradient(p).0;
+    let value = field.on(Some(number)).value_and_gradient(p).0;
     let close = (value - wanted).abs() <= 1e-13 * (1.0 + wanted.abs());
     assert!(
         close || value.to_bits() == wanted.to_bits() || value.is_nan() && wanted.is_nan(),
         "{text} at {p}: {value} for {wanted}"
     );
-    field.select_branch(None);
     if wanted == 0.0 {
         // Wide enough for the rounding errors of f.
         let listed = field.branches_in(&Bounds::new(p - 1e-12, p + 1e-12));
@@ -290,13 +322,13 @@ proptest! {
         text in solids(),
         points in prop::collection::vec([-2.0..2.0_f64, -2.0..2.0, -2.0..2.0], 20),
     ) {
-        let Ok(mut field) = Formula::as_written(&text, &[]) else { return Ok(()) };
+        let Ok(field) = Formula::as_written(&text, &[]) else { return Ok(()) };
         for p in points.into_iter().map(DVec3::from_array) {
-            agrees(&mut field, p, &text);
+            agrees(&field, p, &text);
             // A point of the surface of another solid.
             let level = field.value_and_gradient(p).0;
-            if let Ok(mut shifted) = Formula::as_written(&format!("{text} - ({level:?})"), &[]) {
-                agrees(&mut shifted, p, &text);
+            if let Ok(shifted) = Formula::as_written(&format!("{text} - ({level:?})"), &[]) {
+                agrees(&shifted, p, &text);
             }
         }
     }
@@ -309,9 +341,9 @@ fn the_branch_is_told_where_choices_tie() {
         "min(abs(x) - 1, x^2 + y^2 - z)",
         "smin(min(abs(y + 2z), abs(y + 2z)), hypot(x, y, z) - 1 + 0.1, 0)",
     ] {
-        let mut field = Formula::parse(text).expect("a formula");
+        let field = Formula::parse(text).expect("a formula");
         for p in [DVec3::ZERO, DVec3::Z * -1.338, DVec3::X * 0.27, DVec3::new(-1.54, 1.636, -1.771)] {
-            agrees(&mut field, p, text);
+            agrees(&field, p, text);
         }
     }
 }
@@ -319,18 +351,14 @@ fn the_branch_is_told_where_choices_tie() {
 #[test]
 fn the_surfaces_of_the_gallery_have_no_creases() {
     for surface in SURFACES.iter() {
-        let mut field = surface.field();
-        assert!(
-            complete(field.crease_cells(&surface.bounds, 0.05, BranchNumbers::New)).is_empty(),
-            "{}",
-            surface.id
-        );
+        let (field, cells) = creased(&surface.field(), &surface.bounds);
+        assert!(cells.is_empty(), "{}", surface.id);
+        let mut field = field.evaluator(Frame::default());
         assert!(spread(&surface.bounds).all(|p| field.branch_at(p) == 0), "{}", surface.id);
-        field.select_branch(Some(0));
         let p = Vec3::new(0.3, 0.2, 0.1);
         assert_eq!(
-            format!("{:?}", values_of(&mut field, p)),
-            format!("{:?}", values_of(&mut surface.field(), p))
+            format!("{:?}", values_of(field.on(Some(0)), p)),
+            format!("{:?}", values_of(&mut *at_work(&surface.field()), p))
         );
     }
 }
@@ -346,12 +374,10 @@ fn choices_that_meet_smoothly_are_no_creases() {
         "x x abs(x) + y + z",
         "abs(x) + 200 y",
     ] {
-        let mut field = field(text);
-        assert!(
-            complete(field.crease_cells(&Bounds::cube(1.6), 0.05, BranchNumbers::New)).is_empty(),
-            "{text}"
-        );
-        assert_eq!(branches_of(&mut field), [0], "{text}");
+        let (field, cells) = creased(&field(text), &Bounds::cube(1.6));
+        assert!(cells.is_empty(), "{text}");
+        let mut field = field.evaluator(Frame::default());
+        assert!(spread(&Bounds::cube(1.5)).all(|p| field.branch_at(p) == 0), "{text}");
     }
 }
 
@@ -369,12 +395,10 @@ fn creases_are_found_whatever_their_size_and_place() {
         // The choice counts by itself where it does not through the other one.
         ("z/4 + max(x, y) + max(max(x, y), 8) - 8", 2),
     ] {
-        let mut field = field(text);
-        assert!(
-            !complete(field.crease_cells(&Bounds::cube(1.6), 0.05, BranchNumbers::New)).is_empty(),
-            "{text}"
-        );
-        let mut seen: Vec<u32> = on_surface(&mut field).into_iter().map(|p| field.branch_at(p)).collect();
+        let (field, cells) = creased(&field(text), &Bounds::cube(1.6));
+        assert!(!cells.is_empty(), "{text}");
+        let mut evaluator = field.evaluator(Frame::default());
+        let mut seen: Vec<u32> = on_surface(&*field).into_iter().map(|p| evaluator.branch_at(p)).collect();
         seen.sort_unstable();
         seen.dedup();
         assert_eq!(seen.len(), count, "{text}: {seen:?}");
@@ -384,20 +408,22 @@ fn creases_are_found_whatever_their_size_and_place() {
 #[test]
 fn both_sides_of_a_face_of_an_exact_distance_are_one_branch() {
     let squares = ["x", "y", "z"].map(|axis| format!("max(abs({axis}) - 0.7, 0)^2")).join(" + ");
-    let mut field = field(&format!("sqrt({squares}) + min(max(abs(x), abs(y), abs(z)) - 0.7, 0)"));
-    assert!(!complete(field.crease_cells(&Bounds::cube(1.6), 0.05, BranchNumbers::New)).is_empty());
+    let distance = field(&format!("sqrt({squares}) + min(max(abs(x), abs(y), abs(z)) - 0.7, 0)"));
+    let (field, cells) = creased(&distance, &Bounds::cube(1.6));
+    assert!(!cells.is_empty());
+    let mut field = field.evaluator(Frame::default());
     for face in DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]) {
         let [inside, outside] = [0.69, 0.71].map(|at| at * face + 0.1 * (DVec3::ONE - face.abs()));
         assert_eq!(field.branch_at(inside), field.branch_at(outside), "{face}");
-        field.select_branch(Some(field.clone().branch_at(inside)));
+        let branch = field.branch_at(inside);
         let far = DVec3::new(3.0, -5.0, 2.5);
-        assert!((field.value_and_gradient(far).0 - (far.dot(face) - 0.7)).abs() < 1e-15, "{face}");
-        field.select_branch(None);
+        let value = field.on(Some(branch)).value_and_gradient(far).0;
+        assert!((value - (far.dot(face) - 0.7)).abs() < 1e-15, "{face}");
     }
 }
 
 /// Points of the surface, by steps along the gradient from those of a grid.
-fn on_surface(field: &mut Formula) -> Vec<DVec3> {
+fn on_surface(field: &dyn Field) -> Vec<DVec3> {
     let mut found = Vec::new();
     for mut p in spread(&Bounds::cube(1.6)) {
         for _ in 0..30 {

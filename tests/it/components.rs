@@ -4,9 +4,10 @@
 use crate::runs::{finished, run, session};
 use glam::{DVec3, Vec3};
 use marching_particles::Report;
+use marching_particles::field::Enclosure;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
-use marching_particles::field::{Bounded, Enclosure};
+use marching_particles::field::{Field, Frame};
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{Method, Sampling, Search, Settings, StopReason};
@@ -317,10 +318,14 @@ fn discontinuous_gradients_hide_no_component() {
         assert_eq!(report.growth.components_seeded.min(2), 2, "{formula}: {report:?}");
     }
     // The bounds of the second derivatives would exclude the component if they were used where they do not hold.
-    let mut field = Formula::as_written("abs(x) + abs(y) + abs(z) - 0.1", &[]).unwrap();
+    let field = Formula::as_written("abs(x) + abs(y) + abs(z) - 0.1", &[]).unwrap();
     let across = [-0.1, 0.1].map(|from| Bounds::new(DVec3::splat(from), DVec3::splat(0.2)));
     let mut known = [Enclosure::UNKNOWN; 2];
-    field.enclose(0, &across, &mut known);
+    field
+        .evaluator(Frame::default())
+        .bounded()
+        .expect("a formula has bounds")
+        .enclose(0, &across, &mut known);
     assert_eq!(known.map(|known| (known.continuous, known.smooth)), [(true, false), (true, true)]);
 }
 

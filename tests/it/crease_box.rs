@@ -4,6 +4,7 @@
 use crate::cases;
 use glam::{DVec3, Vec3};
 use marching_particles::Sampling::{Adaptive, Uniform};
+use marching_particles::field::Frame;
 use marching_particles::{Bounds, Field, Formula, Method, Sample, Settings, sample};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -43,7 +44,7 @@ fn roof(random: &mut Pcg32) -> [String; 2] {
 
 /// Euler number of the surface f = 0 in a box, by the tetrahedra of a grid of so many cells along each axis: it crosses each of their edges in a
 /// point, each of their triangles in a line and each of themselves in a face, or not at all.
-pub(crate) fn euler_on_grid(mut field: Formula, bounds: &Bounds, cells: usize) -> i64 {
+pub(crate) fn euler_on_grid(field: Formula, bounds: &Bounds, cells: usize) -> i64 {
     let side = cells + 1;
     let node = |k: usize| {
         let share = DVec3::new((k % side) as f64, (k / side % side) as f64, (k / side / side) as f64);
@@ -51,7 +52,7 @@ pub(crate) fn euler_on_grid(mut field: Formula, bounds: &Bounds, cells: usize) -
     };
     let nodes: Vec<Vec3> = (0..side * side * side).map(node).collect();
     let mut values = vec![0.0; nodes.len()];
-    field.values(&nodes, &mut values);
+    field.evaluator(Frame::default()).values(&nodes, &mut values);
     let is_inside: Vec<bool> = values.iter().map(|&value| value < 0.0).collect();
     // Kuhn's triangulation: its simplices at a corner are the chains of growing sets of axes.
     let offset = |axes: usize| (axes & 1) + (axes >> 1 & 1) * side + (axes >> 2 & 1) * side * side;
@@ -124,7 +125,7 @@ fn check(sample: &Sample, bounds: &Bounds, euler: Option<i64>, what: &str) -> us
 fn random_roofs_are_refined_up_to_the_box() {
     const ROOFS: u64 = 14;
     /// Shares that were usual when the test was written.
-    const TOLD: f64 = 0.85;
+    const TOLD: f64 = 0.79;
     const REFINED: f64 = 0.75;
     const RIGHT: f64 = 0.98;
     const NOT_REFUSED: f64 = 0.95;
@@ -133,10 +134,11 @@ fn random_roofs_are_refined_up_to_the_box() {
     for seed in cases::seeds(ROOFS) {
         let [text, rounded] = roof(&mut Pcg32::seed_from_u64(seed));
         let field = Formula::parse(&text).expect("a formula");
-        // Where the sheets leave a gap that is thinner than the cells, they are of no use.
+        // Where the sheets leave a gap that is thinner than the cells, or than what rounding fills, grids are of no use.
         let rounded = Formula::parse(&rounded).expect("a formula");
-        let [euler, other] = [40, 56].map(|cells| euler_on_grid(rounded.clone(), &bounds, cells));
-        let euler = (euler == other).then_some(euler);
+        let [euler, others @ ..] = [(&field, 56), (&rounded, 56), (&rounded, 40)]
+            .map(|(field, cells)| euler_on_grid(field.clone(), &bounds, cells));
+        let euler = (others == [euler; 2]).then_some(euler);
         told += u64::from(euler.is_some());
         for (count, sampling) in [(2_000, Uniform), (8_000, Uniform), (8_000, Adaptive)] {
             let settings = settings!(

@@ -7,7 +7,7 @@ use marching_particles::quality::{MeasureOptions, Measurements, measure};
 
 fn measured(particles: &Particles, solid: Creased) -> Measurements {
     let options = MeasureOptions { rows: Some(particles), ..MeasureOptions::default() };
-    measure(&particles.position, &particles.normal, &mut solid.field(), None, &options)
+    measure(&particles.position, &particles.normal, &solid.field(), None, &options)
 }
 
 /// The figures of a closed surface of patches, held to what is known of it.

@@ -1,10 +1,9 @@
 //! Particles on surfaces with creases, made by hand: rows along every crease, and a lattice on every patch.
 
 use glam::{DVec2, DVec3, Vec3};
-use marching_particles::field::{BranchNumbers, Branched, Field};
-use marching_particles::math::Bounds;
+use marching_particles::field::{Evaluator, Field, Frame, Jet, Patches};
+use marching_particles::math::{Bounds, Sym3};
 use marching_particles::particles::{Particles, Slots};
-use marching_particles::slices::Work;
 
 /// A crease: points in order along it, and the patches on its left and on its right.
 pub(crate) struct Crease {
@@ -25,30 +24,97 @@ pub(crate) struct Creased {
     pub(crate) spacing: f64,
 }
 
-type Branch = Box<dyn Fn(u32, DVec3) -> (f64, DVec3) + Send>;
-type Nearest = Box<dyn Fn(DVec3) -> u32 + Send>;
+type Branch = Box<dyn Fn(u32, DVec3) -> (f64, DVec3) + Send + Sync>;
+type Nearest = Box<dyn Fn(DVec3) -> u32 + Send + Sync>;
 
 /// The field of a surface of patches: at each point that of the nearest patch.
 pub(crate) struct CreasedField {
     branch: Branch,
     nearest: Nearest,
-    selected: Option<u32>,
 }
 
 impl Field for CreasedField {
-    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
-        let patch = self.selected.unwrap_or_else(|| (self.nearest)(p));
-        (self.branch)(patch, p)
+    fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
+        (self.branch)((self.nearest)(p), p)
     }
 
-    fn branched(&mut self) -> Option<&mut dyn Branched> {
+    fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
+        Box::new(CreasedEvaluator { field: self, patch: None, frame, branch: None })
+    }
+}
+
+/// The field, or the function of a patch.
+struct CreasedEvaluator<'a> {
+    field: &'a CreasedField,
+    patch: Option<u32>,
+    frame: Frame,
+    branch: Option<Box<CreasedEvaluator<'a>>>,
+}
+
+/// The function of a patch, as a field.
+struct PatchField<'a>(&'a CreasedField, u32);
+
+impl Field for PatchField<'_> {
+    fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
+        (self.0.branch)(self.1, p)
+    }
+}
+
+impl CreasedEvaluator<'_> {
+    /// The function at a point.
+    fn at(&self, p: DVec3) -> PatchField<'_> {
+        PatchField(self.field, self.patch.unwrap_or_else(|| (self.field.nearest)(self.frame.place(p))))
+    }
+}
+
+impl Evaluator for CreasedEvaluator<'_> {
+    fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
+        for (k, p) in points.iter().enumerate() {
+            self.at(p.as_dvec3()).evaluator(self.frame).values(&[*p], &mut value[k..]);
+        }
+    }
+
+    fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
+        for (k, p) in points.iter().enumerate() {
+            let field = self.at(p.as_dvec3());
+            field.evaluator(self.frame).gradients(&[*p], &mut value[k..], &mut gradient[k..]);
+        }
+    }
+
+    fn hessians(
+        &mut self,
+        points: &[Vec3],
+        value: &mut [f32],
+        gradient: &mut [Vec3],
+        hessian: &mut [Sym3<f32>],
+    ) {
+        for (k, p) in points.iter().enumerate() {
+            let field = self.at(p.as_dvec3());
+            let mut evaluator = field.evaluator(self.frame);
+            evaluator.hessians(&[*p], &mut value[k..], &mut gradient[k..], &mut hessian[k..]);
+        }
+    }
+
+    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+        self.at(p).evaluator(self.frame).value_and_gradient(p)
+    }
+
+    fn jet(&mut self, p: DVec3) -> Jet {
+        self.at(p).evaluator(self.frame).jet(p)
+    }
+
+    fn patches(&mut self) -> Option<&mut dyn Patches> {
         Some(self)
     }
 }
 
 /// The creases are those of the particles: nobody looks for them.
-impl Branched for CreasedField {
-    fn crease_cells(&mut self, _: &Bounds, _: f64, _: BranchNumbers) -> Work<'_, Vec<Bounds>> {
+impl Patches for CreasedEvaluator<'_> {
+    fn crease_cells(&mut self, _: &Bounds, _: f64) -> Vec<Bounds> {
         unreachable!("the creases are given")
     }
 
@@ -57,17 +123,18 @@ impl Branched for CreasedField {
     }
 
     fn branch_at(&mut self, p: DVec3) -> u32 {
-        (self.nearest)(p)
+        (self.field.nearest)(self.frame.place(p))
     }
 
-    fn select_branch(&mut self, branch: Option<u32>) {
-        self.selected = branch;
+    fn branch(&mut self, branch: u32) -> &mut dyn Evaluator {
+        let (field, frame, patch) = (self.field, self.frame, Some(branch));
+        &mut **self.branch.insert(Box::new(Self { field, patch, frame, branch: None }))
     }
 }
 
 impl Creased {
     pub(crate) fn field(self) -> CreasedField {
-        CreasedField { branch: self.branch, nearest: self.nearest, selected: None }
+        CreasedField { branch: self.branch, nearest: self.nearest }
     }
 
     pub(crate) fn particles(&self) -> Particles {

@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use marching_particles::differential::{Curvature, curvatures, curvatures_of, exact_curvature};
+use marching_particles::field::Frame;
 use marching_particles::field::gallery::{self, SURFACES};
 use marching_particles::field::{Field, Jet};
 use marching_particles::math::{Bounds, Sym3};
@@ -18,7 +19,7 @@ fn curvature(gradient: Vec3, hessian: Sym3<f32>) -> Curvature {
 }
 
 /// Points of the surface near pseudo-random points of the box, the same in every run.
-fn surface_points(field: &mut dyn Field, bounds: &Bounds, count: usize) -> Vec<DVec3> {
+fn surface_points(field: &dyn Field, bounds: &Bounds, count: usize) -> Vec<DVec3> {
     let mut random = rand_pcg::Pcg32::new(3, 5);
     let mut unit = || f64::from(random.next_u32()) / f64::from(u32::MAX);
     let (lo, hi) = (bounds.lo(), bounds.hi());
@@ -45,8 +46,8 @@ fn surface_points(field: &mut dyn Field, bounds: &Bounds, count: usize) -> Vec<D
 /// Points of a gallery surface, with the curvature at each.
 fn sampled(id: &str, count: usize) -> Vec<(DVec3, Curvature<f64, DVec3>)> {
     let surface = gallery::find(id).expect("a surface of the gallery");
-    let mut field = surface.field();
-    let points = surface_points(&mut field, &surface.bounds, count);
+    let field = surface.field();
+    let points = surface_points(&field, &surface.bounds, count);
     points.into_iter().map(|p| (p, exact_curvature(&field.jet(p)))).collect()
 }
 
@@ -110,7 +111,7 @@ fn an_ellipsoid_has_the_curvatures_of_the_closed_form() {
 
 #[test]
 fn normals_of_the_gallery_turn_as_the_curvature_says() {
-    let normal = |field: &mut dyn Field, p: DVec3| {
+    let normal = |field: &dyn Field, p: DVec3| {
         let gradient = field.jet(p).gradient;
         gradient / gradient.length()
     };
@@ -118,7 +119,7 @@ fn normals_of_the_gallery_turn_as_the_curvature_says() {
         let mut field = surface.field();
         let diagonal = surface.bounds.diagonal();
         let mut compared = 0;
-        let points = surface_points(&mut field, &surface.bounds, 200);
+        let points = surface_points(&field, &surface.bounds, 200);
         for &p in &points {
             let jet = field.jet(p);
             let k = exact_curvature(&jet);
@@ -149,17 +150,17 @@ fn normals_of_the_gallery_turn_as_the_curvature_says() {
 #[test]
 fn single_precision_and_lanes_agree_with_double() {
     for surface in SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
         let points: Vec<Vec3> =
-            surface_points(&mut field, &surface.bounds, 203).iter().map(|p| p.as_vec3()).collect();
+            surface_points(&field, &surface.bounds, 203).iter().map(|p| p.as_vec3()).collect();
         let n = points.len();
         let (mut value, mut gradient) = (vec![0.0; n], vec![Vec3::ZERO; n]);
         let mut hessian = vec![Sym3::default(); n];
-        field.hessians(&points, &mut value, &mut gradient, &mut hessian);
+        field.evaluator(Frame::default()).hessians(&points, &mut value, &mut gradient, &mut hessian);
         let mut lanes = vec![Curvature::default(); n];
         curvatures_of(&gradient, &hessian, &mut lanes);
         let mut of_field = vec![Curvature::default(); n];
-        curvatures(&mut field, &points, &mut of_field);
+        curvatures(&mut *field.evaluator(Frame::default()), &points, &mut of_field);
         assert_eq!(lanes, of_field, "{}", surface.id);
         let mut errors: Vec<f64> = Vec::new();
         for k in 0..n {

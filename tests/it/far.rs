@@ -4,8 +4,9 @@ use crate::runs::{finished, run};
 use glam::{DVec3, Vec3};
 use marching_particles::Report;
 use marching_particles::export::{self, Format, MeshFormat};
+use marching_particles::field::Frame;
 use marching_particles::field::formula::Formula;
-use marching_particles::field::{Bounded, Enclosure, Field};
+use marching_particles::field::{Enclosure, Field};
 use marching_particles::math::{Bounds, Interval, Sym3};
 use marching_particles::quality;
 use marching_particles::sampler::{Method, Sampling, Search, Settings};
@@ -82,10 +83,8 @@ fn far_from_the_origin_the_figures_are_those_at_the_origin() {
 #[test]
 fn a_field_with_an_origin_is_the_same_field_there() {
     let text = "sin(x) y^2 + exp(z/300) sqrt(x) - x y z";
-    let mut field = Formula::as_written(text, &[]).expect("a formula");
-    let mut moved = field.clone();
-    moved.set_origin(FAR);
-    assert_eq!((field.origin(), moved.origin()), (DVec3::ZERO, FAR));
+    let field = Formula::as_written(text, &[]).expect("a formula");
+    let mut moved = field.evaluator(Frame::around(FAR));
     let points: Vec<Vec3> =
         (0..50).map(|k| Vec3::new(0.37, -0.21, 0.11) * (k as f32 - 25.0) * 0.03).collect();
     let (mut value, mut gradient) = (vec![0.0; 50], vec![Vec3::ZERO; 50]);
@@ -107,8 +106,9 @@ fn a_field_with_an_origin_is_the_same_field_there() {
     let boxes: Vec<Bounds> = points.iter().map(|p| Bounds::new(p.as_dvec3(), p.as_dvec3() + 0.01)).collect();
     let mut bounds = vec![Enclosure::UNKNOWN; 50];
     let mut second = vec![Sym3::splat(Interval::EVERYTHING); 50];
-    moved.enclose(0, &boxes, &mut bounds);
-    moved.enclose_second(0, &boxes, &mut second);
+    let bounded = moved.bounded().expect("a formula has bounds");
+    bounded.enclose(0, &boxes, &mut bounds);
+    bounded.enclose_second(0, &boxes, &mut second);
     for (k, around) in boxes.iter().enumerate() {
         for corner in [around.lo(), around.hi(), around.middle()] {
             let jet = field.jet(FAR + corner);

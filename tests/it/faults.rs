@@ -305,7 +305,7 @@ fn powers_of_a_factor_have_the_surface_of_the_factor() {
         "(x - 1)^2/(y - 2)",
     ] {
         let field = Formula::as_written(formula, &[]).expect(formula).without_powers();
-        assert_eq!(field.sampled_as(), None, "{formula}");
+        assert_eq!(field.facts().sampled_as, None, "{formula}");
     }
     // A constant factor, an equation with two sides, and a pole are left alone without a warning.
     for formula in ["x^2 = 0.3", "a^2 x", "x^3 + y", "x/(y + 3)^2"] {

@@ -1,11 +1,12 @@
 //! Tests of the formula language: what it accepts, what a formula means, and the errors.
 
 use glam::{DVec3, Vec3};
+use marching_particles::field::Frame;
 use marching_particles::field::formula::{
     FUNCTIONS, Formula, FormulaError, FormulaErrorKind as Kind, MAX_DEPTH, MAX_FORMULA_BYTES, Parameter,
     utf16_offset,
 };
-use marching_particles::field::{Bounded, Enclosure, Field};
+use marching_particles::field::{Enclosure, Field};
 use marching_particles::math::{Bounds, Interval, Sym3};
 
 fn parse(text: &str) -> Formula {
@@ -402,7 +403,7 @@ fn parameters_can_be_declared_and_changed_without_parsing_again() {
     for (a, b) in [(2.0, 1.0), (0.5, -3.0), (5.0, 0.25)] {
         field.set_parameter("a", a).unwrap();
         field.set_parameter("b", b).unwrap();
-        field.hessians(&point, &mut value, &mut gradient, &mut hessian);
+        field.evaluator(Frame::default()).hessians(&point, &mut value, &mut gradient, &mut hessian);
         let exact = field.jet(DVec3::new(3.0, 0.0, 0.0));
         assert!((exact.value - (9.0 / (a * a) - b)).abs() < 1e-12);
         assert!((f64::from(value[0]) - exact.value).abs() < 1e-5);
@@ -424,7 +425,7 @@ fn an_exponent_may_be_a_parameter_of_any_value() {
     let mut gradient = vec![Vec3::ZERO; points.len()];
     for p in [-9.0, -8.0, -2.5, -2.0, -1.0, 0.0, 0.5, 1.0, 2.0, 2.000_001, 3.0, 7.0, 8.0, 9.0, 30.0] {
         field.set_parameter("p", p).unwrap();
-        field.gradients(&points, &mut value, &mut gradient);
+        field.evaluator(Frame::default()).gradients(&points, &mut value, &mut gradient);
         for (k, point) in points.iter().enumerate() {
             let exact = libm::pow(f64::from(point.x), f64::from(p as f32));
             let same = f64::from(value[k]) == exact || value[k].is_nan() && exact.is_nan();
@@ -490,14 +491,19 @@ fn the_number_of_operations_is_bounded() {
     assert_eq!(error(&powers.join("+")).kind, Kind::TooComplex);
     // The longest sum that fits is accepted and evaluated.
     let long = format!("x{}", "+y^2".repeat(1000));
-    let mut field = parse(&long);
+    let field = parse(&long);
     assert_eq!(field.jet(DVec3::new(1.0, 2.0, 0.0)).value, 4001.0);
     let terms: Vec<String> = (1..400).map(|k| format!("sin({k}x)")).collect();
-    let mut field = parse(&terms.join("+"));
+    let field = parse(&terms.join("+"));
     let mut value = [0.0];
     let mut gradient = [Vec3::ZERO];
     let mut hessian = [Sym3::default()];
-    field.hessians(&[Vec3::splat(0.001)], &mut value, &mut gradient, &mut hessian);
+    field.evaluator(Frame::default()).hessians(
+        &[Vec3::splat(0.001)],
+        &mut value,
+        &mut gradient,
+        &mut hessian,
+    );
     assert!(value[0].is_finite() && hessian[0].xx.is_finite());
 }
 
@@ -513,7 +519,7 @@ fn extreme_numbers_are_errors_where_constant_and_harmless_elsewhere() {
     assert_eq!(parse("-0 + x").jet(DVec3::ONE).value, 1.0);
     // A number too large for single precision is infinite there, not a false zero.
     let mut value = [0.0];
-    parse("x - 1e300").values(&[Vec3::ONE], &mut value);
+    parse("x - 1e300").evaluator(Frame::default()).values(&[Vec3::ONE], &mut value);
     assert_eq!(value[0], f32::NEG_INFINITY);
 }
 
@@ -559,7 +565,11 @@ fn a_comma_that_has_one_reading_only_separates_arguments() {
 fn a_field_without_a_zero_is_seen_by_its_bounds() {
     let bounds = |text: &str| {
         let mut out = [Enclosure::UNKNOWN];
-        parse(text).enclose(0, &[Bounds::cube(10.0)], &mut out);
+        parse(text).evaluator(Frame::default()).bounded().expect("a formula has bounds").enclose(
+            0,
+            &[Bounds::cube(10.0)],
+            &mut out,
+        );
         out[0]
     };
     let known = bounds("x^2 + y^2 + z^2 + 1");
@@ -576,7 +586,11 @@ fn poles_jumps_and_missing_values_are_seen_by_the_bounds_of_a_box() {
     let known = |text: &str, x: [f64; 2]| {
         let mut out = [Enclosure::UNKNOWN];
         let around = Bounds { min: [x[0], 0.1, 0.1], max: [x[1], 0.2, 0.2] };
-        parse(text).enclose(0, &[around], &mut out);
+        parse(text).evaluator(Frame::default()).bounded().expect("a formula has bounds").enclose(
+            0,
+            &[around],
+            &mut out,
+        );
         out[0]
     };
     // A box with a pole inside still has no zero.
@@ -586,7 +600,14 @@ fn poles_jumps_and_missing_values_are_seen_by_the_bounds_of_a_box() {
     }
     assert!(known("1/x + 1", [-0.5, 0.7]).may_vanish);
     // The zeros of a product are those of its factors.
-    assert_eq!(parse("-3x^2 (y - 1)/(z - 2)").factors(), 2);
+    assert_eq!(
+        parse("-3x^2 (y - 1)/(z - 2)")
+            .evaluator(Frame::default())
+            .bounded()
+            .expect("a formula has bounds")
+            .factors(),
+        2
+    );
     assert_eq!(
         known("-3x^2/(z - 2)", [-0.5, 0.7]).gradient,
         [1.0, 0.0, 0.0].map(|slope| Interval::new(slope, slope))
@@ -620,7 +641,11 @@ fn undefined_regions_are_nan_and_poles_are_infinite() {
     let probe = |text: &str, x: f32| {
         let mut value = [0.0];
         let mut gradient = [Vec3::ZERO];
-        parse(text).gradients(&[Vec3::new(x, 0.3, 0.4)], &mut value, &mut gradient);
+        parse(text).evaluator(Frame::default()).gradients(
+            &[Vec3::new(x, 0.3, 0.4)],
+            &mut value,
+            &mut gradient,
+        );
         (value[0], gradient[0])
     };
     for text in
@@ -638,7 +663,11 @@ fn undefined_regions_are_nan_and_poles_are_infinite() {
     // At the apex of a cone f is defined and has no gradient.
     let (value, gradient) = {
         let (mut value, mut gradient) = ([0.0], [Vec3::ZERO]);
-        parse("hypot(x, y) - abs(z)").gradients(&[Vec3::ZERO], &mut value, &mut gradient);
+        parse("hypot(x, y) - abs(z)").evaluator(Frame::default()).gradients(
+            &[Vec3::ZERO],
+            &mut value,
+            &mut gradient,
+        );
         (value[0], gradient[0])
     };
     assert!(value == 0.0 && gradient.is_nan(), "{value} {gradient}");
@@ -646,21 +675,21 @@ fn undefined_regions_are_nan_and_poles_are_infinite() {
 
 #[test]
 fn a_branch_not_taken_does_not_spoil_the_interval_or_the_value() {
-    let mut field = parse("min(x, exp(x^4))");
+    let field = parse("min(x, exp(x^4))");
     assert_eq!(field.jet(DVec3::new(10.0, 0.0, 0.0)).value, 10.0);
     let mut value = [0.0];
-    field.values(&[Vec3::new(10.0, 0.0, 0.0)], &mut value);
+    field.evaluator(Frame::default()).values(&[Vec3::new(10.0, 0.0, 0.0)], &mut value);
     assert_eq!(value[0], 10.0);
 }
 
 #[test]
 fn kinks_have_the_documented_slopes() {
     let slope = |text: &str, p: DVec3| {
-        let mut field = parse(text);
+        let field = parse(text);
         let exact = field.jet(p).gradient;
         let mut value = [0.0];
         let mut gradient = [Vec3::ZERO];
-        field.gradients(&[p.as_vec3()], &mut value, &mut gradient);
+        field.evaluator(Frame::default()).gradients(&[p.as_vec3()], &mut value, &mut gradient);
         assert_eq!(gradient[0].as_dvec3(), exact, "{text}");
         exact
     };

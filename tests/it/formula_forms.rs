@@ -2,10 +2,11 @@
 //! becomes.
 
 use glam::{DVec3, Vec3};
+use marching_particles::field::Frame;
 use marching_particles::field::formula::{
     Formula, FormulaError, FormulaErrorKind as Kind, Parameter, number,
 };
-use marching_particles::field::{Bounded, Enclosure, Field};
+use marching_particles::field::{Enclosure, Field};
 use marching_particles::math::Bounds;
 
 fn parse(text: &str) -> Formula {
@@ -87,10 +88,10 @@ fn single_precision_and_bounds_agree_with_double_precision() {
         "x > y ? step(y, z) : log2(z)",
     ];
     for text in texts {
-        let mut field = parse(text);
+        let field = parse(text);
         for p in [Vec3::new(1.25, -0.5, 2.0), Vec3::new(0.3, 0.7, 1.1), Vec3::new(-2.0, -0.25, 1.75)] {
             let (mut single, mut slope) = ([0.0], [Vec3::ZERO]);
-            field.gradients(&[p], &mut single, &mut slope);
+            field.evaluator(Frame::default()).gradients(&[p], &mut single, &mut slope);
             let exact = field.jet(p.as_dvec3());
             assert!(
                 (f64::from(single[0]) - exact.value).abs() <= 1e-5 * (1.0 + exact.value.abs()),
@@ -101,7 +102,11 @@ fn single_precision_and_bounds_agree_with_double_precision() {
             let mut out = [Enclosure::UNKNOWN];
             let around = Bounds::new(p.as_dvec3() - 0.01, p.as_dvec3() + 0.02);
             // A sum is its own only factor.
-            parse(&format!("({text}) + x^2 + 0.618034")).enclose(0, &[around], &mut out);
+            parse(&format!("({text}) + x^2 + 0.618034"))
+                .evaluator(Frame::default())
+                .bounded()
+                .expect("a formula has bounds")
+                .enclose(0, &[around], &mut out);
             let shifted = exact.value + f64::from(p.x).powi(2) + 0.618_034;
             assert!(out[0].value.holds(shifted), "{text} at {p}: {shifted} in {:?}", out[0]);
         }
@@ -112,7 +117,11 @@ fn single_precision_and_bounds_agree_with_double_precision() {
 fn bounds_of_a_choice_are_those_of_what_it_takes() {
     let known = |text: &str, x: [f64; 2]| {
         let mut out = [Enclosure::UNKNOWN];
-        parse(text).enclose(0, &[Bounds { min: [x[0], 0.1, 0.1], max: [x[1], 0.2, 0.2] }], &mut out);
+        parse(text).evaluator(Frame::default()).bounded().expect("a formula has bounds").enclose(
+            0,
+            &[Bounds { min: [x[0], 0.1, 0.1], max: [x[1], 0.2, 0.2] }],
+            &mut out,
+        );
         out[0]
     };
     // Beside the tie, on it, and with a value that is defined on one side only.
@@ -163,7 +172,7 @@ fn definitions_stand_for_what_they_define() {
         ("r = hypot(x, y); (r) = 2r - 1", "hypot(x, y) = 2hypot(x, y) - 1"),
     ];
     for &(text, plain) in pairs {
-        let (mut field, mut wanted) = (parse(text), parse(plain));
+        let (field, wanted) = (parse(text), parse(plain));
         assert_eq!(field.auto(), wanted.auto(), "{text}");
         let p = DVec3::new(0.75, -0.5, 2.0);
         assert!((field.jet(p).value - wanted.jet(p).value).abs() < 1e-15, "{text}: {}", field.normal_form());
@@ -410,10 +419,10 @@ fn a_formula_without_coordinates_says_what_its_names_are() {
         ("theta=0", "atan2(y, x)"),
         ("k = 2", "of x, y and z"),
     ] {
-        let mut field = parse(text);
-        let why = Field::why_constant(&field).unwrap_or_default();
+        let field = parse(text);
+        let why = field.facts().why_constant.unwrap_or_default();
         assert!(why.contains("is a parameter") && why.contains(words), "{text}: {why}");
         assert!(field.jet(DVec3::ONE).gradient == DVec3::ZERO);
     }
-    assert_eq!(Field::why_constant(&parse("x - x + r")), None);
+    assert_eq!(parse("x - x + r").facts().why_constant, None);
 }

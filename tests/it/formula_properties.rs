@@ -3,11 +3,12 @@
 
 use crate::fuzz::harness;
 use glam::{DVec3, Vec3};
+use marching_particles::field::Frame;
 use marching_particles::field::formula::{
     FUNCTIONS, Formula, FormulaErrorKind as Kind, MAX_FORMULA_BYTES, MathGroup, MathNode,
 };
 use marching_particles::field::gallery::SURFACES;
-use marching_particles::field::{Bounded, Enclosure, Field, Jet};
+use marching_particles::field::{Enclosure, Field, Jet};
 use marching_particles::math::{Bounds, Sym3};
 use proptest::prelude::*;
 
@@ -171,7 +172,7 @@ proptest! {
         text in formulas(),
         point in prop::array::uniform3(0.1..2.0_f64),
     ) {
-        let Ok(mut field) = Formula::as_written(&text, &[]) else { return Ok(()) };
+        let Ok(field) = Formula::as_written(&text, &[]) else { return Ok(()) };
         let MathNode::Group { children, .. } = field.mathml() else { return Ok(()) };
         // Without the `= 0` at its end.
         let Some(latex) = in_latex(&children[0]) else { return Ok(()) };
@@ -179,7 +180,7 @@ proptest! {
         if latex.len() > MAX_FORMULA_BYTES || text.contains("1e") || text.contains("e-") || text.contains("hypot") {
             return Ok(());
         }
-        let mut again = match Formula::as_written(&latex, &[]) {
+        let again = match Formula::as_written(&latex, &[]) {
             Ok(again) => again,
             // A quotient adds operations, and braces add levels.
             Err(e) if matches!(e.kind, Kind::TooDeep | Kind::TooComplex | Kind::NotFinite) => return Ok(()),
@@ -230,9 +231,9 @@ proptest! {
 
     #[test]
     fn printing_and_parsing_definitions_are_inverse(text in programs(), point in prop::array::uniform3(-2.0..2.0_f64)) {
-        if let Ok(mut field) = Formula::as_written(&text, &[]) {
+        if let Ok(field) = Formula::as_written(&text, &[]) {
             let printed = field.normal_form();
-            let mut again = match Formula::as_written(&printed, &[]) {
+            let again = match Formula::as_written(&printed, &[]) {
                 Ok(again) => again,
                 Err(e) => panic!("{text} → {printed}: {e}"),
             };
@@ -270,7 +271,7 @@ proptest! {
         harness::check_value(&mut field, p, below, above);
         if field.jet(p).value.is_nan() {
             let mut out = [Enclosure::UNKNOWN];
-            field.enclose(0, &[Bounds::new(p - below, p + above)], &mut out);
+            field.evaluator(Frame::default()).bounded().expect("a formula has bounds").enclose(0, &[Bounds::new(p - below, p + above)], &mut out);
             prop_assert!(!out[0].defined, "{text} has no value at {p} but {out:?}");
         }
     }
@@ -301,15 +302,15 @@ proptest! {
         first in prop::array::uniform3(-2.0..2.0_f32),
         length in 1..200_usize,
     ) {
-        let Ok(mut field) = Formula::as_written(&text, &[]) else { return Ok(()) };
+        let Ok(field) = Formula::as_written(&text, &[]) else { return Ok(()) };
         let first = Vec3::from_array(first);
         let points: Vec<Vec3> = (0..length).map(|k| first * (k as f32 * 0.01 + 1.0)).collect();
         let (mut value, mut gradient) = (vec![0.0; length], vec![Vec3::ZERO; length]);
         let mut hessian = vec![Sym3::default(); length];
-        field.hessians(&points, &mut value, &mut gradient, &mut hessian);
+        field.evaluator(Frame::default()).hessians(&points, &mut value, &mut gradient, &mut hessian);
         let k = length / 2;
         let (mut value1, mut gradient1, mut hessian1) = ([0.0], [Vec3::ZERO], [Sym3::default()]);
-        field.hessians(&points[k..=k], &mut value1, &mut gradient1, &mut hessian1);
+        field.evaluator(Frame::default()).hessians(&points[k..=k], &mut value1, &mut gradient1, &mut hessian1);
         let same = |a: f32, b: f32| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
         prop_assert!(same(value[k], value1[0]), "{} {}", value[k], value1[0]);
         for axis in 0..3 {
@@ -323,7 +324,7 @@ proptest! {
         text in formulas(),
         point in prop::array::uniform3(-2.0..2.0_f64),
     ) {
-        let Ok(mut field) = Formula::as_written(&text, &[]) else { return Ok(()) };
+        let Ok(field) = Formula::as_written(&text, &[]) else { return Ok(()) };
         let p = DVec3::from_array(point);
         let other = field.transformed_jet(p);
         let jet = field.jet(p);

@@ -223,7 +223,7 @@ fn where_the_surface_moves_little_the_seed_does_and_most_places_keep_their_level
             let [before, after] = values.map(|value| {
                 let mut field = surface.field();
                 field.set_parameter(name, value).expect("a parameter");
-                sampled(&mut field, &surface.bounds, &settings, 100_000)
+                sampled(&field, &surface.bounds, &settings, 100_000)
             });
             let (old, new) = (before.particles(), after.particles());
             let spacing = 2.0 * before.radius() as f32;

@@ -2,10 +2,11 @@
 
 use crate::crease_box::euler_on_grid;
 use glam::{DVec3, Vec3};
+use marching_particles::field::Frame;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery::{self, SURFACES, Surface};
 use marching_particles::field::model::MODELS;
-use marching_particles::field::{Bounded, Enclosure, Field, Jet};
+use marching_particles::field::{Enclosure, Field, Jet};
 use marching_particles::math::{Bounds, Sym3};
 use rand_core::Rng;
 use std::collections::BTreeSet;
@@ -24,8 +25,8 @@ fn entries(hessian: &Sym3<f64>) -> [f64; 6] {
 }
 
 /// Central differences of f, and of ∇f, with a step of `h`.
-fn differences(field: &mut dyn Field, p: DVec3, h: f64) -> (DVec3, [f64; 6]) {
-    let mut ends = |axis: DVec3| (field.jet(p - axis * h), field.jet(p + axis * h));
+fn differences(field: &dyn Field, p: DVec3, h: f64) -> (DVec3, [f64; 6]) {
+    let ends = |axis: DVec3| (field.jet(p - axis * h), field.jet(p + axis * h));
     let pairs: [(Jet, Jet); 3] = [ends(DVec3::X), ends(DVec3::Y), ends(DVec3::Z)];
     let gradient = DVec3::from_array(pairs.map(|(a, b)| (b.value - a.value) / (2.0 * h)));
     let [x, y, z] = pairs.map(|(a, b)| (b.gradient - a.gradient) / (2.0 * h));
@@ -38,10 +39,10 @@ fn derivatives_agree_with_central_differences() {
     const STEP: f64 = 1e-5;
     const TOLERANCE: f64 = 1e-6;
     for surface in SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
         for p in points(surface, 200) {
             let jet = field.jet(p);
-            let (gradient, hessian) = differences(&mut field, p, STEP);
+            let (gradient, hessian) = differences(&field, p, STEP);
             let size = jet.value.abs() + jet.gradient.length() + 1.0;
             assert!(
                 (jet.gradient - gradient).length() <= TOLERANCE * size,
@@ -65,16 +66,16 @@ fn derivatives_agree_with_central_differences() {
 #[test]
 fn batches_agree_with_double_precision() {
     for surface in SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
         let points: Vec<Vec3> = points(surface, 203).iter().map(|p| p.as_vec3()).collect();
         let n = points.len();
         let mut values = vec![0.0; n];
-        field.values(&points, &mut values);
+        field.evaluator(Frame::default()).values(&points, &mut values);
         let (mut value, mut gradient) = (vec![0.0; n], vec![Vec3::ZERO; n]);
-        field.gradients(&points, &mut value, &mut gradient);
+        field.evaluator(Frame::default()).gradients(&points, &mut value, &mut gradient);
         let mut hessian = vec![Sym3::default(); n];
         let (mut value2, mut gradient2) = (vec![0.0; n], vec![Vec3::ZERO; n]);
-        field.hessians(&points, &mut value2, &mut gradient2, &mut hessian);
+        field.evaluator(Frame::default()).hessians(&points, &mut value2, &mut gradient2, &mut hessian);
         let jets: Vec<Jet> = points.iter().map(|p| field.jet(p.as_dvec3())).collect();
         // Rounding errors are relative to the terms of the sum, which are as large as the field's maximum in the box.
         let size = |of: &dyn Fn(&Jet) -> f64| jets.iter().map(of).fold(1.0, f64::max);
@@ -110,7 +111,7 @@ fn values_lie_within_the_bounds_of_boxes_around_the_point() {
             Some((left, right)) => format!("{left} - ({right}) + x^2 + 0.618034"),
             None => format!("{} + x^2 + 0.618034", surface.formula),
         };
-        let mut field = Formula::as_written(&text, surface.parameters).expect("a formula");
+        let field = Formula::as_written(&text, surface.parameters).expect("a formula");
         let diagonal = surface.bounds.diagonal();
         for (k, p) in points(surface, 300).into_iter().enumerate() {
             let half = DVec3::splat(diagonal * 0.5_f64.powi((k % 12).try_into().unwrap()));
@@ -118,7 +119,11 @@ fn values_lie_within_the_bounds_of_boxes_around_the_point() {
             let lo = p - half * 0.3;
             let hi = p + half * 0.7;
             let mut out = [Enclosure::UNKNOWN];
-            field.enclose(0, &[Bounds::new(lo, hi)], &mut out);
+            field.evaluator(Frame::default()).bounded().expect("a formula has bounds").enclose(
+                0,
+                &[Bounds::new(lo, hi)],
+                &mut out,
+            );
             let [Enclosure { value: bounds, defined, .. }] = out;
             let value = field.jet(p).value;
             assert!(
@@ -133,16 +138,22 @@ fn values_lie_within_the_bounds_of_boxes_around_the_point() {
 #[test]
 fn small_boxes_off_the_surface_are_proven_empty() {
     for surface in SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
         let half = DVec3::splat(surface.bounds.diagonal() * 1e-5);
         let mut proven = 0;
         let all = points(surface, 200);
         for &p in &all {
-            let is_empty = (0..field.factors()).all(|factor| {
-                let mut out = [Enclosure::UNKNOWN];
-                field.enclose(factor, &[Bounds::new(p - half, p + half)], &mut out);
-                !out[0].may_vanish || out[0].value.excludes_zero()
-            });
+            let is_empty =
+                (0..field.evaluator(Frame::default()).bounded().expect("a formula has bounds").factors())
+                    .all(|factor| {
+                        let mut out = [Enclosure::UNKNOWN];
+                        field.evaluator(Frame::default()).bounded().expect("a formula has bounds").enclose(
+                            factor,
+                            &[Bounds::new(p - half, p + half)],
+                            &mut out,
+                        );
+                        !out[0].may_vanish || out[0].value.excludes_zero()
+                    });
             proven += usize::from(is_empty);
         }
         assert!(proven * 10 >= all.len() * 9, "{}: {proven} of {} boxes", surface.id, all.len());
@@ -224,7 +235,7 @@ fn closed_surfaces_have_the_genus_they_claim() {
 #[test]
 fn every_surface_meets_its_box_and_is_positive_and_negative_there() {
     for surface in SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
         let (mut inside, mut outside) = (0, 0);
         for p in points(surface, 20_000) {
             let (value, _) = field.value_and_gradient(p);
@@ -237,7 +248,7 @@ fn every_surface_meets_its_box_and_is_positive_and_negative_there() {
 }
 
 /// Point of the surface that Newton's method along the gradient finds from `p`.
-fn on_surface(field: &mut dyn Field, mut p: DVec3) -> Option<DVec3> {
+fn on_surface(field: &dyn Field, mut p: DVec3) -> Option<DVec3> {
     for _ in 0..30 {
         let (value, gradient) = field.value_and_gradient(p);
         let step = gradient * (value / gradient.length_squared());
@@ -255,10 +266,10 @@ fn on_surface(field: &mut dyn Field, mut p: DVec3) -> Option<DVec3> {
 #[test]
 fn smooth_surfaces_have_a_gradient_everywhere_and_the_others_do_not() {
     for surface in SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
         let mut slopes = Vec::new();
         for p in points(surface, 4000) {
-            let Some(p) = on_surface(&mut field, p) else { continue };
+            let Some(p) = on_surface(&field, p) else { continue };
             if surface.bounds.contains(p.as_vec3()) {
                 slopes.push(field.value_and_gradient(p).1.length());
             }

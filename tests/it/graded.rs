@@ -62,7 +62,7 @@ fn radii_are_those_of_the_law_and_their_cells_cover_the_surface() {
     let settings = settings!(radius_law: LawKind::MaxCurvature, curvature_scale: 0.03; ..graded(0));
     let (sampler, f) = run("ellipsoid", &settings);
     assert_eq!(sampler.counts().refusal, None);
-    let mut field = surface.field();
+    let field = surface.field();
     let particles = sampler.particles();
     let mut as_law = 0;
     for (p, &r) in particles.position.iter().zip(&particles.radius) {
@@ -81,7 +81,7 @@ fn radii_are_those_of_the_law_and_their_cells_cover_the_surface() {
 #[test]
 fn any_cut_into_steps_gives_the_same_graded_particles() {
     let surface = gallery::find("ellipsoid").expect("a surface of the gallery");
-    sampled_in_any_steps(&mut surface.field(), &surface.bounds, &counted(3_000, 1));
+    sampled_in_any_steps(&surface.field(), &surface.bounds, &counted(3_000, 1));
 }
 
 #[test]
@@ -99,16 +99,16 @@ fn where_it_cannot_be_had_the_adaptive_front_stands() {
 #[test]
 fn what_is_cancelled_can_be_relaxed() {
     let surface = gallery::find("ellipsoid").expect("a surface of the gallery");
-    let mut field = surface.field();
+    let field = surface.field();
     for steps in [5, 100, 300] {
-        let mut sampler = begun(&mut field, &surface.bounds, &counted(3_000, 0));
+        let mut sampler = begun(&field, &surface.bounds, &counted(3_000, 0));
         for _ in 0..steps {
-            sampler.step(&mut field, 500);
+            sampler.step(&field, 500);
         }
         sampler.cancel();
-        assert!(sampler.step(&mut field, 0).stop_reason.is_some());
+        assert!(sampler.step(&field, 0).stop_reason.is_some());
         assert!(sampler.relax(1));
-        while sampler.step(&mut field, 500).stop_reason.is_none() {}
+        while sampler.step(&field, 500).stop_reason.is_none() {}
         assert!(sampler.particles().position.iter().all(|p| p.is_finite()));
     }
 }

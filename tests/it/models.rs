@@ -10,6 +10,7 @@
 
 use glam::{DVec2, DVec3, Vec3};
 use marching_particles::field::Field;
+use marching_particles::field::Frame;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::model::MODELS;
 use marching_particles::pointcloud::Cloud;
@@ -124,7 +125,7 @@ fn points_of(formula: &str) -> Cloud {
     const CELLS: [usize; 3] = [65, 65, 75];
     let corner = DVec3::new(-1.3, -1.3, -0.3);
     let node = |i: usize, j: usize, k: usize| corner + DVec3::new(i as f64, j as f64, k as f64) * STEP;
-    let mut field = Formula::as_written(formula, &[]).expect("a formula");
+    let field = Formula::as_written(formula, &[]).expect("a formula");
     let mut cloud = Cloud::default();
     let mut value = vec![0.0; CELLS[0].max(CELLS[2])];
     for axis in 0..3 {
@@ -137,7 +138,7 @@ fn points_of(formula: &str) -> Cloud {
                     node(index[0], index[1], index[2])
                 };
                 let line: Vec<Vec3> = (0..CELLS[axis]).map(|c| at(c).as_vec3()).collect();
-                field.values(&line, &mut value);
+                field.evaluator(Frame::default()).values(&line, &mut value);
                 for c in 1..line.len() {
                     if (value[c - 1] < 0.0) != (value[c] < 0.0) {
                         let t = f64::from(value[c - 1]) / f64::from(value[c - 1] - value[c]);

@@ -254,7 +254,7 @@ fn mended(text: &str) -> String {
 }
 
 fn check(text: &str, meaning: Meaning) {
-    let mut field = Formula::as_written(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"));
+    let field = Formula::as_written(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"));
     for [x, y, z] in POINTS {
         let (found, wanted) = (field.jet([x, y, z].into()).value, meaning(x, y, z));
         let is_same =

@@ -146,7 +146,7 @@ fn faces_repeat_along_the_axes_on_which_the_box_is_whole() {
     let middle = DVec3::new(0.3, 0.4, 0.5);
     let bounds = Bounds::new(middle - 0.5 * size, middle + 0.5 * size);
     let field = formula(GYROID).repeated_in(&bounds);
-    assert_eq!(field.unit_cell().expect("a cell").repeats, [true, false, true]);
+    assert_eq!(field.facts().unit_cell.expect("a cell").repeats, [true, false, true]);
     let sample = sampled(field, 3000, Method::Front);
     check_faces(&sample, &bounds, &[0, 2], "a box of two periods");
     let told = sample.report().warnings.iter().map(ToString::to_string).collect::<Vec<_>>();
@@ -154,10 +154,10 @@ fn faces_repeat_along_the_axes_on_which_the_box_is_whole() {
     // Seven digits of a period are enough, four are not.
     for (periods, is_whole) in [(1.0 + 1e-7, true), (2.0 - 1e-7, true), (0.9995, false), (0.5, false)] {
         let half = periods * core::f64::consts::PI;
-        let cell = formula(GYROID).repeated_in(&Bounds::cube(half)).unit_cell().expect("a cell");
+        let cell = formula(GYROID).repeated_in(&Bounds::cube(half)).facts().unit_cell.expect("a cell");
         assert_eq!(cell.repeats, [is_whole; 3], "{periods} periods");
     }
-    assert_eq!(formula(GYROID).closed_by(&bounds).unit_cell(), None);
+    assert_eq!(formula(GYROID).closed_by(&bounds).facts().unit_cell, None);
 }
 
 #[test]

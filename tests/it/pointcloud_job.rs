@@ -131,7 +131,7 @@ fn a_field_passes_through_its_points_and_is_bounded() {
         }
         // The core reads the bytes that cross to it.
         let data = RbfData::from_bytes(&fit.data.to_bytes()).expect("bytes of our own");
-        let mut field = RbfField::new(data).expect("data of our own");
+        let field = RbfField::new(data).expect("data of our own");
         assert!(field.jet(glam::DVec3::ZERO).value < 0.0);
         assert!(field.jet(fit.bounds.hi()).value > 0.0);
     }
@@ -367,7 +367,7 @@ fn a_surface_follows_large_faces_between_few_corners() {
     );
     // The distance is measured on the faces, too: edges are rounded.
     assert!(fit.info.residual_max > 1e-3 && fit.info.residual_max < 0.04, "{}", fit.info.residual_max);
-    let mut field = RbfField::new(fit.data).expect("a field");
+    let field = RbfField::new(fit.data).expect("a field");
     for (p, is_inside) in [
         ([0.0, 0.0, 0.0], false),
         ([0.0, 0.2, 0.0], false),
@@ -465,7 +465,7 @@ fn noise_is_smoothed_by_all_points() {
 #[test]
 fn a_noisy_bunny_keeps_its_form() {
     let bunny = marching_particles::pointcloud::fit_model(&MODELS[0]);
-    let mut field = bunny.field();
+    let field = bunny.field();
     let (session, _) = sampled(bunny, &Settings::with_count(5000));
     let true_points: Vec<(DVec3, DVec3)> = session
         .run

@@ -12,23 +12,23 @@ use rand_pcg::Pcg32;
 /// A field given by its jet alone.
 struct Analytic<F: Fn(DVec3) -> Jet>(F);
 
-impl<F: Fn(DVec3) -> Jet + Send> Field for Analytic<F> {
-    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+impl<F: Fn(DVec3) -> Jet + Send + Sync> Field for Analytic<F> {
+    fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
         let jet = (self.0)(p);
         (jet.value, jet.gradient)
     }
 
-    fn jet(&mut self, p: DVec3) -> Jet {
+    fn jet(&self, p: DVec3) -> Jet {
         (self.0)(p)
     }
 }
 
-fn plane() -> Analytic<impl Fn(DVec3) -> Jet + Send> {
+fn plane() -> Analytic<impl Fn(DVec3) -> Jet + Send + Sync> {
     Analytic(|p| Jet { value: p.z, gradient: DVec3::Z, ..Jet::default() })
 }
 
 /// |p|² − 1.
-fn sphere() -> Analytic<impl Fn(DVec3) -> Jet + Send> {
+fn sphere() -> Analytic<impl Fn(DVec3) -> Jet + Send + Sync> {
     Analytic(|p| Jet {
         value: p.length_squared() - 1.0,
         gradient: 2.0 * p,
@@ -37,7 +37,7 @@ fn sphere() -> Analytic<impl Fn(DVec3) -> Jet + Send> {
 }
 
 /// (√(x² + y²) − 1)² + z² − 1/4, without its Hessian.
-fn torus() -> Analytic<impl Fn(DVec3) -> Jet + Send> {
+fn torus() -> Analytic<impl Fn(DVec3) -> Jet + Send + Sync> {
     Analytic(|p| {
         let ring = p.truncate().length();
         let out = ring - 1.0;
@@ -124,7 +124,7 @@ fn hexagonal_lattice_is_perfect_in_every_figure() {
     let normals = vec![Vec3::Z; points.len()];
     let discs = Particles { radius: vec![(0.5 * scale) as f32; points.len()], ..Particles::default() };
     let options = MeasureOptions { rows: Some(&discs), ..with_area(points.len(), cell) };
-    let report = measure(&points, &normals, &mut plane(), Some(&bounds), &options);
+    let report = measure(&points, &normals, &plane(), Some(&bounds), &options);
     let f = report.figures;
     println!("{f:#?}");
     // Discs that touch cover π/(2√3) of the plane.
@@ -167,7 +167,7 @@ fn square_lattice_has_valence_four_and_half_right_angles() {
     // The scale is a power of two: all coordinates are exact, and the corners of each square are exactly cocircular.
     let scale = 1.0 / 32.0;
     let (points, bounds) = lattice([0.0, 1.0], scale, 1.0);
-    let report = measure(&points, &[], &mut plane(), Some(&bounds), &with_area(points.len(), scale * scale));
+    let report = measure(&points, &[], &plane(), Some(&bounds), &with_area(points.len(), scale * scale));
     let f = report.figures;
     println!("{f:#?}");
     let d_hex = (2.0 / 3.0_f64.sqrt()).sqrt();
@@ -189,7 +189,7 @@ fn nearly_square_lattice_has_the_figures_of_the_square() {
     let scale = 1.0 / 32.0;
     let (points, bounds) = lattice([0.02, 1.0], scale, 1.0);
     let options = with_area(points.len(), scale * scale);
-    let f = measure(&points, &[], &mut plane(), Some(&bounds), &options).figures;
+    let f = measure(&points, &[], &plane(), Some(&bounds), &options).figures;
     println!("{f:#?}");
     let d_hex = (2.0 / 3.0_f64.sqrt()).sqrt();
     close("six", f.order.six, 1.0, 0.0);
@@ -217,7 +217,7 @@ fn jittered_lattice_has_the_known_mean_angle() {
             })
             .collect();
         let options = with_area(points.len(), scale * scale * HEXAGONAL[1]);
-        let f = measure(&points, &[], &mut plane(), Some(&bounds), &options).figures;
+        let f = measure(&points, &[], &plane(), Some(&bounds), &options).figures;
         println!("jitter {jitter}: {f:#?}");
         close("ang_min_mean", f.angles.ang_min_mean, angle, 0.15);
         // The length of an edge varies by √2 times the jitter.
@@ -230,7 +230,7 @@ fn fibonacci_sphere_is_a_closed_manifold() {
     let n = 2000;
     let points = fibonacci(n);
     let options = MeasureOptions { area: Some(SPHERE_AREA), ..MeasureOptions::default() };
-    let report = measure(&points, &points, &mut sphere(), None, &options);
+    let report = measure(&points, &points, &sphere(), None, &options);
     let f = report.figures;
     println!("{f:#?}");
     assert_eq!((f.connectivity.euler, f.connectivity.components), (2, 1));
@@ -250,7 +250,7 @@ fn fibonacci_sphere_is_a_closed_manifold() {
     );
     assert!(f.accuracy.nrm_max < 1e-4, "nrm_max = {}", f.accuracy.nrm_max);
     // The flat triangles have a little less area than the sphere.
-    let flat = measure(&points, &points, &mut sphere(), None, &MeasureOptions::default()).figures;
+    let flat = measure(&points, &points, &sphere(), None, &MeasureOptions::default()).figures;
     let missing = 1.0 - flat.area / SPHERE_AREA;
     assert!(missing > 0.0 && missing < 8.0 / n as f64, "missing {missing} of the area");
     assert!(f.coverage.cover > 1.0 && f.coverage.cover < 1.4, "cover = {}", f.coverage.cover);
@@ -269,7 +269,7 @@ fn torus_lattice_has_euler_number_zero() {
             points.push(DVec3::new(ring * u.cos(), ring * u.sin(), 0.5 * v.sin()).as_vec3());
         }
     }
-    let f = measure(&points, &[], &mut torus(), None, &MeasureOptions::default()).figures;
+    let f = measure(&points, &[], &torus(), None, &MeasureOptions::default()).figures;
     println!("{f:#?}");
     assert_eq!((f.connectivity.euler, f.connectivity.components, f.order.open), (0, 1, 0));
     close("tri_ok", f.connectivity.tri_ok, 1.0, 0.0);
@@ -283,7 +283,7 @@ fn white_noise_has_its_known_figures() {
     let n = 40_000;
     let points: Vec<Vec3> = (0..n).map(|_| random.on_sphere()).collect();
     let options = MeasureOptions { area: Some(SPHERE_AREA), ..MeasureOptions::default() };
-    let f = measure(&points, &points, &mut sphere(), None, &options).figures;
+    let f = measure(&points, &points, &sphere(), None, &options).figures;
     println!("{f:#?}");
     close("six", f.order.six, 0.295, 0.008);
     close("quant", f.coverage.quant, 1.985, 0.03);
@@ -301,11 +301,11 @@ fn white_noise_has_its_known_figures() {
 #[test]
 fn hole_is_measured_as_a_hole() {
     let mut points = fibonacci(3000);
-    let whole = measure(&points, &[], &mut sphere(), None, &MeasureOptions::default()).figures;
+    let whole = measure(&points, &[], &sphere(), None, &MeasureOptions::default()).figures;
     let centre = points[1500];
     let radius = 2.5 * whole.d_hex as f32;
     points.retain(|p| p.distance(centre) > radius);
-    let f = measure(&points, &[], &mut sphere(), None, &MeasureOptions::default()).figures;
+    let f = measure(&points, &[], &sphere(), None, &MeasureOptions::default()).figures;
     // The largest empty disc is at least as large as the hole, and at most one spacing larger.
     let gap = f.coverage.cover * f.d_hex / 3.0_f64.sqrt();
     assert!(gap >= f64::from(radius) && gap < f64::from(radius) + whole.d_hex, "{gap} for {radius}");
@@ -317,7 +317,7 @@ fn hole_is_measured_as_a_hole() {
 #[test]
 fn missed_component_and_missed_half_are_holes_too() {
     // The second of two unit spheres has no particles. Its far pole is at the distance 5 from the first sphere.
-    let mut pair = Analytic(|p| {
+    let pair = Analytic(|p| {
         let other = p - DVec3::X * 4.0;
         let centre = if p.x < 2.0 { p } else { other };
         Jet { value: centre.length_squared() - 1.0, gradient: 2.0 * centre, ..Jet::default() }
@@ -325,7 +325,7 @@ fn missed_component_and_missed_half_are_holes_too() {
     let points = fibonacci(2000);
     let bounds = Bounds { min: [-1.5, -1.5, -1.5], max: [5.5, 1.5, 1.5] };
     let options = MeasureOptions { area: Some(2.0 * SPHERE_AREA), ..MeasureOptions::default() };
-    let f = measure(&points, &[], &mut pair, Some(&bounds), &options).figures;
+    let f = measure(&points, &[], &pair, Some(&bounds), &options).figures;
     let hole = f.coverage.cover * f.d_hex / 3.0_f64.sqrt();
     close("hole", hole, 4.0, 0.05);
     // Half of the area has the mean squared distance to the first sphere.
@@ -334,7 +334,7 @@ fn missed_component_and_missed_half_are_holes_too() {
     // On half a sphere, the far pole is at the distance √2 from the equator.
     let half: Vec<Vec3> = points.into_iter().filter(|p| p.z > 0.0).collect();
     let bounds = Bounds::cube(1.25);
-    let f = measure(&half, &[], &mut sphere(), Some(&bounds), &MeasureOptions::default()).figures;
+    let f = measure(&half, &[], &sphere(), Some(&bounds), &MeasureOptions::default()).figures;
     close("hole", f.coverage.cover * f.d_hex / 3.0_f64.sqrt(), 2.0_f64.sqrt(), 0.05);
 }
 
@@ -346,13 +346,13 @@ fn two_sheets_are_triangulated_apart_but_spaced_together() {
     let (sheet, bounds) = lattice(HEXAGONAL, scale, 1.0);
     let mut points: Vec<Vec3> = sheet.iter().map(|&p| p + Vec3::Z * gap as f32).collect();
     points.extend(sheet.iter().map(|&p| p - Vec3::Z * gap as f32));
-    let mut slab = Analytic(move |p: DVec3| Jet {
+    let slab = Analytic(move |p: DVec3| Jet {
         value: p.z * p.z - gap * gap,
         gradient: DVec3::Z * (2.0 * p.z),
         hessian: Sym3 { zz: 2.0, ..Sym3::default() },
     });
     let options = with_area(points.len(), scale * scale * HEXAGONAL[1]);
-    let f = measure(&points, &[], &mut slab, Some(&bounds), &options).figures;
+    let f = measure(&points, &[], &slab, Some(&bounds), &options).figures;
     println!("{f:#?}");
     close("six", f.order.six, 1.0, 0.0);
     close("nn_mean", f.spacing.nn_mean, 0.5, 1e-4);
@@ -369,7 +369,7 @@ fn known_displacement_is_the_residual_and_tilted_normals_are_seen() {
     let tilt = 5.0_f32.to_radians();
     let normals = vec![Vec3::new(tilt.sin(), 0.0, -tilt.cos()); points.len()];
     let options = with_area(points.len(), scale * scale * HEXAGONAL[1]);
-    let report = measure(&points, &normals, &mut plane(), Some(&bounds), &options);
+    let report = measure(&points, &normals, &plane(), Some(&bounds), &options);
     let f = report.figures;
     close("err_max", f.accuracy.err_max, 0.01, 1e-8);
     close("err_mean", f.accuracy.err_mean, 0.005, 1e-5);
@@ -383,7 +383,7 @@ fn known_displacement_is_the_residual_and_tilted_normals_are_seen() {
 fn touching_the_box_from_inside_is_no_border_and_crossing_it_is() {
     let points = fibonacci(4000);
     let touching = Bounds::cube(1.0);
-    let f = measure(&points, &[], &mut sphere(), Some(&touching), &MeasureOptions::default()).figures;
+    let f = measure(&points, &[], &sphere(), Some(&touching), &MeasureOptions::default()).figures;
     assert_eq!(f.boundary_excluded, 0);
 
     let cut = Bounds { min: [-2.0, -2.0, -2.0], max: [2.0, 2.0, 0.5] };
@@ -391,7 +391,7 @@ fn touching_the_box_from_inside_is_no_border_and_crossing_it_is() {
     // The part of the sphere below z = 1/2 has the area 2π · 3/2.
     let area = 3.0 * core::f64::consts::PI;
     let options = MeasureOptions { area: Some(area), ..MeasureOptions::default() };
-    let f = measure(&points, &[], &mut sphere(), Some(&cut), &options).figures;
+    let f = measure(&points, &[], &sphere(), Some(&cut), &options).figures;
     println!("{f:#?}");
     // The zone extends from the border, 60° from the pole, to where the chord to the border is 4 d_hex.
     let arc = 2.0 * (2.0 * f.d_hex).asin();
@@ -410,7 +410,7 @@ fn edges_are_compared_with_the_wanted_radii() {
     let (points, bounds) = lattice(HEXAGONAL, scale, 1.0);
     let measured = |radii: Option<&[f32]>| {
         let options = MeasureOptions { radii, ..with_area(points.len(), scale * scale * HEXAGONAL[1]) };
-        measure(&points, &[], &mut plane(), Some(&bounds), &options).figures.edges.size_cv
+        measure(&points, &[], &plane(), Some(&bounds), &options).figures.edges.size_cv
     };
     let equal = vec![0.5 * scale as f32; points.len()];
     close("equal radii", measured(Some(&equal)), 0.0, 1e-4);
@@ -421,7 +421,7 @@ fn edges_are_compared_with_the_wanted_radii() {
     // With equal radii, the variation is that of the edges themselves.
     let points = fibonacci(2000);
     let options = MeasureOptions { radii: Some(&[1.0; 2000]), ..MeasureOptions::default() };
-    let f = measure(&points, &[], &mut sphere(), None, &options).figures;
+    let f = measure(&points, &[], &sphere(), None, &options).figures;
     close("size_cv", f.edges.size_cv, f.edges.edge_cv, 1e-6);
 }
 
@@ -452,7 +452,7 @@ fn smoothly_growing_particles_are_measured_against_their_own_size() {
     let (points, radii) = growing_lattice(step);
     let bounds = Bounds { min: [0.55, 0.55, -0.5], max: [1.35, 1.35, 0.5] };
     let options = MeasureOptions { area: Some(0.64), radii: Some(&radii), ..MeasureOptions::default() };
-    let f = measure(&points, &[], &mut plane(), Some(&bounds), &options).figures;
+    let f = measure(&points, &[], &plane(), Some(&bounds), &options).figures;
     println!("{} points: {f:#?}", points.len());
     // A neighbour at δ = step · exp(iθ) in the logarithm is 2 |sinh(δ/2)| / (step cosh(Re δ/2)) sums of radii away.
     let ratios = [0.0, 60.0_f64, 120.0].map(|angle| {
@@ -490,7 +490,7 @@ fn a_missing_particle_is_a_hole_of_its_own_size() {
         let position: Vec<Vec3> = kept().map(|&i| points[i]).collect();
         let radius: Vec<f32> = kept().map(|&i| radii[i]).collect();
         let options = MeasureOptions { area: Some(0.64), radii: Some(&radius), ..MeasureOptions::default() };
-        measure(&position, &[], &mut plane(), Some(&bounds), &options).figures
+        measure(&position, &[], &plane(), Some(&bounds), &options).figures
     };
     // The six points around a missing one are a spacing away from its position, √3 times as far as from the centre of
     // an ideal triangle.
@@ -512,20 +512,20 @@ fn equal_radii_make_the_local_hole_the_hole() {
     let points = fibonacci(3000);
     let radii = vec![0.7; points.len()];
     let options = MeasureOptions { radii: Some(&radii), ..MeasureOptions::default() };
-    let f = measure(&points, &[], &mut sphere(), Some(&Bounds::cube(1.5)), &options).figures;
+    let f = measure(&points, &[], &sphere(), Some(&Bounds::cube(1.5)), &options).figures;
     close("cover_local", f.coverage.cover_local, f.coverage.cover, 1e-5);
     close("overlap_min", f.edges.overlap_min, f.spacing.nn_min * f.d_hex / 1.4, 1e-5);
-    let f = measure(&points, &[], &mut sphere(), None, &MeasureOptions::default()).figures;
+    let f = measure(&points, &[], &sphere(), None, &MeasureOptions::default()).figures;
     assert!(f.coverage.cover_local.is_nan() && f.edges.overlap_min.is_nan());
 }
 
 #[test]
 fn duplicates_are_counted_and_do_not_break_the_triangulation() {
     let points = fibonacci(500);
-    let clean = measure(&points, &points, &mut sphere(), None, &MeasureOptions::default());
+    let clean = measure(&points, &points, &sphere(), None, &MeasureOptions::default());
     let mut doubled = points.clone();
     doubled.extend([points[17], points[17], points[3]]);
-    let report = measure(&doubled, &doubled, &mut sphere(), None, &MeasureOptions::default());
+    let report = measure(&doubled, &doubled, &sphere(), None, &MeasureOptions::default());
     let f = report.figures;
     assert_eq!((f.dup, f.connectivity.euler), (3, 2));
     close("rho", f.spacing.rho, 0.0, 0.0);
@@ -543,7 +543,7 @@ fn duplicates_are_counted_and_do_not_break_the_triangulation() {
 fn crowded_pairs_are_those_of_a_search_of_all_pairs() {
     let mut random = Random::new(5);
     let points: Vec<Vec3> = (0..700).map(|_| random.on_sphere()).collect();
-    let report = measure(&points, &[], &mut sphere(), None, &MeasureOptions::default());
+    let report = measure(&points, &[], &sphere(), None, &MeasureOptions::default());
     let limit = CROWDED * report.figures.d_hex;
     let mut pairs: Vec<(f64, [u32; 2])> = Vec::new();
     for j in 0..points.len() {
@@ -573,7 +573,7 @@ fn the_energy_is_one_in_a_lattice_less_beside_a_hole_and_more_in_a_crowd() {
     let radii = vec![1.0 / 64.0; whole.len()];
     let energy_of = |points: &[Vec3], p: usize, radii: Option<&[f32]>| {
         let options = MeasureOptions { radii, ..with_area(whole.len(), HEXAGONAL[1] / 1024.0) };
-        measure(points, &[], &mut plane(), Some(&bounds), &options).energy[p]
+        measure(points, &[], &plane(), Some(&bounds), &options).energy[p]
     };
     let neighbour = (0..whole.len())
         .find(|&i| i != middle && whole[i].distance(whole[middle]) < 1.1 / 32.0)
@@ -598,7 +598,7 @@ fn a_missing_and_a_moved_particle_are_found_where_they_are() {
     let (whole, bounds) = lattice(HEXAGONAL, 1.0 / 32.0, 0.5);
     let of = |points: &[Vec3], radii: Option<&[f32]>| {
         let options = MeasureOptions { radii, ..with_area(whole.len(), HEXAGONAL[1] / 1024.0) };
-        measure(points, &[], &mut plane(), Some(&bounds), &options)
+        measure(points, &[], &plane(), Some(&bounds), &options)
     };
     let perfect = of(&whole, None);
     assert_eq!((perfect.figures.spacing.crowded, perfect.figures.coverage.wide_holes), (Some(0), Some(0)));
@@ -640,8 +640,7 @@ fn a_missing_and_a_moved_particle_are_found_where_they_are() {
 }
 
 fn degenerate(points: &[Vec3], normals: &[Vec3]) -> Measurements {
-    let report =
-        measure(points, normals, &mut sphere(), Some(&Bounds::cube(0.9)), &MeasureOptions::default());
+    let report = measure(points, normals, &sphere(), Some(&Bounds::cube(0.9)), &MeasureOptions::default());
     assert_eq!(report.valence.len(), points.len());
     assert_eq!(report.nearest.len(), points.len());
     assert_eq!(report.residual.len(), points.len());
@@ -678,8 +677,8 @@ fn degenerate_input_gives_undefined_figures_and_no_panic() {
 #[test]
 fn undefined_field_is_counted_and_given_normals_take_its_place() {
     let points = fibonacci(400);
-    let mut nowhere = Analytic(|_| Jet { value: f64::NAN, gradient: DVec3::NAN, ..Jet::default() });
-    let f = measure(&points, &points, &mut nowhere, None, &MeasureOptions::default()).figures;
+    let nowhere = Analytic(|_| Jet { value: f64::NAN, gradient: DVec3::NAN, ..Jet::default() });
+    let f = measure(&points, &points, &nowhere, None, &MeasureOptions::default()).figures;
     assert_eq!(f.accuracy.undefined, 400);
     assert!(f.accuracy.err_max.is_nan());
     assert_eq!((f.connectivity.euler, f.connectivity.components), (2, 1));
@@ -688,11 +687,11 @@ fn undefined_field_is_counted_and_given_normals_take_its_place() {
 #[test]
 fn the_distance_of_a_point_without_a_gradient_is_that_along_its_normal() {
     // A cone, on its axis.
-    let mut cone = Analytic(|p| {
+    let cone = Analytic(|p| {
         let out = p.truncate().length();
         Jet { value: out + p.z, gradient: (p.truncate() / out).extend(1.0), ..Jet::default() }
     });
-    let report = measure(&[Vec3::Z * 1e-3; 2], &[Vec3::Z; 2], &mut cone, None, &MeasureOptions::default());
+    let report = measure(&[Vec3::Z * 1e-3; 2], &[Vec3::Z; 2], &cone, None, &MeasureOptions::default());
     assert_eq!(report.figures.accuracy.undefined, 0);
     for residual in report.residual {
         close("residual", f64::from(residual), 1e-3, 1e-6);
@@ -703,8 +702,8 @@ fn the_distance_of_a_point_without_a_gradient_is_that_along_its_normal() {
 fn order_of_the_points_does_not_matter() {
     let points = fibonacci(1000);
     let reversed: Vec<Vec3> = points.iter().rev().copied().collect();
-    let one = measure(&points, &[], &mut sphere(), None, &MeasureOptions::default());
-    let mut other = measure(&reversed, &[], &mut sphere(), None, &MeasureOptions::default());
+    let one = measure(&points, &[], &sphere(), None, &MeasureOptions::default());
+    let mut other = measure(&reversed, &[], &sphere(), None, &MeasureOptions::default());
     other.valence.reverse();
     other.nearest.reverse();
     assert_eq!(one.valence, other.valence);
@@ -716,7 +715,7 @@ fn order_of_the_points_does_not_matter() {
 #[test]
 fn histogram_counts_every_particle_once() {
     let points = fibonacci(1000);
-    let report = measure(&points, &[], &mut sphere(), None, &MeasureOptions::default());
+    let report = measure(&points, &[], &sphere(), None, &MeasureOptions::default());
     let h = &report.histogram;
     assert_eq!(h.bins.iter().sum::<u32>(), 1000);
     let bin = (report.figures.spacing.nn_mean - h.min) / (h.max - h.min) * h.bins.len() as f64;
@@ -733,7 +732,7 @@ fn icosahedron_has_five_neighbours_everywhere() {
             points.push((p / (1.0 + golden * golden).sqrt()).as_vec3());
         }
     }
-    let report = measure(&points, &points, &mut sphere(), None, &MeasureOptions::default());
+    let report = measure(&points, &points, &sphere(), None, &MeasureOptions::default());
     let f = report.figures;
     assert_eq!(report.valence, [5; 12]);
     assert_eq!((f.connectivity.euler, f.connectivity.components, f.order.open), (2, 1, 0));

@@ -4,7 +4,6 @@
 use crate::cases;
 use crate::fuzz::{below, harness};
 use marching_particles::Warning;
-use marching_particles::field::Field;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::{Method, Sampling, Settings};
 use marching_particles::session::{BoxFaces, FieldRequest, Session, SolidSettings};
@@ -87,7 +86,7 @@ fn check(seed: u64) -> bool {
     }
     while session.run.join(u32::MAX).is_none() {}
     let warnings = session.report().warnings;
-    let (run, mut field) = (&session.run, session.run.field().clone());
+    let (run, mut field) = (&session.run, session.run.evaluator());
     let particles = run.particles();
     // Where f touches zero, both sides of the surface are sampled.
     let is_double = warnings.contains(&Warning::Touches);
@@ -97,10 +96,7 @@ fn check(seed: u64) -> bool {
         let known = *at.entry(particles.position[i].to_array().map(f32::to_bits)).or_insert(first);
         assert!(known == first || is_double, "two particles at {place}: {warnings:?}");
         assert!(run.bounds().holds(place), "{place} is not in {:?}", run.bounds());
-        if let Some(field) = field.branched() {
-            field.select_branch(particles.patch_of(i));
-        }
-        let value = field.value_and_gradient(particles.position[i].as_dvec3()).0;
+        let value = field.on(particles.patch_of(i)).value_and_gradient(particles.position[i].as_dvec3()).0;
         assert!(!value.is_finite() || residual.is_finite(), "{residual} at {place}, where f is {value}");
     }
     // The mesh of each patch is a manifold, also where patches cross or touch.

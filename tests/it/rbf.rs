@@ -4,6 +4,7 @@ use crate::runs::run;
 use glam::{DVec3, Vec3};
 use marching_particles::Report;
 use marching_particles::field::Field;
+use marching_particles::field::Frame;
 use marching_particles::field::model::{self, MODELS};
 use marching_particles::field::rbf::{DataError, Pull, RbfData, RbfField};
 use marching_particles::math::Sym3;
@@ -148,13 +149,13 @@ fn places(fit: &Fit) -> Vec<Vec3> {
 fn batches_agree_with_the_sum_in_double_precision() {
     for id in ["bunny", "sack-and-hat"] {
         let fit = of_model(id);
-        let mut field = RbfField::new(fit.data.clone()).expect("a field");
+        let field = RbfField::new(fit.data.clone()).expect("a field");
         let places = places(&fit);
         let n = places.len();
         let mut value = vec![0.0; n];
         let mut gradient = vec![Vec3::ZERO; n];
         let mut hessian = vec![Sym3::<f32>::default(); n];
-        field.hessians(&places, &mut value, &mut gradient, &mut hessian);
+        field.evaluator(Frame::default()).hessians(&places, &mut value, &mut gradient, &mut hessian);
         let mut distances = Vec::new();
         for (i, &p) in places.iter().enumerate() {
             let jet = fit.data.jet(p.as_dvec3());
@@ -202,7 +203,7 @@ fn exact_gradients_are_those_of_the_jet() {
     for (field, data) in [(&mut field, &*fit.data), (&mut moved, &data)] {
         let mut value = vec![0.0; places.len()];
         let mut gradient = vec![DVec3::ZERO; places.len()];
-        field.exact_gradients(&places, &mut value, &mut gradient);
+        field.evaluator(Frame::default()).exact_gradients(&places, &mut value, &mut gradient);
         for (i, &p) in places.iter().enumerate() {
             let jet = data.jet(p.as_dvec3());
             // The tolerance allows for the cancellation of hundreds of terms.
@@ -218,34 +219,36 @@ fn the_result_at_a_point_depends_on_the_point_alone() {
     let fit = of_model("rabbit");
     let places = places(&fit);
     let n = places.len();
-    let mut field = RbfField::new(fit.data.clone()).expect("a field");
+    let field = RbfField::new(fit.data.clone()).expect("a field");
     let mut value = vec![0.0; n];
     let mut gradient = vec![Vec3::ZERO; n];
-    field.gradients(&places, &mut value, &mut gradient);
+    field.evaluator(Frame::default()).gradients(&places, &mut value, &mut gradient);
     // The point is evaluated alone, in another order, with cells made by other points, and with fewer and more
     // derivatives.
-    let mut other = RbfField::new(fit.data).expect("a field");
+    let other = RbfField::new(fit.data).expect("a field");
     let mut hessian = [Sym3::<f32>::default()];
     for i in (0..n).rev() {
         let (mut v, mut w, mut g) = ([0.0], [0.0], [Vec3::ZERO]);
-        other.values(&places[i..=i], &mut v);
-        other.hessians(&places[i..=i], &mut w, &mut g, &mut hessian);
+        other.evaluator(Frame::default()).values(&places[i..=i], &mut v);
+        other.evaluator(Frame::default()).hessians(&places[i..=i], &mut w, &mut g, &mut hessian);
         assert_eq!(v[0].to_bits(), value[i].to_bits(), "at {}", places[i]);
         assert_eq!((w[0].to_bits(), g[0]), (value[i].to_bits(), gradient[i]), "at {}", places[i]);
     }
     let mut v = [0.0; 3];
-    other.values(&[Vec3::NAN, Vec3::INFINITY, Vec3::new(0.0, f32::NAN, 0.0)], &mut v);
+    other
+        .evaluator(Frame::default())
+        .values(&[Vec3::NAN, Vec3::INFINITY, Vec3::new(0.0, f32::NAN, 0.0)], &mut v);
     assert!(v.iter().all(|v| v.is_nan()), "{v:?}");
 }
 
 #[test]
 fn a_centre_is_an_ordinary_point() {
     let fit = of_model("bunny");
-    let mut field = RbfField::new(fit.data.clone()).expect("a field");
+    let field = RbfField::new(fit.data.clone()).expect("a field");
     for &centre in &fit.data.centres {
         let p = DVec3::from_array(centre).as_vec3();
         let (mut v, mut g, mut h) = ([1.0], [Vec3::ZERO], [Sym3::<f32>::default()]);
-        field.hessians(&[p], &mut v, &mut g, &mut h);
+        field.evaluator(Frame::default()).hessians(&[p], &mut v, &mut g, &mut h);
         assert!(v[0].abs() < 3e-5 && (g[0].length() - 1.0).abs() < 1e-3, "{} {} at {p}", v[0], g[0]);
         assert!(h[0].apply(Vec3::ONE).is_finite(), "{:?} at {p}", h[0]);
     }
@@ -265,13 +268,13 @@ fn the_field_is_invariant_under_scaling_and_translation() {
     for (a, b) in small.data.alpha.iter().zip(&plain.data.alpha) {
         assert_eq!(a * scale * scale, *b);
     }
-    let (mut a, mut b) =
+    let (a, b) =
         (RbfField::new(small.data).expect("a field"), RbfField::new(plain.data.clone()).expect("a field"));
     let places = places(&plain);
     let scaled: Vec<Vec3> = places.iter().map(|&p| p * scale as f32).collect();
     let (mut of_a, mut of_b) = (vec![0.0; places.len()], vec![0.0; places.len()]);
-    a.values(&scaled, &mut of_a);
-    b.values(&places, &mut of_b);
+    a.evaluator(Frame::default()).values(&scaled, &mut of_a);
+    b.evaluator(Frame::default()).values(&places, &mut of_b);
     assert_eq!(of_a, of_b.iter().map(|value| value * scale as f32).collect::<Vec<_>>());
     // A hundred model sizes from the origin, single precision has two digits less.
     let away = DVec3::new(200.0, -150.0, 90.0);
@@ -302,7 +305,7 @@ fn the_models_have_nothing_outside_of_their_box() {
     const NODES: usize = 61;
     for model in MODELS {
         let fit = of_model(model.id);
-        let mut field = RbfField::new(fit.data).expect("a field");
+        let field = RbfField::new(fit.data).expect("a field");
         let (middle, half) =
             ((fit.bounds.lo() + fit.bounds.hi()) * 0.5, (fit.bounds.hi() - fit.bounds.lo()) * 0.5);
         let mut value = [0.0; NODES];
@@ -312,7 +315,7 @@ fn the_models_have_nothing_outside_of_their_box() {
             let line: Vec<Vec3> = (0..NODES)
                 .map(|k| (middle + half * DVec3::new(at(k), at(row % NODES), at(row / NODES))).as_vec3())
                 .collect();
-            field.values(&line, &mut value);
+            field.evaluator(Frame::default()).values(&line, &mut value);
             for (p, value) in line.iter().zip(value) {
                 if !fit.bounds.contains(*p) {
                     assert!(value > 0.0, "{}: {value} at {p}", model.id);
@@ -381,7 +384,7 @@ fn pulled_bunny() -> (Fit, [Pull; 2]) {
 #[test]
 fn a_pull_takes_its_place_along_and_leaves_what_is_far() {
     let (fit, pulls) = pulled_bunny();
-    let mut own = RbfField::new(fit.data).expect("a field");
+    let own = RbfField::new(fit.data).expect("a field");
     let mut pulled = own.clone();
     pulled.pull(&pulls).expect("pulls");
     let [first, second] = pulls;
@@ -410,7 +413,7 @@ fn a_pull_takes_its_place_along_and_leaves_what_is_far() {
         let q = [p.as_vec3()];
         let exact = pulled.jet(q[0].as_dvec3());
         let (mut value, mut gradient, mut hessian) = ([0.0], [Vec3::ZERO], [Sym3::splat(0.0)]);
-        pulled.hessians(&q, &mut value, &mut gradient, &mut hessian);
+        pulled.evaluator(Frame::default()).hessians(&q, &mut value, &mut gradient, &mut hessian);
         let size = exact.gradient.length().max(1.0);
         // As accurate as the model itself is in batches.
         assert!((f64::from(value[0]) - exact.value).abs() < 2e-4 * (1.0 + exact.value.abs()) * size);
@@ -418,7 +421,7 @@ fn a_pull_takes_its_place_along_and_leaves_what_is_far() {
         let (found, bend) = (hessian[0].apply(Vec3::ONE).as_dvec3(), exact.hessian.apply(DVec3::ONE));
         assert!(found.distance(bend) < 0.02 * (1.0 + bend.length()), "{found} for {bend} at {p}");
         let (mut slope, mut number) = ([Vec3::ZERO], [0.0]);
-        pulled.gradients(&q, &mut number, &mut slope);
+        pulled.evaluator(Frame::default()).gradients(&q, &mut number, &mut slope);
         assert!(slope[0].as_dvec3().distance(exact.gradient) < 2e-3 * size);
     }
 }

@@ -37,8 +37,8 @@ fn closed_surfaces_come_out_in_order() {
         ("tanglecube", 14_000, 3, [0.955, 55.0, 36.0, 0.74]),
     ] {
         let surface = gallery::find(id).expect("a surface of the gallery");
-        let mut field = surface.field();
-        let sampler = sampled(&mut field, &surface.bounds, &refined(count, seed), 10_000);
+        let field = surface.field();
+        let sampler = sampled(&field, &surface.bounds, &refined(count, seed), 10_000);
         let counts = sampler.counts();
         assert_eq!(counts.refusal, None, "{id}");
         assert!(counts.refined_levels.is_some_and(|levels| levels > 0), "{id}: {:?}", counts.refined_levels);
@@ -46,7 +46,7 @@ fn closed_surfaces_come_out_in_order() {
         let share = particles.len() as f64 / f64::from(count);
         assert!((share - 1.0).abs() <= 0.01, "{id}: {} particles of {count}", particles.len());
         assert_rings(particles);
-        let f = figures(&mut field, &surface.bounds, particles, None);
+        let f = figures(&field, &surface.bounds, particles, None);
         assert!(f.order.six >= six, "{id}: six {}", f.order.six);
         assert!(f.angles.ang_min_mean >= mean, "{id}: mean smallest angle {}", f.angles.ang_min_mean);
         assert!(f.angles.ang_min >= smallest, "{id}: smallest angle {}", f.angles.ang_min);
@@ -61,11 +61,11 @@ fn closed_surfaces_come_out_in_order() {
 #[test]
 fn a_radius_gives_about_as_many_particles_as_the_front() {
     let surface = gallery::find("ellipsoid").expect("a surface of the gallery");
-    let mut field = surface.field();
+    let field = surface.field();
     let settings = settings!(radius_share: 0.006, relax_steps: 0; ..Settings::default());
-    let front = sampled(&mut field, &surface.bounds, &settings, 10_000).particles().len();
+    let front = sampled(&field, &surface.bounds, &settings, 10_000).particles().len();
     let settings = settings!(method: Method::Refined; ..settings);
-    let sampler = sampled(&mut field, &surface.bounds, &settings, 10_000);
+    let sampler = sampled(&field, &surface.bounds, &settings, 10_000);
     let share = sampler.particles().len() as f64 / front as f64;
     assert!((0.95..=1.05).contains(&share), "{} and {front} particles", sampler.particles().len());
     assert!(sampler.particles().radius.iter().all(|&r| f64::from(r) == f64::from(sampler.radius() as f32)));
@@ -74,25 +74,25 @@ fn a_radius_gives_about_as_many_particles_as_the_front() {
 #[test]
 fn any_cut_into_steps_gives_the_same_particles() {
     let surface = gallery::find("torus").expect("a surface of the gallery");
-    sampled_in_any_steps(&mut surface.field(), &surface.bounds, &refined(4_000, 1));
+    sampled_in_any_steps(&surface.field(), &surface.bounds, &refined(4_000, 1));
 }
 
 #[test]
 fn what_is_cancelled_keeps_the_last_whole_level() {
     let surface = gallery::find("ellipsoid").expect("a surface of the gallery");
-    let mut field = surface.field();
+    let field = surface.field();
     let settings = refined(14_000, 0);
     let mut seen = Vec::new();
     for steps in [40, 120, 300, 600] {
-        let mut sampler = begun(&mut field, &surface.bounds, &settings);
+        let mut sampler = begun(&field, &surface.bounds, &settings);
         for _ in 0..steps {
-            sampler.step(&mut field, 1_000);
+            sampler.step(&field, 1_000);
         }
         sampler.cancel();
-        assert!(sampler.step(&mut field, 0).stop_reason.is_some());
+        assert!(sampler.step(&field, 0).stop_reason.is_some());
         let particles = sampler.particles();
         assert_rings(particles);
-        let f = figures(&mut field, &surface.bounds, particles, None);
+        let f = figures(&field, &surface.bounds, particles, None);
         assert!(
             particles.len() > 100 && f.connectivity.euler == 2,
             "{} particles after {steps} steps",
@@ -130,12 +130,12 @@ fn where_it_cannot_be_had_the_front_stands_and_the_run_says_why() {
     ];
     for (surface, settings, is_right) in cases {
         let id = surface.id;
-        let mut field = surface.field();
-        let sampler = sampled(&mut field, &surface.bounds, &settings, 10_000);
+        let field = surface.field();
+        let sampler = sampled(&field, &surface.bounds, &settings, 10_000);
         let refusal = sampler.counts().refusal;
         assert!(refusal.is_some_and(is_right), "{id}: {refusal:?}");
         let front = settings!(method: Method::Front; ..settings);
-        let expected = sampled(&mut field, &surface.bounds, &front, 10_000);
+        let expected = sampled(&field, &surface.bounds, &front, 10_000);
         assert_eq!(sampler.particles().digest(), expected.particles().digest(), "{id}");
     }
 }
@@ -152,18 +152,18 @@ fn on_small_sphere(particles: &Particles) -> usize {
 
 #[test]
 fn each_component_is_refined_as_often_as_it_allows() {
-    let (mut field, bounds) = two_spheres();
+    let (field, bounds) = two_spheres();
     // With one number of levels for both there is none with 180 particles on the small sphere, and the front stands: six is 0.93,
     // 0.965 and 0.97.
     for (count, levels, six) in [(4_000, 2, 0.965), (14_000, 3, 0.985), (40_000, 3, 0.985)] {
-        let sampler = sampled(&mut field, &bounds, &refined(count, 0), 10_000);
+        let sampler = sampled(&field, &bounds, &refined(count, 0), 10_000);
         let counts = sampler.counts();
         assert_eq!((counts.refined_levels, counts.refusal), (Some(levels), None), "{count}");
         let particles = sampler.particles();
         assert_rings(particles);
         let all = particles.len() as f64;
         assert!((all / f64::from(count) - 1.0).abs() <= 0.01, "{} of {count}", particles.len());
-        let f = figures(&mut field, &bounds, particles, None);
+        let f = figures(&field, &bounds, particles, None);
         assert_eq!(f.connectivity.euler, 4, "{count}: {counts:?}");
         assert!(f.order.six >= six, "{count}: six {}", f.order.six);
         let share = on_small_sphere(particles) as f64 / all;
@@ -173,14 +173,14 @@ fn each_component_is_refined_as_often_as_it_allows() {
 
 #[test]
 fn a_refinement_of_two_components_can_be_cut_and_cancelled_anywhere() {
-    let (mut field, bounds) = two_spheres();
+    let (field, bounds) = two_spheres();
     let settings = refined(4_000, 0);
-    sampled_in_any_steps(&mut field, &bounds, &settings);
+    sampled_in_any_steps(&field, &bounds, &settings);
     // The columns change once a level, never in between.
-    let mut sampler = begun(&mut field, &bounds, &settings);
+    let mut sampler = begun(&field, &bounds, &settings);
     let mut counts = Vec::new();
     loop {
-        let progress = sampler.step(&mut field, 1);
+        let progress = sampler.step(&field, 1);
         if progress.phase == Phase::Refinement {
             counts.push(progress.particles);
         }
@@ -192,12 +192,12 @@ fn a_refinement_of_two_components_can_be_cut_and_cancelled_anywhere() {
     let levels = sampler.counts().refined_levels.expect("a refined run");
     assert!(counts.len() as u32 <= levels + 1, "{counts:?} with {levels} levels");
     for steps in [60, 80, 100, 150, 200, 300] {
-        let mut sampler = begun(&mut field, &bounds, &settings);
+        let mut sampler = begun(&field, &bounds, &settings);
         for _ in 0..steps {
-            sampler.step(&mut field, 500);
+            sampler.step(&field, 500);
         }
         sampler.cancel();
-        sampler.step(&mut field, 0);
+        sampler.step(&field, 0);
         assert_rings(sampler.particles());
         let small = on_small_sphere(sampler.particles());
         assert!(small > 10, "{small} of {} after {steps} steps", sampler.particles().len());
@@ -207,12 +207,12 @@ fn a_refinement_of_two_components_can_be_cut_and_cancelled_anywhere() {
 #[test]
 fn levels_are_told_and_handed_on_from_the_coarse_one_on_and_a_cancel_keeps_the_last() {
     let surface = gallery::find("torus").expect("a surface of the gallery");
-    let mut field = surface.field();
+    let field = surface.field();
     let settings = refined(6_000, 1);
-    let mut sampler = begun(&mut field, &surface.bounds, &settings);
+    let mut sampler = begun(&field, &surface.bounds, &settings);
     let (mut told, mut shown, mut fraction) = (Vec::new(), Vec::new(), 0.0);
     loop {
-        let progress = sampler.step(&mut field, 500);
+        let progress = sampler.step(&field, 500);
         if progress.phase == Phase::Refinement {
             let now = progress.fraction;
             assert!((fraction..=1.0).contains(&now), "{now} after {fraction}");
@@ -235,18 +235,20 @@ fn levels_are_told_and_handed_on_from_the_coarse_one_on_and_a_cancel_keeps_the_l
     // The last level ends the phase.
     assert_eq!(shown.len() as u32, levels - 1, "{shown:?}");
 
-    sampler.begin(&mut field, &surface.bounds, &settings, None).expect("room for the particles");
+    sampler
+        .begin(&field, glam::DVec3::ZERO, &surface.bounds, &settings, None)
+        .expect("room for the particles");
     let first = loop {
-        let progress = sampler.step(&mut field, 500);
+        let progress = sampler.step(&field, 500);
         if progress.phase == Phase::Refinement && progress.moved {
             break progress.particles;
         }
     };
     assert_eq!(first, shown[0]);
     sampler.cancel();
-    sampler.step(&mut field, 0);
+    sampler.step(&field, 0);
     assert_eq!(sampler.particles().len(), first);
-    let f = figures(&mut field, &surface.bounds, sampler.particles(), None);
+    let f = figures(&field, &surface.bounds, sampler.particles(), None);
     assert!(f.angles.ang_min > 20.0, "the coarse level is in order: {}°", f.angles.ang_min);
 }
 
@@ -284,7 +286,7 @@ fn a_refined_run_has_the_mesh_that_it_led_to() {
 fn a_front_has_no_mesh_before_it_is_joined() {
     let surface = gallery::find("ellipsoid").expect("a surface of the gallery");
     let settings = settings!(method: Method::Front; ..refined(1_000, 0));
-    let sampler = sampled(&mut surface.field(), &surface.bounds, &settings, 10_000);
+    let sampler = sampled(&surface.field(), &surface.bounds, &settings, 10_000);
     assert!(sampler.triangles().is_empty());
 }
 
@@ -299,11 +301,11 @@ fn surfaces_that_bend_more_are_refined_once() {
         ("clebsch", 0.965, 56.5),
     ] {
         let surface = gallery::find(id).expect("a surface of the gallery");
-        let mut field = surface.field();
-        let sampler = sampled(&mut field, &surface.bounds, &refined(20_000, 0), 10_000);
+        let field = surface.field();
+        let sampler = sampled(&field, &surface.bounds, &refined(20_000, 0), 10_000);
         let counts = sampler.counts();
         assert_eq!((counts.refined_levels, counts.refusal), (Some(1), None), "{id}");
-        let f = figures(&mut field, &surface.bounds, sampler.particles(), None);
+        let f = figures(&field, &surface.bounds, sampler.particles(), None);
         assert!(f.order.six >= six, "{id}: six {}", f.order.six);
         assert!(f.angles.ang_min_mean >= mean, "{id}: mean smallest angle {}", f.angles.ang_min_mean);
         assert!(f.angles.ang_min >= 35.0 && f.angles.gt90 <= 1.5e-4, "{id}: {f:?}");
@@ -318,19 +320,15 @@ fn surfaces_that_bend_more_are_refined_once() {
 fn a_surface_that_bends_too_much_for_a_coarse_front_is_healed_at_full_resolution() {
     for id in ["decocube", "chmutov", "drilled-block"] {
         let surface = gallery::find(id).expect("a surface of the gallery");
-        let mut field = surface.field();
-        let front = sampled(
-            &mut field,
-            &surface.bounds,
-            &settings!(method: Method::Front; ..refined(4_000, 0)),
-            10_000,
-        );
-        let sampler = sampled(&mut field, &surface.bounds, &refined(4_000, 0), 10_000);
+        let field = surface.field();
+        let front =
+            sampled(&field, &surface.bounds, &settings!(method: Method::Front; ..refined(4_000, 0)), 10_000);
+        let sampler = sampled(&field, &surface.bounds, &refined(4_000, 0), 10_000);
         let counts = sampler.counts();
         assert_eq!((counts.refined_levels, counts.refusal), (Some(0), None), "{id}");
         assert!(sampler.particles().len().abs_diff(4_000) <= 40, "{id}: {}", sampler.particles().len());
         let [before, f] =
-            [&front, &sampler].map(|s| figures(&mut field.clone(), &surface.bounds, s.particles(), None));
+            [&front, &sampler].map(|s| figures(&field.clone(), &surface.bounds, s.particles(), None));
         assert!(f.order.six >= before.order.six + 0.04, "{id}: six {} {}", before.order.six, f.order.six);
         assert!(f.angles.ang_min_mean >= before.angles.ang_min_mean + 2.0, "{id}: {f:?}");
         assert!(f.spacing.rho > before.spacing.rho, "{id}: pair {} {}", before.spacing.rho, f.spacing.rho);
@@ -351,10 +349,10 @@ fn fronts_that_cannot_be_refined_are_not_tried_for_ever() {
     // The middle of an edge of one sphere is nearer to the other one. The first of them can be refined all the same.
     for outer in [1.02, 1.0002] {
         let text = format!("(x^2 + y^2 + z^2 - 1) (x^2 + y^2 + z^2 - {outer})");
-        let mut field = Formula::as_written(&text, &[]).expect("a formula");
+        let field = Formula::as_written(&text, &[]).expect("a formula");
         let settings = settings!(method: Method::Refined, radius_share: 0.0077; ..Settings::default());
-        let mut sampler = begun(&mut field, &Bounds::cube(1.5), &settings);
-        let steps = (0..STEPS).take_while(|_| sampler.step(&mut field, 10_000).stop_reason.is_none()).count();
+        let mut sampler = begun(&field, &Bounds::cube(1.5), &settings);
+        let steps = (0..STEPS).take_while(|_| sampler.step(&field, 10_000).stop_reason.is_none()).count();
         assert!(steps < STEPS, "{outer}: {steps} steps were not enough");
         let refusal = sampler.counts().refusal;
         assert!(
@@ -368,22 +366,22 @@ fn fronts_that_cannot_be_refined_are_not_tried_for_ever() {
 #[test]
 fn thin_necks_and_ears_stay() {
     // Surgery would shorten them, beginning at their rims.
-    let mut field = Formula::as_written("x^4+y^4+z^4-5*(x^2+y^2+z^2)+12", &[]).expect("a formula");
+    let field = Formula::as_written("x^4+y^4+z^4-5*(x^2+y^2+z^2)+12", &[]).expect("a formula");
     let bounds = Bounds::cube(2.6);
     let settings = settings!(sampling: Sampling::Adaptive; ..refined(2_000, 0));
-    let sampler = sampled(&mut field, &bounds, &settings, 10_000);
+    let sampler = sampled(&field, &bounds, &settings, 10_000);
     let particles = sampler.particles();
-    let found = figures(&mut field, &bounds, particles, Some(&particles.radius));
+    let found = figures(&field, &bounds, particles, Some(&particles.radius));
     assert_eq!(found.connectivity.euler, -8, "{:?}", sampler.counts().refusal);
     #[cfg(feature = "points")]
     for (count, seed) in [(5_000, 1), (4_000, 4)] {
         use marching_particles::field::{model, rbf::RbfField};
         let fit = marching_particles::pointcloud::fit_model(model::find("bunny").expect("a built-in model"));
-        let mut field = RbfField::new(fit.data).expect("the data is whole");
+        let field = RbfField::new(fit.data).expect("the data is whole");
         let settings = settings!(sampling: Sampling::Adaptive; ..refined(count, seed));
-        let sampler = sampled(&mut field, &fit.bounds, &settings, 10_000);
+        let sampler = sampled(&field, &fit.bounds, &settings, 10_000);
         let particles = sampler.particles();
-        let found = figures(&mut field, &fit.bounds, particles, Some(&particles.radius));
+        let found = figures(&field, &fit.bounds, particles, Some(&particles.radius));
         assert!(found.coverage.cover_local < 2.5, "{count}: a hole of {}", found.coverage.cover_local);
     }
 }
@@ -393,8 +391,8 @@ fn a_refusal_names_the_place() {
     // Once around a wall that is thinner than the coarse particles are wide, and once at a ridge.
     for (id, count) in [("decocube", 900), ("chmutov", 2_000)] {
         let surface = gallery::find(id).expect("a surface of the gallery");
-        let mut field = surface.field();
-        let sampler = sampled(&mut field, &surface.bounds, &refined(count, 0), 10_000);
+        let field = surface.field();
+        let sampler = sampled(&field, &surface.bounds, &refined(count, 0), 10_000);
         let refusal = sampler.counts().refusal.expect("too few particles for this surface");
         let at = match refusal {
             Refusal::Bent { at } | Refusal::Doubtful { at } | Refusal::Folded { at } => at,
@@ -403,7 +401,7 @@ fn a_refusal_names_the_place() {
         let far = quality::measure(
             &[at.0.into()],
             &[],
-            &mut field,
+            &field,
             Some(&surface.bounds),
             &quality::MeasureOptions::default(),
         );

@@ -10,11 +10,11 @@ use marching_particles::sampler::{Phase, Sampler, Settings, SizeMode, StopReason
 
 /// The particles after the front and after the relaxation.
 fn before_and_after(surface: &gallery::Surface, settings: &Settings) -> (Particles, Sampler) {
-    let mut field = surface.field();
-    let mut sampler = begun(&mut field, &surface.bounds, settings);
+    let field = surface.field();
+    let mut sampler = begun(&field, &surface.bounds, settings);
     let mut before = Particles::default();
     loop {
-        let progress = sampler.step(&mut field, 1);
+        let progress = sampler.step(&field, 1);
         if progress.phase == Phase::Relaxation && before.is_empty() {
             before = sampler.particles().clone();
         }
@@ -22,7 +22,7 @@ fn before_and_after(surface: &gallery::Surface, settings: &Settings) -> (Particl
             break;
         }
     }
-    while sampler.step(&mut field, 10_000).stop_reason.is_none() {}
+    while sampler.step(&field, 10_000).stop_reason.is_none() {}
     (before, sampler)
 }
 
@@ -52,12 +52,12 @@ fn energy(particles: &Particles, radius: f64) -> f64 {
 
 /// Energies by the definition before the first relaxation step and after each step, and those that the sampler reports.
 fn energies(surface: &gallery::Surface, settings: &Settings) -> (Vec<f64>, Vec<f64>) {
-    let mut field = surface.field();
-    let mut sampler = begun(&mut field, &surface.bounds, settings);
-    while sampler.step(&mut field, 100_000).phase != Phase::Relaxation {}
+    let field = surface.field();
+    let mut sampler = begun(&field, &surface.bounds, settings);
+    while sampler.step(&field, 100_000).phase != Phase::Relaxation {}
     let mut defined = Vec::new();
     // Steps of one unit of work catch the particles of an accepted step before the next one moves any.
-    while sampler.step(&mut field, 1).stop_reason.is_none() {
+    while sampler.step(&field, 1).stop_reason.is_none() {
         if sampler.energy().len() > defined.len() {
             defined.push(energy(sampler.particles(), sampler.radius()));
         }
@@ -89,7 +89,7 @@ fn the_energy_falls_at_every_step_on_every_smooth_surface_at_every_radius() {
 fn cutting_a_relaxation_into_steps_changes_nothing_even_if_moves_are_taken_back() {
     let surface = gallery::find("double-torus").expect("a gallery surface");
     let settings = settings!(radius_share: 0.03; ..Settings::default());
-    let run = |budget: u32| sampled(&mut surface.field(), &surface.bounds, &settings, budget);
+    let run = |budget: u32| sampled(&surface.field(), &surface.bounds, &settings, budget);
     let whole = run(u32::MAX);
     // There are two evaluations per particle and step, and two at the end. The others are those of rejected steps.
     let evaluations = whole.counts().relaxation_evaluations;
@@ -107,11 +107,11 @@ fn a_relaxation_that_goes_on_after_a_stop_in_mid_step_measures_where_the_particl
     let settings = settings!(radius_share: 0.02; ..Settings::default());
     let mut is_amid = 0;
     for units in (1..4_000).step_by(331) {
-        let mut field = surface.field();
-        let mut sampler = begun(&mut field, &surface.bounds, &settings);
-        while sampler.step(&mut field, 100_000).phase != Phase::Relaxation {}
+        let field = surface.field();
+        let mut sampler = begun(&field, &surface.bounds, &settings);
+        while sampler.step(&field, 100_000).phase != Phase::Relaxation {}
         for _ in 0..units {
-            sampler.step(&mut field, 1);
+            sampler.step(&field, 1);
         }
         let was = sampler.energy().last().copied();
         sampler.cancel();
@@ -120,7 +120,7 @@ fn a_relaxation_that_goes_on_after_a_stop_in_mid_step_measures_where_the_particl
         assert!(sampler.relax(3));
         let first = sampler.energy().len();
         let mut defined = Vec::new();
-        while sampler.step(&mut field, 1).stop_reason.is_none() {
+        while sampler.step(&field, 1).stop_reason.is_none() {
             if sampler.energy().len() > first + defined.len() {
                 defined.push(energy(sampler.particles(), sampler.radius()));
             }
@@ -158,9 +158,9 @@ fn holes_and_crowded_pairs_shrink() {
 #[test]
 fn every_gallery_surface_is_sampled_with_particles_on_it_and_in_its_box() {
     for surface in gallery::SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
         let settings = settings!(radius_share: 0.012; ..Settings::default());
-        let sampler = sampled(&mut field, &surface.bounds, &settings, 10_000);
+        let sampler = sampled(&field, &surface.bounds, &settings, 10_000);
         assert_eq!(sampler.progress().stop_reason, Some(StopReason::Complete), "{}", surface.id);
         let particles = sampler.particles();
         assert!(particles.len() > 500, "{}: {} particles", surface.id, particles.len());

@@ -10,19 +10,19 @@ use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{Report, Run};
 
 /// A sampler that has begun a run on a field in a box.
-pub(crate) fn begun(field: &mut dyn Field, bounds: &Bounds, settings: &Settings) -> Sampler {
+pub(crate) fn begun(field: &dyn Field, bounds: &Bounds, settings: &Settings) -> Sampler {
     Run::start(field, &settings.in_box(*bounds)).expect("valid settings").sampler().clone()
 }
 
 /// A field, sampled in a box by steps of `budget`.
-pub(crate) fn sampled(field: &mut dyn Field, bounds: &Bounds, settings: &Settings, budget: u32) -> Sampler {
-    let mut sampler = begun(field, bounds, settings);
-    while sampler.step(field, budget).stop_reason.is_none() {}
-    sampler
+pub(crate) fn sampled(field: &dyn Field, bounds: &Bounds, settings: &Settings, budget: u32) -> Sampler {
+    let mut run = Run::start(field, &settings.in_box(*bounds)).expect("valid settings");
+    while run.step(budget).stop_reason.is_none() {}
+    run.sampler().clone()
 }
 
 /// Samples a field in a box, and finds the same particles however the run is cut into steps.
-pub(crate) fn sampled_in_any_steps(field: &mut dyn Field, bounds: &Bounds, settings: &Settings) -> Sampler {
+pub(crate) fn sampled_in_any_steps(field: &dyn Field, bounds: &Bounds, settings: &Settings) -> Sampler {
     let whole = sampled(field, bounds, settings, u32::MAX);
     for budget in [1, 777] {
         let cut = sampled(field, bounds, settings, budget);
@@ -34,7 +34,7 @@ pub(crate) fn sampled_in_any_steps(field: &mut dyn Field, bounds: &Bounds, setti
 /// A surface of the gallery, sampled.
 pub(crate) fn of_gallery(id: &str, settings: &Settings) -> Sampler {
     let surface = gallery::find(id).expect("a surface of the gallery");
-    sampled(&mut surface.field(), &surface.bounds, settings, 10_000)
+    sampled(&surface.field(), &surface.bounds, settings, 10_000)
 }
 
 /// The fates of the slots agree with what was counted, and each particle but a seed is the child of one other.
@@ -55,7 +55,7 @@ pub(crate) fn assert_fates(sampler: &Sampler, context: &str) {
 }
 
 pub(crate) fn figures(
-    field: &mut dyn Field,
+    field: &dyn Field,
     bounds: &Bounds,
     Particles { position, normal, .. }: &Particles,
     radii: Option<&[f32]>,
@@ -67,7 +67,7 @@ pub(crate) fn figures(
 /// Figures of particles on a surface of the gallery.
 pub(crate) fn gallery_figures(id: &str, particles: &Particles, radii: Option<&[f32]>) -> Figures {
     let surface = gallery::find(id).expect("a surface of the gallery");
-    figures(&mut surface.field(), &surface.bounds, particles, radii)
+    figures(&surface.field(), &surface.bounds, particles, radii)
 }
 
 /// A session with a formula in a box.

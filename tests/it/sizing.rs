@@ -4,6 +4,7 @@
 use crate::runs::{gallery_figures, of_gallery, sampled};
 use marching_particles::differential::{Curvature, curvatures};
 use marching_particles::field::gallery::{self, SURFACES};
+use marching_particles::field::{Field, Frame};
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{LawKind, Sampling, Settings, SettingsError, SizeMode};
 use marching_particles::spatial::CellGrid;
@@ -80,7 +81,7 @@ fn no_particle_is_larger_than_its_law_and_most_are_as_large() {
         let sampler = of_gallery(surface.id, &settings);
         let particles = sampler.particles();
         let mut curvature = vec![Curvature::default(); particles.len()];
-        curvatures(&mut surface.field(), &particles.position, &mut curvature);
+        curvatures(&mut *surface.field().evaluator(Frame::default()), &particles.position, &mut curvature);
         let diagonal = surface.bounds.diagonal();
         let (error, least) = (settings.chord_error * diagonal, settings.radius_min_share * diagonal);
         let greatest = settings.radius_max_share * diagonal;
@@ -157,13 +158,13 @@ fn ten_steps_fit_the_particles_to_their_sizes() {
 #[test]
 fn more_steps_can_follow_and_cutting_a_run_into_slices_changes_nothing() {
     let surface = gallery::find("ellipsoid").expect("in the gallery");
-    let mut field = surface.field();
-    let whole = sampled(&mut field, &surface.bounds, &adaptive(2_000, 6), u32::MAX);
-    let mut sliced = sampled(&mut field, &surface.bounds, &adaptive(2_000, 6), 17);
+    let field = surface.field();
+    let whole = sampled(&field, &surface.bounds, &adaptive(2_000, 6), u32::MAX);
+    let mut sliced = sampled(&field, &surface.bounds, &adaptive(2_000, 6), 17);
     assert_eq!(sliced.particles().digest(), whole.particles().digest());
     let before = *sliced.energy().last().expect("an energy");
     assert!(sliced.relax(4));
-    while sliced.step(&mut field, 1_000).stop_reason.is_none() {}
+    while sliced.step(&field, 1_000).stop_reason.is_none() {}
     assert_eq!(sliced.energy().len(), 11);
     assert!(*sliced.energy().last().expect("an energy") < before);
 }

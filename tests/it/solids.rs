@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::Formula;
-use marching_particles::field::{Bounded, BranchNumbers, Branched, Enclosure, Field, gallery};
+use marching_particles::field::{Creased, Enclosure, Field, Frame, gallery};
 use marching_particles::math::Bounds;
 use marching_particles::slices::complete;
 
@@ -20,7 +20,8 @@ fn grid(bounds: &Bounds) -> impl Iterator<Item = DVec3> {
 }
 
 /// Checks that single precision, differences and bounds agree with the values of a field.
-fn is_consistent(field: &mut Formula, bounds: &Bounds, what: &str) {
+fn is_consistent(field: &Formula, bounds: &Bounds, what: &str) {
+    let mut field = field.evaluator(Frame::default());
     for p in grid(bounds) {
         let (value, gradient) = field.value_and_gradient(p);
         let mut single = [0.0];
@@ -36,12 +37,14 @@ fn is_consistent(field: &mut Formula, bounds: &Bounds, what: &str) {
             );
         }
         let mut known = [Enclosure::UNKNOWN];
-        field.enclose(0, &[Bounds::new(p - 0.01, p + 0.01)], &mut known);
+        field.bounded().expect("a formula has bounds").enclose(
+            0,
+            &[Bounds::new(p - 0.01, p + 0.01)],
+            &mut known,
+        );
         assert!(known[0].value.holds(value), "{what} at {p}");
         let number = field.branch_at(p);
-        field.select_branch(Some(number));
-        let branch = field.value_and_gradient(p);
-        field.select_branch(None);
+        let branch = field.on(Some(number)).value_and_gradient(p);
         assert!((branch.0 - value).abs() < 1e-12 && (branch.1 - gradient).length() < 1e-9, "{what} at {p}");
     }
 }
@@ -50,27 +53,30 @@ fn is_consistent(field: &mut Formula, bounds: &Bounds, what: &str) {
 fn a_box_closes_what_it_cuts() {
     let gyroid = gallery::find("gyroid").expect("the gallery has a gyroid");
     let bounds = Bounds { min: [-3.0, -2.0, -1.0], max: [2.0, 3.0, 2.5] };
-    let (mut open, mut closed) = (gyroid.field(), gyroid.field().closed_by(&bounds));
+    let (open, closed) = (gyroid.field(), gyroid.field().closed_by(&bounds));
     let around = Bounds::cube(4.0);
     for p in grid(&around) {
         let inside = open.value_and_gradient(p).0 <= 0.0 && bounds.holds(p);
         assert_eq!(closed.value_and_gradient(p).0 <= 0.0, inside, "{p}");
     }
-    is_consistent(&mut closed, &around, "a closed gyroid");
-    assert!(!complete(closed.crease_cells(&around, 0.05, BranchNumbers::New)).is_empty());
-    let listed = closed.branches_in(&Bounds::cube(0.5)).expect("few branches");
-    assert_eq!(listed, [closed.branch_at(DVec3::ZERO)]);
-    assert!(open.periods()[0].is_some());
-    assert_eq!((closed.periods(), closed.text()), ([None; 3], open.text()));
+    is_consistent(&closed, &around, "a closed gyroid");
+    assert!(!complete(closed.creases_in(&around, 0.05)).0.is_empty());
+    let mut evaluator = closed.evaluator(Frame::default());
+    let listed = evaluator.branches_in(&Bounds::cube(0.5)).expect("few branches");
+    assert_eq!(listed, [evaluator.branch_at(DVec3::ZERO)]);
+    assert!(open.facts().periods[0].is_some());
+    assert_eq!((closed.facts().periods, closed.text()), ([None; 3], open.text()));
     // Another box takes the place of the first.
-    let mut other = closed.closed_by(&around);
+    let other = closed.clone().closed_by(&around);
     assert!(other.value_and_gradient(DVec3::splat(3.9)).0 < 3.0);
 }
 
 #[test]
 fn a_closed_sphere_has_seven_patches() {
-    let mut dice = field("x^2 + y^2 + z^2 - 1.2").closed_by(&Bounds::cube(1.0));
-    assert!(!complete(dice.crease_cells(&Bounds::cube(1.2), 0.05, BranchNumbers::New)).is_empty());
+    let dice = field("x^2 + y^2 + z^2 - 1.2").closed_by(&Bounds::cube(1.0));
+    let (cells, dice) = complete(dice.creases_in(&Bounds::cube(1.2), 0.05));
+    assert!(!cells.is_empty());
+    let mut dice = dice.evaluator(Frame::default());
     let faces = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
     let mut seen: Vec<u32> = faces.chain([DVec3::splat(0.63)]).map(|p| dice.branch_at(p)).collect();
     seen.sort_unstable();
@@ -93,14 +99,14 @@ fn a_thickened_sphere_has_two_sheets() {
             assert!(shell.value_and_gradient(direction * a.sqrt()).0 < 0.0);
         }
     }
-    assert!(complete(shell.crease_cells(&Bounds::cube(2.0), 0.05, BranchNumbers::New)).is_empty());
-    is_consistent(&mut shell, &Bounds::cube(1.6), "a shell");
+    assert!(complete(shell.creases_in(&Bounds::cube(2.0), 0.05)).0.is_empty());
+    is_consistent(&shell, &Bounds::cube(1.6), "a shell");
 }
 
 #[test]
 fn a_thickened_cube_is_a_cube_in_a_cube() {
-    let mut shell = field("max(abs(3x), abs(y), -z - 1, z - 1, abs(y)) - 1 + 2 (0)").thickened(0.2);
-    let mut sheet = |p: Vec3| shell.value_and_gradient(p.as_dvec3()).0;
+    let shell = field("max(abs(3x), abs(y), -z - 1, z - 1, abs(y)) - 1 + 2 (0)").thickened(0.2);
+    let sheet = |p: Vec3| shell.value_and_gradient(p.as_dvec3()).0;
     for (p, is_inside) in [
         (Vec3::new(0.0, 0.0, 0.0), false),
         (Vec3::new(0.0, 0.91, 0.0), true),
@@ -119,33 +125,34 @@ fn a_thickened_cube_is_a_cube_in_a_cube() {
     ] {
         assert_eq!(sheet(p) <= 0.0, is_inside, "{p}");
     }
-    is_consistent(&mut shell, &Bounds::cube(2.5), "a thickened cube");
-    assert!(!complete(shell.crease_cells(&Bounds::cube(2.5), 0.05, BranchNumbers::New)).is_empty());
+    is_consistent(&shell, &Bounds::cube(2.5), "a thickened cube");
+    assert!(!complete(shell.creases_in(&Bounds::cube(2.5), 0.05)).0.is_empty());
 }
 
 #[test]
 fn a_thickened_surface_is_closed_by_a_box() {
     let gyroid = gallery::find("gyroid").expect("the gallery has a gyroid");
     let bounds = Bounds::cube(2.0);
-    let [mut part, mut other] =
+    let [part, other] =
         [gyroid.field().thickened(0.3).closed_by(&bounds), gyroid.field().closed_by(&bounds).thickened(0.3)];
     for p in grid(&Bounds::cube(2.2)) {
         let value = part.value_and_gradient(p).0;
         assert_eq!(value, other.value_and_gradient(p).0);
         assert!(bounds.holds(p) || value > 0.0);
     }
-    is_consistent(&mut part, &Bounds::cube(2.2), "a gyroid to print");
-    assert!(!complete(part.crease_cells(&Bounds::cube(2.2), 0.05, BranchNumbers::New)).is_empty());
+    is_consistent(&part, &Bounds::cube(2.2), "a gyroid to print");
+    assert!(!complete(part.creases_in(&Bounds::cube(2.2), 0.05)).0.is_empty());
 }
 
 #[test]
 fn a_thickened_octahedron_keeps_its_branches_across_the_planes_of_symmetry() {
-    let mut shell = field("abs(x) + abs(y) + abs(z) - 1").thickened(0.1);
+    let shell = field("abs(x) + abs(y) + abs(z) - 1").thickened(0.1);
+    let mut shell = shell.evaluator(Frame::default());
     for (size, is_inside) in [(1.0, true), (0.9, false), (1.1, false)] {
         let p = DVec3::new(0.5, 0.3, 0.2) * size;
         assert_eq!(shell.value_and_gradient(p).0 <= 0.0, is_inside, "{p}");
         let number = shell.branch_at(p);
-        shell.select_branch(Some(number));
+        let shell = shell.on(Some(number));
         let value = shell.value_and_gradient(p).0;
         // Along the plane of this branch, beyond its edges.
         for q in
@@ -155,6 +162,5 @@ fn a_thickened_octahedron_keeps_its_branches_across_the_planes_of_symmetry() {
             assert!((there - value).abs() < 1e-15, "{q}: {there} {value}");
             assert!((slope.abs() - 1.0).length() < 1e-15, "{q}: {slope}");
         }
-        shell.select_branch(None);
     }
 }

@@ -8,7 +8,7 @@
 import { writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 import { expect } from '@playwright/test';
-import { WHAT_IFS } from '../src/learn/whatifs.js';
+import { COMMON } from '../src/learn/whatifs.js';
 import { launch } from './browser.js';
 
 const [base = 'http://localhost:4517/'] = process.argv.slice(2);
@@ -18,7 +18,7 @@ const folder = fileURLToPath(new URL('../learn/stills/', import.meta.url));
  * alone.
  */
 const STYLE = `.controls, .choices, .figure-count, .key, .scale, .bar, .check, .quiet, figcaption { display: none !important }
-  .told { min-height: 0 !important } .cost { display: table !important }`;
+  .stage .compare-box { display: none !important } .told { min-height: 0 !important } .cost { display: table !important }`;
 
 const browser = await launch();
 const page = await browser.newPage({
@@ -42,7 +42,7 @@ for (const stage of await page.locator('[data-figure]').all()) {
 }
 // Two of them stand beside each other on paper.
 await page.setViewportSize({ width: 640, height: 900 });
-for (const { id } of WHAT_IFS) {
+for (const { id } of COMMON) {
   await page.goto(`${base}learn/#what-if-${id}`);
   await page.reload();
   await page.addStyleTag({ content: STYLE });

@@ -109,9 +109,9 @@ impl Bundle {
     /// The features that cargo builds it with.
     pub(crate) fn features(self) -> &'static str {
         match self {
-            Self::Core => "core",
-            Self::Points => "points",
-            Self::Lesson => "lesson",
+            Self::Core => "page-core",
+            Self::Points => "page-points",
+            Self::Lesson => "page-lesson",
             Self::Webgpu => "webgpu",
             Self::Webgl => "webgl",
         }

@@ -20,7 +20,7 @@ use crate::readers;
 use crate::site;
 use crate::step;
 use crate::times;
-use crate::wasm_target::WasmTarget;
+use crate::wasm_target::{self, WasmTarget};
 
 /// A part of the checks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -42,7 +42,7 @@ pub(crate) enum Part {
     /// Licences, sources and duplicates of the dependencies; skipped, with the reason, without
     /// cargo-deny.
     Deny,
-    /// rustdoc, warnings denied, and the crate as cargo would publish it.
+    /// rustdoc, warnings denied, the crate as cargo would publish it, and a program that depends on it.
     Docs,
     /// The bundles of the published site, held to their budgets and to the digests of the native
     /// core.
@@ -294,7 +294,21 @@ fn docs(project: &Project) -> Result<()> {
     step::run("documentation", &mut command, "")?;
     let mut command = cargo_at_root(project, &["package", "--package", "marching-particles"]);
     command.args(["--no-verify", "--allow-dirty", "--locked"]);
-    step::run("package", &mut command, "").map(drop)
+    step::run("package", &mut command, "")?;
+    dependent(project)
+}
+
+/// A program that depends on the library exports as WebAssembly what it wrote itself, and nothing of the page.
+fn dependent(project: &Project) -> Result<()> {
+    let target = WasmTarget::prepare(project)?;
+    let folder = project.target.join("dependent");
+    let mut command = target.cargo(project, "build");
+    command.args(["--release", "--locked", "--manifest-path", "tests/dependent/Cargo.toml", "--target-dir"]);
+    step::run("a program that depends on the library: compile", command.arg(&folder), "")?;
+    let mut command = Command::new(node::node()?);
+    command.current_dir(&project.root).arg("tests/wasm/dependent.mjs");
+    command.arg(folder.join(wasm_target::TARGET).join("release/dependent.wasm"));
+    step::run("a program that depends on the library: exports", &mut command, "").map(drop)
 }
 
 fn parity(project: &Project, purpose: Purpose) -> Result<()> {

@@ -299,7 +299,7 @@ pub(crate) fn fit(
 ) -> Result<Settings, Failure> {
     while session.fit(settings_in, only_grows, u32::MAX).is_none() {}
     if let Source::Formula(formula) = session.run.field()
-        && formula.unit_cell().is_some_and(|cell| cell.repeats == [false; 3])
+        && formula.facts().unit_cell.is_some_and(|cell| cell.repeats == [false; 3])
     {
         return Err(Failure::Usage(not_periodic(formula.surface_periods())));
     }

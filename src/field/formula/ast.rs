@@ -72,7 +72,7 @@ impl ExprKind {
 
 impl Expr {
     /// Calls `visit` with each expression that is a part of this one, from left to right.
-    fn each<'a>(&'a self, visit: &mut dyn FnMut(&'a Self)) {
+    pub(crate) fn each<'a>(&'a self, visit: &mut dyn FnMut(&'a Self)) {
         match &self.kind {
             ExprKind::Number(_)
             | ExprKind::Constant(_)

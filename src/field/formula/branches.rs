@@ -17,6 +17,7 @@ use super::operations::{Binary, Unary};
 use crate::field::Enclosure;
 use crate::math::Bounds;
 use glam::DVec3;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Maximum number of branches that are listed for a box: four choices beyond those at a corner of three faces that meet in |x|, |y|
 /// and |z|. A smaller box has fewer.
@@ -101,8 +102,8 @@ pub(super) struct BranchPart {
     pub(super) number: Option<u32>,
     /// The part for each way in which the conditions hold or do not, in the order of [`BranchWalk`]; sorted.
     taken: Vec<(Vec<bool>, TakenPart)>,
-    /// The branch compiled, once it has been selected.
-    compiled: Option<Box<Compiled>>,
+    /// The branch compiled, once it has been asked for.
+    compiled: Option<Arc<Compiled>>,
 }
 
 /// The part of f that follows from another part, once each condition of that one is known to hold or not.
@@ -427,6 +428,32 @@ fn may_cross(graph: &mut Graph, root: Id) -> bool {
     })
 }
 
+/// The branches of a formula, which its evaluators find out together. What they find does not depend on who asks first, but for the numbers
+/// of branches beyond the first [`MAX_NUMBERED`].
+#[derive(Debug, Default)]
+pub(super) struct SharedBranches(Mutex<Branches>);
+
+impl SharedBranches {
+    pub(super) fn new(branches: Branches) -> Self {
+        Self(Mutex::new(branches))
+    }
+
+    /// A part that is half found is made again, so a panic does no harm.
+    pub(super) fn lock(&self) -> MutexGuard<'_, Branches> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(super) fn set_parameters(&mut self, values: &[f64]) {
+        self.lock().set_parameters(values);
+    }
+}
+
+impl Clone for SharedBranches {
+    fn clone(&self) -> Self {
+        Self::new(self.lock().clone())
+    }
+}
+
 /// The branches of f that have been met, with their numbers. There are none of a formula without choices.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Branches {
@@ -435,15 +462,13 @@ pub(super) struct Branches {
     pub(super) parts: Vec<BranchPart>,
     /// The part of each branch, by its number.
     numbered: Vec<usize>,
-    /// The part that is evaluated in the place of f.
-    selected: Option<usize>,
     /// The factors of the branches of the surface in a box, each by its branch and its number there, if it was found that some meet in creases
     /// in that box.
     pub(super) factors: Vec<(u32, usize)>,
     /// The choices that [stand for products](by_signs).
     pub(super) products: Vec<Id>,
     /// The graph's function, which is evaluated in the place of f where factors of a product cross: its gradient does not vanish there.
-    split: Option<Box<Compiled>>,
+    pub(super) split: Option<Arc<Compiled>>,
     walk: BranchWalk,
     /// Roles with the parameters before, kept for their memory.
     before: Vec<NodeRole>,
@@ -460,7 +485,7 @@ impl Branches {
     /// The branches of a function whose products are [told by their signs](by_signs); none if it has no products, or is one whose factors
     /// cannot cross.
     pub(super) fn of_factors(f: &Compiled, values: &[f64]) -> Option<Self> {
-        let (mut products, mut graph) = (Vec::new(), f.graph.clone());
+        let (mut products, mut graph) = (Vec::new(), (*f.graph).clone());
         if matches!(graph.node(f.root), Node::Binary(Binary::Mul, ..)) && !may_cross(&mut graph, f.root) {
             return None;
         }
@@ -500,7 +525,7 @@ impl Branches {
         self.part(root);
     }
 
-    /// Forgets all branches and selects none. From now on the nodes `smooth` of f, ascending, are no choices.
+    /// Forgets all branches. From now on the nodes `smooth` of f, ascending, are no choices.
     pub(super) fn begin_again(&mut self, values: &[f64], smooth: &[Id]) {
         if let Some(root) = self.parts.first().map(|part| part.root) {
             let graph = core::mem::take(&mut self.base.graph);
@@ -650,18 +675,12 @@ impl Branches {
         Some(numbers)
     }
 
-    /// Makes [`Branches::active`] the branch of this number, or f.
+    /// The branch of this number, compiled; none if f is its only branch.
     ///
     /// # Panics
     ///
     /// If there is no such branch.
-    pub(super) fn select(&mut self, branch: Option<u32>, values: &[f64]) {
-        self.selected = None;
-        self.selected = branch.and_then(|number| self.compiled_part(number, values));
-    }
-
-    /// Index of the part of a branch, which is compiled; none if f is its only branch.
-    fn compiled_part(&mut self, number: u32, values: &[f64]) -> Option<usize> {
+    pub(super) fn compiled(&mut self, number: u32, values: &[f64]) -> Option<Arc<Compiled>> {
         let is_piecewise = self.parts.first().is_some_and(|part| part.number.is_none());
         if !is_piecewise {
             return None;
@@ -671,38 +690,13 @@ impl Branches {
         let part = &mut self.parts[index];
         if part.compiled.is_none() {
             let (graph, root) = self.base.graph.part(part.root);
-            part.compiled = Some(Box::new(Compiled::from_graph(graph, root, values)));
+            part.compiled = Some(Arc::new(Compiled::from_graph(graph, root, values)));
         }
-        Some(index)
+        part.compiled.clone()
     }
 
-    /// Programs for the bounds of the factors of a branch.
-    fn factors_of(&mut self, number: u32, values: &[f64]) -> &mut [interval::FactorProgram] {
-        let part = self.compiled_part(number, values);
-        let compiled = part.and_then(|index| self.parts[index].compiled.as_deref_mut());
-        compiled.map_or(&mut [], |compiled| compiled.factors(values))
-    }
-
-    /// The program for the bounds of a factor.
-    pub(super) fn factor(&mut self, factor: usize, values: &[f64]) -> &mut interval::FactorProgram {
-        let (number, own) = self.factors[factor];
-        &mut self.factors_of(number, values)[own]
-    }
-
-    /// Whether the branch of a factor gives f at `p`.
-    pub(super) fn is_given_by(&mut self, factor: usize, values: &[f64], p: DVec3) -> bool {
-        self.factors[factor].0 == self.at(values, p)
-    }
-
-    /// Empties the enclosures of a factor over boxes where its branch has no zero of f.
-    pub(super) fn leave_out(
-        &mut self,
-        factor: usize,
-        values: &[f64],
-        boxes: &[Bounds],
-        out: &mut [Enclosure],
-    ) {
-        let (number, _) = self.factors[factor];
+    /// Empties the enclosures of a factor of a branch over boxes where the branch has no zero of f.
+    pub(super) fn leave_out(&mut self, number: u32, values: &[f64], boxes: &[Bounds], out: &mut [Enclosure]) {
         for (bounds, out) in boxes.iter().zip(out).filter(|(_, out)| out.may_vanish) {
             if self.within(values, bounds).is_some_and(|within| !within.contains(&number)) {
                 *out = Enclosure::NOWHERE;
@@ -710,28 +704,20 @@ impl Branches {
         }
     }
 
-    /// The compiled function that is to be evaluated: the branch that is selected, or else `whole`, f.
-    pub(super) fn active<'a>(&'a mut self, whole: &'a mut Compiled) -> &'a mut Compiled {
-        match self.selected {
-            Some(index) => self.parts[index].compiled.as_deref_mut().unwrap_or(whole),
-            None => self.split.as_deref_mut().unwrap_or(whole),
-        }
-    }
-
     /// Takes the branches of a surface in a box as those that meet in creases there.
     pub(super) fn crease(&mut self, values: &[f64], bounds: &Bounds) {
         for number in self.within(values, bounds).unwrap_or_default() {
-            let count = self.factors_of(number, values).len();
+            let count = self.compiled(number, values).map_or(0, |compiled| compiled.factors().len());
             self.factors.extend((0..count).map(|own| (number, own)));
         }
         if !self.products.is_empty() {
             let (graph, root) = self.base.graph.part(self.parts[0].root);
-            self.split = Some(Box::new(Compiled::from_graph(graph, root, values)));
+            self.split = Some(Arc::new(Compiled::from_graph(graph, root, values)));
         }
     }
 
-    /// Recomputes everything that depends on the parameters alone. The branches begin anew, and none is selected, if another
-    /// operation is a choice now.
+    /// Recomputes everything that depends on the parameters alone. The branches begin anew if another operation
+    /// is a choice now.
     pub(super) fn set_parameters(&mut self, values: &[f64]) {
         if self.parts.is_empty() {
             return;
@@ -742,7 +728,9 @@ impl Branches {
         self.base.extend(values);
         if self.base.roles == self.before {
             let compiled = self.parts.iter_mut().filter_map(|part| part.compiled.as_mut());
-            compiled.chain(&mut self.split).for_each(|compiled| compiled.set_parameters(values));
+            compiled
+                .chain(&mut self.split)
+                .for_each(|compiled| Arc::make_mut(compiled).set_parameters(values));
         } else {
             self.begin_again(values, &[]);
         }

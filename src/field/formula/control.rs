@@ -9,9 +9,10 @@
 //! * The parameters are found for the places of the points, not integrated from their velocities, so that they depend on no history.
 //! * J Jᵀ has a small multiple of the unit matrix added, in the place of a singular value decomposition.
 
+use super::evaluator::FormulaEvaluator;
 use super::graph::{Graph, Id, Node};
 use super::{Formula, Parameter, scalar};
-use crate::field::Field;
+use crate::field::{Evaluator, Field, Frame};
 use crate::math::newton::{self, StepLimits, step_to_surface};
 use glam::DVec3;
 use serde::Serialize;
@@ -271,18 +272,18 @@ impl Formula {
     }
 
     /// |∇f| at a point in the coordinates of the formula, if f is defined there.
-    fn slope_at(&mut self, p: DVec3) -> Option<f64> {
-        let (value, gradient) = self.value_and_gradient(p - self.origin);
+    fn slope_at(&self, p: DVec3) -> Option<f64> {
+        let (value, gradient) = self.value_and_gradient(p);
         (value.is_finite() && gradient.is_finite()).then(|| gradient.length())
     }
 
     /// A point of the surface near a point, both in the coordinates of the formula; the point itself if none is found.
-    fn place_near(&mut self, p: DVec3) -> DVec3 {
+    fn place_near(&self, p: DVec3) -> DVec3 {
         let at_rest = NEAR * p.length().max(1.0);
         let limits = StepLimits { at_rest, ..StepLimits::steps(newton::STEPS) };
-        let origin = self.origin;
-        let step_at = |place| Some((step_to_surface(self.value_and_gradient(place)), ()));
-        newton::land(p - origin, limits, step_at).map_or(p, |(place, ())| origin + place)
+        let mut evaluator = FormulaEvaluator::new(self, Frame::default());
+        let step_at = |place| Some((step_to_surface(evaluator.value_and_gradient(place)), ()));
+        newton::land(p, limits, step_at).map_or(p, |(place, ())| place)
     }
 }
 

@@ -12,7 +12,7 @@ use super::compiled::Compiled;
 use super::graph::{Id, MIN_BLEND_WIDTH, Node};
 use super::operations::Unary;
 use super::{interval, scalar};
-use crate::field::{BranchNumbers, SHARP};
+use crate::field::SHARP;
 use crate::math::Bounds;
 use crate::math::newton::{STEPS, step_to_curve};
 use crate::slices::pause;
@@ -63,30 +63,30 @@ struct TieCell {
 }
 
 impl Branches {
-    /// Cells of the box, no wider than `width`, outside of which the surface has no crease. Where numbers are new, f has no choices from
-    /// now on if there is no cell; else only those whose operands meet smoothly on the surface are none. Products are then told by their
-    /// factors if these cross.
-    pub(super) async fn crease_cells(
-        &mut self,
+    /// Cells of another box, no wider than `width`, outside of which the surface has no crease.
+    pub(super) async fn crease_cells(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
+        let found = self.search_creases(values, bounds, width).await;
+        found.map_or_else(Vec::new, |found| found.cells)
+    }
+
+    /// Cells of the box, no wider than `width`, outside of which the surface of a function has no crease, and the branches of the function
+    /// as they are there. It has no choices if there is no cell; else only those whose operands meet smoothly on the surface are none.
+    /// Products are told by their factors if these cross.
+    pub(super) async fn found_in(
         f: &Compiled,
         values: &[f64],
         bounds: &Bounds,
         width: f64,
-        numbers: BranchNumbers,
-    ) -> Vec<Bounds> {
-        if numbers == BranchNumbers::Kept {
-            let found = self.search_creases(values, bounds, width).await;
-            return found.map_or_else(Vec::new, |found| found.cells);
-        }
-        if let Some(of_factors) = Self::of_factors(f, values) {
-            *self = of_factors;
-            let cells = self.take_creases(values, bounds, width).await;
+    ) -> (Vec<Bounds>, Self) {
+        if let Some(mut branches) = Self::of_factors(f, values) {
+            let cells = branches.take_creases(values, bounds, width).await;
             if !cells.is_empty() {
-                return cells;
+                return (cells, branches);
             }
         }
-        *self = Self::new(f, values);
-        self.take_creases(values, bounds, width).await
+        let mut branches = Self::new(f, values);
+        let cells = branches.take_creases(values, bounds, width).await;
+        (cells, branches)
     }
 
     async fn take_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {

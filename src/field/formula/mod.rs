@@ -41,6 +41,7 @@
 mod ast;
 mod branches;
 mod build;
+mod builder;
 mod call;
 mod compiled;
 mod conditions;
@@ -48,10 +49,10 @@ mod control;
 mod creases;
 mod derivative;
 mod display;
-mod double;
 mod elsewhere;
 mod error;
 mod eval;
+mod evaluator;
 mod graph;
 mod interval;
 mod latex;
@@ -73,22 +74,26 @@ mod tests;
 mod token;
 
 pub use ast::{FUNCTIONS, FunctionInfo};
+pub use builder::Expr;
 pub use control::Grip;
 pub use error::{FormulaError, FormulaErrorKind, Mended, utf16_offset};
 pub use lex::name_pattern;
 pub use mathml::{MathGroup, MathNode, MathToken};
 
-use super::{Bounded, BranchNumbers, Branched, Enclosure, Field, Jet, UnitCell};
-use crate::math::{Bounds, Interval, LANES, Lanes, Sym3};
+use super::{Creased, Evaluator, Facts, Field, Frame, Jet, UnitCell};
+use crate::math::Bounds;
 use crate::slices::Work;
 use ast::Equation;
-use branches::Branches;
+use branches::{Branches, SharedBranches};
 use compiled::Compiled;
-use glam::{DVec3, Vec3};
+use core::any::Any;
+use evaluator::FormulaEvaluator;
+use glam::DVec3;
 use graph::{Graph, Id};
 use serde::{Deserialize, Serialize};
 use solids::Solid;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Maximum length of a formula in bytes of UTF-8. Longer text is refused before it is parsed, so that the time that a typed character
 /// takes is bounded: a sum of this length is parsed and compiled in a millisecond, a product of five hundred factors in nine.
@@ -136,12 +141,14 @@ impl Parameter {
 
 /// Field f(x, y, z) given by a formula.
 ///
-/// Batched evaluation does not allocate once it is warm; the Hessian and the bounds are compiled when first asked for.
+/// Copies share all that does not depend on the values of the parameters; [another value](Formula::with) compiles nothing but where
+/// it makes another function of the formula, as a smooth minimum of width 0 is one. The Hessian and the bounds are compiled when first
+/// asked for.
 ///
 /// ```
 /// use marching_particles::{Field, Formula};
 ///
-/// let mut field = Formula::parse("x^2/a^2 + y^2 + z^2 = 1")?.with("a", 2.0)?;
+/// let field = Formula::parse("x^2/a^2 + y^2 + z^2 = 1")?.with("a", 2.0)?;
 /// let jet = field.jet((2.0, 0.0, 0.0).into());
 /// assert_eq!((jet.value, jet.gradient.x), (0.0, 1.0));
 ///
@@ -151,41 +158,30 @@ impl Parameter {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Formula {
-    text: String,
-    equation: Equation,
+    written: Arc<WrittenFormula>,
     /// Equation of the same surface that is evaluated instead, if [`Formula::without_powers`] has found one.
-    simplified: Option<Equation>,
+    simplified: Option<Arc<Equation>>,
     /// The graph of the surface, and its node, from which a solid is made.
-    surface: (Graph, Id),
+    surface: Arc<(Graph, Id)>,
     /// The solid that is sampled in place of the surface, if one is: a sheet of some thickness, closed by a box or not.
     solid: Solid,
     parameters: Vec<Parameter>,
+    /// Values of `parameters`, as the compiled formula takes them.
+    values: Vec<f64>,
+    compiled: Compiled,
+    /// The smooth branches of f.
+    branches: SharedBranches,
+}
+
+/// A formula as it was written.
+#[derive(Debug)]
+struct WrittenFormula {
+    text: String,
+    equation: Equation,
     /// Names of the parameters that were not declared.
     automatic: Vec<String>,
     /// Declared names that the formula does not use.
     unused: Vec<String>,
-    /// Values of `parameters`, as the compiled formula takes them.
-    values: Vec<f64>,
-    compiled: Compiled,
-    /// The smooth branches of f, one of which may be evaluated in its place.
-    branches: Branches,
-    scratch: EvaluationScratch,
-    /// The scale of arsinh(f/s), which the batched methods give in double precision; they give f without one.
-    double: Option<f64>,
-    /// The point from which positions are counted, [`Field::origin`].
-    origin: DVec3,
-}
-
-/// Memory that evaluations use again.
-#[derive(Clone, Debug, Default)]
-struct EvaluationScratch {
-    registers: Vec<Lanes>,
-    /// Values of the nodes in double precision, with derivatives up to the second, with first ones, and alone.
-    jets: scalar::JetScratch,
-    slopes: Vec<scalar::ForwardJet<0>>,
-    doubles: Vec<f64>,
-    /// Boxes in the coordinates of the formula.
-    boxes: Vec<Bounds>,
 }
 
 impl Formula {
@@ -231,23 +227,30 @@ impl Formula {
         parameters.extend(automatic.iter().map(|name| Parameter::automatic(name)));
 
         let compiled = Compiled::new(&parsed.equation, &parameters)?;
+        let written = WrittenFormula { text: text.to_owned(), equation: parsed.equation, automatic, unused };
+        Ok(Self::of(written, parameters, compiled))
+    }
+
+    /// The field of an equation with automatic parameters of these names, to be evaluated as it is written.
+    fn of_equation(text: &str, equation: Equation, automatic: Vec<String>) -> Result<Self, FormulaError> {
+        let parameters: Vec<Parameter> = automatic.iter().map(|name| Parameter::automatic(name)).collect();
+        let compiled = Compiled::new(&equation, &parameters)?;
+        let written = WrittenFormula { text: text.to_owned(), equation, automatic, unused: Vec::new() };
+        Ok(Self::of(written, parameters, compiled))
+    }
+
+    fn of(written: WrittenFormula, parameters: Vec<Parameter>, compiled: Compiled) -> Self {
         let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
-        Ok(Self {
-            text: text.to_owned(),
+        Self {
+            written: Arc::new(written),
             simplified: None,
-            surface: compiled.graph.part(compiled.root),
+            surface: Arc::new(compiled.graph.part(compiled.root)),
             solid: Solid::default(),
-            branches: Branches::new(&compiled, &values),
+            branches: SharedBranches::new(Branches::new(&compiled, &values)),
             values,
-            automatic,
-            unused,
             compiled,
-            equation: parsed.equation,
             parameters,
-            scratch: EvaluationScratch::default(),
-            double: None,
-            origin: DVec3::ZERO,
-        })
+        }
     }
 
     /// Field of the same surface in which powers and repeated factors stand once: u in place of u², √u or |u|.
@@ -258,27 +261,18 @@ impl Formula {
     #[doc(hidden)]
     pub fn without_powers(mut self) -> Self {
         if self.simplified.is_none()
-            && let Some(simplified) = powers::without_powers(&self.equation)
+            && let Some(simplified) = powers::without_powers(&self.written.equation)
             // The simplified equation is shorter, so it meets no limit; if it did, the formula itself would still do.
             && let Ok(compiled) = Compiled::new(&simplified, &self.parameters)
         {
-            self.simplified = Some(simplified);
-            self.surface = compiled.graph.part(compiled.root);
+            self.simplified = Some(Arc::new(simplified));
+            self.surface = Arc::new(compiled.graph.part(compiled.root));
             self.use_compiled(compiled);
             if self.solid != Solid::default() {
                 self.make_solid();
             }
         }
         self
-    }
-
-    /// The program for the bounds of a factor of f, or of its branches.
-    fn factor(&mut self, factor: usize) -> &mut interval::FactorProgram {
-        if self.branches.factors.is_empty() {
-            &mut self.compiled.factors(&self.values)[factor]
-        } else {
-            self.branches.factor(factor, &self.values)
-        }
     }
 
     /// Field of the solid that the faces of a box close: max(f, x − `bounds.max[0]`, `bounds.min[0]` − x, …), which is negative in the
@@ -292,17 +286,17 @@ impl Formula {
     }
 
     /// [`Formula::closed_by`], and opposite faces of the box are to be the same along every axis on which it is a whole number of
-    /// [periods](Formula::surface_periods) wide: [`Field::unit_cell`] says which.
+    /// [periods](Formula::surface_periods) wide: [`Facts::unit_cell`] says which.
     #[must_use]
     pub fn repeated_in(mut self, bounds: &Bounds) -> Self {
         self.solid.is_cell = true;
         self.closed_by(bounds)
     }
 
-    /// The period of the surface, which no box closes, along each axis: see [`Field::periods`].
+    /// The period of the surface, which no box closes, along each axis: see [`Facts::periods`].
     #[must_use]
     pub fn surface_periods(&self) -> [Option<f64>; 3] {
-        let (graph, root) = &self.surface;
+        let (graph, root) = &*self.surface;
         [0, 1, 2].map(|axis| periods::period(graph, *root, axis, &self.values))
     }
 
@@ -340,21 +334,21 @@ impl Formula {
 
     /// Compiles what the surface is made to, anew from f.
     fn make_solid(&mut self) {
-        let (mut graph, f) = self.surface.clone();
+        let (mut graph, f) = (*self.surface).clone();
         let root = self.solid.made_of(&mut graph, f);
         let (graph, root) = graph.part(root);
         self.use_compiled(Compiled::from_graph(graph, root, &self.values));
     }
 
     fn use_compiled(&mut self, compiled: Compiled) {
-        self.branches = Branches::new(&compiled, &self.values);
+        self.branches = SharedBranches::new(Branches::new(&compiled, &self.values));
         self.compiled = compiled;
     }
 
     /// Text that was parsed.
     #[must_use]
     pub fn text(&self) -> &str {
-        &self.text
+        &self.written.text
     }
 
     /// Formula in normal form: with explicit products and no redundant brackets. It is ASCII except for Greek names,
@@ -362,21 +356,21 @@ impl Formula {
     #[must_use]
     #[doc(hidden)]
     pub fn normal_form(&self) -> String {
-        display::plain_equation(&self.equation)
+        display::plain_equation(&self.written.equation)
     }
 
     /// Whether both formulas have the same syntax tree, regardless of spans.
     #[must_use]
     #[doc(hidden)]
     pub fn same_tree(&self, other: &Self) -> bool {
-        self.equation == other.equation
+        self.written.equation == other.written.equation
     }
 
     /// Formula in presentation MathML: the content of a `math` element.
     #[must_use]
     #[doc(hidden)]
     pub fn mathml(&self) -> MathNode {
-        mathml::equation(&self.equation)
+        mathml::equation(&self.written.equation)
     }
 
     /// Parameters that the formula uses: the declared ones, then the automatic ones.
@@ -388,7 +382,7 @@ impl Formula {
     /// Names of the parameters that were not declared.
     #[must_use]
     pub fn auto(&self) -> &[String] {
-        &self.automatic
+        &self.written.automatic
     }
 
     /// Whether f is the same everywhere for any values of the parameters. Such a field has no surface.
@@ -409,7 +403,7 @@ impl Formula {
             return Err(FormulaError::new(FormulaErrorKind::BadParameter, 0..0, message));
         }
         let Some(index) = self.parameters.iter().position(|parameter| parameter.name == name) else {
-            if self.unused.iter().any(|unused| unused == name) {
+            if self.written.unused.iter().any(|unused| unused == name) {
                 return Ok(());
             }
             let message = format!("The formula has no parameter `{name}`");
@@ -422,44 +416,19 @@ impl Formula {
         Ok(())
     }
 
-    /// Whether the batched methods compute in double precision.
-    fn is_double(&self) -> bool {
-        self.double.is_some() || self.origin != DVec3::ZERO
-    }
-
-    /// Runs `enclose` on boxes in the coordinates of the formula that hold these boxes.
-    fn on_formula_boxes<R>(
-        &mut self,
-        boxes: &[Bounds],
-        enclose: impl FnOnce(&mut Self, &[Bounds]) -> R,
-    ) -> R {
-        if self.origin == DVec3::ZERO {
-            return enclose(self, boxes);
-        }
-        let mut moved = core::mem::take(&mut self.scratch.boxes);
-        moved.clear();
-        moved.extend(boxes.iter().map(|own| {
-            let [lo, hi] = [own.lo(), own.hi()].map(|corner| (self.origin + corner).to_array());
-            Bounds { min: lo.map(f64::next_down), max: hi.map(f64::next_up) }
-        }));
-        let result = enclose(self, &moved);
-        self.scratch.boxes = moved;
-        result
-    }
-
     /// f, ∇f and ∇∇f at `p`, computed in double precision from the transformed graphs that the batched programs are
     /// compiled from. It equals [`Field::jet`] up to rounding and is derived independently of it.
     #[doc(hidden)]
-    pub fn transformed_jet(&mut self, p: DVec3) -> Jet {
-        let compiled = self.branches.active(&mut self.compiled);
-        compiled.transformed_jet(&self.values, place(self.origin, p))
+    #[must_use]
+    pub fn transformed_jet(&self, p: DVec3) -> Jet {
+        self.compiled.transformed_jet(p)
     }
-}
 
-/// A point that is counted from `origin`, in the coordinates of the formula.
-fn place(origin: DVec3, p: DVec3) -> DVec3 {
-    // Adding 0 would take the sign off −0, to the other side of a jump.
-    if origin == DVec3::ZERO { p } else { origin + p }
+    /// The same formula with other branches.
+    fn with_branches(&self, branches: Branches) -> Arc<dyn Creased> {
+        let compiled = self.compiled.clone();
+        Arc::new(Self { branches: SharedBranches::new(branches), compiled, ..self.clone() })
+    }
 }
 
 /// Syntax tree of `text`, and its undeclared names.
@@ -536,197 +505,60 @@ fn automatic_names(
 }
 
 impl Field for Formula {
-    fn periods(&self) -> [Option<f64>; 3] {
-        if self.solid.closed.is_some() { [None; 3] } else { self.surface_periods() }
+    fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
+        FormulaEvaluator::new(self, Frame::default()).value_and_gradient(p)
     }
 
-    fn unit_cell(&self) -> Option<UnitCell> {
-        let bounds = self.solid.closed.filter(|_| self.solid.is_cell)?;
-        let (size, periods) = (bounds.size(), self.surface_periods());
-        let repeats = [0, 1, 2].map(|axis| periods[axis].is_some_and(|p| periods::is_whole(size[axis], p)));
-        Some(UnitCell { bounds: bounds.relative_to(self.origin()), repeats })
+    fn jet(&self, p: DVec3) -> Jet {
+        FormulaEvaluator::new(self, Frame::default()).jet(p)
     }
 
-    fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
-        let is_double = self.is_double();
-        let compiled = self.branches.active(&mut self.compiled);
-        if is_double {
-            for (&p, value) in points.iter().zip(value) {
-                let exact =
-                    compiled.value(&self.values, place(self.origin, p.as_dvec3()), &mut self.scratch.doubles);
-                *value = double::value(exact, self.double);
-            }
-            return;
-        }
-        let value = &mut value[..points.len()];
-        eval::run(&compiled.value_program, &mut self.scratch.registers, points, |first, [f]| {
-            value[first..].iter_mut().zip(f.0).for_each(|(value, f)| *value = f);
-        });
+    /// Around another origin than zero batches are computed in double precision, which takes longer.
+    fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
+        Box::new(FormulaEvaluator::new(self, frame))
     }
 
-    fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
-        let is_double = self.is_double();
-        let compiled = self.branches.active(&mut self.compiled);
-        if is_double {
-            for (k, &p) in points.iter().enumerate() {
-                let exact = compiled.gradient(
-                    &self.values,
-                    place(self.origin, p.as_dvec3()),
-                    &mut self.scratch.doubles,
-                );
-                (value[k], gradient[k]) = double::gradient(exact, self.double);
-            }
-            return;
-        }
-        let (value, gradient) = (&mut value[..points.len()], &mut gradient[..points.len()]);
-        eval::run(&compiled.gradient_program, &mut self.scratch.registers, points, |first, [f, x, y, z]| {
-            let slots = value[first..].iter_mut().zip(&mut gradient[first..]);
-            for (k, (value, gradient)) in slots.take(LANES).enumerate() {
-                (*value, *gradient) = (f.0[k], Vec3::new(x.0[k], y.0[k], z.0[k]));
-            }
-        });
-    }
-
-    fn hessians(
-        &mut self,
-        points: &[Vec3],
-        value: &mut [f32],
-        gradient: &mut [Vec3],
-        hessian: &mut [Sym3<f32>],
-    ) {
-        let is_double = self.is_double();
-        let compiled = self.branches.active(&mut self.compiled);
-        if is_double {
-            for (k, &p) in points.iter().enumerate() {
-                let jet =
-                    compiled.jet(&self.values, place(self.origin, p.as_dvec3()), &mut self.scratch.jets);
-                (value[k], gradient[k], hessian[k]) = double::hessian(&jet, self.double);
-            }
-            return;
-        }
-        let n = points.len();
-        let (value, gradient, hessian) = (&mut value[..n], &mut gradient[..n], &mut hessian[..n]);
-        let program = compiled.hessian_program(&self.values);
-        let store = |first: usize, results: [&Lanes; 10]| {
-            let slots = value[first..].iter_mut().zip(&mut gradient[first..]).zip(&mut hessian[first..]);
-            for (k, ((value, gradient), hessian)) in slots.take(LANES).enumerate() {
-                let [f, x, y, z, xx, xy, xz, yy, yz, zz] = results.map(|lanes| lanes.0[k]);
-                (*value, *gradient) = (f, Vec3::new(x, y, z));
-                *hessian = Sym3 { xx, xy, xz, yy, yz, zz };
-            }
-        };
-        eval::run(program, &mut self.scratch.registers, points, store);
-    }
-
-    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
-        let compiled = self.branches.active(&mut self.compiled);
-        let (value, gradient) =
-            compiled.first_order(&self.values, place(self.origin, p), &mut self.scratch.slopes);
-        self.double.map_or((value, gradient), |scale| (value / scale, gradient / scale))
-    }
-
-    fn jet(&mut self, p: DVec3) -> Jet {
-        let compiled = self.branches.active(&mut self.compiled);
-        let jet = compiled.jet(&self.values, place(self.origin, p), &mut self.scratch.jets);
-        self.double.map_or(jet, |scale| double::scaled(jet, scale))
-    }
-
-    fn use_double(&mut self, scale: Option<f64>) {
-        self.double = scale;
-    }
-
-    fn bounded(&mut self) -> Option<&mut dyn Bounded> {
-        Some(self)
-    }
-
-    fn origin(&self) -> DVec3 {
-        self.origin
-    }
-
-    /// With another origin than zero the batched methods compute in double precision, which takes longer: the coordinates of the
-    /// formula have more digits than single precision holds.
-    fn set_origin(&mut self, origin: DVec3) {
-        self.origin = origin;
-    }
-
-    fn branched(&mut self) -> Option<&mut dyn Branched> {
-        Some(self)
-    }
-
-    fn why_constant(&self) -> Option<String> {
+    fn facts(&self) -> Facts {
+        let of_surface = self.surface_periods();
+        let is_closed = self.solid.closed.is_some();
         let has_coordinates =
             self.surface.0.nodes().iter().any(|node| matches!(node, graph::Node::Coordinate(_)));
-        if has_coordinates {
-            None
-        } else {
-            self.parameters.first().map(|first| spelling::no_coordinate(&first.name))
+        let first = self.parameters.first().filter(|_| !has_coordinates);
+        Facts {
+            periods: if is_closed { [None; 3] } else { of_surface },
+            unit_cell: self.solid.closed.filter(|_| self.solid.is_cell).map(|bounds| {
+                let size = bounds.size();
+                let is_repeated =
+                    |axis: usize| of_surface[axis].is_some_and(|p| periods::is_whole(size[axis], p));
+                UnitCell { bounds, repeats: [0, 1, 2].map(is_repeated) }
+            }),
+            sampled_as: self.simplified.as_deref().map(display::plain_equation),
+            why_constant: first.map(|first| spelling::no_coordinate(&first.name)),
         }
     }
 
-    /// The equation that [`Formula::without_powers`] has found.
-    fn sampled_as(&self) -> Option<String> {
-        self.simplified.as_ref().map(display::plain_equation)
+    fn creased(&self) -> Option<&dyn Creased> {
+        Some(self)
     }
 }
 
-impl Branched for Formula {
-    fn crease_cells(&mut self, bounds: &Bounds, width: f64, numbers: BranchNumbers) -> Work<'_, Vec<Bounds>> {
-        let bounds = self.on_formula_boxes(&[*bounds], |_, boxes| boxes[0]);
+impl Creased for Formula {
+    fn creases_in<'a>(&'a self, bounds: &Bounds, width: f64) -> Work<'a, (Vec<Bounds>, Arc<dyn Creased>)> {
+        let bounds = *bounds;
         Box::pin(async move {
-            let cells =
-                self.branches.crease_cells(&self.compiled, &self.values, &bounds, width, numbers).await;
-            cells.iter().map(|cell| cell.relative_to(self.origin)).collect()
+            let (cells, branches) = Branches::found_in(&self.compiled, &self.values, &bounds, width).await;
+            (cells, self.with_branches(branches))
         })
     }
 
-    /// The numbers are the same whatever was asked before, but for those beyond the first 256, and they outlast a change of the
-    /// parameters, unless that brings the width of a smooth minimum to 0 or an exponent to 1.
-    fn branch_at(&mut self, p: DVec3) -> u32 {
-        self.branches.at(&self.values, place(self.origin, p))
-    }
-
-    fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
-        self.on_formula_boxes(&[*bounds], |field, boxes| field.branches.within(&field.values, &boxes[0]))
-    }
-
-    /// # Panics
-    ///
-    /// If no branch has this number.
-    fn select_branch(&mut self, branch: Option<u32>) {
-        self.branches.select(branch, &self.values);
-    }
-}
-
-impl Bounded for Formula {
-    fn operations(&mut self) -> usize {
-        self.compiled.value_program.instructions.len()
-    }
-
-    fn factors(&mut self) -> usize {
-        match self.branches.factors.len() {
-            0 => self.compiled.factors(&self.values).len(),
-            of_branches => of_branches,
-        }
-    }
-
-    fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]) {
-        self.on_formula_boxes(boxes, |field, boxes| {
-            field.factor(factor).first.enclose(boxes, out);
-            if !field.branches.factors.is_empty() {
-                field.branches.leave_out(factor, &field.values, boxes, out);
-            }
-        });
-    }
-
-    fn is_zero_of(&mut self, factor: usize, zero: DVec3) -> bool {
-        let place = place(self.origin, zero);
-        self.branches.factors.is_empty() || self.branches.is_given_by(factor, &self.values, place)
-    }
-
-    fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]) {
-        self.on_formula_boxes(boxes, |field, boxes| match &mut field.factor(factor).second {
-            Some(program) => program.enclose_second(boxes, out),
-            None => out[..boxes.len()].fill(Sym3::splat(Interval::EVERYTHING)),
-        });
+    /// The numbers of branches outlast a change of the parameters, unless that brings the width of a smooth minimum to 0 or an exponent
+    /// to 1.
+    fn with_branches_of(&self, other: &dyn Creased) -> Arc<dyn Creased> {
+        let other = (other as &dyn Any).downcast_ref::<Self>();
+        let is_same = |other: &&Self| Arc::ptr_eq(&self.compiled.graph, &other.compiled.graph);
+        let Some(other) = other.filter(is_same) else { return Arc::new(self.clone()) };
+        let mut branches = other.branches.lock().clone();
+        branches.set_parameters(&self.values);
+        self.with_branches(branches)
     }
 }

@@ -8,6 +8,8 @@
 
 use super::graph::{Blend, Graph, Id, Node};
 use super::operations::{Binary, Unary};
+use core::ops::Deref;
+use std::sync::Arc;
 
 /// Operation of an instruction. R\[·\] is the value of a register, U\[·\] that of a uniform.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,9 +38,25 @@ pub(super) struct Instruction {
     pub(super) c: u32,
 }
 
-/// A compiled graph with any number of results.
-#[derive(Clone, Debug, Default)]
+/// A compiled graph with any number of results, and the values of its uniforms. Copies share the instructions.
+#[derive(Clone, Debug)]
 pub(super) struct Program {
+    tape: Arc<Tape>,
+    /// Values of the uniforms.
+    pub(super) uniforms: Vec<f32>,
+}
+
+impl Deref for Program {
+    type Target = Tape;
+
+    fn deref(&self) -> &Tape {
+        &self.tape
+    }
+}
+
+/// The instructions of a program, which do not depend on the values of parameters.
+#[derive(Debug, Default)]
+pub(super) struct Tape {
     /// Uniform nodes; their operands are indices into this list.
     uniform_nodes: Vec<Node>,
     pub(super) instructions: Vec<Instruction>,
@@ -48,16 +66,11 @@ pub(super) struct Program {
     pub(super) outputs: Vec<u32>,
     /// Number of registers.
     pub(super) registers: usize,
-    /// Current values of the uniforms.
-    pub(super) uniforms: Vec<f32>,
-    /// Scratch space of [`Program::set_parameters`].
-    doubles: Vec<f64>,
 }
 
 impl Program {
-    /// Compiles the nodes `outputs` of `graph`. The uniforms have no values until [`Program::set_parameters`] is
-    /// called.
-    pub(super) fn compile(graph: &Graph, outputs: &[Id]) -> Self {
+    /// Compiles the nodes `outputs` of `graph`, with these values of the parameters.
+    pub(super) fn compile(graph: &Graph, outputs: &[Id], parameters: &[f64]) -> Self {
         let (low, outputs) = graph.rewritten(outputs, |low, node| match node {
             Node::Smin(blend, a, b, k) => smooth_minimum(low, blend, a, b, k),
             Node::Select(_, a, b, u, v) => {
@@ -67,19 +80,21 @@ impl Program {
             Node::Power(a, n) => integer_power(low, a, n),
             node => low.intern(node),
         });
-        Compiler::new(&low, &outputs).compile()
+        let tape = Compiler::new(&low, &outputs).compile();
+        let mut program = Self { tape: Arc::new(tape), uniforms: Vec::new() };
+        program.set_parameters(parameters);
+        program
     }
 
     /// Recomputes the uniforms from the values of the parameters.
     #[expect(clippy::cast_possible_truncation, reason = "instructions take single precision")]
     pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
-        self.doubles.clear();
-        self.uniforms.clear();
-        for node in &self.uniform_nodes {
-            let value = node.evaluate(parameters, [f64::NAN; 3], |id| self.doubles[id as usize]);
-            self.doubles.push(value);
-            self.uniforms.push(value as f32);
+        let mut doubles: Vec<f64> = Vec::with_capacity(self.tape.uniform_nodes.len());
+        for node in &self.tape.uniform_nodes {
+            doubles.push(node.evaluate(parameters, [f64::NAN; 3], |id| doubles[id as usize]));
         }
+        self.uniforms.clear();
+        self.uniforms.extend(doubles.iter().map(|&value| value as f32));
     }
 
     /// Number of operations, which [`MAX_OPERATIONS`](super::MAX_OPERATIONS) bounds.
@@ -141,7 +156,7 @@ fn integer_power(low: &mut Graph, x: Id, n: i32) -> Id {
 struct Compiler<'a> {
     graph: &'a Graph,
     outputs: &'a [Id],
-    program: Program,
+    tape: Tape,
     /// The nodes that the outputs need, in the order of the graph, which is that of the instructions.
     needed: Vec<Id>,
     /// Index in `uniform_nodes` of each uniform node that is needed.
@@ -159,7 +174,7 @@ impl<'a> Compiler<'a> {
         Self {
             graph,
             outputs,
-            program: Program::default(),
+            tape: Tape::default(),
             needed: graph.needed_by(outputs),
             uniform: vec![0; graph.len()],
             code: Vec::new(),
@@ -168,23 +183,23 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    fn compile(mut self) -> Program {
+    fn compile(mut self) -> Tape {
         for at in 0..self.needed.len() {
             let id = self.needed[at];
             if self.graph.is_uniform(id) {
                 let node = self.graph.node(id).mapped(|operand| self.uniform[operand as usize]);
-                self.uniform[id as usize] = index(self.program.uniform_nodes.len());
-                self.program.uniform_nodes.push(node);
+                self.uniform[id as usize] = index(self.tape.uniform_nodes.len());
+                self.tape.uniform_nodes.push(node);
             } else if self.register[id as usize].is_none() {
                 self.register[id as usize] = Some(self.emit(id));
             }
         }
         for &output in self.outputs {
             let register = self.operand(output);
-            self.program.outputs.push(register);
+            self.tape.outputs.push(register);
         }
         self.allocate();
-        self.program
+        self.tape
     }
 
     fn push(&mut self, op: Op, [a, b, c]: [u32; 3]) -> u32 {
@@ -264,11 +279,11 @@ impl<'a> Compiler<'a> {
         for (at, instruction) in self.code.iter().enumerate() {
             registers(instruction).for_each(|value| last_use[value as usize] = Some(at));
         }
-        for &output in &self.program.outputs {
+        for &output in &self.tape.outputs {
             last_use[output as usize] = Some(NEVER);
         }
         let (mut real, mut is_free) = (vec![0; self.values], Vec::new());
-        for (axis, coordinate) in self.program.coordinates.iter_mut().enumerate() {
+        for (axis, coordinate) in self.tape.coordinates.iter_mut().enumerate() {
             *coordinate = last_use[axis].map(|_| lowest_free(&mut is_free));
             real[axis] = coordinate.unwrap_or(0);
         }
@@ -283,12 +298,12 @@ impl<'a> Compiler<'a> {
                 mapped.b = lowest_free(&mut is_free);
                 real[instruction.b as usize] = mapped.b;
             }
-            self.program.instructions.push(mapped);
+            self.tape.instructions.push(mapped);
         }
-        for output in &mut self.program.outputs {
+        for output in &mut self.tape.outputs {
             *output = real[*output as usize];
         }
-        self.program.registers = is_free.len();
+        self.tape.registers = is_free.len();
     }
 }
 

@@ -98,7 +98,7 @@ fn a_forward_and_a_backward_sweep_give_the_same_gradient() {
 #[test]
 fn periods_are_found_along_each_axis() {
     use core::f64::consts::{PI, TAU};
-    let of = |text: &str| compiled(text).periods();
+    let of = |text: &str| compiled(text).facts().periods;
     let close = |text: &str, wanted: [Option<f64>; 3]| {
         let found = of(text);
         for axis in 0..3 {

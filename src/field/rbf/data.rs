@@ -147,14 +147,22 @@ impl RbfData {
         Jet { value, gradient, hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
     }
 
-    /// f and ∇f at each of `points`, four at a time, equal to those of [`RbfData::jet`] up to rounding.
-    pub(super) fn gradients(&self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
+    /// f and ∇f at each of `points`, counted from `origin`, four at a time, equal to those of [`RbfData::jet`] up to rounding.
+    pub(super) fn gradients(
+        &self,
+        origin: DVec3,
+        points: &[Vec3],
+        value: &mut [f64],
+        gradient: &mut [DVec3],
+    ) {
         for ((points, value), gradient) in
             points.chunks(QUAD).zip(value.chunks_mut(QUAD)).zip(gradient.chunks_mut(QUAD))
         {
             let last = points.len() - 1;
-            let sums =
-                self.sums(&[0, 1, 2].map(|axis| array::from_fn(|k| f64::from(points[k.min(last)][axis]))));
+            let sums = self.sums(
+                &[0, 1, 2]
+                    .map(|axis| array::from_fn(|k| origin[axis] + f64::from(points[k.min(last)][axis]))),
+            );
             for k in 0..points.len() {
                 value[k] = sums[0][k];
                 gradient[k] = DVec3::new(sums[1][k], sums[2][k], sums[3][k]);

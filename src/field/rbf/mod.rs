@@ -17,7 +17,7 @@ pub use frame::CentredFrame;
 pub(crate) use pulls::pulled_box;
 pub use pulls::{LONGEST_PULL, Pull};
 
-use super::{Field, Jet};
+use super::{Evaluator, Field, Frame, Jet, Pointwise};
 use crate::math::Sym3;
 use glam::{DVec3, Vec3};
 use pulls::Pulls;
@@ -33,7 +33,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct RbfField {
     data: Arc<RbfData>,
-    tree: tree::CellTree,
+    tree: Arc<tree::CellTree>,
     pulls: Pulls,
 }
 
@@ -47,7 +47,7 @@ impl RbfField {
     pub fn new(data: impl Into<Arc<RbfData>>) -> Result<Self, DataError> {
         let data = data.into();
         data.check()?;
-        let tree = tree::CellTree::new(&data);
+        let tree = Arc::new(tree::CellTree::new(&data));
         Ok(Self { data, tree, pulls: Pulls::default() })
     }
 
@@ -78,19 +78,85 @@ impl RbfField {
 }
 
 impl Field for RbfField {
+    fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
+        let jet = self.jet(p);
+        (jet.value, jet.gradient)
+    }
+
+    fn jet(&self, p: DVec3) -> Jet {
+        let mut jet = self.data.jet(self.pulls.back(p));
+        self.pulls.pull_back(p, &mut jet);
+        jet
+    }
+
+    fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
+        Box::new(RbfEvaluator { field: self, frame, places: Vec::new() })
+    }
+}
+
+/// An interpolant at work.
+struct RbfEvaluator<'a> {
+    field: &'a RbfField,
+    frame: Frame,
+    /// The points that are pulled to those of a batch.
+    places: Vec<Vec3>,
+}
+
+impl RbfEvaluator<'_> {
+    /// Calls `store` with the index of each point and with the first numbers of f, ∇f and ∇∇f at it, before they are scaled.
+    fn sums<const N: usize>(&mut self, points: &[Vec3], store: impl FnMut(usize, [f32; N])) {
+        let Self { field: RbfField { data, tree, pulls }, frame, places } = self;
+        let pulls = Some(pulls).filter(|pulls| !pulls.list().is_empty());
+        let points = match pulls {
+            None => points,
+            Some(pulls) => {
+                let pulled = |p: &Vec3| (pulls.back(frame.place(p.as_dvec3())) - frame.origin).as_vec3();
+                places.clear();
+                places.extend(points.iter().map(pulled));
+                places
+            }
+        };
+        tree.sums(data, frame.origin, points, store);
+    }
+
+    /// Takes the pulls into account of the derivatives at a point.
+    fn pull_back(&self, p: Vec3, jet: &mut Jet) {
+        self.field.pulls.pull_back(self.frame.place(p.as_dvec3()), jet);
+    }
+
+    fn is_pulled(&self) -> bool {
+        !self.field.pulls().is_empty()
+    }
+}
+
+impl Evaluator for RbfEvaluator<'_> {
+    fn frame(&self) -> Frame {
+        self.frame
+    }
+
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
-        self.tree.values(&self.data, self.pulls.places(points), &mut value[..points.len()]);
+        if self.frame.double.is_some() {
+            return Pointwise { field: self.field, frame: self.frame }.values(points, value);
+        }
+        let scale = self.frame.scale;
+        // Values alone are rarely needed, so they have no code of their own.
+        self.sums(points, |n, [v, ..]: [f32; 4]| value[n] = v * scale);
     }
 
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
-        let (value, gradient) = (&mut value[..points.len()], &mut gradient[..points.len()]);
-        self.tree.gradients(&self.data, self.pulls.places(points), value, gradient);
-        if self.pulls().is_empty() {
+        if self.frame.double.is_some() {
+            return Pointwise { field: self.field, frame: self.frame }.gradients(points, value, gradient);
+        }
+        let scale = self.frame.scale;
+        self.sums(points, |n, [v, x, y, z]| {
+            (value[n], gradient[n]) = (v * scale, Vec3::new(x, y, z) * scale);
+        });
+        if !self.is_pulled() {
             return;
         }
-        for (p, gradient) in points.iter().zip(gradient) {
+        for (&p, gradient) in points.iter().zip(gradient) {
             let mut jet = Jet { gradient: gradient.as_dvec3(), ..Jet::default() };
-            self.pulls.pull_back(p.as_dvec3(), &mut jet);
+            self.pull_back(p, &mut jet);
             *gradient = jet.gradient.as_vec3();
         }
     }
@@ -102,36 +168,44 @@ impl Field for RbfField {
         gradient: &mut [Vec3],
         hessian: &mut [Sym3<f32>],
     ) {
-        let n = points.len();
-        let (value, gradient, hessian) = (&mut value[..n], &mut gradient[..n], &mut hessian[..n]);
-        self.tree.hessians(&self.data, self.pulls.places(points), value, gradient, hessian);
-        if self.pulls().is_empty() {
+        if self.frame.double.is_some() {
+            let mut pointwise = Pointwise { field: self.field, frame: self.frame };
+            return pointwise.hessians(points, value, gradient, hessian);
+        }
+        let scale = self.frame.scale;
+        self.sums(points, |n, sums: [f32; 10]| {
+            let [v, x, y, z, xx, xy, xz, yy, yz, zz] = sums.map(|entry| entry * scale);
+            (value[n], gradient[n]) = (v, Vec3::new(x, y, z));
+            hessian[n] = Sym3 { xx, xy, xz, yy, yz, zz };
+        });
+        if !self.is_pulled() {
             return;
         }
-        for ((p, gradient), hessian) in points.iter().zip(gradient).zip(hessian) {
+        for ((&p, gradient), hessian) in points.iter().zip(gradient).zip(hessian) {
             let mut jet = Jet { value: 0.0, gradient: gradient.as_dvec3(), hessian: hessian.map(f64::from) };
-            self.pulls.pull_back(p.as_dvec3(), &mut jet);
+            self.pull_back(p, &mut jet);
             (*gradient, *hessian) = (jet.gradient.as_vec3(), jet.hessian.map(|entry| entry as f32));
         }
     }
 
     fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
-        let jet = self.jet(p);
-        (jet.value, jet.gradient)
+        self.frame.exact(self.field.value_and_gradient(self.frame.place(p)))
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {
-        let mut jet = self.data.jet(self.pulls.back(p));
-        self.pulls.pull_back(p, &mut jet);
-        jet
+        self.frame.jet(self.field.jet(self.frame.place(p)))
     }
 
     fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
-        if self.pulls().is_empty() {
-            return self.data.gradients(points, value, gradient);
+        if self.is_pulled() {
+            for (k, p) in points.iter().enumerate() {
+                (value[k], gradient[k]) = self.value_and_gradient(p.as_dvec3());
+            }
+            return;
         }
-        for (k, p) in points.iter().enumerate() {
-            (value[k], gradient[k]) = self.value_and_gradient(p.as_dvec3());
+        self.field.data.gradients(self.frame.origin, points, value, gradient);
+        for (value, gradient) in value.iter_mut().zip(gradient).take(points.len()) {
+            (*value, *gradient) = self.frame.exact((*value, *gradient));
         }
     }
 }

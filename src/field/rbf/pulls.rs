@@ -8,7 +8,7 @@
 use super::DataError;
 use crate::field::Jet;
 use crate::math::{Bounds, Sym3};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// Largest way of a pull, over its reach. Space folds from 0.58 on: one over the largest slope of (1 − s²)³, which is 1.717, at s = 1/√5.
@@ -85,48 +85,29 @@ pub(crate) fn pulled_box(bounds: &Bounds, pulls: &[Pull]) -> Bounds {
 
 /// Pulls that are made one after the other.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Pulls {
-    list: Vec<Pull>,
-    /// The points that come to those of a batch.
-    places: Vec<Vec3>,
-}
+pub(super) struct Pulls(Vec<Pull>);
 
 impl Pulls {
     pub(super) fn new(list: &[Pull]) -> Result<Self, DataError> {
         match list.iter().position(|pull| !pull.is_valid()) {
             Some(index) => Err(DataError::Pull { index }),
-            None => Ok(Self { list: list.to_vec(), ..Self::default() }),
+            None => Ok(Self(list.to_vec())),
         }
     }
 
     pub(super) fn list(&self) -> &[Pull] {
-        &self.list
+        &self.0
     }
 
     /// The point that comes to `p`.
     pub(super) fn back(&self, p: DVec3) -> DVec3 {
-        back(&self.list, p)
-    }
-
-    /// The points that come to those of a batch.
-    pub(super) fn places<'a>(&'a mut self, points: &'a [Vec3]) -> &'a [Vec3] {
-        let Self { list, places } = self;
-        if list.is_empty() {
-            return points;
-        }
-        places.clear();
-        places.extend(points.iter().map(|p| back(list, p.as_dvec3()).as_vec3()));
-        places
+        self.0.iter().rev().fold(p, |p, pull| pull.back(p))
     }
 
     /// Derivatives at `p` of the function whose derivatives at [`Pulls::back`] are those of `jet`.
     pub(super) fn pull_back(&self, p: DVec3, jet: &mut Jet) {
-        pull_back(&self.list, p, jet);
+        pull_back(&self.0, p, jet);
     }
-}
-
-fn back(pulls: &[Pull], p: DVec3) -> DVec3 {
-    pulls.iter().rev().fold(p, |p, pull| pull.back(p))
 }
 
 fn pull_back(pulls: &[Pull], p: DVec3, jet: &mut Jet) {

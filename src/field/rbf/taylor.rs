@@ -38,19 +38,17 @@ struct Term {
     more: [u8; 3],
 }
 
-/// Tables that all polynomials share, and a buffer.
+/// Tables that all polynomials share.
 #[derive(Clone, Debug)]
 pub(super) struct Taylor {
     terms: Vec<Term>,
     /// For each row of [`Rows`] the indices of its coefficients; [`MORE_TERMS`] beyond the degree.
     rows: Vec<[usize; LANES]>,
-    /// Buffer for the coefficients of a group of centres.
-    group: Vec<CentreGroup>,
 }
 
 /// A number for each of the centres that are expanded together.
 type CentreGroup = [f64; LANES];
-/// Length of that buffer: as many entries as a byte can index.
+/// Length of the buffer for the coefficients of a group of centres: as many entries as a byte can index.
 const PLACES: usize = 256;
 
 impl Taylor {
@@ -81,17 +79,12 @@ impl Taylor {
                 rows.push(core::array::from_fn(|j| if within(j) { index([k, j, i]) } else { MORE_TERMS }));
             }
         }
-        Self { terms, rows, group: vec![[0.0; LANES]; PLACES] }
+        Self { terms, rows }
     }
 
     /// Adds the terms of `centres`, none of which is at `middle`, to the polynomial of a cell.
-    pub(super) fn expand(
-        &mut self,
-        polynomial: &mut Polynomial,
-        middle: DVec3,
-        half: f64,
-        centres: &[Centre],
-    ) {
+    pub(super) fn expand(&self, polynomial: &mut Polynomial, middle: DVec3, half: f64, centres: &[Centre]) {
+        let mut powers = vec![[0.0; LANES]; PLACES];
         for group in centres.chunks(LANES) {
             let at = |k: usize| group[k.min(group.len() - 1)];
             // In units of the cell φ has the factor half³, and ∇φ has half².
@@ -100,14 +93,15 @@ impl Taylor {
                 core::array::from_fn(|k| if k < group.len() { half * half } else { 0.0 });
             let alpha: [f64; LANES] = core::array::from_fn(|k| at(k).alpha * half * real[k]);
             let beta: [DVec3; LANES] = core::array::from_fn(|k| at(k).beta * real[k]);
-            self.expand_group(polynomial, &offset, &alpha, &beta);
+            self.expand_group(polynomial, &mut powers, &offset, &alpha, &beta);
         }
     }
 
     /// Adds α |d + t|³ + β · ∇|d + t|³ for each d.
     fn expand_group(
-        &mut self,
+        &self,
         polynomial: &mut Polynomial,
+        powers: &mut [CentreGroup],
         offset: &[DVec3; LANES],
         alpha: &CentreGroup,
         beta: &[DVec3; LANES],
@@ -115,8 +109,8 @@ impl Taylor {
         let d: [CentreGroup; 3] = [0, 1, 2].map(|axis| offset.map(|d| d[axis]));
         let beta: [CentreGroup; 3] = [0, 1, 2].map(|axis| beta.map(|b| b[axis]));
         let inverse: CentreGroup = offset.map(|d| 1.0 / d.length_squared());
-        let Some(powers) = self.group.first_chunk_mut::<PLACES>() else {
-            unreachable!("the group has its places");
+        let Some(powers) = powers.first_chunk_mut::<PLACES>() else {
+            unreachable!("the buffer has its places");
         };
         powers[0] = offset.map(|d| d.length_squared() * d.length());
         recur(powers, &self.terms, &d, &inverse);

@@ -14,9 +14,9 @@ use super::data::RbfData;
 use super::frame::CentredFrame;
 use super::kernel::{self, LocalPoint, LocalPoints, Near};
 use super::taylor::{Polynomial, TERMS, Taylor};
-use crate::math::{LANES, Lanes, NONE, Sym3};
+use crate::math::{LANES, Lanes};
 use glam::{DVec3, Vec3};
-use std::sync::Arc;
+use std::sync::OnceLock;
 
 /// Half-width of the root cell in local units, in which the centres fill a box of half-width 1/2 to 1: the box of a fit with its
 /// margin needs at most a third of it. The field outside of the root cell is evaluated in double precision.
@@ -44,22 +44,25 @@ const MIN_HALF_WIDTH: f64 = 1.0 / 512.0;
 /// some 20 %.
 const MIN_TOGETHER: usize = 6;
 
-/// Bit that marks the index of a child as that of a leaf.
-const LEAF: u32 = 1 << 31;
+/// A cell of the octree.
+#[derive(Debug)]
+enum Cell {
+    Branch(BranchCell),
+    Leaf(Box<LeafCell>),
+}
 
-/// A cell that is split into eight.
-#[derive(Clone, Debug)]
+/// A cell that is split into eight, each of which is made when a point falls into it.
+#[derive(Debug)]
 struct BranchCell {
     middle: [f32; 3],
-    /// Index of each octant, with the bit [`LEAF`] for a leaf, or [`NONE`] until a point falls into it.
-    octants: [u32; 8],
+    octants: [OnceLock<Box<Cell>>; 8],
     half: f64,
     far: Box<Polynomial>,
     near: Vec<u32>,
 }
 
 /// A cell that is not split.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 struct LeafCell {
     middle: [f32; 3],
     half: f32,
@@ -71,17 +74,14 @@ struct LeafCell {
 }
 
 /// Octree of the cells made so far.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct CellTree {
-    /// All centres, which copies of the tree share.
-    centres: Arc<[Centre]>,
-    origin: [f32; 3],
+    /// All centres.
+    centres: Vec<Centre>,
+    origin: DVec3,
     scale: f32,
     taylor: Taylor,
-    branches: Vec<BranchCell>,
-    leaves: Vec<LeafCell>,
-    /// Index of the root cell, with the bit [`LEAF`] for a leaf.
-    root: u32,
+    root: Cell,
 }
 
 impl CellTree {
@@ -89,95 +89,50 @@ impl CellTree {
         let frame = CentredFrame::of(data.centres.iter().map(|&c| DVec3::from_array(c)));
         let scale = frame.scale();
         // With g the function in local coordinates, f(x) = g(s (x − o))/s, as in `pointcloud::fit`.
-        let centres: Arc<[Centre]> = (0..data.centres.len())
+        let centres: Vec<Centre> = (0..data.centres.len())
             .map(|j| Centre {
                 position: frame.local(DVec3::from_array(data.centres[j])),
                 alpha: data.alpha[j] / (scale * scale),
                 beta: DVec3::from_array(data.beta[j]) / scale,
             })
             .collect();
-        let mut tree = Self {
-            origin: frame.origin().as_vec3().to_array(),
-            scale: scale as f32,
-            taylor: Taylor::new(),
-            branches: Vec::new(),
-            leaves: Vec::new(),
-            root: 0,
-            centres,
-        };
-        let all: Vec<u32> = (0..tree.centres.len() as u32).collect();
-        tree.root = tree.add_cell(DVec3::ZERO, ROOT, &[0.0; TERMS], &all);
-        tree
+        let taylor = Taylor::new();
+        let all: Vec<u32> = (0..centres.len() as u32).collect();
+        let root = cell(&taylor, &centres, DVec3::ZERO, ROOT, &[0.0; TERMS], &all);
+        Self { centres, origin: frame.origin(), scale: scale as f32, taylor, root }
     }
 
-    /// Adds a cell and returns its index, with the bit [`LEAF`] for a leaf. `far` is the polynomial of its parent,
-    /// shifted to this cell, and `centres` are the near centres of its parent.
-    fn add_cell(&mut self, middle: DVec3, half: f64, far: &Polynomial, centres: &[u32]) -> u32 {
-        let radius = half * 3.0_f64.sqrt();
-        let distance = |j: u32| self.centres[j as usize].position.distance(middle);
-        let (away, near): (Vec<u32>, Vec<u32>) = centres.iter().partition(|&&j| {
-            let (centre, distance) = (&self.centres[j as usize], distance(j));
-            let slope = centre.alpha.abs() * distance + (DEGREE + 1) as f64 * centre.beta.length();
-            let remainder = slope * distance * distance * eighth_power(radius / distance);
-            distance > MIN_DISTANCE * radius && remainder <= MAX_REMAINDER
-        });
-        let away: Vec<Centre> = away.iter().map(|&j| self.centres[j as usize]).collect();
-        let close = near.iter().any(|&j| distance(j) <= CLOSE * radius);
-        let mut far = Box::new(*far);
-        self.taylor.expand(&mut far, middle, half, &away);
-        if near.len() > MAX_NEAR && close && half > MIN_HALF_WIDTH {
-            self.branches.push(BranchCell {
-                middle: middle.as_vec3().to_array(),
-                octants: [NONE; 8],
-                half,
-                far,
-                near,
-            });
-            self.branches.len() as u32 - 1
-        } else {
-            let near: Vec<Centre> = near.iter().map(|&j| self.centres[j as usize]).collect();
-            self.leaves.push(LeafCell {
-                middle: middle.as_vec3().to_array(),
-                half: half as f32,
-                inverse: (1.0 / half) as f32,
-                far: self.taylor.rows(&far),
-                centres: near.len(),
-                near: near.chunks(LANES).map(Near::new).collect(),
-            });
-            (self.leaves.len() as u32 - 1) | LEAF
-        }
-    }
-
-    /// Index of the leaf that contains a point of the root cell. Missing cells are added.
-    fn leaf(&mut self, [x, y, z]: [f32; 3]) -> usize {
-        let mut index = self.root;
-        while index & LEAF == 0 {
-            let branch = &self.branches[index as usize];
+    /// The leaf that contains a point of the root cell. Missing cells are made.
+    fn leaf(&self, [x, y, z]: [f32; 3]) -> &LeafCell {
+        let mut at = &self.root;
+        loop {
+            let branch = match at {
+                Cell::Leaf(leaf) => return leaf,
+                Cell::Branch(branch) => branch,
+            };
             let upper = [x >= branch.middle[0], y >= branch.middle[1], z >= branch.middle[2]];
             let octant = upper.iter().rev().fold(0, |bits, &bit| 2 * bits + usize::from(bit));
-            let mut next = branch.octants[octant];
-            if next == NONE {
+            at = branch.octants[octant].get_or_init(|| {
                 let side = upper.map(|upper| if upper { 1.0 } else { -1.0 });
                 let half = 0.5 * branch.half;
                 let middle = Vec3::from_array(branch.middle).as_dvec3() + DVec3::from_array(side) * half;
-                let (far, near) = (self.taylor.shifted(&branch.far, side), branch.near.clone());
-                next = self.add_cell(middle, half, &far, &near);
-                self.branches[index as usize].octants[octant] = next;
-            }
-            index = next;
+                let far = self.taylor.shifted(&branch.far, side);
+                Box::new(cell(&self.taylor, &self.centres, middle, half, &far, &branch.near))
+            });
         }
-        (index & !LEAF) as usize
     }
 
-    /// Calls `store` for each point with its index and f and ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy, yz, zz).
-    fn sums<const N: usize>(
-        &mut self,
+    /// Calls `store` for each point, counted from `origin`, with its index and f and ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy, yz, zz).
+    pub(super) fn sums<const N: usize>(
+        &self,
         data: &RbfData,
+        origin: DVec3,
         points: &[Vec3],
         mut store: impl FnMut(usize, [f32; N]),
     ) {
         let scale = self.scale;
-        let mut last = usize::MAX;
+        let own_origin = (self.origin - origin).as_vec3().to_array();
+        let mut last: Option<&LeafCell> = None;
         let mut n = 0;
         while n < points.len() {
             // Up to eight of the next points, of which those in the cell of the first one are evaluated together.
@@ -188,19 +143,19 @@ impl CellTree {
                     local[axis].0[lane] = p[axis];
                 }
             }
-            for (local, origin) in local.iter_mut().zip(self.origin) {
+            for (local, origin) in local.iter_mut().zip(own_origin) {
                 *local = (*local - Lanes::splat(origin)) * Lanes::splat(scale);
             }
             let first = local.map(|lanes| lanes.0[0]);
-            if !self.leaves.get(last).is_some_and(|leaf| contains(&leaf.middle, leaf.half, &first)) {
-                if !contains(&[0.0; 3], ROOT as f32, &first) {
-                    store(n, exact(data, points[n]));
-                    n += 1;
-                    continue;
-                }
-                last = self.leaf(first);
+            let known = last.filter(|leaf| contains(&leaf.middle, leaf.half, &first));
+            if known.is_none() && !contains(&[0.0; 3], ROOT as f32, &first) {
+                store(n, exact(data, origin + points[n].as_dvec3()));
+                n += 1;
+                continue;
             }
-            let LeafCell { middle, half, inverse, far, near, centres } = &self.leaves[last];
+            let leaf = known.unwrap_or_else(|| self.leaf(first));
+            last = Some(leaf);
+            let LeafCell { middle, half, inverse, far, near, centres } = leaf;
             let together = (1..count)
                 .find(|&lane| !contains(middle, *half, &local.map(|lanes| lanes.0[lane])))
                 .unwrap_or(count);
@@ -229,35 +184,42 @@ impl CellTree {
             n += together;
         }
     }
+}
 
-    pub(super) fn values(&mut self, data: &RbfData, points: &[Vec3], value: &mut [f32]) {
-        // Values alone are rarely needed, so they have no code of their own.
-        self.sums(data, points, |n, [v, ..]: [f32; 4]| value[n] = v);
+/// A cell. `far` is the polynomial of its parent, shifted to this cell, and `among` are the near centres of its parent.
+fn cell(
+    taylor: &Taylor,
+    centres: &[Centre],
+    middle: DVec3,
+    half: f64,
+    far: &Polynomial,
+    among: &[u32],
+) -> Cell {
+    let radius = half * 3.0_f64.sqrt();
+    let distance = |j: u32| centres[j as usize].position.distance(middle);
+    let (away, near): (Vec<u32>, Vec<u32>) = among.iter().partition(|&&j| {
+        let (centre, distance) = (&centres[j as usize], distance(j));
+        let slope = centre.alpha.abs() * distance + (DEGREE + 1) as f64 * centre.beta.length();
+        let remainder = slope * distance * distance * eighth_power(radius / distance);
+        distance > MIN_DISTANCE * radius && remainder <= MAX_REMAINDER
+    });
+    let away: Vec<Centre> = away.iter().map(|&j| centres[j as usize]).collect();
+    let close = near.iter().any(|&j| distance(j) <= CLOSE * radius);
+    let mut far = Box::new(*far);
+    taylor.expand(&mut far, middle, half, &away);
+    let place = middle.as_vec3().to_array();
+    if near.len() > MAX_NEAR && close && half > MIN_HALF_WIDTH {
+        return Cell::Branch(BranchCell { middle: place, octants: Default::default(), half, far, near });
     }
-
-    pub(super) fn gradients(
-        &mut self,
-        data: &RbfData,
-        points: &[Vec3],
-        value: &mut [f32],
-        gradient: &mut [Vec3],
-    ) {
-        self.sums(data, points, |n, [v, x, y, z]| (value[n], gradient[n]) = (v, Vec3::new(x, y, z)));
-    }
-
-    pub(super) fn hessians(
-        &mut self,
-        data: &RbfData,
-        points: &[Vec3],
-        value: &mut [f32],
-        gradient: &mut [Vec3],
-        hessian: &mut [Sym3<f32>],
-    ) {
-        self.sums(data, points, |n, [v, x, y, z, xx, xy, xz, yy, yz, zz]| {
-            (value[n], gradient[n]) = (v, Vec3::new(x, y, z));
-            hessian[n] = Sym3 { xx, xy, xz, yy, yz, zz };
-        });
-    }
+    let near: Vec<Centre> = near.iter().map(|&j| centres[j as usize]).collect();
+    Cell::Leaf(Box::new(LeafCell {
+        middle: place,
+        half: half as f32,
+        inverse: (1.0 / half) as f32,
+        far: taylor.rows(&far),
+        centres: near.len(),
+        near: near.chunks(LANES).map(Near::new).collect(),
+    }))
 }
 
 /// Whether a cell, which includes its lower faces, contains a point. NaN is outside of every cell.
@@ -273,8 +235,8 @@ fn eighth_power(x: f64) -> f64 {
 }
 
 /// First `N` numbers of value, gradient and Hessian, computed in double precision.
-fn exact<const N: usize>(data: &RbfData, p: Vec3) -> [f32; N] {
-    let jet = data.jet(p.as_dvec3());
+fn exact<const N: usize>(data: &RbfData, p: DVec3) -> [f32; N] {
+    let jet = data.jet(p);
     let (g, h) = (jet.gradient, jet.hessian);
     let all = [jet.value, g.x, g.y, g.z, h.xx, h.xy, h.xz, h.yy, h.yz, h.zz];
     core::array::from_fn(|k| all[k] as f32)

@@ -79,8 +79,7 @@ impl Creases {
                 let mut own = self.curves.iter().filter(|curve| curve.patches.contains(patch));
                 own.clone().all(|curve| curve.points.iter().all(is_in_plane))
                     && own.next().is_some_and(|curve| {
-                        probe.select(Some(*patch));
-                        let (_, gradient) = probe.field.value_and_gradient(curve.points[0]);
+                        let (_, gradient) = probe.on(Some(*patch)).field.value_and_gradient(curve.points[0]);
                         gradient.normalize_or_zero()[axis] * outward > 1.0 - SAME
                     })
             })
@@ -93,8 +92,8 @@ impl Creases {
         let [lower, upper] = pair.patches;
         let mut faces = self.faces.clone();
         faces.push(pair);
-        let Self { passed, bare, evaluations, .. } = *self;
-        let mut next = Self { faces, passed, bare, evaluations, ..Self::default() };
+        let Self { unit_cell, passed, bare, evaluations, .. } = *self;
+        let mut next = Self { unit_cell, faces, passed, bare, evaluations, ..Self::default() };
         let number = next.faces.len() - 1;
 
         // What an image repeats is on the upper face where the image is, so that both go or stay.
@@ -256,7 +255,7 @@ fn moved(image: Option<Image>, place: &[Option<usize>]) -> Option<Option<Image>>
 /// Whether each of the branches is the same at a point and at its image.
 fn is_same<'a>(probe: &mut Probe, branches: impl Iterator<Item = &'a u32>, p: DVec3, image: DVec3) -> bool {
     branches.copied().all(|branch| {
-        probe.select(Some(branch));
+        let probe = probe.on(Some(branch));
         let [(f, u), (g, v)] = [p, image].map(|p| probe.field.value_and_gradient(p));
         let most = SAME * u.length();
         // Written so that NaN fails.

@@ -5,7 +5,6 @@
 
 use super::meeting::{Third, common_point};
 use super::{Crease, Creases, ONE_CORNER};
-use crate::field::BranchNumbers;
 use crate::math::Bounds;
 use crate::sampler::probe::Probe;
 use crate::slices::complete;
@@ -14,10 +13,9 @@ impl Creases {
     /// The creases in a `wide` box around `bounds`, cut at the faces of that; none if no crease runs to it.
     pub(in super::super) fn beyond(&self, probe: &mut Probe, bounds: &Bounds, wide: &Bounds) -> Option<Self> {
         self.at_box()?;
-        probe.select(None);
         let width = Self::width(wide);
-        let cells = complete(probe.field.branched()?.crease_cells(wide, width, BranchNumbers::Kept));
-        let mut creases = complete(Self::find(probe, wide, &cells));
+        let cells = probe.field.patches()?.crease_cells(wide, width);
+        let mut creases = complete(Self::find(probe, wide, &cells, self.unit_cell));
         let [lo, hi] = bounds.single().map(|corner| corner.as_dvec3());
         for axis in 0..3 {
             for offset in [lo[axis], hi[axis]] {

@@ -69,10 +69,7 @@ impl Creases {
         mut radius: impl FnMut(&mut Probe, Vec3) -> f32,
     ) -> CreaseParticles {
         let mut least = |probe: &mut Probe, place: DVec3, patches: &[u32]| {
-            let mut of = |probe: &mut Probe, patch: u32| {
-                probe.select(Some(patch));
-                radius(probe, place.as_vec3())
-            };
+            let mut of = |probe: &mut Probe, patch: u32| radius(&mut probe.on(Some(patch)), place.as_vec3());
             patches.iter().fold(f32::INFINITY, |least, &patch| least.min(of(probe, patch)))
         };
         let mut filled = CreaseParticles::default();
@@ -240,7 +237,7 @@ impl CreaseParticles {
         let mut first: Vec<Option<u32>> = vec![None; self.list.len()];
         let mut along = Vec::new();
         for patch in patches {
-            probe.select(Some(patch));
+            let probe = &mut probe.on(Some(patch));
             for (particle, first) in self.list.iter().zip(&mut first) {
                 if !particle.patches.contains(&patch) {
                     continue;

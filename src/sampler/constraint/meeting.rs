@@ -41,9 +41,8 @@ fn limits(reach: f64) -> StepLimits {
 
 /// Value and gradient of a branch at a point.
 fn branch(probe: &mut Probe, branch: u32, p: DVec3) -> (f64, DVec3) {
-    probe.select(Some(branch));
     probe.count(1);
-    probe.field.value_and_gradient(p)
+    probe.on(Some(branch)).field.value_and_gradient(p)
 }
 
 /// Whether a point lies on the sheet of a branch, up to a distance.
@@ -125,7 +124,6 @@ impl Meeting {
 
     /// Whether f is zero at the point, and on no surface there.
     pub(super) fn is_bare(&self, probe: &mut Probe, reach: f64) -> bool {
-        probe.select(None);
         probe.is_bare_zero(self.position, reach)
     }
 

@@ -2,7 +2,7 @@
 //! corners where more than two meet; and the [tips] of cones.
 //!
 //! A formula with maxima, minima and absolute values has a surface of *patches*. On each one smooth branch gives f
-//! ([`Branched::branch_at`](crate::field::Branched::branch_at)). Two patches meet along a *crease*, the curve on which both branches
+//! ([`Patches::branch_at`](crate::field::Patches::branch_at)). Two patches meet along a *crease*, the curve on which both branches
 //! are zero; it ends at a corner, at the box, or runs back into itself. Where the factors of a product cross, four patches
 //! meet: each factor is two branches, one on either side of the other factor.
 //!
@@ -24,7 +24,7 @@ mod tests;
 pub(super) mod tips;
 mod trace;
 
-use crate::field::SHARP;
+use crate::field::{SHARP, UnitCell};
 use crate::math::{Bounds, Forest};
 use crate::sampler::probe::Probe;
 use crate::slices::pause;
@@ -123,7 +123,9 @@ pub(super) struct Corner {
 pub struct Creases {
     curves: Vec<Crease>,
     corners: Vec<Corner>,
-    /// Opposite faces of a cell with the same creases.
+    /// The cell that closes the surface, if one does.
+    unit_cell: Option<UnitCell>,
+    /// Opposite faces of the cell with the same creases.
     faces: Vec<FacePair>,
     /// A place where sheets cross along a curve and no patch ends, which is not followed: three planes through one line, say.
     pub(super) passed: Option<DVec3>,
@@ -137,20 +139,24 @@ pub struct Creases {
 }
 
 impl Creases {
-    /// Width of the [cells](crate::field::Branched::crease_cells) in which creases are looked for.
+    /// Width of the [cells](crate::field::Patches::crease_cells) in which creases are looked for.
     pub(super) fn width(bounds: &Bounds) -> f64 {
         CELL * bounds.diagonal()
     }
 
-    /// Finds the creases of a field in `bounds`, which lie in these cells, in slices.
-    pub(super) async fn find(probe: &mut Probe<'_>, bounds: &Bounds, cells: &[Bounds]) -> Self {
-        let mut creases = Self::default();
+    /// Finds the creases of a field in `bounds`, which lie in these cells, in slices. Those on opposite faces of a unit cell are the same.
+    pub(super) async fn find(
+        probe: &mut Probe<'_>,
+        bounds: &Bounds,
+        cells: &[Bounds],
+        unit_cell: Option<UnitCell>,
+    ) -> Self {
+        let mut creases = Self { unit_cell, ..Self::default() };
         let start = probe.evaluations();
         let step = 0.5 * Self::width(bounds);
         for cell in cells {
             pause().await;
-            let branches =
-                probe.field.branched().and_then(|field| field.branches_in(cell)).unwrap_or_default();
+            let branches = probe.field.branches_in(cell).unwrap_or_default();
             for (k, &a) in branches.iter().enumerate() {
                 for &b in &branches[..k] {
                     let meeting = Meeting::of_branches(probe, [b, a], cell.middle(), 2.0 * step, SHARP)
@@ -171,10 +177,9 @@ impl Creases {
         }
         creases.follow_from_corners(probe, bounds, step).await;
         creases.divide(probe, step);
-        if let Some(cell) = probe.field.unit_cell() {
+        if let Some(cell) = unit_cell {
             creases.repeat(probe, &cell, step);
         }
-        probe.select(None);
         creases.is_open = !cells.is_empty() && !creases.are_there();
         creases.evaluations = probe.evaluations() - start;
         creases

@@ -1,21 +1,18 @@
 use super::*;
 use crate::field::formula::Formula;
-use crate::field::{BranchNumbers, Branched, Field};
+use crate::field::{Creased, Field, Frame};
 use crate::particles::Particles;
 use crate::sampler::probe::ProbeMemory;
+use crate::sampler::{FoundCreases, find_creases};
 use crate::slices::complete;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The creases of a formula in the box from −`half` to `half`.
-fn creases(text: &str, half: f64) -> (Formula, Creases) {
-    let mut field = Formula::as_written(text, &[]).expect("a formula");
-    let mut memory = ProbeMemory::default();
-    let bounds = Bounds::cube(half);
-    let probe = &mut Probe::new(&mut field, &mut memory);
-    let branched = probe.field.branched().expect("formulas have branches");
-    let cells = complete(branched.crease_cells(&bounds, Creases::width(&bounds), BranchNumbers::New));
-    let creases = complete(Creases::find(probe, &bounds, &cells));
-    (field, creases)
+fn creases(text: &str, half: f64) -> (Arc<dyn Creased>, Creases) {
+    let field = Formula::as_written(text, &[]).expect("a formula");
+    let FoundCreases { creases, function } = complete(find_creases(&field, DVec3::ZERO, &Bounds::cube(half)));
+    (function.expect("formulas have branches"), creases)
 }
 
 /// Numbers of creases, and of corners at which more than two of them meet.
@@ -96,9 +93,10 @@ fn a_corner_on_a_face_of_the_box_is_one() {
 fn creases_that_end_at_one_point_of_the_box_share_a_particle() {
     // A circle and hyperbolas touch on the lower face across x.
     let text = "max(hypot(x+1,y)-abs(z),0.5-max(abs(x+1),abs(y),abs(z-1)))";
-    let (mut field, creases) = creases(text, 1.0);
+    let (field, creases) = creases(text, 1.0);
     let mut memory = ProbeMemory::default();
-    let filled = creases.fill(&mut Probe::new(&mut field, &mut memory), 0, |_, _| 0.05);
+    let filled =
+        creases.fill(&mut Probe::new(&mut *field.evaluator(Frame::default()), &mut memory), 0, |_, _| 0.05);
     let at = |place: Vec3| filled.list.iter().filter(move |p| p.position.distance(place) < 1e-4);
     for y in [-0.5, 0.5] {
         let [particle] = at(Vec3::new(-1.0, y, 0.5)).collect::<Vec<_>>()[..] else { panic!("two at {y}") };
@@ -113,9 +111,10 @@ fn creases_that_end_at_one_point_of_the_box_share_a_particle() {
 fn a_small_particle_where_a_factor_touches_another_has_a_normal() {
     // A torus on a plane. Neither factor has a gradient in the product where they touch.
     let text = "((hypot(x-1,y-1)-1)^2+(z-1.25)^2-1/16)*(1-z)";
-    let mut field = Formula::as_written(text, &[]).expect("a formula");
+    let field = Formula::as_written(text, &[]).expect("a formula");
     let mut memory = ProbeMemory::default();
-    let probe = &mut Probe::new(&mut field, &mut memory);
+    let mut evaluator = field.evaluator(Frame::default());
+    let probe = &mut Probe::new(&mut *evaluator, &mut memory);
     let (position, radius) = (Vec3::new(2.0, 1.0, 1.0), 1e-6);
     let particle = fill::CreaseParticle { position, radius, tangent: Vec3::Y, patches: Vec::new() };
     let normal = particle.normal(probe).expect("a normal");
@@ -124,15 +123,15 @@ fn a_small_particle_where_a_factor_touches_another_has_a_normal() {
 
 #[test]
 fn a_crease_lies_where_both_branches_are_zero() {
-    let (mut field, creases) = creases("min((x-0.5)^2+y^2+z^2-1,(x+0.5)^2+y^2+z^2-1)", 1.7);
+    let (field, creases) = creases("min((x-0.5)^2+y^2+z^2-1,(x+0.5)^2+y^2+z^2-1)", 1.7);
     let [curve] = &creases.curves[..] else { panic!("{creases:?}") };
     assert!(curve.is_closed);
     let exact = core::f64::consts::TAU * 0.75_f64.sqrt();
     assert!((curve.length() / exact - 1.0).abs() < 1e-3, "{} for {exact}", curve.length());
+    let mut evaluator = field.evaluator(Frame::default());
     for &p in &curve.points {
         for &patch in &curve.patches {
-            field.select_branch(Some(patch));
-            let (value, gradient) = field.value_and_gradient(p);
+            let (value, gradient) = evaluator.on(Some(patch)).value_and_gradient(p);
             assert!(value.abs() < 1e-9 * gradient.length(), "{p}: {value}");
         }
     }
@@ -140,9 +139,10 @@ fn a_crease_lies_where_both_branches_are_zero() {
 
 #[test]
 fn particles_on_creases_are_evenly_spaced_and_have_a_row_for_each_patch() {
-    let (mut field, creases) = creases("max(abs(x),abs(y),abs(z))-1", 1.3);
+    let (field, creases) = creases("max(abs(x),abs(y),abs(z))-1", 1.3);
     let mut memory = ProbeMemory::default();
-    let probe = &mut Probe::new(&mut field, &mut memory);
+    let mut evaluator = field.evaluator(Frame::default());
+    let probe = &mut Probe::new(&mut *evaluator, &mut memory);
     let filled = creases.fill(probe, 0, |_, _| 0.0493);
     // An edge of length 2 has room for 20 particles at a distance of 0.1.
     assert_eq!(filled.list.len(), 8 + 12 * 19);
@@ -164,9 +164,10 @@ fn particles_on_creases_are_evenly_spaced_and_have_a_row_for_each_patch() {
 
 #[test]
 fn every_level_of_a_ladder_halves_the_ways_along_the_creases() {
-    let (mut field, creases) = creases("min((x-0.5)^2+y^2+z^2-1,(x+0.5)^2+y^2+z^2-1)", 1.8);
+    let (field, creases) = creases("min((x-0.5)^2+y^2+z^2-1,(x+0.5)^2+y^2+z^2-1)", 1.8);
     let mut memory = ProbeMemory::default();
-    let probe = &mut Probe::new(&mut field, &mut memory);
+    let mut evaluator = field.evaluator(Frame::default());
+    let probe = &mut Probe::new(&mut *evaluator, &mut memory);
     let filled = creases.fill(probe, 3, |_, _| 0.2);
     let mut rows = Particles::default();
     filled.add_rows(probe, &mut rows);
@@ -218,9 +219,10 @@ fn creases_beyond_the_box_are_cut_at_its_faces() {
         // Its creases do not run to the box.
         ("max(abs(x),abs(y),abs(z))-0.5", 0.8, [0, 0]),
     ] {
-        let (mut field, own) = creases(text, half);
+        let (field, own) = creases(text, half);
         let mut memory = ProbeMemory::default();
-        let probe = &mut Probe::new(&mut field, &mut memory);
+        let mut evaluator = field.evaluator(Frame::default());
+        let probe = &mut Probe::new(&mut *evaluator, &mut memory);
         let bounds = Bounds::cube(half);
         let cut = own.beyond(probe, &bounds, &Bounds::cube(2.0 * half)).unwrap_or_default();
         let is_inside = |curve: &&Crease| bounds.holds(curve.points[curve.points.len() / 2]);
@@ -238,9 +240,10 @@ fn creases_beyond_the_box_are_cut_at_its_faces() {
 
 #[test]
 fn a_corner_at_the_tip_of_a_cone_has_a_normal() {
-    let mut field = Formula::as_written("hypot(x, y) + z - 1", &[]).expect("a formula");
+    let field = Formula::as_written("hypot(x, y) + z - 1", &[]).expect("a formula");
     let mut memory = ProbeMemory::default();
-    let probe = &mut Probe::new(&mut field, &mut memory);
+    let mut evaluator = field.evaluator(Frame::default());
+    let probe = &mut Probe::new(&mut *evaluator, &mut memory);
     let ray = Vec3::new(1.0, 0.0, -1.0).normalize_or_zero();
     for (tangent, normal) in [
         (ray, Vec3::new(1.0, 0.0, 1.0)),

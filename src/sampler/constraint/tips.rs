@@ -175,7 +175,7 @@ pub(in super::super) fn add(
 ) {
     let mut rings: Vec<Ring> = Vec::new();
     for tip in tips {
-        probe.select(Some(tip.patch));
+        let probe = &mut probe.on(Some(tip.patch));
         let place = tip.position.as_vec3();
         let radius = radius(probe, place);
         let Some(around) = tip.rings(probe, 2.0 * f64::from(radius)) else { continue };

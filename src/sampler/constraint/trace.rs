@@ -38,7 +38,7 @@ pub(super) fn follow<'a>(
     step: f64,
 ) -> Work<'a, ()> {
     let around = Bounds::new(start.position - BESIDE * step, start.position + BESIDE * step);
-    let others = probe.field.branched().and_then(|field| field.branches_in(&around)).unwrap_or_default();
+    let others = probe.field.branches_in(&around).unwrap_or_default();
     let patches = start.patches(probe, &others, step);
     Box::pin(async move {
         let are_left = start.are_left(probe, &patches, step);

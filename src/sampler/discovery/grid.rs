@@ -172,9 +172,9 @@ impl Dense {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::Field;
     use crate::field::model::MODELS;
     use crate::field::rbf::RbfField;
+    use crate::field::{Field, Frame};
     use crate::pointcloud::fit_model;
     use crate::sampler::probe::ProbeMemory;
 
@@ -182,11 +182,12 @@ mod tests {
     fn a_dense_grid_tells_the_sign_at_every_node_and_the_value_near_the_surface() {
         for model in MODELS {
             let fit = fit_model(model);
-            let mut field = RbfField::new(fit.data).expect("a field");
+            let field = RbfField::new(fit.data).expect("a field");
+            let field = &mut *field.evaluator(Frame::default());
             let n = [65, 49, 57];
             let step = (fit.bounds.hi() - fit.bounds.lo()) / DVec3::new(64.0, 48.0, 56.0);
             let grid = Grid { lo: fit.bounds.lo(), step, nodes: n, spacing: step.max_element() };
-            let dense = Dense::new(&mut Probe::new(&mut field, &mut ProbeMemory::default()), &grid);
+            let dense = Dense::new(&mut Probe::new(field, &mut ProbeMemory::default()), &grid);
             let mut all = Vec::new();
             for k in 0..n[2] {
                 for j in 0..n[1] {

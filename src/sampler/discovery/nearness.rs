@@ -9,7 +9,7 @@
 //! show all components and their Euler number by these rules and 74 without them; with f evaluated in double precision besides,
 //! 99 and 73. A child 2r away comes to whichever sheet is nearest to its circle, however precisely that is known.
 
-use crate::field::Field;
+use crate::field::Evaluator;
 use glam::DVec3;
 
 /// Sheets nearer than this many of the distances that single precision resolves are not told apart, in runs of one size and of
@@ -48,7 +48,7 @@ struct Profile {
 
 /// The profile of the point that Newton's method finds from `p`. None where another zero can be no nearer than `most`, and where
 /// there is no point.
-fn profile(field: &mut dyn Field, mut p: DVec3, most: f64) -> Option<Profile> {
+fn profile(field: &mut dyn Evaluator, mut p: DVec3, most: f64) -> Option<Profile> {
     /// Length of a last step, over the distance of the other zero: Newton's method squares it, which leaves an error of 10⁻⁶ of it.
     const LAST: f64 = 1e-3;
     let start = p;
@@ -72,7 +72,7 @@ fn profile(field: &mut dyn Field, mut p: DVec3, most: f64) -> Option<Profile> {
 }
 
 /// The sheet next to the surface near `from`, if it is no farther than `most`.
-pub(crate) fn nearness(field: &mut dyn Field, from: DVec3, most: f64) -> Option<Nearness> {
+pub(crate) fn nearness(field: &mut dyn Evaluator, from: DVec3, most: f64) -> Option<Nearness> {
     /// Halvings of the bracket around the other sheet, to a thousandth of its distance.
     const HALVINGS: u32 = 12;
     let Profile { position, normal, slope, bend } = profile(field, from, most)?;
@@ -94,7 +94,7 @@ pub(crate) fn nearness(field: &mut dyn Field, from: DVec3, most: f64) -> Option<
 
 /// The nearest of the sheets found from the points, and at how many of them there was one.
 pub(crate) fn nearest(
-    field: &mut dyn Field,
+    field: &mut dyn Evaluator,
     points: impl Iterator<Item = DVec3>,
     most: f64,
 ) -> (Option<Nearness>, usize) {
@@ -112,6 +112,7 @@ pub(crate) fn nearest(
 mod tests {
     use super::*;
     use crate::field::formula::Formula;
+    use crate::field::{Field, Frame};
 
     #[test]
     fn the_distance_of_a_near_sheet_is_found_down_to_a_billionth() {
@@ -121,9 +122,10 @@ mod tests {
                 format!("(z-0.3)*(z-0.3-{gap})*(z-0.3-{})", 2.0 * gap),
                 format!("(z-0.3)^2-{gap}*(z-0.3)"),
             ] {
-                let mut field = Formula::as_written(&formula, &[]).expect("a formula");
+                let field = Formula::as_written(&formula, &[]).expect("a formula");
+                let field = &mut *field.evaluator(Frame::default());
                 // From beside all sheets, as far as a particle may be.
-                let found = nearness(&mut field, DVec3::new(0.1, 0.2, 0.3 - 0.9 * gap), 2e-3)
+                let found = nearness(field, DVec3::new(0.1, 0.2, 0.3 - 0.9 * gap), 2e-3)
                     .unwrap_or_else(|| panic!("{formula}"));
                 assert!((found.gap / gap - 1.0).abs() < 1e-2, "{formula}: {found:?}");
             }
@@ -134,8 +136,9 @@ mod tests {
     fn where_one_sheet_is_alone_none_is_near() {
         for formula in ["z-0.3", "x^2+y^2+z^2-0.14", "1-cos(z-0.3)", "exp(40*(z-0.3))-1", "(z-0.3)*(z-0.31)"]
         {
-            let mut field = Formula::as_written(formula, &[]).expect("a formula");
-            assert_eq!(nearness(&mut field, DVec3::new(0.1, 0.2, 0.3), 2e-3), None, "{formula}");
+            let field = Formula::as_written(formula, &[]).expect("a formula");
+            let field = &mut *field.evaluator(Frame::default());
+            assert_eq!(nearness(field, DVec3::new(0.1, 0.2, 0.3), 2e-3), None, "{formula}");
         }
     }
 }

@@ -615,13 +615,16 @@ fn bounds_say_something(field: &mut dyn Bounded, bounds: &Bounds) -> bool {
 mod tests {
     use super::*;
     use crate::field::formula::Formula;
+    use crate::field::{Field, Frame};
 
     #[test]
     fn a_cell_has_the_same_fate_in_a_batch_as_alone() {
         // The search of one factor, in which small spheres lie about a large one.
         let text =
             "atan((x^2 + y^2 + z^2 - 0.25)((x-0.6)^2 + y^2 + z^2 - 0.003)(x^2 + (y+0.3)^2 + z^2 - 0.01))";
-        let mut field = Formula::as_written(text, &[]).expect("a formula");
+        let field = Formula::as_written(text, &[]).expect("a formula");
+        let mut evaluator = field.evaluator(Frame::default());
+        let field = evaluator.bounded().expect("a formula has bounds");
         let begun = || {
             let mut octree = Octree { most: MOST_CELLS, ..Octree::default() };
             octree.begin(true, &Bounds::cube(1.0));
@@ -629,7 +632,7 @@ mod tests {
             octree
         };
         // All that visiting the cells leads to, and the cells of the next level among it.
-        let visited = |field: &mut Formula, cells: &[Cell]| {
+        let visited = |field: &mut dyn Bounded, cells: &[Cell]| {
             let mut octree = begun();
             octree.search.level = cells.to_vec();
             octree.visit(field, 0..cells.len());
@@ -647,8 +650,8 @@ mod tests {
         while !cells.is_empty() {
             let mut next = Vec::new();
             for batch in cells.chunks(HEAVY) {
-                let (together, halves) = visited(&mut field, batch);
-                let alone = batch.iter().flat_map(|&cell| visited(&mut field, &[cell]).0).collect();
+                let (together, halves) = visited(field, batch);
+                let alone = batch.iter().flat_map(|&cell| visited(field, &[cell]).0).collect();
                 assert_eq!(sorted(together), sorted(alone), "level {}", batch[0].level);
                 several += usize::from(batch.len() > 1);
                 next.extend(halves);

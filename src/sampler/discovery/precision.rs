@@ -3,7 +3,7 @@
 
 use super::grid::CELLS;
 use super::survey::{FEW, SAMPLES, ulps};
-use crate::field::{Enclosure, Field};
+use crate::field::{Enclosure, Evaluator};
 use crate::math::{Bounds, Interval, Sym3, median};
 use crate::particles::Particles;
 use glam::{DVec3, Vec3};
@@ -38,7 +38,7 @@ pub(crate) struct Blur {
 /// Of a selection of the particles, the one at which rounding in double precision moves the level set by most for its size; none if
 /// it does so by less than [`MOST_MOVED`], or f has no bounds to tell it by. The bounds of f at a single point are as wide as what
 /// rounding may do to it.
-pub(crate) fn blur(field: &mut dyn Field, particles: &Particles) -> Option<Blur> {
+pub(crate) fn blur(field: &mut dyn Evaluator, particles: &Particles) -> Option<Blur> {
     let field = field.bounded()?;
     let mut most = (MOST_MOVED, None);
     for particle in (0..particles.len()).step_by(particles.len().div_ceil(SAMPLES).max(1)) {
@@ -68,7 +68,7 @@ pub(crate) fn blur(field: &mut dyn Field, particles: &Particles) -> Option<Blur>
 /// The scale at which the field is to be compressed in double precision; none if single precision will do. It does if it has
 /// a value, beyond underflow, at nearly all places where double precision has one, and if its rounding moves level sets by hardly
 /// more than that of the coordinates does.
-pub(crate) fn double_scale(field: &mut dyn Field, bounds: &Bounds) -> Option<f64> {
+pub(crate) fn double_scale(field: &mut dyn Evaluator, bounds: &Bounds) -> Option<f64> {
     let points: Vec<Vec3> = bounds.spread(SIDE).map(|p| p.as_vec3()).collect();
     let (mut value, mut gradient) = (vec![0.0; points.len()], vec![Vec3::ZERO; points.len()]);
     field.gradients(&points, &mut value, &mut gradient);
@@ -87,7 +87,7 @@ pub(crate) fn double_scale(field: &mut dyn Field, bounds: &Bounds) -> Option<f64
 
 /// Whether the rounding of `values`, which are in single precision, moves level sets by far more than the rounding of the coordinates
 /// does: f is small beside its terms, as cos(0.001 x) − 0.999999 is. A field without bounds has one precision only.
-fn is_blurred(field: &mut dyn Field, bounds: &Bounds, points: &[Vec3], values: &[f32]) -> bool {
+fn is_blurred(field: &mut dyn Evaluator, bounds: &Bounds, points: &[Vec3], values: &[f32]) -> bool {
     if field.bounded().is_none() {
         return false;
     }
@@ -102,18 +102,18 @@ fn is_blurred(field: &mut dyn Field, bounds: &Bounds, points: &[Vec3], values: &
 }
 
 /// Whether f is beyond double precision somewhere.
-pub(crate) fn overflows_double(field: &mut dyn Field, bounds: &Bounds) -> bool {
+pub(crate) fn overflows_double(field: &mut dyn Evaluator, bounds: &Bounds) -> bool {
     bounds.spread(SIDE).any(|p| field.jet(p).value.is_infinite())
 }
 
 /// Whether f has different values in a box, which single precision may not tell apart.
-pub(crate) fn varies(field: &mut dyn Field, bounds: &Bounds) -> bool {
+pub(crate) fn varies(field: &mut dyn Evaluator, bounds: &Bounds) -> bool {
     let mut values = bounds.spread(SIDE).map(|p| field.jet(p).value).filter(|value| value.is_finite());
     values.next().is_some_and(|first| values.any(|value| value != first))
 }
 
 /// The usual |∇f| at the surface times the width of a cell of the survey; the usual |f| where no surface is seen.
-fn scale(field: &mut dyn Field, bounds: &Bounds) -> f64 {
+fn scale(field: &mut dyn Evaluator, bounds: &Bounds) -> f64 {
     let grid: Vec<DVec3> = bounds.spread(FINE_SIDE).collect();
     let value: Vec<f64> = grid.iter().map(|&p| field.jet(p).value).collect();
     let mut edges = Vec::new();

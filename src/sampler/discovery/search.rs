@@ -2,7 +2,7 @@
 //! the survey are covered, and the [audit](super::audit) at the end.
 
 use crate::field::descent::Descent;
-use crate::field::{Bounded, Field};
+use crate::field::{Bounded, Evaluator};
 use crate::math::{Bounds, newton};
 use crate::particles::Particles;
 use crate::sampler::discovery::audit::{Audit, Audited, FOLLOWED, UNITS, follow};
@@ -37,7 +37,7 @@ pub(crate) struct ComponentSearch {
 
 impl ComponentSearch {
     /// Begins the search on a new field, of which these singular points are known.
-    pub(crate) fn begin(&mut self, field: &mut dyn Field, bounds: &Bounds, singular: &[Singular]) {
+    pub(crate) fn begin(&mut self, field: &mut dyn Evaluator, bounds: &Bounds, singular: &[Singular]) {
         self.octree.begin(field.bounded().is_some(), bounds);
         self.octree.singular.extend_from_slice(singular);
         self.points.clear();
@@ -123,9 +123,8 @@ impl ComponentSearch {
                 // Where branches meet smoothly on the surface f may have no gradient there.
                 let branch = probe.field.branch_at(exact);
                 let mut place = [exact.as_vec3()];
-                probe.select(Some(branch));
-                normal = probe.land_all(&mut place, tolerance.min_gradient, limits, newton::STEPS)[0];
-                probe.select(None);
+                let own = &mut probe.on(Some(branch));
+                normal = own.land_all(&mut place, tolerance.min_gradient, limits, newton::STEPS)[0];
                 [position] = place;
             }
             if self.bare_size.is_some_and(|size| probe.is_bare_zero(exact, size)) {

@@ -12,7 +12,7 @@
 //! negative: at a minimum neither is negative, at a maximum neither positive. This is so around a cone point, whose tangent
 //! cone is that of an indefinite quadratic form, up to a size that bounds of the second derivatives tell.
 
-use crate::field::{Bounded, Enclosure, Field};
+use crate::field::{Bounded, Enclosure, Evaluator};
 use crate::math::{Bounds, Forest, Interval, ROUNDING, Sym3, sort_few};
 use crate::particles::{Particles, Slots};
 use crate::sampler::probe::BATCH;
@@ -129,7 +129,7 @@ pub(crate) struct Bend {
 /// The singular points near those of a survey, on a grid of this spacing: where the gradient vanishes within a distance d, it is no
 /// longer than the Hessian times d.
 pub(crate) fn near_survey(
-    field: &mut dyn Field,
+    field: &mut dyn Evaluator,
     survey: &[Vec3],
     spacing: f64,
     bounds: &Bounds,
@@ -181,7 +181,7 @@ impl Singular {
 }
 
 /// Finds a singular point within `reach` of `start`, by Newton's method on the gradient.
-pub(crate) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) -> Option<Singular> {
+pub(crate) fn singular_point(field: &mut dyn Evaluator, start: DVec3, reach: f64) -> Option<Singular> {
     let (mut p, mut last) = (start, f64::INFINITY);
     let mut largest_sq = 0.0_f64;
     // False for NaN.
@@ -242,7 +242,7 @@ fn has_two_signs(hessian: &Sym3<f64>) -> bool {
 }
 
 /// Whether the gradient of f may jump on the surface in a box, as at the tip of a cone where f is a distance; not known where f has no bounds.
-pub(crate) fn may_be_rough(field: &mut dyn Field, bounds: &Bounds) -> bool {
+pub(crate) fn may_be_rough(field: &mut dyn Evaluator, bounds: &Bounds) -> bool {
     let Some(field) = field.bounded() else { return true };
     (0..field.factors()).any(|factor| {
         let mut known = [Enclosure::UNKNOWN];
@@ -252,7 +252,7 @@ pub(crate) fn may_be_rough(field: &mut dyn Field, bounds: &Bounds) -> bool {
 }
 
 /// Whether rounding may hide that f is 0 at a point.
-fn may_be_zero(field: &mut dyn Field, p: DVec3) -> bool {
+fn may_be_zero(field: &mut dyn Evaluator, p: DVec3) -> bool {
     let Some(field) = field.bounded() else { return false };
     (0..field.factors()).any(|factor| {
         let mut known = [Enclosure::UNKNOWN];
@@ -293,7 +293,7 @@ pub(crate) fn places(points: &[Singular]) -> Vec<SingularPlace> {
 
 /// Marks the particles within 2r of a singular point. The `points` of a curve are only some of it, so every particle near a curve
 /// searches for the point nearest to itself.
-pub(crate) fn mark(field: &mut dyn Field, points: &[Singular], particles: &mut Particles) {
+pub(crate) fn mark(field: &mut dyn Evaluator, points: &[Singular], particles: &mut Particles) {
     let places: Vec<Vec3> = points.iter().map(|point| point.position.as_vec3()).collect();
     let tree = Tree::new(&places);
     // The smallest search distance is the distance between the points that were found last, which are all along the curve.
@@ -430,6 +430,7 @@ fn along(second: &Sym3<Interval>, d: DVec3) -> Interval {
 mod tests {
     use super::*;
     use crate::field::formula::Formula;
+    use crate::field::{Field, Frame};
 
     #[test]
     fn boxes_without_an_extremum_are_told_by_the_gradient_of_either_sign_or_by_a_saddle() {
@@ -458,9 +459,10 @@ mod tests {
             // Unbounded above at the plane that goes through the first box: not known to be continuous.
             ("x + 1/y", [false, true, true]),
         ] {
-            let mut field = Formula::as_written(formula, &[]).expect("a formula");
+            let field = Formula::as_written(formula, &[]).expect("a formula");
+            let mut evaluator = field.evaluator(Frame::default());
             let mut out = [false; 3];
-            has_no_extremum(&mut field, 0, &boxes, &mut out);
+            has_no_extremum(evaluator.bounded().expect("a formula has bounds"), 0, &boxes, &mut out);
             assert_eq!(out, expected, "{formula}");
         }
     }

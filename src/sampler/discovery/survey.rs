@@ -1,7 +1,7 @@
 //! The survey of the field on a regular grid over the box. It finds a first point on every component that the grid resolves,
 //! and estimates the area of the surface and the precision with which single precision resolves it.
 
-use crate::field::Field;
+use crate::field::Evaluator;
 use crate::field::descent::Descent;
 use crate::math::{Bounds, median, newton, sort_by_key, sort_numbers};
 use crate::sampler::discovery::completeness::Search;
@@ -24,10 +24,6 @@ const POLE_PROBE: f32 = 4.0;
 /// The result of a survey.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Survey {
-    /// Factor by which the field was multiplied, so that its gradient can be squared in single precision.
-    pub(crate) scale: f32,
-    /// The scale at which the field is evaluated in double precision, where single precision does not hold it.
-    pub(crate) double: Option<f64>,
     /// Points of the surface, spread over it, in grid order.
     pub(crate) position: Vec<Vec3>,
     /// Unit normals at these points.
@@ -292,15 +288,14 @@ struct Starts<'a> {
 /// zeros on a curve or at a point alone.
 fn project(probe: &mut Probe, bounds: &Bounds, starts: Starts, spacing: f32, out: &mut Survey) {
     let Starts { place: start, areas, is_unsure, branch } = starts;
-    probe.select(branch);
     out.residual = ResidualLimits::UNLIMITED.residual(spacing).max(ulps(bounds));
     let limits = Descent { residual: out.residual, reach: 2.0 * spacing, trust: 0.0 };
-    let mut landed = probe.land_all(start, out.tolerance().min_gradient, limits, newton::STEPS);
+    let mut own = probe.on(branch);
+    let mut landed = own.land_all(start, out.tolerance().min_gradient, limits, newton::STEPS);
     if branch.is_some() {
         for (landed, &place) in landed.iter_mut().zip(&*start) {
-            *landed = landed.filter(|&normal| probe.is_on_patch(place, normal, spacing, branch));
+            *landed = landed.filter(|&normal| own.is_on_patch(place, normal, spacing, branch));
         }
-        probe.select(None);
     }
     let touching = touching(probe, start, &landed, is_unsure, LARGEST * spacing);
     let mut is_bare = |k: usize| probe.is_bare_zero(start[k].as_dvec3(), bare_size(spacing.into()));
@@ -344,16 +339,15 @@ fn project_on_branches(
         return;
     }
     for own in candidates.chunk_by(|a, b| a.0 == b.0) {
-        probe.select(Some(own[0].0));
         let mut place: Vec<Vec3> = own.iter().map(|&(_, place, ..)| place).collect();
         let areas: Vec<Option<f32>> = own.iter().map(|&(_, _, area, _)| area).collect();
         let is_unsure: Vec<bool> = own.iter().map(|&(.., is_unsure)| is_unsure).collect();
-        out.gradient_scale = out.gradient_scale.max(gradient_scale(probe, &place, &areas));
+        out.gradient_scale =
+            out.gradient_scale.max(gradient_scale(&mut probe.on(Some(own[0].0)), &place, &areas));
         let starts =
             Starts { place: &mut place, areas: &areas, is_unsure: &is_unsure, branch: Some(own[0].0) };
         project(probe, bounds, starts, spacing, out);
     }
-    probe.select(None);
 }
 
 /// The unsure ones of the points that have landed, with these normals, on both sides of which f has
@@ -447,7 +441,7 @@ impl Survey {
     /// Takes over the points that another search has `found`, where the survey has none, or its proof that there are none.
     pub(crate) fn adopt(
         &mut self,
-        field: &mut dyn Field,
+        field: &mut dyn Evaluator,
         found: impl Iterator<Item = (Vec3, Vec3)>,
         bounds: &Bounds,
         search: Search,
@@ -575,7 +569,7 @@ fn measure_precision(probe: &mut Probe, bounds: &Bounds, spacing: f32, out: &mut
 }
 
 /// Looks for near sheets in double precision at a selection of the points. Returns whether more than half of these have one.
-fn look_for_near_sheets(field: &mut dyn Field, out: &mut Survey, spacing: f32) -> bool {
+fn look_for_near_sheets(field: &mut dyn Evaluator, out: &mut Survey, spacing: f32) -> bool {
     /// Largest distance, in grid spacings, at which the tolerance of particles depends on another sheet: a hundred times that to which
     /// the survey's points land. Half and double give the same particles in 72 runs on 36 random surfaces, many of which have some.
     const MOST: f32 = 0.01;

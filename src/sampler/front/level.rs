@@ -29,6 +29,12 @@ impl<'a> FrontContext<'a, '_> {
     pub(crate) fn sizing(&self) -> &'a Sizing {
         self.sizing.expect("an adaptive run begins with a radius field")
     }
+
+    /// Calls a function with the context in which f is the smooth function of a patch, if there is one.
+    pub(crate) fn on<R>(&mut self, patch: Option<u32>, call: impl FnOnce(&mut FrontContext) -> R) -> R {
+        let Self { probe, sizing, neighbours, particles } = self;
+        call(&mut FrontContext { probe: &mut probe.on(patch), sizing: *sizing, neighbours, particles })
+    }
 }
 
 /// Parameters of an attempt that a front needs before its first seed.

@@ -170,7 +170,7 @@ impl Front {
         debug_assert!(self.is_done(), "a seed is added between two levels");
         let index = context.particles.len();
         let (level, placing) = self.parts();
-        let radius = placing.add_parent(context, position, index);
+        let radius = context.on(patch, |context| placing.add_parent(context, position, index));
         if radius.is_nan() || radius <= 0.0 {
             placing.clear_level();
             return false;
@@ -190,8 +190,8 @@ impl Front {
         level.along.extend_from_slice(along);
         for i in 0..context.particles.len() {
             let position = context.particles.position[i];
-            context.probe.select(context.particles.patch_of(i));
-            placing.add_parent(context, position, i);
+            let patch = context.particles.patch_of(i);
+            context.on(patch, |context| placing.add_parent(context, position, i));
             level.grids.insert(position, context.particles.radius[i], i as u32);
         }
         level.settled = context.particles.len();
@@ -291,11 +291,20 @@ impl Front {
 
 /// Decides the fate of a child (paper §4.4, Algorithm 2).
 fn settle_child(level: &mut FrontLevel, placing: &mut dyn Placing, context: &mut FrontContext, child: usize) {
+    let patch = context.particles.patch_of(level.first_child + child);
+    context.on(patch, |context| settle_on_patch(level, placing, context, child, patch));
+}
+
+fn settle_on_patch(
+    level: &mut FrontLevel,
+    placing: &mut dyn Placing,
+    context: &mut FrontContext,
+    child: usize,
+    patch: Option<u32>,
+) {
     let level::Child { slot, handle, .. } = level.children.list[child];
     let provisional = level.first_child + child;
     let parent = context.particles.parent[provisional];
-    let patch = context.particles.patch_of(provisional);
-    context.probe.select(patch);
     let landing = level.children.landings[child];
     let fate = match landing {
         ChildLanding::NotConverged => SlotFate::NotConverged,

@@ -6,7 +6,7 @@ use super::refusal::Refusal;
 use super::walls::Walls;
 use super::{LEAST_PARTICLES, SurfaceFacts};
 use crate::differential::{Curvature, curvatures};
-use crate::field::Field;
+use crate::field::Evaluator;
 use crate::math::{Bounds, Forest, NONE};
 use crate::mesh::build::{Triangulation, triangulate};
 use crate::mesh::half_edge::HalfEdges;
@@ -37,15 +37,15 @@ const MAX_BEND: f64 = 0.9;
 const MAX_BEND_LEAST: f64 = 3.2;
 
 /// Largest curvature at each of some points of the surface; infinite where there is none.
-pub(crate) fn largest_curvatures(field: &mut dyn Field, points: &[Vec3]) -> Vec<f64> {
+pub(crate) fn largest_curvatures(field: &mut dyn Evaluator, points: &[Vec3]) -> Vec<f64> {
     let mut curvature = vec![Curvature::default(); points.len()];
     curvatures(field, points, &mut curvature);
     for (&p, own) in points.iter().zip(&mut curvature).filter(|(_, own)| !own.is_defined()) {
         // Where the branches of f meet smoothly on its surface f has no gradient.
         let branch = field.branch_at(p.as_dvec3());
-        field.select_branch(Some(branch));
-        curvatures(field, &[p], slice::from_mut(own));
-        field.select_branch(None);
+        if let Some(patches) = field.patches() {
+            curvatures(patches.branch(branch), &[p], slice::from_mut(own));
+        }
     }
     let largest = |c: &Curvature| if c.is_defined() { f64::from(c.max_abs()) } else { f64::INFINITY };
     curvature.iter().map(largest).collect()

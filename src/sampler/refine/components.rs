@@ -482,6 +482,7 @@ fn join_creases(particles: &mut Particles, to_come: u32, ladder: &CreaseLadder) 
 mod tests {
     use super::*;
     use crate::field::formula::Formula;
+    use crate::field::{Field, Frame};
     use crate::particles::Slots;
     use crate::sampler::probe::ProbeMemory;
 
@@ -500,9 +501,10 @@ mod tests {
 
     #[test]
     fn after_a_front_that_is_refused_one_is_tried_that_is_refined_once_less() {
-        let mut field = Formula::as_written("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
+        let field = Formula::as_written("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
+        let field = &mut *field.evaluator(Frame::default());
         let mut memory = ProbeMemory::default();
-        let mut probe = Probe::new(&mut field, &mut memory);
+        let mut probe = Probe::new(field, &mut memory);
         let bounds = Bounds::cube(1.5);
         let surface = SurfaceFacts { bounds, sizing: None, ladder: None, bend: Vec3::ZERO, failures: 0 };
         let target = |halvings| Target { halvings, radius: 0.03, grading: None, count: Count::PerCell(1.0) };

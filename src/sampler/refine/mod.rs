@@ -199,7 +199,7 @@ impl Refinement {
         target: Target,
     ) -> Result<Self, Refusal> {
         let mut block = MovedBlock::default();
-        probe.select(part.patch);
+        let probe = &mut probe.on(part.patch);
         let net = coarse::join(&mut Ground { probe, block: &mut block }, part, surface)?;
         Ok(Self::of_layer(net, block, target, part.patch))
     }
@@ -233,6 +233,7 @@ impl Refinement {
     /// Share of the particles that is due to it: its area, or ∫ dA / r² where the radius r differs, in units that all components share.
     fn weight(&mut self, probe: &mut Probe, sizing: Option<&Sizing>) -> f64 {
         let Some(sizing) = sizing else { return self.area() };
+        let probe = &mut probe.on(self.patch);
         let mut ground = Ground { probe, block: &mut self.memory.block };
         let all = 0..self.net.position.len() as u32;
         self.net.find_sizes(&mut ground, sizing, self.target.radius, true, all);
@@ -300,7 +301,7 @@ impl Refinement {
         particles: &mut Particles,
         budget: u32,
     ) -> Result<(u32, bool), Refusal> {
-        probe.select(self.patch);
+        let probe = &mut probe.on(self.patch);
         let (mut done, mut has_changed) = (0, false);
         while done < budget && !self.is_done() {
             let task = core::mem::replace(&mut self.task, Task::Done);

@@ -401,7 +401,7 @@ impl Relaxation {
         while next < range.end {
             let range = batch(next..range.end, &particles.patch);
             next = range.end;
-            probe.select(particles.patch_of(range.start));
+            let probe = &mut probe.on(particles.patch_of(range.start));
             let is_checked = pairs.any_weighted(&range) || stepper.may_stray();
             // Near a bend the energy depends on the normal, which is therefore evaluated at the final position; and near another
             // sheet a short correction may lead far away.

@@ -2,7 +2,7 @@
 //! (§5).
 
 use crate::differential::{Curvature, curvatures_of};
-use crate::field::Field;
+use crate::field::Evaluator;
 use crate::field::descent::{Descent, Descents};
 use crate::math::Sym3;
 use crate::particles::Particles;
@@ -315,7 +315,7 @@ impl Descents for CurvatureDescents {
 
     fn evaluate(
         &mut self,
-        field: &mut dyn Field,
+        field: &mut dyn Evaluator,
         which: &[u32],
         points: &[Vec3],
         value: &mut [f32],

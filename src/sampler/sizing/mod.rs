@@ -9,7 +9,7 @@ mod envelope;
 mod laws;
 
 use crate::differential::{Curvature, curvatures};
-use crate::field::Field;
+use crate::field::Evaluator;
 use crate::math::{Bounds, HEXAGONAL_CELL};
 use crate::sampler::constraint::Creases;
 use crate::sampler::discovery::survey::Survey;
@@ -74,11 +74,9 @@ impl Sizing {
         add(probe, &survey.position, &survey.weight);
         for (position, patches) in creases.points() {
             for &patch in patches {
-                probe.select(Some(patch));
-                add(probe, &[position], &[0.0]);
+                add(&mut probe.on(Some(patch)), &[position], &[0.0]);
             }
         }
-        probe.select(None);
         let mut sizing = Self {
             law: SizingLaw::new(settings, bounds.diagonal()),
             slope: settings.grading as f32,
@@ -100,7 +98,7 @@ impl Sizing {
     }
 
     /// Returns the repulsion radius of a particle at a point of the surface. This evaluates a Hessian, which is not counted.
-    pub(crate) fn radius_at(&self, field: &mut dyn Field, position: Vec3) -> f32 {
+    pub(crate) fn radius_at(&self, field: &mut dyn Evaluator, position: Vec3) -> f32 {
         let mut curvature = [Curvature::default()];
         curvatures(field, &[position], &mut curvature);
         self.radius(position, &curvature[0])

@@ -1,5 +1,6 @@
 use super::*;
 use crate::field::gallery::{self, SURFACES, Surface};
+use crate::field::{Field, Frame};
 use crate::sampler::discovery::survey::survey;
 use crate::sampler::probe::{Probe, ProbeMemory};
 use crate::sampler::settings::LawKind;
@@ -7,9 +8,10 @@ use crate::sampler::settings::LawKind;
 const LAWS: [LawKind; 3] = [LawKind::ChordError, LawKind::MaxCurvature, LawKind::SumOfCurvatures];
 
 fn sizing_of(surface: &Surface, settings: &Settings) -> Sizing {
-    let mut field = surface.field();
+    let field = surface.field();
+    let mut evaluator = field.evaluator(Frame::default());
     let mut memory = ProbeMemory::default();
-    let probe = &mut Probe::new(&mut field, &mut memory);
+    let probe = &mut Probe::new(&mut *evaluator, &mut memory);
     let found = survey(probe, &surface.bounds, false);
     Sizing::new(probe, &surface.bounds, settings, &found, &Creases::default())
 }

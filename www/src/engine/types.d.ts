@@ -114,7 +114,6 @@ export type Report = CoreReport & { seconds: Seconds };
 
 // ---- the shareable state
 
-export type Grain = ViewState['grain'];
 export type ColourMode = import('./core-types.js').ColourMode;
 /**
  * The camera: the eye is on a sphere around `target`, with z up. With `fit` the engine sets target and distance so that
@@ -364,10 +363,8 @@ export interface EngineCommands {
   relax: (steps: number) => void;
   setView: (patch: Partial<ViewState>) => void;
   fit: () => void;
-  /** marks a place, or none, and brings it before the camera unless `turns` is false */
-  pointOut: (place: Place | null, options?: { turns?: boolean }) => void;
-  /** draws only so many particles, the first ones; null for all */
-  showFirst: (count: number | null) => void;
+  /** marks a place, or none, and brings it before the camera */
+  pointOut: (place: Place | null) => void;
   /** turns the camera to a side of the surface, unless that side is seen already */
   turnTo: (normal: Vec3) => void;
   /** turns the camera to a named view */

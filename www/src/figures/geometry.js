@@ -13,24 +13,6 @@ export function inPlane({ centre, right, up, radius }, place) {
 }
 
 /**
- * Returns two unit vectors perpendicular to a unit normal and to each other, the first as near as it can be to a given
- * direction.
- * @param {ArrayLike<number>} normal @param {ArrayLike<number>} [towards]  not along the normal
- * @returns {[[number, number, number], [number, number, number]]}
- */
-export function tangentsOf(normal, towards = Math.abs(normal[0]) < 0.7 ? [1, 0, 0] : [0, 1, 0]) {
-  const n = normal;
-  const along = dot(towards, n);
-  const flat = [0, 1, 2].map((k) => towards[k] - along * n[k]);
-  const length = Math.hypot(flat[0], flat[1], flat[2]);
-  const [x, y, z] = flat.map((v) => v / length);
-  return [
-    [x, y, z],
-    [n[1] * z - n[2] * y, n[2] * x - n[0] * z, n[0] * y - n[1] * x],
-  ];
-}
-
-/**
  * Place of a slot's child before its projection, in radii: 2 away at 60° times its number.
  * @param {number} slot
  * @returns {Point}

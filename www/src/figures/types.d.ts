@@ -1,5 +1,5 @@
 // Types of the drawings of a particle.
-import type { LessonEvent, LessonIterate, LessonPush, Vec3 } from '../engine/types.js';
+import type { LessonEvent, LessonIterate, Vec3 } from '../engine/types.js';
 
 export type Of<T extends LessonEvent['type']> = Extract<LessonEvent, { type: T }>;
 /** A child as far as it is known. `fate` is `open` until it is decided; `particle` is the one that it became or met. */
@@ -62,28 +62,6 @@ export interface Opened {
   events: LessonEvent[];
   /** by slot */
   profiles: (Profile | null)[];
-}
-/**
- * A step of a particle. `pushes` are of those that push it, the strongest first; `moved` is the event of its move;
- * `radius` its own before the step.
- */
-export interface Rest {
-  step: number;
-  /** of the run */
-  steps: number;
-  /** of the step: the share of the force by which a particle moves */
-  size: number;
-  /** energy per particle before the step */
-  before: number;
-  after: number;
-  /** longest move of all particles, in radii */
-  largest: number;
-  /** before the step */
-  place: Vec3;
-  normal: Vec3;
-  radius: number;
-  pushes: (LessonPush & { at: Vec3; radius: number })[];
-  moved: Extract<LessonEvent, { type: 'moved' }>;
 }
 export type Point = [number, number];
 /** Two perpendicular unit vectors at a particle, and its radius. */

@@ -181,7 +181,7 @@ function tellPush(event, radius) {
         ? `The child of slot ${event.slot} is pushed along the circle. It still overlaps another by ${formatFixed(100 * event.overlap, 1)} %.`
         : `The child of slot ${event.slot} is pushed along the circle. It overlaps none any more.`;
     case 'room': {
-      const angles = `The child of slot ${event.slot} takes φ = ${inDegrees(event.phi_rad, 1)}; τ = ${inDegrees(event.tau_rad, 1)} are free.`;
+      const angles = `The child of slot ${event.slot} takes φ = ${inDegrees(event.phi_rad, 1)}; τ = ${inDegrees(event.tau_rad, 1)} are free, ${formatFixed((100 * event.tau_rad) / event.phi_rad, 0)} % of that.`;
       return event.fits ? `${angles} There is room.` : `${angles} There is no room: this space is done.`;
     }
   }
@@ -210,58 +210,6 @@ function tellFate({ slot, fate, particle }) {
     default:
       return '';
   }
-}
-
-/** The event in a few words. @param {LessonEvent} event */
-function brief(event) {
-  switch (event.type) {
-    case 'taken':
-      return 'taken from the queue';
-    case 'frame':
-      return 'tangent plane laid';
-    case 'slot':
-      return 'starts on its circle';
-    case 'iterate':
-      return event.theta_rad === null ? `step ${event.step}` : `${theta(event.step)} = ${inDegrees(event.theta_rad)}`;
-    case 'landed':
-      return 'landed on the surface';
-    case 'gathered':
-      return 'neighbours gathered';
-    case 'compared':
-      return event.corresponds && event.against !== null
-        ? `corresponds to ${particleOf(event.against)}`
-        : 'corresponds to none';
-    case 'fronts_meet':
-      return 'fronts meet';
-    case 'added':
-      return `added as ${particleOf(event.particle)}`;
-    case 'arc':
-      return event.before === null ? 'all around is free' : 'the next free space';
-    case 'start':
-      return 'starts on the circle of its parent';
-    case 'push':
-      return 'pushed away';
-    case 'push_on_circle':
-      return 'pushed along the circle';
-    case 'room':
-      return event.fits ? 'there is room' : 'there is no room';
-    case 'fate':
-      return event.particle === null ? FATES[event.fate] : `${FATES[event.fate]} ${particleOf(event.particle)}`;
-    case 'done':
-      return 'done';
-    default:
-      return '';
-  }
-}
-
-/**
- * The place on the range, such as "Level 3 of 21, particle 47, slot 2: matched particle 31".
- * @param {Moment} moment @param {Subject} subject
- */
-export function valueText({ event, slot, isNow }, { level, levels, particle }) {
-  const of = levels === undefined ? '' : ` of ${formatCount(levels)}`;
-  const child = isNow && slot !== null && !(event.type === 'fate' && event.fate === 'parent') ? `, slot ${slot}` : '';
-  return `Level ${formatCount(level)}${of}, particle ${formatCount(particle)}${child}: ${brief(event)}`;
 }
 
 /**

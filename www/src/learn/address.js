@@ -4,7 +4,7 @@
  */
 
 /** Parts that a fragment may have beside the stop. */
-const PARTS = ['surface', 'mode', 'task', 'left', 'right'];
+const PARTS = ['surface', 'mode', 'task', 'left', 'right', 'particle'];
 /** The stops of comparisons begin with this; only theirs have the values of the two sides. */
 export const BENCH = 'what-if';
 const OF_BENCH = ['left', 'right'];

@@ -11,7 +11,7 @@ import { lockParts } from './locks.js';
 import { ringsOf } from './measure.js';
 import { namedFigures } from './score.js';
 import { CONTROLS, LONGEST_TITLE, lockedWords, packTask, particleTable, tableOf } from './task.js';
-import { whatIfOf } from './whatifs.js';
+import { USUAL, whatIfOf } from './whatifs.js';
 
 /** @import { Control, Lab, LabRun, Score, Setup, Stops, Task, Work } from './types.js' */
 
@@ -116,8 +116,10 @@ export function createMaker({ setup, linkOf }) {
   const link = h('input', { class: 'box wide', readonly: true, 'aria-label': 'Link of the assignment' });
   const told = h('p', { class: 'quiet', role: 'status' });
   const write = () => {
-    const { what: id, left, right } = setup();
-    what.textContent = `It compares what stands under “What if”: ${whatIfOf(id).name}.`;
+    const whatIf = whatIfOf(setup().what);
+    // Where learners are to find the best and the worst, the teacher's own tries would solve it.
+    const { what: id, left, right } = whatIf.knobs ? { what: whatIf.id, left: USUAL, right: USUAL } : setup();
+    what.textContent = `It compares what stands under “What if”: ${whatIf.name}.${whatIf.knobs ? ' Learners begin with the sampling of the lesson; your own tries stay here.' : ''}`;
     const task = {
       title: title.value,
       setup: { what: id, left, right },

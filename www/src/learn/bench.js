@@ -1,10 +1,8 @@
-/** The bench on which two runs are compared, and the cards that lead to it. */
-import { signal } from '@preact/signals-core';
-import { button } from '../ui/button.js';
+/** The bench on which two runs are compared. */
 import { fill, h } from '../ui/dom.js';
 import { createPair } from './pair.js';
 import { createSelect } from './parts.js';
-import { setupOf, sidesOf, WHAT_IFS, whatIfOf } from './whatifs.js';
+import { COMMON, setupOf, sidesOf, whatIfOf } from './whatifs.js';
 
 /** @import { Control, Lab, Setup, WhatIf } from './types.js' */
 
@@ -14,11 +12,7 @@ import { setupOf, sidesOf, WHAT_IFS, whatIfOf } from './whatifs.js';
  * @param {{ setup?: Setup, locks?: readonly Control[], onChoice?: (setup: Setup) => void }} [how]
  *   `locks`: controls that stay as they are; `onChoice` is told what the learner chooses
  */
-export function createBench(
-  host,
-  lab,
-  { setup: first = setupOf(WHAT_IFS[0].id), locks = [], onChoice = () => {} } = {},
-) {
+export function createBench(host, lab, { setup: first = setupOf(COMMON[0].id), locks = [], onChoice = () => {} } = {}) {
   const pair = createPair(lab);
   const look = h('p', { class: 'look' });
   const chosen = h('div', { class: 'controls' });
@@ -33,7 +27,7 @@ export function createBench(
   let fail = null;
   const what = createSelect({
     name: 'What changes',
-    choices: WHAT_IFS.map(({ id, name }) => ({ value: id, label: name })),
+    choices: COMMON.map(({ id, name }) => ({ value: id, label: name })),
     value: setup.what,
     change: (id) => open(id, {}, choose),
   });
@@ -83,13 +77,13 @@ export function createBench(
   async function compare(next) {
     setup = next;
     const whatIf = whatIfOf(setup.what);
-    what.select.value = whatIf.id;
+    what.set(whatIf.id, whatIf.name);
     await stand(whatIf);
     if (setup !== next) return;
     follow(next);
     const isPicked = whatIf.knobs && !locks.includes('right');
     pair.pickWith(isPicked ? (place) => fail?.seed(place) : null);
-    await pair.show(sidesOf(whatIf, [setup.left, setup.right]), whatIf.colouring);
+    await pair.show(sidesOf(whatIf, [setup.left, setup.right]), whatIf);
     if (setup === next && whatIf.knobs) await fail?.tell(next);
   }
 
@@ -112,15 +106,14 @@ export function createBench(
     setup: () => setup,
     /** Fulfilled once what is shown is measured. */
     settled: () => shown,
-    /** The runs that are shown and those that are kept, each with its name, once they are measured. */
+    /** The runs that are shown and those that are kept, each once and with its name, once they are measured. */
     runs() {
       const { runs, scores } = pair;
-      const sides = (runs ?? []).map((run, k) => ({
-        label: [setup.left, setup.right][k],
-        run,
-        score: scores?.[k],
-      }));
-      return [...sides, ...((whatIfOf(setup.what).knobs && fail?.runs()) || [])];
+      const whatIf = whatIfOf(setup.what);
+      const names = sidesOf(whatIf, [setup.left, setup.right]);
+      const sides = (runs ?? []).map((run, k) => ({ label: names[k].label, run, score: scores?.[k] }));
+      const all = [...((whatIf.knobs && fail?.runs()) || []), ...sides];
+      return all.filter(({ run }, k) => all.findIndex((one) => one.run === run) === k);
     },
   };
 }
@@ -143,33 +136,4 @@ function createSides(choices, locks, change) {
       for (const { side, set } of sides) set(setup[side]);
     },
   };
-}
-
-/** Gives each card that has one a button that shows both. @param {HTMLElement} cards @param {Lab} lab */
-export function mountCards(cards, lab) {
-  for (const card of cards.querySelectorAll('.card')) {
-    const id = card.getAttribute('data-what-if');
-    if (!id) continue;
-    const title = card.querySelector('h3')?.textContent ?? '';
-    const isOpen = signal(false);
-    const place = h('div', { class: 'card-pair', hidden: () => !isOpen.value });
-    /** @type {ReturnType<typeof createPair> | null} */
-    let pair = null;
-    const press = () => {
-      isOpen.value = !isOpen.peek();
-      card.toggleAttribute('data-open', isOpen.peek());
-      if (pair || !isOpen.peek()) return;
-      pair = createPair(lab);
-      const whatIf = whatIfOf(id);
-      const { left, right } = setupOf(id, { right: card.getAttribute('data-right') });
-      fill(place, h('p', { class: 'look' }, whatIf.look), pair.element);
-      void pair.show(sidesOf(whatIf, [left, right]), whatIf.colouring);
-    };
-    card.append(
-      button({ 'aria-expanded': () => String(isOpen.value), 'aria-label': `Show both: ${title}`, press }, 'Show both'),
-      place,
-    );
-    // A presentation may have come to this card first.
-    if (card.hasAttribute('data-current')) press();
-  }
 }

@@ -1,5 +1,6 @@
 /**
- * Collect: a lecturer drops the files that learners saved, and sees their answers side by side with what the run says.
+ * Collect: a lecturer drops the files that learners saved, and sees how often each answer was guessed, with the right
+ * one marked.
  * The files are read in this page and go nowhere.
  */
 import { button } from '../ui/button.js';
@@ -9,7 +10,7 @@ import { download } from '../ui/share.js';
 import { loadSheet } from '../ui/sheet.js';
 import sheet from './collect.css?url';
 import { PREDICTIONS } from './predictions.js';
-import { COUNT_WORDS, ROWS } from './score.js';
+import { ROWS } from './score.js';
 import { readWork, tableOfAll } from './task.js';
 
 /** @import { Guessed, Work } from './types.js' */
@@ -80,7 +81,9 @@ export async function mountCollect(host) {
   function write(refused) {
     told.textContent = [
       `${plural(works.size, 'work')} collected.`,
-      refused.length > 0 ? `Not the work of a learner, and left out: ${refused.join(', ')}.` : '',
+      refused.length > 0
+        ? `Left out, since they are not the work of a learner or are damaged: ${refused.join(', ')}.`
+        : '',
     ].join(' ');
     for (const one of [save, clear]) one.hidden = works.size === 0;
     /** @type {Map<string, Work[]>} */
@@ -91,7 +94,7 @@ export async function mountCollect(host) {
     }
     fill(
       tables,
-      [...groups].map(([title, group]) => [answerTable(title, group), runTable(group)]),
+      [...groups].map(([title, group]) => [answersOf(title, group), runTable(group)]),
     );
   }
 
@@ -117,27 +120,72 @@ const scrolled = (name, table) =>
 /** The questions of works in the order of their first appearance. @param {readonly { question: string }[]} all */
 const questionsOf = (all) => [...new Set(all.map(({ question }) => question))];
 
+/** The choices of a question of the lesson. @param {string} stop */
+const choicesOf = (stop) => (Object.hasOwn(PREDICTIONS, stop) ? (PREDICTIONS[stop].choices ?? []) : []);
+
 /** A guess in the words of the page. @param {Guessed | undefined} guessed */
 function guessWords(guessed) {
   if (!guessed || guessed.guess === null) return MISSING;
-  const choices = Object.hasOwn(PREDICTIONS, guessed.stop) ? PREDICTIONS[guessed.stop].choices : undefined;
-  return choices?.find(({ value }) => value === guessed.guess)?.label ?? String(guessed.guess);
+  return choicesOf(guessed.stop).find(({ value }) => value === guessed.guess)?.label ?? String(guessed.guess);
+}
+
+/** The questions that have one right answer, and not one for each place or learner. @param {Guessed} guessed */
+const hasBars = ({ stop }) => Object.hasOwn(PREDICTIONS, stop) && PREDICTIONS[stop].kind !== 'pick';
+
+/**
+ * How often each answer of a question was guessed, as bars, with the right one marked.
+ * @param {string} question @param {readonly Guessed[]} all  of this question
+ */
+function barsOf(question, all) {
+  const guesses = all.flatMap(({ guess }) => (guess === null ? [] : [guess]));
+  const known = all.find(({ right }) => right !== undefined);
+  const choices = choicesOf(all[0].stop);
+  const values =
+    choices.length > 0
+      ? choices.map(({ value }) => value)
+      : [...new Set([...guesses, ...(known ? [known.right ?? ''] : [])])].sort((a, b) => Number(a) - Number(b));
+  const counts = values.map((value) => guesses.filter((guess) => guess === value).length);
+  const most = Math.max(1, ...counts);
+  const rows = values.map((value, k) => {
+    const isRight = value === known?.right;
+    return h(
+      'li',
+      { class: 'bar-row', 'data-right': isRight ? '' : null },
+      h('span', null, choices[k]?.label ?? String(value), isRight ? h('b', null, ' right') : null),
+      h('span', { class: 'cost-bar', style: { width: `${(100 * counts[k]) / most}%` } }),
+      h('span', null, formatCount(counts[k])),
+    );
+  });
+  const open = all.length - guesses.length;
+  return h(
+    'section',
+    { class: 'guesses' },
+    h('h3', null, question),
+    h('ul', null, rows),
+    open > 0 ? h('p', { class: 'quiet' }, `${plural(open, 'learner')} skipped it.`) : null,
+    known ? h('p', null, known.answer) : h('p', { class: 'quiet' }, 'Nobody has revealed the answer.'),
+  );
 }
 
 /**
- * What learners wrote and guessed, one in a row, below what the run says.
+ * What learners guessed, question by question, and below it what each of them wrote.
  * @param {string} title @param {readonly Work[]} works
  */
-function answerTable(title, works) {
-  const asked = questionsOf(works.flatMap(({ answers }) => answers));
+function answersOf(title, works) {
   const all = works.flatMap(({ predictions }) => predictions);
+  const bars = questionsOf(all.filter(hasBars)).map((question) =>
+    barsOf(
+      question,
+      all.filter((one) => one.question === question),
+    ),
+  );
+  const asked = questionsOf(works.flatMap(({ answers }) => answers));
   const guessed = questionsOf(all);
   const cell = (/** @type {string | undefined} */ words) => h('td', null, words || MISSING);
-  const says = guessed.map((question) => all.find((one) => one.question === question && one.answer)?.answer);
   const table = h(
     'table',
     { class: 'compare' },
-    h('caption', null, `${title}: ${plural(works.length, 'work')}`),
+    h('caption', null, 'Learners'),
     h(
       'thead',
       null,
@@ -150,14 +198,6 @@ function answerTable(title, works) {
     h(
       'tbody',
       null,
-      guessed.length > 0
-        ? h(
-            'tr',
-            { class: 'says' },
-            h('th', { scope: 'row', colspan: 2 + asked.length }, 'The run says'),
-            says.map(cell),
-          )
-        : null,
       works.map(({ name, group, answers, predictions }) =>
         h(
           'tr',
@@ -170,17 +210,24 @@ function answerTable(title, works) {
       ),
     ),
   );
-  return scrolled(`Answers to ${title}`, table);
+  return [
+    h('h2', null, `${title}: ${plural(works.length, 'work')}`),
+    bars.length > 0 ? h('div', { class: 'guesses-box' }, bars) : null,
+    scrolled(`Answers to ${title}`, table),
+  ];
 }
+
+/** What tells a run from another. @param {any} run */
+const keyOf = ({ label, figures }) => JSON.stringify([label, figures]);
 
 /** The figures of the runs that learners made, each with the number of its learners. @param {readonly Work[]} works */
 function runTable(works) {
   /** @type {Map<string, { run: any, count: number }>} */
   const found = new Map();
-  for (const run of works.flatMap(({ runs }) => runs)) {
-    const { label, figures } = /** @type {any} */ (run);
-    const key = JSON.stringify([label, figures]);
-    found.set(key, { run, count: (found.get(key)?.count ?? 0) + 1 });
+  for (const { runs } of works) {
+    // A learner counts once, however often a file lists a run.
+    const own = new Map(runs.map((run) => [keyOf(run), run]));
+    for (const [key, run] of own) found.set(key, { run, count: (found.get(key)?.count ?? 0) + 1 });
   }
   if (found.size === 0) return null;
   const table = h(
@@ -213,5 +260,5 @@ function runTable(works) {
       ),
     ),
   );
-  return [scrolled('What their runs give', table), h('p', { class: 'quiet' }, COUNT_WORDS)];
+  return scrolled('What their runs give', table);
 }

@@ -12,7 +12,7 @@ import { formatCount, plural } from '../ui/format.js';
 /**
  * @import { LessonEvent } from '../engine/types.js'
  * @import { Opened } from '../figures/types.js'
- * @import { Answer, Decision, Lab, Patch, Verdict } from './types.js'
+ * @import { Answer, Decision, Lab, LabRun, Patch, Verdict } from './types.js'
  */
 
 /** @type {readonly Patch[]} */
@@ -23,11 +23,11 @@ export const PATCHES = [
     surface: { formula: 'z = 0', parameters: [], bounds: { min: [-1, -1, -0.5], max: [1, 1, 0.5] } },
     radius: 0.13,
     seed: [0, 0, 0],
-    ends: 'In a plane every child met its particle exactly, or none at all.',
+    ends: 'Three particles are done. In a plane every child met its particle exactly, or none at all.',
   },
   {
     id: 'cap',
-    name: 'A cap',
+    name: 'A cap, at its seam',
     surface: {
       formula: 'x^2 + y^2 + z^2 = 1',
       parameters: [],
@@ -35,7 +35,8 @@ export const PATCHES = [
     },
     radius: 0.27,
     seed: [0, 0, 1],
-    ends: 'On a cap a circle is shorter than in a plane, and has no room for six more on every ring.',
+    isAtSeam: true,
+    ends: 'The front has met itself, out of step: a seam begins here. On a cap a ring has no room for six more than the one before.',
   },
 ];
 
@@ -62,8 +63,27 @@ export async function childrenOf(lab) {
   }
 }
 
-/** The fates that are decided by comparing. The others are found on the way to the surface. */
-const DECIDED = ['parent', 'matched', 'added'];
+/** Particles of a plane that the learner treats: the seed and two of its children. */
+const TREATED = 3;
+/** Particles that are looked through for the first meeting of a front. */
+const MOST_BEFORE = 60;
+
+/** The particles that the learner treats: the first ones, or the one at which the front meets itself. */
+export async function treatedOf(/** @type {LabRun} */ run, /** @type {Patch} */ { isAtSeam }) {
+  const all = [...Array(Math.min(isAtSeam ? MOST_BEFORE : TREATED, run.placed.radii.length)).keys()];
+  if (!isAtSeam) return all;
+  for (const particle of all) {
+    const { events } = await openParticle(run.client, run, particle);
+    if (decisionsOf(events).some(({ met }) => met)) return [particle];
+  }
+  return [0];
+}
+
+/**
+ * The fates that are decided by comparing. Slot 0 always holds the parent; the others are found on the way to the
+ * surface.
+ */
+const DECIDED = ['matched', 'added'];
 /** Events that stand between a comparison and the fate that follows from it. */
 const BETWEEN = ['added', 'fronts_meet'];
 
@@ -83,23 +103,16 @@ export function decisionsOf(events) {
 }
 
 /** The line of the algorithm that asks what is at a slot. @param {Decision} decision */
-export const lineAt = ({ slot, compared }) =>
-  slot > 0 && compared ? lineOf(compared) : lineOf({ type: 'fate', fate: 'parent', parent: 0, slot, particle: null });
+export const lineAt = ({ compared }) => (compared ? lineOf(compared) : -1);
 
 /**
  * Returns why a verdict is not that of the run; empty if it is.
  * @param {Opened} opened @param {Decision} decision @param {Verdict} said
  */
-export function objection({ subject, positions }, { slot, compared, verdict }, said) {
+export function objection({ subject, positions }, { compared, verdict }, said) {
   const isSame = said.fate === verdict.fate && (said.fate !== 'matched' || said.particle === verdict.particle);
   if (isSame) return '';
   const name = (/** @type {number | null} */ particle) => `Particle ${formatCount(particle ?? 0)}`;
-  if (verdict.fate === 'parent')
-    return `${name(subject.parent)} is the parent, to which slot ${slot} points. It holds the slot, and nothing is placed or compared there.`;
-  if (said.fate === 'parent')
-    return subject.parent === null
-      ? 'A seed has no parent: nobody placed it.'
-      : 'The parent holds slot 0. This slot lies elsewhere.';
   if (!compared) return '';
   // Rounded first, since a distance of rounding errors would be written as a power of ten.
   const far = (/** @type {number} */ particle) => {

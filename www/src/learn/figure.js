@@ -39,16 +39,21 @@ export function mountFigure(stage, build) {
     made ??= make();
     return made;
   };
+  whenNear(stage, load);
+  return { stage, load, ready };
+}
+
+/** Does something once an element comes near the window. @param {Element} element @param {() => Promise<void>} act */
+export function whenNear(element, act) {
   const observer = new IntersectionObserver(
     (entries) => {
       if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
       observer.disconnect();
-      void load();
+      void act();
     },
     { rootMargin: `${AHEAD_PX}px 0px` },
   );
-  observer.observe(stage);
-  return { stage, load, ready };
+  observer.observe(element);
 }
 
 /** @param {any} error */

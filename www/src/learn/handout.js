@@ -1,30 +1,26 @@
 /**
  * The hand-out: the article on paper, with blanks for the predictions and their answers on the last page. The answers
- * come from the run, and a browser does not wait for one when it prints: so they are asked for as their figures come to
- * life, and the page's own button and the keys for printing wait for the rest.
+ * come from the run, and a browser does not wait for one when it prints: the page's own button and the keys for
+ * printing do.
  */
-import { signal } from '@preact/signals-core';
-import { button } from '../ui/button.js';
 import { byId, fill, h } from '../ui/dom.js';
+import { Stops } from './answers.js';
 import { FIGURES } from './chapters/index.js';
 import { reasonOf } from './figure.js';
-import { Stops } from './predict.js';
 import { PREDICTIONS } from './predictions.js';
 
 /** @import { HandoutOptions } from './types.js' */
 
-const UNKNOWN = 'The run has not been asked yet. Print from the page’s own button to have the answer here.';
-
 /** After so many frames a picture has turned. */
 const FRAMES = 60;
 /** The questions whose figure withholds something until they are answered: it is shown with the answer. */
-const WITHHELD = ['predict-cost', 'predict-ring', 'predict-hole'];
+const WITHHELD = ['predict-cost', 'predict-ring', 'predict-rest'];
 
 /**
  * @param {HTMLElement} host  the last page
  * @param {HandoutOptions} about
  */
-export function createHandout(host, { figures, lab, compare, say }) {
+export function createHandout(host, { figures, lab, compare }) {
   const title = host.querySelector('h2');
   /** The answers of the run, by the id of the question. @type {Map<string, string>} */
   const known = new Map();
@@ -41,7 +37,7 @@ export function createHandout(host, { figures, lab, compare, say }) {
         'li',
         null,
         h('p', { class: 'answer-question' }, question),
-        h('p', null, known.get(id) ?? UNKNOWN),
+        h('p', null, known.get(id) ?? ''),
         shown.get(id),
       );
     });
@@ -56,12 +52,6 @@ export function createHandout(host, { figures, lab, compare, say }) {
     const answer = await PREDICTIONS[id].answer(await lab, null);
     known.set(id, answer.words);
   }
-  // The figure of a chapter has made the runs that its questions ask.
-  for (const { stage, ready } of figures)
-    void ready.then(async () => {
-      for (const { id } of stage.closest('.chapter')?.querySelectorAll('.predict') ?? []) await ask(id).catch(() => {});
-    });
-
   /** Makes the figure of an answered question. @param {string} id */
   async function show(id) {
     const name = byId(id).closest('.chapter')?.querySelector('figure > .stage')?.getAttribute('data-figure') ?? '';
@@ -85,30 +75,19 @@ export function createHandout(host, { figures, lab, compare, say }) {
     for (let frame = 0; frame < FRAMES; frame += 1) await new Promise(requestAnimationFrame);
   }
 
-  const isWhole = () => known.size === ids.length;
-  const isPreparing = signal(false);
-  const print = button({ class: 'plain', disabled: () => isPreparing.value, press: () => void press() }, () =>
-    isPreparing.value ? 'Preparing' : 'Print',
-  );
-  async function press() {
-    if (isPreparing.peek()) return;
-    isPreparing.value = true;
-    try {
-      await prepare();
-    } finally {
-      isPreparing.value = false;
-    }
-    window.print();
-  }
-  addEventListener('keydown', (event) => {
-    const isPrint = (event.ctrlKey || event.metaKey) && !event.altKey && !event.shiftKey && event.key === 'p';
-    if (!isPrint || isWhole()) return;
-    event.preventDefault();
-    void press();
-  });
+  let isPreparing = false;
   addEventListener('beforeprint', write);
-  addEventListener('afterprint', () => {
-    if (!isWhole()) say('Not all answers were known when this was printed. The button “Print” waits for them.');
-  });
-  return { button: print };
+  return {
+    /** Prints once every answer is known. */
+    async print() {
+      if (isPreparing) return;
+      isPreparing = true;
+      try {
+        await prepare();
+      } finally {
+        isPreparing = false;
+      }
+      window.print();
+    },
+  };
 }

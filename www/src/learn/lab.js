@@ -24,6 +24,8 @@ const SLOTS = 6;
 const TRIAL = 1 / 30;
 /** A count this close to the wanted one is taken. */
 const CLOSE = 0.12;
+/** Two counts this close are alike. */
+const ALIKE = 0.004;
 const MOST_TRIALS = 4;
 
 /**
@@ -41,6 +43,9 @@ export class Lab {
 
   /** @type {WeakMap<LessonParticles, ReturnType<Meter['measure']>>} */
   #measures = new WeakMap();
+
+  /** @type {Map<string, Lab>} */
+  #others = new Map();
 
   /** @type {Map<string, Promise<LabRun>>} */
   #runs;
@@ -64,9 +69,32 @@ export class Lab {
     this.#last = Promise.resolve();
   }
 
-  /** The same on another surface. @param {FormulaSurface} surface */
+  /** Another one, on another surface. @param {FormulaSurface} surface */
   beside(surface) {
     return new Lab(surface, this.#open, this.#meter);
+  }
+
+  /** The one on another surface, whose runs are made once. @param {FormulaSurface} surface */
+  on(surface) {
+    const key = JSON.stringify(surface);
+    const known = this.#others.get(key) ?? this.beside(surface);
+    this.#others.set(key, known);
+    return known;
+  }
+
+  /**
+   * A run with as many particles as another one, which keeps a different distance with the same radius: the radius is
+   * scaled until the counts agree.
+   * @param {Partial<LessonSettings>} change @param {LabRun} other
+   */
+  async runAsMany(change, other) {
+    let radius = other.radius;
+    for (let trial = 0; ; trial += 1) {
+      const run = await this.run({ ...change, radius });
+      const ratio = run.end.radii.length / other.end.radii.length;
+      if (Math.abs(ratio - 1) < ALIKE || trial === MOST_TRIALS) return run;
+      radius *= Math.sqrt(ratio);
+    }
   }
 
   /** @template T @param {() => Promise<T>} job */
@@ -177,7 +205,7 @@ export class Lab {
       const placing = front.at(-1)?.evaluations ?? 0;
       const end = await client.ask('seek', { event: Infinity });
       if (end.radii.length === 0) throw new NoSurface('The formula has no surface in its box.');
-      return { client, settings, radius, chapters, progress, placed, end, placing };
+      return { lab: this, client, settings, radius, chapters, progress, placed, end, placing };
     } catch (error) {
       client.close();
       throw error;

@@ -1,83 +1,51 @@
 /** Entry point of the lesson's page: an article whose figures, questions and comparisons run the paper's algorithms. */
 import '../ui/trusted.js';
-import { kindOf, LessonClient } from '../engine/lesson/client.js';
-import { Meter } from '../engine/sampling/meter.js';
 import { button } from '../ui/button.js';
-import { byId, query, queryAll } from '../ui/dom.js';
+import { byId, fill, h, queryAll } from '../ui/dom.js';
 import { storeSite } from '../ui/offline.js';
-import { surfaceWords } from '../ui/surface-link.js';
+import { kept } from '../ui/remembered.js';
+import { packed, surfaceWords } from '../ui/surface-link.js';
 import { readAddress, writeAddress } from './address.js';
+import { Stops } from './answers.js';
 import { FIGURES } from './chapters/index.js';
 import { mountFigure } from './figure.js';
-import { createHandout } from './handout.js';
-import { Lab, NoSurface, PARTICLES } from './lab.js';
-import { mountPrediction, Stops } from './predict.js';
+import { openSubject } from './lesson-lab.js';
+import { mountPrediction } from './predict.js';
 import { PREDICTIONS } from './predictions.js';
 import { keepSetup, mountStops } from './stops.js';
-import { subjectOf } from './surface.js';
-import { unpackTask } from './task.js';
-import { FAIL, setupOf, sidesOf, stopsOfBench, WHAT_IFS } from './whatifs.js';
+import { COMMON, FAIL, setupOf, stopsOfBench } from './whatifs.js';
 
-const address = readAddress(location.hash);
-const subject = subjectOf(address.parts.surface);
-const open = async () => new LessonClient();
-const meter = new Meter();
-const notice = byId('notice');
-const stops = new Stops();
+const { subject, notice, parts, lab } = openSubject();
+const own = kept(`lesson.${packed(subject.surface)}`);
+const stops = new Stops(own.text, own.keep);
+/** The part for teachers, which is loaded when it is asked for. */
+const teach = () => import('./teach.js');
 
-/** Tries the learner's surface; where it has no particles, the ellipsoid stands in. */
-async function openLab() {
-  if (!subject.isOwn) return new Lab(subject.surface, open, meter);
-  const own = new Lab(subject.surface, open, meter);
-  try {
-    await own.radiusFor(PARTICLES);
-    return own;
-  } catch (error) {
-    const isRefused = error instanceof NoSurface || kindOf(error) === 'refused';
-    if (!isRefused) return own;
-    const stand = subjectOf(undefined).surface;
-    notice.textContent = `${error instanceof Error ? error.message : error} The figures show an ellipsoid.`;
-    byId('surface-name').textContent = 'an ellipsoid';
-    return new Lab(stand, open, meter);
-  }
+if (stops.isBegun()) {
+  const forget = () => {
+    stops.forget();
+    location.reload();
+  };
+  const place = byId('kept');
+  fill(place, 'This browser has kept your answers. ', button({ class: 'plain', press: forget }, 'Forget them'));
+  place.hidden = false;
 }
 
-/** The comparison whose picture is to be told from the other: both without a word. @param {Lab} lab */
-async function blindPair(lab) {
-  const { createPair } = await import('./pair.js');
-  const pair = createPair(lab, { bare: true });
-  const order = WHAT_IFS[0];
-  const [queue, stack] = sidesOf(order, ['queue', 'stack']);
-  await pair.show(
-    [
-      { ...stack, label: 'A' },
-      { ...queue, label: 'B' },
-    ],
-    'level',
-  );
-  return [pair.element];
-}
-
-notice.textContent = subject.notice;
-if (subject.isOwn) byId('surface-name').textContent = `your surface, ${surfaceWords(subject.surface)}`;
-for (const id of ['#back', '#back-end']) query(document, id, HTMLAnchorElement).href = `../${subject.from}`;
-
-const lab = openLab();
 const context = { lab, stops };
-const figures = queryAll(document, '[data-figure]').map((host) => {
-  const name = host.dataset.figure ?? '';
-  const build = name === 'order' ? async () => blindPair(await lab) : () => FIGURES[name](context);
-  return mountFigure(host, build);
-});
+const figures = queryAll(document, '[data-figure]').map((host) =>
+  mountFigure(host, () => FIGURES[host.dataset.figure ?? ''](context)),
+);
 // The numbers of the text are handles of live figures.
 for (const { stage, ready } of figures) void ready.then(async () => (await import('./drag.js')).mountNumbers(stage));
 for (const host of queryAll(document, '.predict')) mountPrediction(host, PREDICTIONS[host.id], context);
 const bench = lab.then(async (ready) => {
-  const { createBench, mountCards } = await import('./bench.js');
-  mountCards(byId('cards'), ready);
+  const { createBench } = await import('./bench.js');
   void import('./race.js').then(({ mountRace }) => mountRace(byId('race-box'), ready));
   return createBench(byId('bench'), ready, { onChoice: keepSetup });
 });
+const say = (/** @type {string} */ words) => {
+  notice.textContent = words;
+};
 const { present } = mountStops({
   stops: [...document.querySelectorAll('[data-stop]')].map(({ id }) => id),
   others: stopsOfBench,
@@ -86,40 +54,66 @@ const { present } = mountStops({
     const { open, show, setup } = await bench;
     // What has a slide of its own is not on that of the comparisons.
     if (id) await open(id, given);
-    else await show(setup().what === FAIL ? setupOf(WHAT_IFS[0].id) : setup());
+    else await show(setup().what === FAIL ? setupOf(COMMON[0].id) : setup());
   },
-  onCollect: async () => {
-    const { mountCollect } = await import('./collect.js');
-    await mountCollect(byId('collect'));
-  },
+  teach,
   say: (words, place) => {
     place?.prepend(notice);
-    notice.textContent = words;
+    say(words);
   },
 });
 
 /** The dialog for teachers, once it is asked for. @type {{ open: () => void } | null} */
 let maker = null;
-const handout = createHandout(byId('answers'), {
-  figures,
-  lab,
-  async compare() {
-    const { show, setup } = await bench;
-    await show(setup());
-  },
-  say: (words) => {
-    notice.textContent = words;
-  },
+async function makeAssignment() {
+  const [{ createMaker }, { setup }] = await Promise.all([teach(), bench]);
+  maker ??= createMaker({ setup, linkOf });
+  maker.open();
+}
+
+/** The hand-out, once it is asked for. @type {Promise<{ print: () => Promise<void> }> | null} */
+let handout = null;
+async function print() {
+  handout ??= teach().then(({ createHandout }) =>
+    createHandout(byId('answers'), {
+      figures,
+      lab,
+      async compare() {
+        const { show, setup } = await bench;
+        await show(setup());
+      },
+    }),
+  );
+  say('The answers are being asked for.');
+  await (await handout).print();
+  say('');
+}
+addEventListener('keydown', (event) => {
+  const isPrint = (event.ctrlKey || event.metaKey) && !event.altKey && !event.shiftKey && event.key === 'p';
+  if (!isPrint) return;
+  event.preventDefault();
+  void print();
 });
-const tool = (/** @type {string} */ label, /** @type {() => void} */ press) => button({ class: 'plain', press }, label);
+addEventListener('afterprint', () => {
+  if (!handout) say('This was printed without the answers. “Print”, under “For teachers”, asks the runs for them.');
+});
+
+const tool = (/** @type {string} */ label, /** @type {() => unknown} */ press) =>
+  button({ class: 'plain', press: () => void press() }, label);
 byId('tools').append(
-  tool('Present', present),
-  handout.button,
-  tool('Assignment', async () => {
-    const [{ createMaker }, { setup }] = await Promise.all([import('./assignment.js'), bench]);
-    maker ??= createMaker({ setup, linkOf });
-    maker.open();
-  }),
+  h(
+    'details',
+    { class: 'teachers' },
+    h('summary', { class: 'button plain' }, 'For teachers'),
+    h(
+      'div',
+      { class: 'teachers-list' },
+      tool('Present', present),
+      tool('Print', print),
+      tool('Assignment', makeAssignment),
+      h('a', { class: 'button plain', href: '#collect' }, 'Collect answers'),
+    ),
+  ),
 );
 
 /** The address of this lesson with an assignment. @param {string} task */
@@ -130,12 +124,11 @@ function linkOf(task) {
   );
 }
 
-if (address.parts.task) {
-  const task = unpackTask(address.parts.task);
-  if (!task) notice.textContent = 'The link holds no assignment that can be read. The lesson is complete without it.';
-  else
-    void Promise.all([import('./assignment.js'), lab]).then(([{ mountAssignment }, ready]) =>
-      mountAssignment(byId('assignment'), task, { lab: ready, surface: surfaceWords(ready.surface), stops }),
-    );
-}
 storeSite('../service-worker.js');
+
+if (parts.task) {
+  const [{ unpackTask, mountAssignment }, ready] = await Promise.all([teach(), lab]);
+  const task = unpackTask(parts.task);
+  if (task) mountAssignment(byId('assignment'), task, { lab: ready, surface: surfaceWords(ready.surface), stops });
+  else say('The link holds no assignment that can be read. The lesson is complete without it.');
+}

@@ -4,11 +4,11 @@ import { momentAt } from '../figures/moment.js';
 import { openParticle } from '../figures/particle.js';
 import { between, createGrid } from '../ui/neighbours.js';
 import { NoSurface } from './lab.js';
-import { scoreOf } from './score.js';
+import { placesOf, scoreOf } from './score.js';
 
 /**
  * @import { LessonParticles } from '../engine/types.js'
- * @import { Lab, LabRun, Snapshot } from './types.js'
+ * @import { Cost, Lab, LabRun, Snapshot } from './types.js'
  */
 
 /**
@@ -110,3 +110,51 @@ export function asFineEverywhere(radii) {
  * @param {readonly Snapshot<L>[]} shots  in their order @param {(lane: L) => number} costOf @param {number} cost
  */
 export const shotAt = (shots, costOf, cost) => shots.findLast(({ lane }) => costOf(lane) <= cost) ?? shots[0];
+
+/** The widest hole that the fronts leave, and the particle beside it; null where none is measured. @param {Lab} lab */
+export async function widestHole(lab) {
+  const run = await lab.run({}, { keep: true });
+  const { places } = await lab.measure(run.placed, false);
+  const { hole, beside } = placesOf(run.placed, places);
+  return hole && { hole, particle: beside, radius: run.radius, run };
+}
+
+/** The energy before the first step of relaxation and after each, over that before the first. @param {Lab} lab */
+export async function energiesOf(lab) {
+  const { chapters, client } = await lab.run({}, { keep: true });
+  const steps = chapters.filter(({ kind }) => kind === 'relaxation');
+  const [begin] = await client.ask('events', { first: steps[0]?.first_event ?? 0, count: 1 });
+  const first = begin?.type === 'step_begins' ? begin.energy : 0;
+  return [1, ...steps.map(({ energy }) => Number(energy) / first)];
+}
+
+/**
+ * What this page counts: placing, ten steps, and the whole run of the other method.
+ * @param {Lab} lab
+ * @returns {Promise<Cost>}
+ */
+export async function costOf(lab) {
+  const { progress, placing } = await lab.run({}, { keep: true });
+  const other = await lab.run({ method: 'witkin_heckbert', radius_max: 0 });
+  const { particles, evaluations, interactions, steps } = progress;
+  const share = (/** @type {number} */ count, /** @type {number} */ of) => count / Math.max(1, of);
+  return {
+    particles,
+    others: other.progress.particles,
+    rows: [
+      { name: 'Placing, once', evaluations: share(placing, particles), pushes: 0, rounds: 0 },
+      {
+        name: 'Relaxation after it',
+        evaluations: share(evaluations - placing, particles),
+        pushes: share(interactions, particles),
+        rounds: steps,
+      },
+      {
+        name: 'Witkin and Heckbert’s system',
+        evaluations: share(other.progress.evaluations, other.progress.particles),
+        pushes: share(other.progress.interactions, other.progress.particles),
+        rounds: other.progress.steps,
+      },
+    ],
+  };
+}

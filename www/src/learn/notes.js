@@ -2,7 +2,7 @@
 import { signal } from '@preact/signals-core';
 import { fill, h, release } from '../ui/dom.js';
 
-/** @typedef {{ title: string, notes: string } | null} Words  of a stop */
+/** @typedef {{ title: string, minutes: string, answer: string, notes: string } | null} Words  of a stop */
 
 /** @param {{ now: () => Words, next: () => Words, say: (words: string) => void }} about */
 export function createNotes({ now, next, say }) {
@@ -50,6 +50,8 @@ export function createNotes({ now, next, say }) {
         { class: 'speaker' },
         h('p', { class: 'speaker-clock' }, clock),
         h('h1', null, () => now()?.title ?? ''),
+        h('p', { class: 'quiet', hidden: () => !now()?.minutes }, () => `${now()?.minutes} minutes for this chapter.`),
+        h('p', { hidden: () => !now()?.answer }, () => h('b', null, `Answer: ${now()?.answer}`)),
         h('p', null, () => now()?.notes ?? ''),
         h('p', { class: 'speaker-next' }, () => `Next: ${next()?.title ?? 'the end'}`),
         h('p', { class: 'quiet' }, 'Space, the arrow keys and the clicker go on from here, too. B blanks the wall.'),

@@ -10,7 +10,7 @@ import { byLevel, byValue, Orbit, sideBySide } from './picture.js';
 import { scoreAtEnd } from './score.js';
 import { createScorecard } from './scorecard.js';
 
-/** @import { Colouring, Lab, LabRun, Score, Side } from './types.js' */
+/** @import { Colouring, Lab, LabRun, Score, Side, WhatIf } from './types.js' */
 
 /** Distances over the ideal one span this range of colours. */
 const [LOW, HIGH] = [0.7, 1.15];
@@ -46,14 +46,16 @@ function legendOf(colouring, [least, most]) {
     case 'radius':
       return createScale('Radius', formatSignificant(least, 2), formatSignificant(most, 2));
     default:
-      return h('p', { class: 'scale' }, 'Each ring of the front has a colour; they repeat after twelve.');
+      return h(
+        'p',
+        { class: 'scale' },
+        'Blue where the front began, sand where it ended, with a lighter ring every eighth level.',
+      );
   }
 }
 
-/**
- * @param {Lab} lab @param {{ bare?: boolean }} [how]  `bare`: pictures alone, since figures would tell which is which
- */
-export function createPair(lab, { bare = false } = {}) {
+/** @param {Lab} lab */
+export function createPair(lab) {
   const orbit = new Orbit();
   const names = ['left', 'right'].map((side) => `The picture on the ${side}; both turn together`);
   const { pictures, captions, figures, point } = sideBySide(orbit, names);
@@ -71,7 +73,7 @@ export function createPair(lab, { bare = false } = {}) {
     h('div', { class: 'pair' }, figures),
     status,
     legend,
-    bare ? null : scorecard.element,
+    scorecard.element,
   );
   let isFirst = true;
   const shown = {
@@ -84,10 +86,10 @@ export function createPair(lab, { bare = false } = {}) {
       for (const [k, picture] of pictures.entries())
         picture.pickWith(onPick && ((particle) => onPick(particlePlace(k, particle))));
     },
-    show: (/** @type {Pair['sides']} */ sides, /** @type {Colouring} */ colouring) => compare({ sides, colouring }),
+    show: (/** @type {Pair['sides']} */ sides, /** @type {Pair['whatIf']} */ whatIf) => compare({ sides, whatIf }),
   };
-  /** @typedef {{ sides: readonly [Side, Side], colouring: Colouring }} Pair */
-  const compare = latest(async (/** @type {Pair} */ { sides, colouring }, isOld) => {
+  /** @typedef {{ sides: readonly [Side, Side], whatIf: Pick<WhatIf, 'colouring' | 'decides'> }} Pair */
+  const compare = latest(async (/** @type {Pair} */ { sides, whatIf: { colouring, decides } }, isOld) => {
     status.textContent = 'Running both';
     try {
       const left = await sides[0].make(lab);
@@ -105,16 +107,16 @@ export function createPair(lab, { bare = false } = {}) {
         pictures[k].show(sceneOf(run, colouring, radii));
         captions[k].textContent = sides[k].label;
       }
-      if (!bare) fill(legend, legendOf(colouring, radii));
+      fill(legend, legendOf(colouring, radii));
       point(null, 0);
-      status.textContent = bare ? '' : 'Measuring both';
-      if (bare) return;
-      const scores = [await scoreAtEnd(lab, left), await scoreAtEnd(lab, right)];
+      status.textContent = 'Measuring both';
+      const scores = [await scoreAtEnd(left), await scoreAtEnd(right)];
       if (isOld()) return;
       shown.scores = scores;
       scorecard.tell(
         sides.map(({ label }) => label),
         scores,
+        { decides },
       );
       status.textContent = '';
     } catch (error) {

@@ -3,8 +3,8 @@
 import { signal } from '@preact/signals-core';
 import { clamp } from '../engine/vector.js';
 import { button } from '../ui/button.js';
-import { draw, endsOf, footOf, scaleOf } from '../ui/chart.js';
-import { h, reducedMotion, uniqueId } from '../ui/dom.js';
+import { draw, endsOf, floorOf, footOf, scaleOf } from '../ui/chart.js';
+import { h, live, reducedMotion, uniqueId } from '../ui/dom.js';
 import { icon } from '../ui/icons.js';
 
 /** @import { Signal } from '@preact/signals-core' */
@@ -23,6 +23,7 @@ export function createRange({ name, max, value = 0, say, change }) {
   const id = uniqueId('range');
   /** The value of the slider. */
   const place = signal(value);
+  const most = () => (typeof max === 'number' ? max : max());
   const set = (/** @type {number} */ to) => {
     place.value = to;
     change(to);
@@ -32,12 +33,16 @@ export function createRange({ name, max, value = 0, say, change }) {
     class: 'slider',
     id,
     min: 0,
-    max,
+    max: typeof max === 'number' ? max : max(),
     step: 1,
     'aria-valuetext': () => say(place.value),
-    style: { '--place': () => (max > 0 ? place.value / max : 0) },
-    prop: { value: () => String(place.value) },
+    style: { '--place': () => (most() > 0 ? Math.min(1, place.value / most()) : 0) },
     on: { input: () => set(Number(input.value)) },
+  });
+  // The limit comes before the value, which it cuts.
+  live(input, () => {
+    input.max = String(most());
+    input.value = String(place.value);
   });
   rangePlaces.set(input, place);
   const output = h('output', { class: 'range-value', for: id }, () => say(place.value));
@@ -55,21 +60,21 @@ export function createRange({ name, max, value = 0, say, change }) {
  * @param {ReturnType<typeof createRange>} range @param {{ label: string, totalMs: number | (() => number) }} about
  */
 export function createPlay(range, { label, totalMs }) {
-  const max = Number(range.input.max);
+  const max = () => Number(range.input.max);
   const timer = signal(0);
   function stop() {
     clearInterval(timer.peek());
     timer.value = 0;
   }
   function play() {
-    if (reducedMotion()) return range.set(max);
-    if (range.get() >= max) range.set(0);
+    if (reducedMotion()) return range.set(max());
+    if (range.get() >= max()) range.set(0);
     timer.value = window.setInterval(
       () => {
         range.set(range.get() + 1);
-        if (range.get() >= max) stop();
+        if (range.get() >= max()) stop();
       },
-      (typeof totalMs === 'number' ? totalMs : totalMs()) / Math.max(1, max),
+      (typeof totalMs === 'number' ? totalMs : totalMs()) / Math.max(1, max()),
     );
   }
   const element = button({ press: () => (timer.peek() ? stop() : play()) }, () =>
@@ -99,7 +104,7 @@ export function createChart({ hidden, chart, label, words, press = () => {} }) {
       'div',
       { class: 'plot-axis', 'aria-hidden': 'true' },
       h('span', null, () => scaleOf(chart())),
-      h('span', null, '0'),
+      h('span', null, () => floorOf(chart())),
     ),
     h('div', { class: 'plot', role: 'img', 'aria-label': label, on: { click } }, () => draw(chart())),
     h('div', { class: 'plot-ends', 'aria-hidden': 'true' }, () =>
@@ -127,11 +132,11 @@ export function createSelect({ name, choices, value, change }) {
   return {
     element: h('div', { class: 'select-row' }, h('label', { for: id }, name), select),
     select,
-    /** Shows a value, which need not be one of the choices. @param {string} own */
-    set(own) {
+    /** Shows a value, which need not be one of the choices. @param {string} own @param {string} [words] */
+    set(own, words = own) {
       if (!choices.some((choice) => choice.value === own) && select.value !== own) {
         for (const old of [...select.options].slice(choices.length)) old.remove();
-        select.append(h('option', { value: own }, own));
+        select.append(h('option', { value: own }, words));
       }
       select.value = own;
     },

@@ -245,13 +245,18 @@ export class Picture {
     const style = getComputedStyle(this.element);
     let rings = 0;
     context.lineWidth = 2 * FINENESS;
-    for (const { place, normal, radius, kind } of marks) {
+    for (const { place, to, normal, radius, kind } of marks) {
       const at = projected(view, place);
       if (!at || !isFacing(view.eye, place, normal)) continue;
       const [x, y] = [at.x * FINENESS, at.y * FINENESS];
       const r = Math.max(6, (1.6 * radius) / at.perPx) * FINENESS;
       context.strokeStyle = style.getPropertyValue(kind === 'ring' ? '--mark' : '--mark-own') || style.color;
       context.beginPath();
+      const end = to && projected(view, to);
+      if (kind === 'arrow') {
+        if (end) drawArrow(context, [x, y], [end.x * FINENESS, end.y * FINENESS]);
+        continue;
+      }
       if (kind === 'ring') {
         context.arc(x, y, r, 0, 2 * Math.PI);
         rings += 1;
@@ -362,6 +367,23 @@ export function sideBySide(orbit, names) {
       if (place) orbit.turnTo(place.normal);
     },
   };
+}
+
+/** Sides of an arrow's head, over its length. */
+const HEAD = [0.28, 0.16];
+
+/** @param {CanvasRenderingContext2D} context @param {readonly number[]} from @param {readonly number[]} to */
+function drawArrow(context, [x, y], [endX, endY]) {
+  const [dx, dy] = [endX - x, endY - y];
+  const [back, aside] = HEAD;
+  context.lineWidth = FINENESS;
+  context.moveTo(x, y);
+  context.lineTo(endX, endY);
+  context.moveTo(endX - back * dx - aside * dy, endY - back * dy + aside * dx);
+  context.lineTo(endX, endY);
+  context.lineTo(endX - back * dx + aside * dy, endY - back * dy - aside * dx);
+  context.stroke();
+  context.lineWidth = 2 * FINENESS;
 }
 
 /** @param {readonly number[]} eye @param {ArrayLike<number>} place @param {ArrayLike<number>} normal */

@@ -3,83 +3,36 @@
  * may be skipped.
  */
 
-import { signal } from '@preact/signals-core';
 import { button } from '../ui/button.js';
 import { fill, h, uniqueId } from '../ui/dom.js';
-import { reasonOf } from './figure.js';
+import { formatCount } from '../ui/format.js';
+import { reasonOf, whenNear } from './figure.js';
 import { HEAD_PX } from './stops.js';
 
 /**
  * @import { Signal } from '../engine/types.js'
- * @import { Guessed, Lab, Prediction } from './types.js'
+ * @import { Guessed, Lab, Prediction, Stops } from './types.js'
  */
 
-/** The predictions that were made. A figure shows what would give an answer away only after its prediction. */
-export class Stops {
-  /** @type {Map<string, Signal<boolean>>} */
-  #open;
-
-  /** @type {Map<string, Signal<number | null>>} */
-  #picks;
-
-  constructor() {
-    this.#open = new Map();
-    this.#picks = new Map();
-    /** @type {Map<string, Guessed>} */
-    this.outcomes = new Map();
-    /**
-     * The present entries of a learner, by the stop.
-     * @type {Map<string, { question: string, get: () => string | number | null, reveal: () => Promise<void> }>}
-     */
-    this.entries = new Map();
-  }
-
-  /** Returns the guesses, with their answers where these are out. */
-  predictions() {
-    const open = [...this.entries].filter(([stop]) => !this.outcomes.has(stop));
-    const waiting = open.map(([stop, { question, get }]) => ({ stop, question, guess: get(), answer: '' }));
-    return [...this.outcomes.values(), ...waiting.filter(({ guess }) => guess !== null)];
-  }
-
-  /** @param {string} stop */
-  state(stop) {
-    const known = this.#open.get(stop) ?? signal(false);
-    this.#open.set(stop, known);
-    return known;
-  }
-
-  /** @param {string} stop */
-  pickOf(stop) {
-    const known = this.#picks.get(stop) ?? signal(/** @type {number | null} */ (null));
-    this.#picks.set(stop, known);
-    return known;
-  }
-
-  /** Whether a prediction was made. An effect that asks runs again once it is. @param {string} stop */
-  isOpen(stop) {
-    return this.state(stop).value;
-  }
-
-  /** The particle that was pressed, once there is one. @param {string} stop */
-  picked(stop) {
-    return this.pickOf(stop).value;
-  }
-
-  /** @param {string} stop @param {number} particle */
-  pick(stop, particle) {
-    if (!this.state(stop).peek()) this.pickOf(stop).value = particle;
-  }
-}
-
 /**
- * Gives a question of the page's markup its controls.
+ * Gives a question of the page's markup its controls. An answer that was kept stands there at once, and is asked for
+ * again when the question comes near.
  * @param {HTMLElement} host @param {Prediction} prediction @param {{ lab: Promise<Lab>, stops: Stops }} context
  */
 export function mountPrediction(host, prediction, { lab, stops }) {
   const { id } = host;
   const question = host.querySelector('.predict-question')?.textContent?.trim() ?? '';
   const input = inputOf(prediction, question, stops.pickOf(id));
-  stops.entries.set(id, { question, get: input.get, reveal: () => answer(input.get()) });
+  stops.entries.set(id, {
+    question,
+    get: input.get,
+    reveal: () => answer(input.get()),
+    /** What is right, for the one who presents. */
+    async ask() {
+      const { right, words } = await prediction.answer(await lab, null);
+      return [nameOf(right), words].filter(Boolean).join(' ');
+    },
+  });
   const result = h('div', { class: 'predict-result', role: 'status', tabindex: '-1' });
   const reveal = button({ type: 'submit', class: 'primary' }, 'Reveal');
   const skip = button({ class: 'plain', press: () => void answer(null) }, 'Skip');
@@ -91,10 +44,29 @@ export function mountPrediction(host, prediction, { lab, stops }) {
   };
   const form = h(
     'form',
-    { class: 'predict-form', on: { submit } },
+    { class: 'predict-form', on: { submit, change: () => stops.keepMore(id, input.get()) } },
     input.element,
     h('div', { class: 'controls' }, reveal, skip),
   );
+
+  /** What is right, as a sentence. @param {string | number} right */
+  const nameOf = (right) => {
+    const name = prediction.name?.(right) ?? input.nameOf(right);
+    return name ? `${name}.` : '';
+  };
+
+  /** Writes what the run says: what is right comes first. @param {Guessed} outcome */
+  function write({ guess, right, answer: words }) {
+    const judged = guess === null ? '' : (prediction.judge ?? plainJudge)(guess, right ?? '');
+    fill(
+      result,
+      h('p', { class: 'predict-judged' }, [nameOf(right ?? ''), judged].filter(Boolean).join(' ')),
+      h('p', null, words),
+    );
+    host.dataset.state = 'open';
+    input.lock(right ?? '');
+    form.querySelector('.controls')?.remove();
+  }
 
   /** @param {string | number | null} guess */
   async function answer(guess) {
@@ -104,12 +76,9 @@ export function mountPrediction(host, prediction, { lab, stops }) {
     fill(result, h('p', null, 'The run is asked.'));
     try {
       const { right, words } = await prediction.answer(await lab, guess);
-      const judged = guess === null ? '' : (prediction.judge ?? plainJudge)(guess, right);
-      fill(result, judged ? h('p', { class: 'predict-judged' }, judged) : null, h('p', null, words));
-      stops.outcomes.set(id, { stop: id, question, guess, answer: words });
-      host.dataset.state = 'open';
-      input.lock();
-      form.querySelector('.controls')?.remove();
+      const outcome = { stop: id, question, guess, right, answer: words };
+      write(outcome);
+      stops.record(outcome);
       // The button that was pressed is gone.
       if (isFocused) result.focus({ preventScroll: true });
       stops.state(id).value = true;
@@ -121,6 +90,20 @@ export function mountPrediction(host, prediction, { lab, stops }) {
     }
   }
   host.append(form, result);
+  const old = stops.outcomes.get(id);
+  input.set(old ? old.guess : stops.more(id));
+  if (!old) return;
+  write(old);
+  // The program may have changed since.
+  whenNear(host, async () => {
+    try {
+      const { right, words } = await prediction.answer(await lab, old.guess);
+      write({ ...old, right, answer: words });
+      stops.record({ ...old, right, answer: words });
+    } catch {
+      // What was kept stays.
+    }
+  });
 }
 
 /**
@@ -143,7 +126,7 @@ function showFigure(host) {
 }
 
 /** @param {string | number} guess @param {string | number} right */
-const plainJudge = (guess, right) => (guess === right ? 'As you said.' : 'The run says otherwise.');
+const plainJudge = (guess, right) => (guess === right ? 'As you said.' : 'You said otherwise.');
 
 /** @param {Prediction} prediction @param {string} question @param {Signal<number | null>} picked */
 function inputOf(prediction, question, picked) {
@@ -151,8 +134,12 @@ function inputOf(prediction, question, picked) {
   if (kind === 'pick')
     return {
       element: null,
-      missing: 'Press a particle of the picture first.',
+      missing: 'Press a place on the surface first.',
       get: () => picked.peek(),
+      set(/** @type {unknown} */ guess) {
+        if (typeof guess === 'number') picked.value = guess;
+      },
+      nameOf: () => '',
       lock: () => {},
     };
   if (kind === 'number') {
@@ -170,20 +157,33 @@ function inputOf(prediction, question, picked) {
       element: h('div', { class: 'predict-number' }, h('label', { for: id }, prediction.label ?? 'Your guess'), box),
       missing: 'Write a number first.',
       get: () => (box.value === '' || !box.checkValidity() ? null : Number(box.value)),
+      set(/** @type {unknown} */ guess) {
+        if (typeof guess === 'number') box.valueAsNumber = guess;
+      },
+      nameOf: (/** @type {string | number} */ right) => `It is ${formatCount(Number(right))}`,
       lock: () => {
         box.disabled = true;
       },
     };
   }
   const name = uniqueId('guess');
-  const radios = (prediction.choices ?? []).map(({ value }) => h('input', { type: 'radio', name, value }));
-  const labels = (prediction.choices ?? []).map(({ label }, k) => h('label', { class: 'check' }, radios[k], label));
+  const choices = prediction.choices ?? [];
+  const radios = choices.map(({ value }) => h('input', { type: 'radio', name, value }));
+  const labels = choices.map(({ label }, k) => h('label', { class: 'check' }, radios[k], h('span', null, label)));
   return {
     element: h('fieldset', { class: 'predict-choices' }, h('legend', { class: 'visually-hidden' }, question), labels),
     missing: 'Choose an answer first.',
     get: () => radios.find(({ checked }) => checked)?.value ?? null,
-    lock: () => {
+    set(/** @type {unknown} */ guess) {
+      for (const radio of radios) radio.checked = radio.value === guess;
+    },
+    nameOf: (/** @type {string | number} */ right) => choices.find(({ value }) => value === right)?.label ?? '',
+    lock(/** @type {string | number} */ right) {
       for (const radio of radios) radio.disabled = true;
+      for (const [k, { value }] of choices.entries()) {
+        labels[k].toggleAttribute('data-right', value === right);
+        if (value === right) fill(labels[k], radios[k], h('span', null, choices[k].label), h('b', null, 'right'));
+      }
     },
   };
 }

@@ -4,9 +4,8 @@ import { distance, triple } from '../engine/vector.js';
 import { inRadii } from '../figures/words.js';
 import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
 import { adaptiveRun } from './adaptive.js';
-import { costOf } from './chapters/cost.js';
-import { widestHole } from './chapters/rest.js';
-import { asFineEverywhere, openBend, RING, ringsOf, scoresOfRest } from './measure.js';
+import { judgeFirst, judgeLast } from './judged.js';
+import { asFineEverywhere, costOf, energiesOf, openBend, RING, ringsOf, scoresOfRest, widestHole } from './measure.js';
 
 /** @import { Prediction } from './types.js' */
 
@@ -31,8 +30,22 @@ const FACTORS = [1.3, 2, 4];
 /** Below this factor all sizes are called alike. */
 const EVEN = 1.05;
 
+/** Two samplings beside each other. */
+const JUDGED = [
+  { value: 'a', label: 'Sampling A' },
+  { value: 'b', label: 'Sampling B' },
+  { value: 'alike', label: 'They are alike' },
+];
+
+/** The share of what ten steps take off the energy that is asked for. */
+const MOST_OF_IT = 0.75;
+/** The last step of each answer about the energy. */
+const BY_STEP = [1, 3, 6, 10];
+
 /** By the id of the question in the page's markup. @type {Record<string, Prediction>} */
 export const PREDICTIONS = {
+  'predict-first': { kind: 'choice', choices: JUDGED, answer: judgeFirst },
+  'predict-last': { kind: 'choice', choices: JUDGED, answer: judgeLast },
   'predict-cost': {
     kind: 'choice',
     choices: [
@@ -47,7 +60,7 @@ export const PREDICTIONS = {
       const [one, ten, pushes] = [placing, resting, rows[1].pushes].map((count) => formatSignificant(count, 3));
       const words = [
         `Placing took ${one} evaluations of f for each particle, the ten steps ${ten}.`,
-        `In seconds the steps cost far more: 94 % of the time in the paper’s Table 2. Besides asking f they sum pushes, ${pushes} for each particle here, and with all particles in the paper.`,
+        `In seconds the steps cost far more: 82 to 96 % of the time in the paper’s Table 2. Besides asking f they sum pushes, ${pushes} for each particle here.`,
       ];
       return { right, words: words.join(' ') };
     },
@@ -76,7 +89,7 @@ export const PREDICTIONS = {
       const right = share < NEARER ? 'nearer' : share > 1 / NEARER ? 'farther' : 'same';
       return {
         right,
-        words: `Newton’s method lands at ${inRadii(own, radius)}, the circle at ${inRadii(landed, radius)}. It goes down the gradient and knows nothing of the parent: the cross in the drawing is its landing.`,
+        words: `Newton’s method lands at ${inRadii(own, radius)}, the circle at ${inRadii(landed, radius)}. It goes down the gradient and knows nothing of the parent: the open circle in the drawing is its landing.`,
       };
     },
   },
@@ -117,20 +130,6 @@ export const PREDICTIONS = {
       return { right: count, words };
     },
     judge: judgeNumber,
-  },
-  'predict-order': {
-    kind: 'choice',
-    choices: [
-      { value: 'a', label: 'Picture A' },
-      { value: 'b', label: 'Picture B' },
-    ],
-    async answer() {
-      return {
-        right: 'b',
-        words:
-          'Picture B is made with a queue: the particle that has waited longest comes next, so a ring is done before the next begins. With a stack, picture A, the newest comes next, and the front runs off like a thread.',
-      };
-    },
   },
   'predict-hole': {
     kind: 'pick',
@@ -173,6 +172,27 @@ export const PREDICTIONS = {
       return { right, words: words.join(' ') };
     },
   },
+  'predict-energy': {
+    kind: 'choice',
+    choices: [
+      { value: '1', label: 'After the first step' },
+      { value: '3', label: 'After the second or third' },
+      { value: '6', label: 'After the fourth to sixth' },
+      { value: '10', label: 'Later' },
+    ],
+    async answer(lab) {
+      const energies = await energiesOf(lab);
+      const fall = energies[0] - energies[energies.length - 1];
+      const lost = energies.map((energy) => (energies[0] - energy) / fall);
+      const step = lost.findIndex((share) => share >= MOST_OF_IT);
+      const percent = (/** @type {number} */ share) => `${formatFixed(100 * share, 0)} %`;
+      const words = [
+        `It is step ${formatCount(step)}: the first one takes off ${percent(lost[1])} of it, and the first three ${percent(lost[3])}.`,
+        `All ten together lower the energy by no more than ${percent(fall)}: the front had it nearly right. Ten are enough because the curve is flat by then, and its end is fixed beforehand.`,
+      ];
+      return { right: String(BY_STEP.find((last) => step <= last) ?? 10), words: words.join(' ') };
+    },
+  },
   'predict-sizes': {
     kind: 'choice',
     choices: [
@@ -207,6 +227,6 @@ export const PREDICTIONS = {
       { value: 'order', label: 'The order: fewer have six neighbours' },
       { value: 'nothing', label: 'Nothing of this' },
     ],
-    answer: async (lab) => (await import('./chapters/moving.js')).lossOf(lab),
+    answer: async (lab) => (await import('./flowing.js')).lossOf(lab),
   },
 };

@@ -22,7 +22,7 @@ const TYPING = 'input:not([type="range"], [type="radio"], [type="checkbox"]), te
 const PRESSED = 'button, select, summary, input, a[href]';
 const TURNED = 'input, select, .picture, .number';
 /** A longer range of a figure is walked in `FEW` presses, a shorter one value by value. A button has `LONG` presses. */
-const LONG = 12;
+const LONG = 18;
 const FEW = 6;
 
 /** @param {PresenterOptions} about */
@@ -34,10 +34,12 @@ export async function createPresenter({ stops, questions, to }) {
   const at = signal(null);
   const told = signal('');
   const isBlank = signal(false);
+  /** What the run says to the question that is shown. */
+  const answer = signal('');
   let last = 0;
   let walk = createWalk(stops[0], questions);
   const notes = createNotes({
-    now: () => wordsOf(stops[at.value ?? last]),
+    now: () => wordsOf(stops[at.value ?? last], answer.value),
     next: () => wordsOf(stops[(at.value ?? last) + 1]),
     say: (words) => {
       told.value = words;
@@ -102,6 +104,11 @@ export async function createPresenter({ stops, questions, to }) {
       setCurrent(document.getElementById(id));
       for (const bench of queryAll(document, '.bench')) bench.dataset.asks = '';
       walk = createWalk(id, questions);
+      answer.value = '';
+      const asked = questions.entries.get(id)?.ask();
+      asked?.then((words) => {
+        if (stops[last] === id) answer.value = words;
+      });
       scrollTo(0, 0);
     },
     /** Goes back to the article. */
@@ -126,28 +133,28 @@ function setCurrent(stop) {
   // A part of a chapter stands below its title; a question that has no figure of its own, with that of the chapter.
   if (stop && chapter && stop !== chapter)
     chapter.setAttribute('data-part', stop.matches('.predict:not(:has(.stage)), .challenge') ? 'asks' : 'alone');
-  const card = stop?.querySelector('.card');
-  if (card) showCard(card);
 }
 
-/** Shows one card of several, with its comparison. @param {Element} card */
-function showCard(card) {
-  for (const other of card.parentElement?.children ?? []) other.toggleAttribute('data-current', other === card);
-  const open = card.querySelector('button[aria-expanded="false"]');
-  if (open instanceof HTMLElement) open.click();
-}
-
-/** The words of a stop for the one who presents; null beyond the last. @param {string | undefined} id */
-function wordsOf(id) {
+/**
+ * The words of a stop for the one who presents; null beyond the last.
+ * @param {string | undefined} id @param {string} [answer]  of its question
+ */
+function wordsOf(id, answer = '') {
   if (id === undefined) return null;
   const stop = byId(id);
-  return { title: titleOf(stop), notes: stop.closest('.chapter')?.querySelector('.notes')?.textContent ?? '' };
+  const chapter = stop.closest('.chapter');
+  return {
+    title: titleOf(stop),
+    minutes: stop === chapter ? (chapter.getAttribute('data-minutes') ?? '') : '',
+    answer,
+    notes: chapter?.querySelector('.notes')?.textContent ?? '',
+  };
 }
 
 /**
  * Returns what goes one step within a stop, and says whether there was one: the answer of its question, then the steps
- * of its figure if no later question shows it, the start of its race, the next of its cards, or the figures of its
- * comparison and then its values.
+ * of its figure if no later question shows it, the start of its race, or the figures of its comparison and then its
+ * values.
  * @param {string} id @param {PresenterOptions['questions']} questions
  */
 function createWalk(id, questions) {
@@ -159,7 +166,6 @@ function createWalk(id, questions) {
   );
   const stage = own ?? (stop === asking.at(-1) ? chapter.querySelector('figure > .stage') : null);
   const start = stop.querySelector('.race > .controls .primary');
-  const cards = [...stop.querySelectorAll('.card')];
   const bench = stop.querySelector('.bench') ?? stop.closest('.challenge')?.parentElement?.querySelector('.bench');
   let [isAsked, isBegun, pressed] = [questions.isOpen(id), false, 0];
   /** @param {1 | -1} by */
@@ -180,12 +186,11 @@ function createWalk(id, questions) {
       if (isHidden) bench.toggleAttribute('data-asks', by < 0);
       return isHidden ? by > 0 : !bench.dispatchEvent(new CustomEvent('walk', { detail: by, cancelable: true }));
     }
-    const card = cards[cards.findIndex((one) => one.hasAttribute('data-current')) + by];
-    if (card) showCard(card);
-    if (cards.length > 0) return card !== undefined;
-    const press = chapter.querySelector(`button[data-${by > 0 ? 'step' : 'back'}="${id}"]`);
+    const press = [...chapter.querySelectorAll(`button[data-${by > 0 ? 'step' : 'back'}="${id}"]`)].find((one) =>
+      one.checkVisibility(),
+    );
     const isTurn = by > 0 ? pressed < LONG : pressed > 0;
-    if (press instanceof HTMLElement && press.checkVisibility() && press.ariaDisabled !== 'true' && isTurn) {
+    if (press instanceof HTMLElement && press.ariaDisabled !== 'true' && isTurn) {
       pressed += by;
       press.click();
       return true;

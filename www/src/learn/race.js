@@ -30,7 +30,7 @@ const PLACES = 200;
 
 /**
  * What can be counted.
- * @type {readonly { value: string, label: string, of: (lane: Lane) => number, say: (cost: number) => string }[]}
+ * @type {import('./types.js').ReplayOptions<Lane>['axes']}
  */
 const COSTS = [
   {
@@ -38,14 +38,22 @@ const COSTS = [
     label: 'evaluations of f',
     of: ({ progress }) => progress?.evaluations ?? 0,
     say: (cost) => formatCount(Math.round(cost)),
+    moment: (cost) => `After ${formatCount(Math.round(cost))} evaluations of f each, or at the end`,
   },
   {
     value: 'pushes',
     label: 'pushes',
     of: ({ progress }) => progress?.interactions ?? 0,
     say: (cost) => formatCount(Math.round(cost)),
+    moment: (cost) => `After ${formatCount(Math.round(cost))} pushes each, or at the end`,
   },
-  { value: 'seconds', label: 'seconds', of: ({ workMs }) => workMs / 1000, say: formatSeconds },
+  {
+    value: 'seconds',
+    label: 'seconds',
+    of: ({ workMs }) => workMs / 1000,
+    say: formatSeconds,
+    moment: (cost) => `After ${formatSeconds(cost)} each, or at the end`,
+  },
 ];
 /** Distances over the ideal one span this range of colours. */
 const [NEAR, FAR] = [0.7, 1.15];
@@ -130,7 +138,7 @@ export function mountRace(host, lab) {
     },
   });
   const go = button({ class: 'primary', press: () => course.press() }, () =>
-    !race.value ? 'Start' : isPaused.value ? 'Go on' : 'Pause',
+    !race.value ? 'Start' : isPaused.value ? 'Continue' : 'Pause',
   );
   const status = h('p', { class: 'figure-status', role: 'status' }, () => course.status.value);
   fill(host, h('div', { class: 'controls' }, choose.element, go), place, status, result);
@@ -312,7 +320,7 @@ function marksOf(kind, ratio) {
     h(
       'figcaption',
       null,
-      `How many times as long as the front the other method worked: filled here, open in Table 1. ${told.join(' ')}`,
+      `Time of the other method divided by that of the front: filled here, open in Table 1. ${told.join(' ')}`,
     ),
   );
 }

@@ -24,17 +24,19 @@ export function createReplay({ films, names, axes, axisName, name, places, at, m
   const axis = signal(axes[0]);
   const costAt = (/** @type {number} */ place) => most(axis.value.of) * (place / places);
   const scorecard = createScorecard(point);
-  const measure = latest(async (/** @type {readonly Snapshot<L>[]} */ pair, isOld) => {
-    const scores = [];
-    for (const shot of pair) scores.push(await score(shot));
-    if (!isOld()) scorecard.tell(names, scores);
-  });
+  const measure = latest(
+    async (/** @type {{ pair: readonly Snapshot<L>[], caption: string }} */ { pair, caption }, isOld) => {
+      const scores = [];
+      for (const shot of pair) scores.push(await score(shot));
+      if (!isOld()) scorecard.tell(names, scores, { caption });
+    },
+  );
   async function seek() {
     // In this order, so that at the end it is no less than the most.
     const cost = costAt(range.get());
     const pair = films.map((shots) => shotAt(shots, axis.peek().of, cost));
     for (const [k, shot] of pair.entries()) show(k, shot);
-    await measure(pair);
+    await measure({ pair, caption: axis.peek().moment(cost) });
   }
   const range = createRange({
     name,

@@ -12,19 +12,62 @@ const percent = (share) => `${formatFixed(100 * share, 1)} %`;
 /** @param {number} value */
 const ratio = (value) => formatFixed(value, 2);
 
+/** The share of a plane that touching discs in the hexagonal pattern leave open. */
+const OPEN = 1 - Math.PI / (2 * Math.sqrt(3));
+
 /** The figures in their order. A press on one that has a place shows the place. @type {readonly ScoreRow[]} */
 export const ROWS = [
-  { key: 'six', name: 'Six neighbours', best: Infinity, write: percent },
-  { key: 'hole', name: 'Largest hole, over the ideal', best: 0, write: ratio },
-  { key: 'uncovered', name: 'Surface outside all discs', best: 0, write: percent },
-  { key: 'pair', name: 'Closest pair, over the ideal', best: Infinity, write: ratio },
-  { key: 'count', name: 'Particles, over A/(2√3 r²)', best: 1, write: ratio },
-  { key: 'evaluations', name: 'Evaluations of f for each', best: 0, write: (value) => formatSignificant(value, 3) },
+  {
+    key: 'six',
+    name: 'Six neighbours',
+    means: 'Share of the particles whose cell borders on six others. A cell is what lies nearest to its particle.',
+    ideal: 1,
+    worse: 'below',
+    write: percent,
+  },
+  {
+    key: 'hole',
+    name: 'Largest hole, over the ideal',
+    means:
+      'Radius of the largest empty circle, over that of the ideal pattern: equal particles, as many on as much area.',
+    ideal: 1,
+    worse: 'above',
+    write: ratio,
+  },
+  {
+    key: 'pair',
+    name: 'Closest pair, over the ideal',
+    means: 'Distance of the two nearest particles, over that of neighbours in the ideal pattern.',
+    ideal: 1,
+    worse: 'below',
+    write: ratio,
+  },
+  {
+    key: 'uncovered',
+    name: 'Surface outside all discs',
+    means: 'Share of the area that lies farther than r from every particle. Discs that touch leave 9.3 % in a plane.',
+    ideal: OPEN,
+    worse: 'above',
+    isOfDiscs: true,
+    write: percent,
+  },
+  {
+    key: 'count',
+    name: 'Particles, over A/(2√3 r²)',
+    means: 'As many touching discs of radius r as fill the area A in a plane are 1. More than that overlap.',
+    ideal: 1,
+    worse: null,
+    write: ratio,
+  },
+  {
+    key: 'evaluations',
+    name: 'Evaluations of f for each',
+    means: 'How often f and its gradient were asked for, in the whole run, for each particle.',
+    ideal: null,
+    worse: 'above',
+    write: (value) => formatSignificant(value, 3),
+  },
 ];
-
-/** What the row of the count compares with. */
-export const COUNT_WORDS =
-  'In the densest packing a disc of radius r takes a hexagon of area 2√3 r². So A/(2√3 r²) of them would fill an area A in a plane.';
 
 /**
  * Measures particles. Those of many sizes are measured each against its own.
@@ -43,12 +86,13 @@ export async function scoreOf(lab, particles, { evaluations, isAdaptive }) {
     // The area that hexagonal cells of these sizes would take, over that of the surface.
     count: quality ? (2 * Math.sqrt(3) * radii.reduce((sum, r) => sum + r * r, 0)) / quality.area : null,
     evaluations: evaluations / Math.max(1, radii.length),
+    disc: radii.reduce((sum, r) => sum + r, 0) / Math.max(1, radii.length),
     places: placesOf(particles, places),
   };
 }
 
-/** The score of a run at its end. @param {Lab} lab @param {LabRun} run */
-export const scoreAtEnd = (lab, { end, progress, settings }) =>
+/** The score of a run at its end. @param {LabRun} run */
+export const scoreAtEnd = ({ lab, end, progress, settings }) =>
   scoreOf(lab, end, { evaluations: progress.evaluations, isAdaptive: settings.sampling === 'adaptive' });
 
 /**
@@ -82,14 +126,21 @@ function nearestTo(positions, place) {
 /** The figures of a score by their names, as numbers. @param {Score} score */
 export const namedFigures = (score) => Object.fromEntries(ROWS.map(({ key, name }) => [name, score[key]]));
 
+/** Radii that differ by more than this share are those of other discs. */
+const SAME_DISC = 0.005;
+
+/** Whether the discs of two scores are of one size. @param {readonly Score[]} scores */
+export const haveSameDiscs = ([one, other]) => Math.abs(one.disc / other.disc - 1) < SAME_DISC;
+
 /**
- * Returns which of several values is the best, as they are written; -1 where they are alike.
- * @param {readonly (number | null)[]} values @param {ScoreRow} row
+ * Returns which of several values is better, as they are written; -1 where none is. A value beyond the ideal is bought
+ * with more particles, and decides nothing; nor does what is told of discs of two sizes.
+ * @param {readonly (number | null)[]} values @param {ScoreRow} row @param {boolean} [isOneDisc]
  */
-export function bestOf(values, { best, write }) {
-  if (values.some((value) => value === null)) return -1;
+export function bestOf(values, { ideal, worse, isOfDiscs, write }, isOneDisc = true) {
+  if (worse === null || values.some((value) => value === null) || (isOfDiscs && !isOneDisc)) return -1;
   const known = values.map(Number);
   if (new Set(known.map(write)).size < 2) return -1;
-  const far = known.map((value) => (best === Infinity ? -value : Math.abs(value - best)));
-  return far.indexOf(Math.min(...far));
+  const short = known.map((value) => (worse === 'above' ? value - (ideal ?? 0) : (ideal ?? 0) - value));
+  return Math.min(...short) < 0 ? -1 : short.indexOf(Math.min(...short));
 }

@@ -1,4 +1,5 @@
 /** Stops in the address: each chapter, question and comparison has its own. */
+import { byId } from '../ui/dom.js';
 import { BENCH, nearestStop, readAddress, titleOf, writeAddress } from './address.js';
 
 /** @import { Setup, StopsOptions } from './types.js' */
@@ -11,7 +12,7 @@ const COLLECT = 'collect';
 export const HEAD_PX = 60;
 
 /** @param {StopsOptions} about */
-export function mountStops({ stops, others, questions, onBench, onCollect, say }) {
+export function mountStops({ stops, others, questions, onBench, teach, say }) {
   const all = [...stops, ...others, COLLECT];
   let isBenchShown = false;
   const showBench = (/** @type {string} */ id, /** @type {Record<string, string>} */ parts = {}) => {
@@ -23,7 +24,7 @@ export function mountStops({ stops, others, questions, onBench, onCollect, say }
   let loaded = null;
   /** The presenter, which is loaded when it is asked for. */
   const presenter = () => {
-    loaded ??= import('./presenter.js').then(({ createPresenter }) =>
+    loaded ??= teach().then(({ createPresenter }) =>
       createPresenter({
         stops,
         questions,
@@ -51,7 +52,7 @@ export function mountStops({ stops, others, questions, onBench, onCollect, say }
     const isBench = others.includes(found.stop);
     if (isBench) showBench(found.stop.slice(BENCH.length + 1), parts);
     else if (isPresenting && found.stop === BENCH) showBench('');
-    if (found.stop === COLLECT) void onCollect();
+    if (found.stop === COLLECT) void teach().then(({ mountCollect }) => mountCollect(byId(COLLECT)));
     const target = isBench ? BENCH : found.stop;
     if (isPresenting)
       presenter().then(

@@ -161,15 +161,19 @@ export function readWork(text) {
       question: word(question),
       answer: word(answer),
     })),
-    predictions: raw.predictions.map((/** @type {any} */ { stop, question, guess, answer }) => ({
+    predictions: raw.predictions.map((/** @type {any} */ { stop, question, guess, right, answer }) => ({
       stop: word(stop),
       question: word(question),
-      guess: typeof guess === 'number' || typeof guess === 'string' ? guess : null,
+      guess: isValue(guess) ? guess : null,
+      ...(isValue(right) ? { right } : {}),
       answer: word(answer),
     })),
     runs: raw.runs,
   };
 }
+
+/** @param {unknown} value */
+const isValue = (value) => typeof value === 'number' || typeof value === 'string';
 
 /** @param {unknown} value */
 const isListOfObjects = (value) =>

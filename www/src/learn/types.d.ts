@@ -4,8 +4,8 @@ import type { LessonClient, LessonEvent, LessonParticles } from '../engine/types
 import type { Palette } from '../engine/view/types.js';
 import type { Point } from '../figures/types.js';
 import type { FormulaSurface, Scale } from '../ui/types.js';
+import type { Stops } from './answers.js';
 import type { Lab } from './lab.js';
-import type { Stops } from './predict.js';
 
 export type { Lab, Stops };
 
@@ -32,6 +32,10 @@ export interface WhatIf {
   /** what to look for */
   look: string;
   colouring: Colouring;
+  /** the figure that decides */
+  decides: keyof ScoreFigures;
+  /** whether it is a card's alone */
+  isRare?: boolean;
   knobs?: readonly Knob[];
   values: readonly { value: string; label: string }[];
   make: (lab: Lab, value: string) => Promise<LabRun>;
@@ -48,16 +52,22 @@ export interface Prediction {
   most?: number;
   answer: (lab: Lab, guess: string | number | null) => Promise<Answer>;
   judge?: (guess: string | number, right: string | number) => string;
+  /** what is right, in words, if the choices do not say it */
+  name?: (right: string | number) => string;
 }
 /** What is said of a slot. `particle`: the one that holds it; of a new one, its number in the run. */
-export type Verdict = { fate: 'parent' | 'matched' | 'added'; particle: number | null };
-/** A surface on which the learner is the algorithm. `ends`: what is said at the end. */
+export type Verdict = { fate: 'matched' | 'added'; particle: number | null };
+/**
+ * A surface on which the learner is the algorithm. `isAtSeam`: where the front first meets itself; `ends`: what is said
+ * at the end.
+ */
 export interface Patch {
   id: string;
   name: string;
   surface: FormulaSurface;
   radius: number;
   seed: [number, number, number];
+  isAtSeam?: boolean;
   ends: string;
 }
 /** What the run decides at a slot: after event `at`, told by event `end`. `met`: the front meets itself there. */
@@ -70,9 +80,22 @@ export interface Decision {
   verdict: Verdict;
 }
 /** A learner's guess and the answer of the run. */
-export type Guessed = { stop: string; question: string; guess: string | number | null; answer: string };
+export type Guessed = {
+  stop: string;
+  question: string;
+  guess: string | number | null;
+  right?: string | number;
+  answer: string;
+};
 /** A place that is marked, if its side is in view. */
-export type Mark = { place: ArrayLike<number>; normal: ArrayLike<number>; radius: number; kind: 'ring' | 'cross' };
+export interface Mark {
+  place: ArrayLike<number>;
+  /** where an arrow ends */
+  to?: ArrayLike<number>;
+  normal: ArrayLike<number>;
+  radius: number;
+  kind: 'ring' | 'cross' | 'arrow';
+}
 /** What a run costs: for each particle, and in rounds. `others`: particles of the other method. */
 export interface Cost {
   particles: number;
@@ -93,6 +116,8 @@ export interface Scene {
  * the last; `placing` counts the evaluations of f until then.
  */
 export interface LabRun {
+  /** that of its surface */
+  lab: Lab;
   /** closed if the run was not to be kept */
   client: LessonClient;
   settings: Partial<LessonSettings>;
@@ -107,12 +132,23 @@ export interface LabRun {
 export type ScorePlace = { places: readonly (readonly number[])[]; radius: number; normal: readonly number[] };
 /** The figures that are compared; null where one is undefined. */
 export type ScoreFigures = Record<'six' | 'hole' | 'uncovered' | 'pair' | 'count' | 'evaluations', number | null>;
-export type Score = ScoreFigures & { places: { hole: ScorePlace | null; pair: ScorePlace | null } };
-/** One of them. `best`: the value that is best. */
+/** `disc`: the mean radius. */
+export type Score = ScoreFigures & {
+  disc: number;
+  places: { hole: ScorePlace | null; pair: ScorePlace | null };
+};
+/** One of them. */
 export interface ScoreRow {
   key: keyof ScoreFigures;
   name: string;
-  best: number;
+  /** its definition */
+  means: string;
+  /** null where there is none */
+  ideal: number | null;
+  /** the side of the ideal on which a value is worse; null if it is told, and not judged */
+  worse: 'above' | 'below' | null;
+  /** whether it depends on the size of the discs */
+  isOfDiscs?: boolean;
   write: (value: number) => string;
 }
 /** The colouring of the two pictures. */
@@ -162,7 +198,14 @@ export interface ReplayOptions<L> {
   films: readonly Snapshot<L>[][];
   names: readonly string[];
   /** what the axis can be */
-  axes: readonly { value: string; label: string; of: (lane: L) => number; say: (cost: number) => string }[];
+  axes: readonly {
+    value: string;
+    label: string;
+    of: (lane: L) => number;
+    say: (cost: number) => string;
+    /** the moment in words, above the figures */
+    moment: (cost: number) => string;
+  }[];
   axisName: string;
   /** of the slider, with so many places, and where it begins */
   name: string;
@@ -183,22 +226,19 @@ export type Subject = { surface: FormulaSurface; isOwn: boolean; from: string; n
 /** The input of a figure: the runs, and the predictions that were made. */
 export type Context = { lab: Promise<Lab>; stops: Stops };
 /**
- * A slot in its plane, from p: places are (along V, along N). `bend` is that of the surface towards the child, `slope`
- * |∇f| in p, `section` the curve f = 0; `newton` are the places of Newton's method, `landing` its distance from p, and
- * `aside` how far beside the plane it lies.
+ * A slot in its plane, from p: places are (along V, along N). `bend` is that of the surface towards the child, which
+ * landed on the circle at `child`, `section` the curve f = 0; `newton` are the places of Newton's method, `landing` its
+ * distance from p, and `aside` how far beside the plane it lies.
  */
 export interface SlotCase {
   bend: number;
   radius: number;
-  slope: number;
-  valueAt: (theta: number) => number;
+  child: Point;
   newton: Point[];
   landing: number | null;
   aside: number;
   section: Float32Array;
 }
-/** A landing of Newton's method: bend · r, the distance from the parent over 2r, and how far beside the plane in r. */
-export type Landing = { parent: number; slot: number; bend: number; share: number; aside: number };
 /** A number in a sentence. */
 export interface NumberOptions {
   name: string;
@@ -210,7 +250,7 @@ export interface NumberOptions {
 }
 export interface RangeOptions {
   name: string;
-  max: number;
+  max: number | (() => number);
   value?: number;
   /** returns a value in words */
   say: (value: number) => string;
@@ -227,7 +267,6 @@ export interface HandoutOptions {
   lab: Promise<Lab>;
   /** shows the comparison that stands on the bench */
   compare: () => Promise<void>;
-  say: (words: string) => void;
 }
 export interface PresenterOptions {
   /** ids of elements, in their order */
@@ -244,8 +283,8 @@ export interface StopsOptions {
   questions: Stops;
   /** shows a comparison; the one that is there for an empty id */
   onBench: (id: string, given: Record<string, string>) => Promise<void>;
-  /** opens the part of the page where work is collected */
-  onCollect: () => Promise<void>;
+  /** loads what a class needs */
+  teach: () => Promise<typeof import('./teach.js')>;
   /** says something at a stop, or at the top of the page */
   say: (words: string, place?: Element | null) => void;
 }

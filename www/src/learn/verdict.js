@@ -26,7 +26,7 @@ export function isWorse(a, b) {
 export function reasonWhy(k, part) {
   switch (k) {
     case 0:
-      return 'The newest particle comes next, so the front runs off like a thread. Threads meet far more often than rings do, and every meeting is a seam, with pairs too near and holes.';
+      return 'The newest particle comes next, so the front runs off like a thread. Threads meet far more often than rings do, and every meeting is a seam, where particles have five neighbours or seven and holes stay open.';
     case 1:
       return Number(part) < 0.7
         ? 'Where rows meet, a particle that is off by more than this does not count as the child. A second one is put beside it, and the particles crowd.'
@@ -43,7 +43,7 @@ export function reasonWhy(k, part) {
 /** What a run of knobs gives. @param {Lab} lab @param {string} value @returns {Promise<Try>} */
 export async function tryOut(lab, value) {
   const run = await whatIfOf(FAIL).make(lab, value);
-  return { value, run, score: await scoreAtEnd(lab, run) };
+  return { value, run, score: await scoreAtEnd(run) };
 }
 
 /**

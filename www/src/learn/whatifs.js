@@ -4,6 +4,7 @@ import { BENCH } from './address.js';
 
 /**
  * @import { LessonSettings } from '../engine/lesson/types.js'
+ * @import { FormulaSurface } from '../ui/types.js'
  * @import { Knob, Lab, Setup, Side, WhatIf } from './types.js'
  */
 
@@ -124,6 +125,26 @@ function hasValue({ values: all, knobs }, value) {
 
 const ONE_SIZE = 'one_size';
 
+/** A surface that bends so much within 2r that it matters how a child is brought to it. @type {FormulaSurface} */
+export const TANGLECUBE = {
+  formula: 'x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8 = 0',
+  parameters: [],
+  bounds: { min: [-3, -3, -3], max: [3, 3, 3] },
+};
+/** Particles on it. */
+const FEW = 400;
+
+/**
+ * A run on the tanglecube before relaxation, with as many particles whatever brings the children to the surface.
+ * @param {Lab} lab @param {string} projection
+ */
+export async function projected(lab, projection) {
+  const own = lab.on(TANGLECUBE);
+  const circle = await own.run({ relax_steps: 0 }, { particles: FEW });
+  if (projection !== 'newton') return circle;
+  return own.runAsMany({ projection, relax_steps: 0 }, circle);
+}
+
 /** The choice that has knobs. */
 export const FAIL = 'fail';
 
@@ -131,6 +152,7 @@ export const FAIL = 'fail';
 export const WHAT_IFS = [
   {
     id: 'order',
+    decides: 'six',
     name: 'Queue or stack',
     look: 'Which particle comes next decides whether the front grows in rings or runs off like a thread, and so how many seams it leaves.',
     colouring: 'level',
@@ -141,6 +163,7 @@ export const WHAT_IFS = [
   },
   {
     id: FAIL,
+    decides: 'six',
     name: 'Make it fail',
     look: 'A dark particle is too near to another. Where the body shows between discs, a hole is open.',
     colouring: 'nearest',
@@ -155,19 +178,18 @@ export const WHAT_IFS = [
   {
     id: 'projection',
     name: 'Circle or Newton',
-    look: 'The distance of each child to its parent. The circle keeps 2r everywhere; Newton’s method falls short of it where the surface bends.',
+    look: 'A tanglecube, which bends much within 2r, with as many particles on either side. With one r Newton’s method would place more, since its children land nearer; so its r is larger here.',
     colouring: 'parent',
-    ...setting(
-      'projection',
-      [
-        ['circle', 'Circle'],
-        ['newton', 'Newton’s method'],
-      ],
-      { relax_steps: 0 },
-    ),
+    decides: 'pair',
+    values: values([
+      ['circle', 'Circle'],
+      ['newton', 'Newton’s method'],
+    ]),
+    make: projected,
   },
   {
     id: 'step',
+    decides: 'pair',
     name: 'Size of a step',
     look: 'How far a particle moves for the push it feels. Ten short steps leave seams that ten long ones close.',
     colouring: 'nearest',
@@ -180,6 +202,8 @@ export const WHAT_IFS = [
   },
   {
     id: 'matched',
+    isRare: true,
+    decides: 'pair',
     name: 'Matched particles leave or stay',
     look: 'The paper takes a matched particle out of the neighbours. Two children of one parent can then not be matched with the same particle, and one of them is added beside it.',
     colouring: 'nearest',
@@ -194,6 +218,8 @@ export const WHAT_IFS = [
   },
   {
     id: 'gaps',
+    isRare: true,
+    decides: 'hole',
     name: 'Gaps left or filled',
     look: 'A hole that is wide enough for a particle can be given one before the relaxation.',
     colouring: 'nearest',
@@ -204,6 +230,8 @@ export const WHAT_IFS = [
   },
   {
     id: 'start',
+    isRare: true,
+    decides: 'evaluations',
     name: 'Where the search begins',
     look: 'The pictures agree. Look at the evaluations: a start where the parent’s curvature expects the surface needs fewer steps.',
     colouring: 'level',
@@ -218,6 +246,8 @@ export const WHAT_IFS = [
   },
   {
     id: 'placing',
+    isRare: true,
+    decides: 'evaluations',
     name: 'Child by child or level by level',
     look: 'Placing a whole level at once gives nearly the same particles. It compares children before it projects them, and so needs far fewer evaluations.',
     colouring: 'level',
@@ -232,6 +262,8 @@ export const WHAT_IFS = [
   },
   {
     id: 'law',
+    isRare: true,
+    decides: 'hole',
     name: 'Laws of the radius',
     look: 'Where the two curvatures have opposite signs their sum is small, and the paper’s law gives large particles there. With one size for all, small particles are spent on flat places.',
     colouring: 'radius',
@@ -240,6 +272,8 @@ export const WHAT_IFS = [
   },
   {
     id: 'fit',
+    isRare: true,
+    decides: 'hole',
     name: 'Room for an adaptive child',
     look: 'A child is added if enough of the angle that it takes is free. Asking for all of it places fewer particles, which keep their distance, and leaves wider gaps for the relaxation.',
     colouring: 'nearest',
@@ -251,6 +285,9 @@ export const WHAT_IFS = [
     make: (lab, fit) => adaptiveRun(lab, 'max_curvature', { fit: Number(fit), relax_steps: 0 }),
   },
 ];
+
+/** The choices of the bench. The others have cards. */
+export const COMMON = WHAT_IFS.filter(({ isRare }) => !isRare);
 
 /** Stops of the bench in the address: one for each choice. */
 export const stopsOfBench = WHAT_IFS.map(({ id }) => `${BENCH}-${id}`);

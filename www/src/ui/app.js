@@ -75,7 +75,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
   const described = new Promise((resolve) => {
     live(shell, () => void (engine.description.value && resolve(engine.description.value)));
   });
-  const timeline = described.then(() => loadTimeline(engine, { shell, stage, told }, toast));
+  const timeline = described.then(() => loadTimeline(engine, told, toast));
   const { picture, print } = pictureOf(engine, motion, toast);
   const shortcuts = mountShortcuts(
     shortcutsOf(engine, {
@@ -101,7 +101,9 @@ export function mountInterface(engine, { grabs = false } = {}) {
     untracked(layout.measure);
   });
   linkLearn(engine);
-  mountHover(stage, engine, { view, follow: (index) => void timeline.then((made) => made?.follow(index)) });
+  const explainIt = async (/** @type {number} */ index) =>
+    location.assign((await import('./learn-link.js')).particleLink(engine, index));
+  mountHover(stage, engine, { view, explainIt: (index) => void explainIt(index) });
   byId('tabs').append(goButton(engine));
 
   void described.then((description) => {
@@ -137,15 +139,13 @@ function loadMarks(engine, { stage, view, pins }) {
 
 /**
  * Loads the timeline; null if it cannot be had, without which the rest of the page still works.
- * @param {Engine} engine @param {{ shell: HTMLElement, stage: HTMLElement, told: Signal<Told | null> }} parts
- * @param {Toast} toast
+ * @param {Engine} engine @param {Signal<Told | null>} told @param {Toast} toast
  */
-async function loadTimeline(engine, { shell, stage, told }, toast) {
+async function loadTimeline(engine, told, toast) {
   try {
     const { createTimeline } = await import('./levels/timeline.js');
     const say = (/** @type {string} */ text) => toast({ id: 'link', kind: 'warn', text });
-    const loadFollow = () => loadPanel(engine, { shell, stage, say }, toast);
-    return createTimeline(byId('levels-body'), engine, { told, loadFollow, say });
+    return createTimeline(byId('levels-body'), engine, { told, say });
   } catch {
     return null;
   }
@@ -170,26 +170,6 @@ function nameTab(engine) {
     const surface = engine.description.value?.surfaces.find((entry) => entry.id === id);
     document.title = surface ? `${surface.name} · Marching Particles` : 'Marching Particles';
   });
-}
-
-/**
- * Loads the panel that follows particles; null if it cannot be had.
- * @param {Engine} engine
- * @param {{ shell: HTMLElement, stage: HTMLElement, say: (text: string) => void }} parts
- * @param {Toast} toast
- */
-async function loadPanel(engine, { shell, stage, say }, toast) {
-  try {
-    const [{ mountFollow }, { mountMarks }] = await Promise.all([
-      import('./follow/panel.js'),
-      import('./view/marks/layer.js'),
-    ]);
-    return await mountFollow(shell, engine, { say, mount: (mark) => void mountMarks(stage, engine, [mark]) });
-  } catch {
-    const text = 'The panel that follows particles did not load. The picture is not affected.';
-    toast({ id: 'follow', kind: 'error', text });
-    return null;
-  }
 }
 
 /** Gives the page and the browser's frame the chosen theme. @param {Engine} engine */

@@ -10,23 +10,18 @@ import { formatCount } from './format.js';
 /** Sums of a stack at each place. @param {Drawn['rows']} rows */
 const sums = (rows) => rows[0].counts.map((_, k) => rows.reduce((sum, { counts }) => sum + counts[k], 0));
 
-/** The end of the scale. @param {Drawn} chart */
+/**
+ * The end of the scale, which begins at 0 unless the chart says where: what falls by a tenth is drawn so.
+ * @param {Drawn} chart
+ */
 const mostOf = ({ kind, rows, guide = [] }) =>
   Math.max(...(kind === 'line' ? rows.flatMap(({ counts }) => counts) : sums(rows)), ...guide, 1e-12);
 
-/**
- * The beginning of the scale: 0, so that what falls by a tenth is drawn so, or the least value where differences are
- * shown that are small for the values.
- * @param {Drawn} chart
- */
-function leastOf(chart) {
-  const least = Math.min(...chart.rows.flatMap(({ counts }) => counts));
-  return chart.isZoomed && least < mostOf(chart) ? least : 0;
-}
+/** The beginning of the scale in words. @param {Drawn} chart */
+export const floorOf = ({ floor, format }) => (floor === undefined ? '0' : format(floor));
 
-/** The ends of the scale in words, the largest first; one that begins at 0 has one. @param {Drawn} chart */
-export const scaleOf = (chart) =>
-  [mostOf(chart), leastOf(chart)].filter((value, k) => k === 0 || value !== 0).map(chart.format);
+/** The largest value in words. @param {Drawn} chart */
+export const scaleOf = (chart) => chart.format(mostOf(chart));
 
 /** Returns the line below a chart: its first and last place, and its fates if they are several. @param {Drawn} chart */
 export function footOf({ rows, first, ends: named }) {
@@ -45,14 +40,15 @@ const APART = 0.3;
 /** The value at the end of each line, and the share of the height above it. @param {Drawn} chart */
 export function endsOf(chart) {
   if (chart.kind !== 'line') return [];
-  const high = mostOf(chart);
+  const { floor = 0 } = chart;
+  const high = mostOf(chart) - floor;
   const found = chart.rows
     .filter(({ counts }) => counts.length > 0)
     .map(({ fate, counts }) => ({ fate, value: counts[counts.length - 1] }))
     .sort((a, b) => b.value - a.value);
   let free = 0;
   return found.map(({ fate, value }) => {
-    const top = Math.max(free, 1 - RISE * (value / high));
+    const top = Math.max(free, 1 - RISE * ((value - floor) / high));
     free = top + APART;
     return { fate, words: chart.format(value), top };
   });
@@ -60,10 +56,10 @@ export function endsOf(chart) {
 
 /** @param {Drawn} chart */
 export function draw(chart) {
-  const { kind, rows, first, at, ideal, guide = [] } = chart;
+  const { kind, rows, first, at, ideal, guide = [], floor = 0 } = chart;
   const places = rows[0].counts.length;
-  const [high, low] = [mostOf(chart), leastOf(chart)];
-  const y = (/** @type {number} */ value) => +(1 - RISE * ((value - low) / (high - low))).toFixed(4);
+  const high = mostOf(chart) - floor;
+  const y = (/** @type {number} */ value) => +(1 - RISE * ((value - floor) / high)).toFixed(4);
   const svg = s('svg', { viewBox: `0 0 ${places} 1`, preserveAspectRatio: 'none', 'aria-hidden': 'true' });
   if (at !== null && at >= first && at < first + places)
     svg.append(s('rect', { class: 'chart-at', x: at - first, y: 0, width: 1, height: 1 }));

@@ -78,12 +78,11 @@ export class History {
   /**
    * @param {Moment} moment
    * @param {number} nowMs
-   * @param {{ faulty?: boolean, guided?: boolean }} [how] whether the previous entry has an invalid formula, which is
-   *   not worth restoring; whether the camera follows a particle and turns by itself
+   * @param {{ faulty?: boolean }} [how] whether the previous entry has an invalid formula, which is not worth restoring
    */
-  record(moment, nowMs, { faulty = false, guided = false } = {}) {
+  record(moment, nowMs, { faulty = false } = {}) {
     const present = this.entries[this.#at];
-    const found = present && differences(present, moment).filter((what) => what !== 'camera' || !guided);
+    const found = present && differences(present, moment);
     if (found?.length === 0) {
       // The camera has followed the surface.
       this.entries[this.#at] = moment;
@@ -129,11 +128,7 @@ export function createHistory(engine, moves) {
   const record = (/** @type {State} */ state) => {
     // Before the core has loaded there is no state to restore.
     if (!engine.description.value || state.surface === '') return;
-    const { grain, follow } = state.view;
-    history.record(momentOf(state), performance.now(), {
-      faulty: engine.fieldError.peek() !== null,
-      guided: grain !== 'level' && follow !== null,
-    });
+    history.record(momentOf(state), performance.now(), { faulty: engine.fieldError.peek() !== null });
   };
   const tell = () => {
     canUndo.value = history.canUndo;

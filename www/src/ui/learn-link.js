@@ -1,24 +1,41 @@
-/** The link to the learn page, which carries the surface of the picture over. */
+/** The links to the learn page, which carry the surface of the picture over, and a particle to be explained there. */
+import { NO_PARENT } from '../engine/core-numbers.js';
+import { triple } from '../engine/vector.js';
 import { explain } from './explain.js';
-import { packCarried } from './surface-link.js';
+import { packCarried, packParticle } from './surface-link.js';
 
 /** @import { Engine } from '../engine/types.js' */
 
 const PAGE = './learn/';
 
+/** The surface of the picture, and the way back, for the address of the learn page. @param {Engine} engine */
+function carried(engine) {
+  const surface = engine.lessonSurface();
+  const formula = surface && 'formula' in surface ? surface : null;
+  return `surface=${packCarried({ surface: formula, from: location.hash })}`;
+}
+
 /** @param {HTMLAnchorElement} link  of the page's markup @param {Engine} engine */
 export function bindLearnLink(link, engine) {
   /** Says where the link leads just before it is followed or copied. */
   const write = () => {
-    const surface = engine.lessonSurface();
-    const formula = surface && 'formula' in surface ? surface : null;
-    link.href = `${PAGE}#surface=${packCarried({ surface: formula, from: location.hash })}`;
+    link.href = `${PAGE}#${carried(engine)}`;
   };
   for (const type of ['pointerdown', 'focus', 'click']) link.addEventListener(type, write);
   explain(link, () => {
     // A model from points is too large for a link.
     const isOwn = !engine.field.peek()?.model;
     const on = isOwn ? 'this surface' : 'an ellipsoid: a link cannot hold a model from points';
-    return { title: 'The lesson', text: `The paper’s idea in ten short chapters, with figures on ${on}.` };
+    return { title: 'The lesson', text: `The paper’s idea in one sitting, with figures on ${on}.` };
   });
+}
+
+/** Where the lesson explains a particle of the picture. @param {Engine} engine @param {number} index */
+export function particleLink(engine, index) {
+  const { columns } = engine;
+  const seeds = [];
+  for (let i = 0; i < columns.count; i += 1)
+    if (columns.parents[i] === NO_PARENT) seeds.push(triple(columns.placed, i));
+  const particle = { place: triple(columns.placed, index), radius: columns.radii[index], seeds };
+  return `${PAGE}#first&${carried(engine)}&particle=${packParticle(particle)}`;
 }

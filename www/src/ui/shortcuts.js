@@ -33,8 +33,8 @@ export function mountShortcuts(shortcuts) {
   });
   const rest = /** @type {const} */ ([
     ['Arrow keys', 'Turn, with the picture focused'],
-    ['Enter', 'Choose the particle in the middle of the picture; again: follow it'],
-    ['← →', 'Along the timeline by an event; with Shift by a particle, with Alt by a level'],
+    ['Enter', 'Choose the particle in the middle of the picture; again: have it explained'],
+    ['← →', 'Along the timeline by a level'],
     ['Page up, Page down, Home, End, Space', 'Along the timeline as its buttons do'],
     ['Drag', 'Turn'],
     ['Right drag', 'Move'],

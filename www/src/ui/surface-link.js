@@ -5,6 +5,7 @@
 import { MOST_PARAMETERS } from '../engine/constants.js';
 import { fromBase64url, toBase64url } from '../engine/share/base64url.js';
 
+/** @import { Vec3 } from '../engine/types.js' */
 /** @import { FormulaSurface } from './types.js' */
 
 /**
@@ -37,6 +38,28 @@ export function unpacked(text) {
 export function packCarried({ surface, from }) {
   const parameters = Object.fromEntries((surface?.parameters ?? []).map(({ name, value }) => [name, value]));
   return packed(surface ? { formula: surface.formula, parameters, bounds: surface.bounds, from } : { from });
+}
+
+/**
+ * A particle that the lesson is to explain: where it was placed, its radius, and where the fronts of the picture began.
+ * @typedef {{ place: Vec3, radius: number, seeds: Vec3[] }} Explained
+ */
+
+/** More seeds than these are left out: the lesson finds seeds of its own. */
+const MOST_SEEDS = 24;
+
+/** @param {Explained} particle */
+export const packParticle = ({ place, radius, seeds }) =>
+  packed({ place, radius, seeds: seeds.length <= MOST_SEEDS ? seeds : [] });
+
+/** Reads a particle from an address, where anything may stand; null if it is none. @param {string} text */
+export function unpackParticle(text) {
+  const raw = unpacked(text);
+  if (!isVector(raw?.place) || !(Number(raw.radius) > 0) || !Array.isArray(raw.seeds)) return null;
+  const seeds = raw.seeds.slice(0, MOST_SEEDS);
+  return seeds.every(isVector)
+    ? /** @type {Explained} */ ({ place: raw.place, radius: Number(raw.radius), seeds })
+    : null;
 }
 
 /** @param {unknown} v @returns {v is [number, number, number]} */

@@ -105,28 +105,6 @@ export interface Track {
   /** places per second of playback, at its usual speed */
   perSecond: number;
 }
-/**
- * The panel that follows a particle, as the timeline knows it: its two tracks, and where it stands among the
- * levels.
- */
-export interface FollowPanel {
-  open: ReadonlySignal<boolean>;
-  /** that of the particle that is open */
-  level: ReadonlySignal<number | null>;
-  /** the particle that is open, and its event */
-  place: ReadonlySignal<[number, number] | null>;
-  particles: Track;
-  events: Track;
-  /** follows a particle of the picture */
-  follow: (index: number) => void;
-  /** opens a particle of the run at an event */
-  goTo: (place: [number, number]) => void;
-  /** opens the first particle of a level */
-  goToLevel: (level: number) => void;
-  close: () => void;
-  onKey: (listener: (event: KeyboardEvent) => void) => void;
-}
-
 export interface TableContent {
   /** an empty first word leaves the place over the names of the rows empty */
   head: readonly Child[];
@@ -147,10 +125,10 @@ export interface Drawn {
   ends?: string[];
   /** values of a dashed line, from the first place on */
   guide?: readonly number[];
+  /** where the scale begins, if not at 0 */
+  floor?: number;
   /** where the ideal is, as a share of the width */
   ideal?: number;
-  /** the scale begins at the least value */
-  isZoomed?: boolean;
 }
 /** A state that can be restored: what is sampled and how, and from where it is seen. */
 export type Moment = Shape & { camera: CameraState };

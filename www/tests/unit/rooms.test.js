@@ -93,7 +93,6 @@ const MAY_USE = {
   ui: ENGINE_FACE,
   'ui/app': ['ui', ...ENGINE_FACE],
   'ui/field': ['ui/*', ...ENGINE_FACE],
-  'ui/follow': ['ui/*', 'figures', ...ENGINE_FACE],
   'ui/levels': ['ui/*', ...ENGINE_FACE],
   'ui/mesh': ['ui/*', ...ENGINE_FACE],
   'ui/picture': ['ui/*', ...ENGINE_FACE],

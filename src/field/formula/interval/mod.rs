@@ -18,35 +18,40 @@ use crate::field::Enclosure;
 use crate::math::{Bounds, Interval, Sym3};
 pub(super) use range::Range;
 pub(super) use rows::Row;
+use std::sync::Arc;
 
 /// Number of boxes whose bounds are computed together. Most calls have eight boxes or fewer. With 8 runs on a gyroid, on linked rings and
 /// on a torus take 6, 4 and 1 % more instructions, with a single one two of them 7 and 13 %, and a scan for a box up to 30 %.
 const BOXES: usize = 4;
 
 /// A graph compiled for boxes.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct BoxProgram {
     /// The nodes that the results need.
-    graph: Graph,
-    /// Bounds of each node over the boxes at hand. Those of a node that depends on no coordinate stay, and as they contain the rounding
-    /// errors they are seldom single numbers.
-    rows: Vec<Row<BOXES>>,
+    graph: Arc<Graph>,
+    /// Bounds of the nodes that depend on no coordinate. As they contain the rounding errors they are seldom single numbers.
+    uniforms: Vec<Row<BOXES>>,
     /// Nodes of the results.
     outputs: Vec<Id>,
 }
+
+/// Memory of one [`BoxProgram`], with the bounds of each node over the boxes at hand. It begins empty.
+#[derive(Debug, Default)]
+pub(super) struct BoxRows(Vec<Row<BOXES>>);
 
 impl BoxProgram {
     /// Compiles the nodes `outputs` of `graph`. Bounds may be asked for once [`BoxProgram::set_parameters`] is called.
     pub(super) fn compile(graph: &Graph, outputs: &[Id]) -> Self {
         let (graph, outputs) = graph.rewritten(outputs, Graph::intern);
-        Self { rows: vec![Row::ZERO; graph.len()], graph, outputs }
+        Self { uniforms: vec![Row::ZERO; graph.len()], graph: Arc::new(graph), outputs }
     }
 
     /// Recomputes the bounds of the nodes that depend on no coordinate from the values of the parameters.
     pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
         for (id, &node) in (0..).zip(self.graph.nodes()).filter(|&(id, _)| self.graph.is_uniform(id)) {
             let none = |_| unreachable!("a coordinate varies");
-            self.rows[id as usize] = row_of(node, BOXES, parameters, none, |id| &self.rows[id as usize]);
+            self.uniforms[id as usize] =
+                row_of(node, BOXES, parameters, none, |id| &self.uniforms[id as usize]);
         }
     }
 
@@ -59,39 +64,48 @@ impl BoxProgram {
     /// products of coordinates take up to 4 % fewer instructions.
     fn scaled(&self, node: Node) -> Option<(Id, f64)> {
         let Node::Binary(Binary::Mul, a, b) = node else { return None };
-        let factor = self.rows[b as usize].at(0);
+        let factor = self.uniforms[b as usize].at(0);
         let Interval { lo, hi } = factor.bounds;
         (self.graph.is_uniform(b) && lo == hi && !factor.is_empty()).then_some((a, lo))
     }
 
     /// Calls `take` with the index of each box and a function that gives the bounds of result `n` over it.
-    fn run(&mut self, boxes: &[Bounds], mut take: impl FnMut(usize, &dyn Fn(usize) -> Range)) {
+    fn run(
+        &self,
+        rows: &mut BoxRows,
+        boxes: &[Bounds],
+        mut take: impl FnMut(usize, &dyn Fn(usize) -> Range),
+    ) {
+        let rows = &mut rows.0;
+        if rows.is_empty() {
+            rows.clone_from(&self.uniforms);
+        }
         for (first, boxes) in (0..).step_by(BOXES).zip(boxes.chunks(BOXES)) {
             let n = boxes.len();
             // The last box pads the row: arbitrary numbers could be slow in some lanes.
             let coordinate =
                 |axis: u8| Row::each(BOXES, |k| Range::of_coordinate(&boxes[k.min(n - 1)], axis));
             for (id, &node) in (0..).zip(self.graph.nodes()).filter(|&(id, _)| !self.graph.is_uniform(id)) {
-                self.rows[id as usize] = match self.scaled(node) {
-                    Some((a, factor)) => self.rows[a as usize].scale(factor),
-                    None => row_of(node, n, &[], coordinate, |id| &self.rows[id as usize]),
+                rows[id as usize] = match self.scaled(node) {
+                    Some((a, factor)) => rows[a as usize].scale(factor),
+                    None => row_of(node, n, &[], coordinate, |id| &rows[id as usize]),
                 };
             }
             for k in 0..n {
-                take(first + k, &|output| self.rows[self.outputs[output] as usize].at(k));
+                take(first + k, &|output| rows[self.outputs[output] as usize].at(k));
             }
         }
     }
 
     /// Bounds of results 0 … 3, a function and its gradient. Result 4 tells where the whole field is defined and
     /// continuous.
-    pub(super) fn enclose(&mut self, boxes: &[Bounds], out: &mut [Enclosure]) {
-        self.run(boxes, |i, result| out[i] = enclosure([0, 1, 2, 3, 4].map(result)));
+    pub(super) fn enclose(&self, rows: &mut BoxRows, boxes: &[Bounds], out: &mut [Enclosure]) {
+        self.run(rows, boxes, |i, result| out[i] = enclosure([0, 1, 2, 3, 4].map(result)));
     }
 
     /// Bounds of results 0 … 5, the second derivatives.
-    pub(super) fn enclose_second(&mut self, boxes: &[Bounds], out: &mut [Sym3<Interval>]) {
-        self.run(boxes, |i, result| {
+    pub(super) fn enclose_second(&self, rows: &mut BoxRows, boxes: &[Bounds], out: &mut [Sym3<Interval>]) {
+        self.run(rows, boxes, |i, result| {
             let [xx, xy, xz, yy, yz, zz] = [0, 1, 2, 3, 4, 5].map(|output| slope(result(output)));
             out[i] = Sym3 { xx, xy, xz, yy, yz, zz };
         });

@@ -163,7 +163,7 @@ impl Placing for AdaptivePlacing {
         let radius = particles.radius[parent];
         let reach = self.rules.reach * radius;
         let patch = particles.patch_of(parent);
-        probe.select(patch);
+        let probe = &mut probe.on(patch);
         level.gather(particles, patch, particles.position[parent], |_| reach);
         let is_fine = level.rule.is_fine();
         if is_fine {
@@ -192,27 +192,27 @@ impl Placing for AdaptivePlacing {
         context: &mut FrontContext,
         children: Range<usize>,
     ) {
-        context.probe.select(context.particles.patch_of(level.first_child + children.start));
         let (rules, sizing) = (&self.rules, context.sizing());
+        let FrontContext { probe, particles, .. } = context;
+        let probe = &mut probe.on(particles.patch_of(level.first_child + children.start));
         let tolerance = |radius| rules.tolerance(radius);
         let proposals = &self.proposals[children.clone()];
-        self.solver.land(context.probe, sizing, proposals, &tolerance, &mut self.landings);
+        self.solver.land(probe, sizing, proposals, &tolerance, &mut self.landings);
         for ((k, proposal), &landing) in children.zip(proposals).zip(&self.landings) {
             let mut landing = landing;
             if let ChildLanding::On(spot) = landing {
                 let circle = &proposal.circle;
                 let offset = spot.position - circle.centre;
                 let pair = PointPair { offset, normal: circle.normal, other: spot.normal };
-                if level.rule.is_fine()
-                    && !is_on_sheet(level.rule, context.probe, circle.centre, pair, circle.radius)
+                if level.rule.is_fine() && !is_on_sheet(level.rule, probe, circle.centre, pair, circle.radius)
                 {
                     landing = ChildLanding::NotConverged;
                 } else {
-                    let predicted = context.particles.radius[level.first_child + k];
+                    let predicted = particles.radius[level.first_child + k];
                     self.growth = self.growth.max(spot.radius - predicted);
                 }
             }
-            level.note_landing(context.particles, k, landing);
+            level.note_landing(particles, k, landing);
         }
     }
 

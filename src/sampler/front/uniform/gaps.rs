@@ -56,7 +56,7 @@ impl UniformPlacing {
     fn fill_beside(&mut self, level: &mut FrontLevel, context: &mut FrontContext, i: usize) {
         let FrontContext { probe, neighbours, particles, .. } = context;
         let (p, n, patch) = (particles.position[i], particles.normal[i], particles.patch_of(i));
-        probe.select(patch);
+        let probe = &mut probe.on(patch);
         let spacing = 2.0 * self.radius;
         let reach = (GAUSSIAN_RANGE + GAUSSIAN_SKIN) * self.radius;
         level.gather(particles, patch, p, |_| reach);

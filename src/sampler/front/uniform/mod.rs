@@ -15,7 +15,7 @@ pub(super) mod gaps;
 mod surroundings;
 
 use crate::differential::Curvature;
-use crate::field::Field;
+use crate::field::Evaluator;
 use crate::particles::{Particles, SlotFate};
 use crate::sampler::front::level::{
     ChildLanding, FrontContext, FrontLevel, FrontSetup, Placing, SlotFrame, SurfacePoint,
@@ -205,7 +205,7 @@ impl Placing for UniformPlacing {
         let FrontContext { probe, neighbours, particles, .. } = context;
         let p = particles.position[parent];
         let patch = particles.patch_of(parent);
-        probe.select(patch);
+        let probe = &mut probe.on(patch);
         level.gather(particles, patch, p, |_| self.reach());
         let is_doubtful = self.read_surroundings(level, neighbours, particles, parent);
         if is_doubtful {
@@ -267,7 +267,7 @@ impl Placing for UniformPlacing {
         children: Range<usize>,
     ) {
         let FrontContext { probe, particles, .. } = context;
-        probe.select(particles.patch_of(level.first_child + children.start));
+        let probe = &mut probe.on(particles.patch_of(level.first_child + children.start));
         let mut landings = core::mem::take(&mut self.landings);
         probe.land_on_circles(&self.circles[children.clone()], self.tolerance, &mut landings);
         for (k, &on_circle) in children.zip(&landings) {
@@ -323,7 +323,7 @@ impl Placing for UniformPlacing {
 }
 
 /// Second fundamental form at a seed, from the Hessian: [uᵀHu uᵀHw; · wᵀHw]/|∇f|.
-fn second_form_at(field: &mut dyn Field, p: Vec3, u: Vec3, w: Vec3) -> SecondForm {
+fn second_form_at(field: &mut dyn Evaluator, p: Vec3, u: Vec3, w: Vec3) -> SecondForm {
     let jet = field.jet(p.as_dvec3());
     let (u, w) = (u.as_dvec3(), w.as_dvec3());
     let slope = jet.gradient.length();

@@ -5,8 +5,8 @@ use super::super::surgery::{Aim, Surgeon};
 use super::super::tally::Tally;
 use super::super::walls::{Planes, Walls};
 use super::{clip, grown};
-use crate::field::Field;
 use crate::field::formula::Formula;
+use crate::field::{Evaluator, Field, Frame};
 use crate::math::{Bounds, NONE};
 use crate::mesh::half_edge::HalfEdges;
 use crate::particles::Slots;
@@ -21,7 +21,7 @@ fn saddle() -> Formula {
 }
 
 /// A hexagonal grid over z = 0.3xy that reaches beyond the box, moved by `shift`.
-fn grid(field: &mut dyn Field, bounds: &Bounds, shift: [f32; 2]) -> Net {
+fn grid(field: &mut dyn Evaluator, bounds: &Bounds, shift: [f32; 2]) -> Net {
     const COLUMNS: u32 = 22;
     let point = |k: u32| {
         let (i, j) = ((k % COLUMNS) as f32, (k / COLUMNS) as f32);
@@ -118,11 +118,12 @@ proptest! {
         places in prop::collection::vec((any::<u32>(), 0.7_f32..1.4), 1..40),
     ) {
         let bounds = Bounds::symmetric([half[0], half[1], 1.0]);
-        let mut field = saddle();
-        let mut net = grid(&mut field, &bounds, shift);
+        let field = saddle();
+        let field = &mut *field.evaluator(Frame::default());
+        let mut net = grid(field, &bounds, shift);
         let mut block = MovedBlock::default();
         let mut memory = ProbeMemory::default();
-        let mut probe = Probe::new(&mut field, &mut memory);
+        let mut probe = Probe::new(field, &mut memory);
         let mut ground = Ground { probe: &mut probe, block: &mut block };
         clip(&mut net, &mut ground, SPACING).expect("the saddle can be clipped");
         check(&net, &bounds);

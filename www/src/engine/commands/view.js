@@ -12,7 +12,7 @@ import { change } from '../store.js';
  */
 
 /**
- * @typedef {Pick<EngineCommands, 'setView' | 'fit' | 'pointOut' | 'showFirst' | 'turnTo' | 'lookFrom' | 'zoom' |
+ * @typedef {Pick<EngineCommands, 'setView' | 'fit' | 'pointOut' | 'turnTo' | 'lookFrom' | 'zoom' |
  *   'orbit' | 'setInsets' | 'pick' | 'dismissHover' | 'project' | 'rayThrough' | 'takeWith' |
  *   'dismissNotice'>} ViewCommands
  */
@@ -30,12 +30,9 @@ export function viewCommands({ store, picture }) {
       if (store.hover.value && store.hover.value.level > (view.level ?? Infinity)) picture.hover(null, 0, 0);
     },
     fit: () => viewer.fit(),
-    pointOut(place, { turns = true } = {}) {
+    pointOut(place) {
       store.spot.value = place;
-      if (place && turns) viewer.lookAt(place);
-    },
-    showFirst(count) {
-      if (viewer.look.upto !== count) viewer.set({ upto: count });
+      if (place) viewer.lookAt(place);
     },
     turnTo: (normal) => viewer.turnTo(normal),
     lookFrom: (name) => viewer.lookFrom(name),

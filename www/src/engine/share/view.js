@@ -112,22 +112,6 @@ export const VIEW = {
   level: place('generation level'),
   /** The relaxation step after which the particles are drawn, null for the last one. */
   step: place('relaxation step'),
-  /** The unit of a step on the timeline. */
-  grain: choice('grain of the timeline', ['level', 'particle', 'event']),
-  /**
-   * The particle of the paper's run that is followed, and the number of its event.
-   * @type {Option<[number, number] | null>}
-   */
-  follow: {
-    home: () => null,
-    words: 'place on the timeline',
-    valid(raw) {
-      if (raw === null) return null;
-      const [particle, event, ...more] = integers(raw, Infinity) ?? [];
-      if (event === undefined || more.length > 0) return undefined;
-      return [Math.min(particle, LAST_PARTICLE), Math.min(event, LAST_LEVEL)];
-    },
-  },
   /** @type {Option<CameraState>} */
   camera: { home: homeCamera, words: 'camera', valid: validCamera },
 };

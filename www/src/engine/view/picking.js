@@ -26,9 +26,9 @@ const DENSE = 0.8;
  * @param {Columns} columns @param {Ray} ray @param {PickOptions} options
  */
 export function pick(columns, { eye, direction }, options) {
-  const { discScale, spheres = false, toleranceRad, lastLevel = Infinity, plane = null, upto = Infinity } = options;
+  const { discScale, spheres = false, toleranceRad, lastLevel = Infinity, plane = null } = options;
   const { shown: positions, normals, radii, levels } = columns;
-  const count = Math.min(columns.count, upto);
+  const { count } = columns;
   const [ex, ey, ez] = eye;
   const [dx, dy, dz] = direction;
   let hit = -1;

@@ -29,7 +29,7 @@ const EDGE_PX = 1;
 const DIM_BEHIND = { discs: 1, spheres: 0.5, mesh: 0.25 };
 
 /** Returns what the picture shows of the view. @param {ViewState} view */
-export function seenOf({ theme, box, bar, measured, points, grain, follow, camera, ...seen }) {
+export function seenOf({ theme, box, bar, measured, points, camera, ...seen }) {
   return seen;
 }
 
@@ -40,7 +40,6 @@ export const firstLook = (view) => ({
   box: null,
   plane: null,
   points: null,
-  upto: null,
   highlight: -1,
   insets: { left: 0, right: 0, top: 0, bottom: 0 },
 });
@@ -57,9 +56,9 @@ export const shownLevel = ({ level }, lastLevel) => (level === null ? null : Mat
  * levels are drawn as they were placed. A mesh has one place only.
  * @param {Look} look
  */
-export function shownStep({ level, step, upto, draw }) {
+export function shownStep({ level, step, draw }) {
   if (draw === 'mesh') return null;
-  return level !== null || upto !== null ? 0 : step;
+  return level === null ? step : 0;
 }
 
 /**

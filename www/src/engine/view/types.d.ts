@@ -132,8 +132,7 @@ export interface Stage {
   take: Take;
 }
 /** The options of the view that the picture shows, and the rest of what it shows. */
-export type Look = Omit<ViewState, 'theme' | 'box' | 'bar' | 'measured' | 'points' | 'grain' | 'follow' | 'camera'> &
-  Setting;
+export type Look = Omit<ViewState, 'theme' | 'box' | 'bar' | 'measured' | 'points' | 'camera'> & Setting;
 export interface Setting {
   theme: 'light' | 'dark';
   /** the clip box, or null if it is not drawn */
@@ -142,8 +141,6 @@ export interface Setting {
   plane: CuttingPlane | null;
   /** the points of a model, three numbers each, drawn as dots */
   points: Float32Array | null;
-  /** number of particles drawn, null for all */
-  upto: number | null;
   /** index of the particle with an outline, −1 for none */
   highlight: number;
   insets: Insets;
@@ -173,8 +170,6 @@ export interface PickOptions {
   lastLevel?: number;
   /** particles beyond it are hidden */
   plane?: CuttingPlane | null;
-  /** particles from this one on are hidden */
-  upto?: number;
 }
 export interface DeviceOptions {
   host: HTMLElement;

@@ -135,7 +135,7 @@ export class Viewer {
       this.#endReveal();
     }
     this.upload.restart(meets);
-    this.look = { ...this.look, highlight: -1, upto: null };
+    this.look = { ...this.look, highlight: -1 };
     this.remembered();
     this.#restyle();
   }
@@ -194,8 +194,7 @@ export class Viewer {
     if (colour !== before.colour || theme !== before.theme) this.recolour(0, this.columns.count);
     if (marks !== before.marks) this.#faces.recolour();
     this.remembered();
-    const { upto, insets } = this.look;
-    if (level !== before.level || upto !== before.upto || insets !== before.insets) this.#frameFront();
+    if (level !== before.level || this.look.insets !== before.insets) this.#frameFront();
     // A running reveal would continue behind the levels that are stepped through.
     if (level !== null && this.reveal.active) {
       this.#endReveal();
@@ -295,10 +294,9 @@ export class Viewer {
   /** Returns which particles are drawn; undefined if all are. */
   #shownOnly() {
     const { columns, look } = this;
-    const { upto } = look;
     const newest = shownLevel(look, columns.lastLevel);
-    if (upto === null && (newest === null || newest >= columns.lastLevel)) return undefined;
-    return (/** @type {number} */ i) => i < (upto ?? Infinity) && columns.levels[i] <= (newest ?? Infinity);
+    if (newest === null || newest >= columns.lastLevel) return undefined;
+    return (/** @type {number} */ i) => columns.levels[i] <= newest;
   }
 
   /**
@@ -360,7 +358,6 @@ export class Viewer {
         toleranceRad: PICK_PX * view.worldPerPx,
         lastLevel: shownLevel(look, columns.lastLevel) ?? Infinity,
         plane: look.plane,
-        upto: look.upto ?? Infinity,
       },
     );
     return row === null ? null : columns.firstRow(row);
@@ -453,8 +450,6 @@ export class Viewer {
   /** @param {Device['renderer']} renderer @param {View} view @param {number} count  particles that the device holds */
   #tellView(renderer, view, count) {
     renderer.set_view(view.packed);
-    const { upto } = this.look;
-    if (upto !== null) return renderer.set_count(Math.min(upto, count), count);
     const points = this.upload.writePoints(renderer, this.look, view, { count, ratio: this.screen.ratio });
     renderer.set_count(count + points, count);
   }

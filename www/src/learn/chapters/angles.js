@@ -1,15 +1,18 @@
 /** How children of another size find room around a particle: the angles φ and τ, with a handle on each radius. */
 import { computed, signal } from '@preact/signals-core';
 import { adaptivePlane } from '../../figures/adaptive.js';
+import { algorithmList } from '../../figures/algorithm.js';
 import { polar } from '../../figures/geometry.js';
 import { momentAt } from '../../figures/moment.js';
 import { ring } from '../../figures/svg.js';
-import { inDegrees, tell } from '../../figures/words.js';
+import { ADAPTIVE, inDegrees, lineOf, tell } from '../../figures/words.js';
 import { button } from '../../ui/button.js';
 import { fill, h, live } from '../../ui/dom.js';
 import { formatCount, formatFixed } from '../../ui/format.js';
+import { loadSheet } from '../../ui/sheet.js';
 import { createNumber, dragIn } from '../drag.js';
 import { createRange, facts } from '../parts.js';
+import sheet from '../plane.css?url';
 import { roomEvents, takenAngle } from '../room.js';
 
 /** Limits of the two radii, in any unit: what counts is one over the other. */
@@ -24,6 +27,7 @@ const HANDLE = 0.16;
 const OPENS_AT = 16;
 
 export async function angles() {
+  await loadSheet(sheet);
   const [own, other] = [signal(1), signal(0.7)];
   const events = computed(() => roomEvents(own.value, other.value));
   const box = h('div', { class: 'drawing-box' });
@@ -86,11 +90,12 @@ export async function angles() {
       tell(moment.value, { particle: 0, level: 0, parent: null, radius: own.value }),
     ),
     h('div', { class: 'controls' }, step(-1, 'Step back', 'back'), step(1, 'Step forward', 'forward'), range.element),
+    h('div', { class: 'particle-lines' }, () => algorithmList(lineOf(moment.value.event, ADAPTIVE), ADAPTIVE)),
     h('div', null, () => {
       const placed = events.value.filter((event) => event.type === 'fate' && event.fate === 'added').length;
       return facts([
         ['360° / φ', formatFixed((2 * Math.PI) / takenAngle(own.value, other.value), 2)],
-        ['Placed, with the first one', formatCount(placed + 1)],
+        ['Placed, where half of φ is enough', formatCount(placed + 1)],
       ]);
     }),
   );

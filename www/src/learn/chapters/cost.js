@@ -1,39 +1,9 @@
 /** The chapter on the cost of placing, of relaxing and of the other method: in evaluations, in pushes and in rounds. */
 import { h } from '../../ui/dom.js';
 import { formatCount, formatSignificant } from '../../ui/format.js';
+import { costOf } from '../measure.js';
 
-/** @import { Context, Cost, Lab } from '../types.js' */
-
-/**
- * What this page counts: placing, ten steps, and the whole run of the other method.
- * @param {Lab} lab
- * @returns {Promise<Cost>}
- */
-export async function costOf(lab) {
-  const { progress, placing } = await lab.run({}, { keep: true });
-  const other = await lab.run({ method: 'witkin_heckbert', radius_max: 0 });
-  const { particles, evaluations, interactions, steps } = progress;
-  const share = (/** @type {number} */ count, /** @type {number} */ of) => count / Math.max(1, of);
-  return {
-    particles,
-    others: other.progress.particles,
-    rows: [
-      { name: 'Placing, once', evaluations: share(placing, particles), pushes: 0, rounds: 0 },
-      {
-        name: 'Relaxation after it',
-        evaluations: share(evaluations - placing, particles),
-        pushes: share(interactions, particles),
-        rounds: steps,
-      },
-      {
-        name: 'Witkin and Heckbert’s system',
-        evaluations: share(other.progress.evaluations, other.progress.particles),
-        pushes: share(other.progress.interactions, other.progress.particles),
-        rounds: other.progress.steps,
-      },
-    ],
-  };
-}
+/** @import { Context } from '../types.js' */
 
 /** A table with bars in its cells. @param {Context} context */
 export async function cost({ lab, stops }) {

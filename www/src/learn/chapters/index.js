@@ -1,21 +1,18 @@
-/** The live figure of each chapter, by the name that the page's markup gives it. */
-import { cost } from './cost.js';
-import { rest, seams } from './rest.js';
-import { opening, rings } from './rings.js';
+/** The live figure of each chapter, by the name that the page's markup gives it. Its script is loaded with it. */
 
 /** @import { Context } from '../types.js' */
 
 /** @type {Record<string, (context: Context) => Promise<(Node | null)[]>>} */
 export const FIGURES = {
-  why: opening,
-  cost,
+  'judge-first': async (context) => (await import('./judge.js')).judge(context, 'first'),
   plane: async (context) => (await import('./plane.js')).plane(context),
-  moving: async (context) => (await import('./moving.js')).moving(context),
   circle: async (context) => (await import('./circle.js')).circle(context),
   first: async (context) => (await import('./particle.js')).whoWasFirst(context),
-  rings,
-  seams,
-  rest,
+  rings: async (context) => (await import('./rings.js')).rings(context),
+  seams: async (context) => (await import('./seams.js')).seams(context),
+  cost: async (context) => (await import('./cost.js')).cost(context),
   angles: async () => (await import('./angles.js')).angles(),
   sizes: async (context) => (await import('./sizes.js')).sizes(context),
+  'judge-last': async (context) => (await import('./judge.js')).judge(context, 'last'),
+  moving: async (context) => (await import('./moving.js')).moving(context),
 };

@@ -3,10 +3,11 @@ import { signal } from '@preact/signals-core';
 import { fill, h, live, reducedMotion } from '../../ui/dom.js';
 import { formatFixed, plural } from '../../ui/format.js';
 import { reasonOf } from '../figure.js';
-import { FrontLane, lossOf, MOTIONS, ownMotions, STEPS, SystemLane, scoreAt, valueAt } from '../flowing.js';
+import { FrontLane, MOTIONS, ownMotions, STEPS, SystemLane, scoreAt, valueAt } from '../flowing.js';
 import { createChart, createSelect } from '../parts.js';
 import { byLevel, Orbit, sideBySide } from '../picture.js';
 import { createReplay } from '../replay.js';
+import { ROWS } from '../score.js';
 
 /**
  * @import { Signal } from '../../engine/types.js'
@@ -116,7 +117,12 @@ class Pursuit {
     const replay = createReplay({
       films,
       names: ['The front', 'Beside it'],
-      axes: [{ value: 'step', label: 'step', of: ({ step }) => step, say: (step) => this.#say(step) }],
+      axes: [
+        {
+          ...{ value: 'step', label: 'step', of: ({ step }) => step },
+          ...{ say: (step) => this.#say(step), moment: (step) => this.#say(step) },
+        },
+      ],
       axisName: '',
       name: 'Parameter',
       places: AT_REST,
@@ -200,7 +206,8 @@ async function endsOf(motion) {
 
 /** The chart of both lanes. @param {Pursuit} pursuit @param {() => boolean} isOpen */
 function chartOf(pursuit, isOpen) {
-  const percent = (/** @type {number} */ share) => `${formatFixed(100 * share, 0)} %`;
+  // Written as in the scorecard below.
+  const percent = ROWS[0].write;
   const { shares } = pursuit;
   const measured = (/** @type {number} */ step) => Math.ceil(step / MEASURED);
   const told = () => {
@@ -276,6 +283,3 @@ export async function moving({ lab, stops }) {
     h('div', { hidden: () => !isOpen() }, pursuit.card),
   ];
 }
-
-// One part is loaded for the figure and for its question.
-export { lossOf };

@@ -1,22 +1,32 @@
-/** The chapter on who was first: the tangent plane of a particle event by event, and the fates of all children. */
+/** The chapter on who was first: one particle by events, particles or levels, and the fates of all children. */
 import { computed, signal } from '@preact/signals-core';
-import { tangentPlane } from '../../figures/drawings.js';
+import { nearest } from '../../engine/vector.js';
+import { algorithmList } from '../../figures/algorithm.js';
+import { asideWords, isSearched, lens, profileOf, tangentPlane } from '../../figures/drawings.js';
 import { momentAt } from '../../figures/moment.js';
 import { openParticle } from '../../figures/particle.js';
 import { fateShape } from '../../figures/svg.js';
-import { FATES, tell } from '../../figures/words.js';
+import { FATES, inRadii, lineOf, tell, transcript } from '../../figures/words.js';
 import { button } from '../../ui/button.js';
 import { fill, h, queryAll, s } from '../../ui/dom.js';
-import { formatCount, plural } from '../../ui/format.js';
+import { formatCount, MISSING, plural } from '../../ui/format.js';
+import { download } from '../../ui/share.js';
+import { loadSheet } from '../../ui/sheet.js';
+import { unpackParticle } from '../../ui/surface-link.js';
+import { readAddress } from '../address.js';
 import { createTolerance } from '../drag.js';
 import { reasonOf } from '../figure.js';
 import { latest } from '../latest.js';
-import { createChart, createRange } from '../parts.js';
+import { createChart, createRange, createSelect, facts } from '../parts.js';
+import sheet from '../plane.css?url';
 
 /**
- * @import { Opened } from '../../figures/types.js'
- * @import { Context, LabRun } from '../types.js'
+ * @import { Signal } from '../../engine/types.js'
+ * @import { Moment, Opened } from '../../figures/types.js'
+ * @import { Context, Lab, LabRun } from '../types.js'
  */
+
+/** @typedef {'event' | 'particle' | 'level'} Grain */
 
 /** The match tolerance of the lesson. */
 const USUAL_TOLERANCE = 0.7;
@@ -37,40 +47,122 @@ function keyOf({ events }) {
   );
 }
 
-/** Steps through the events of a particle. @param {Opened} opened @param {number} at  the event that is shown first */
-function stepThrough(opened, at) {
-  const drawing = h('div', { class: 'drawing-box' });
-  const told = h('p', { class: 'told', 'aria-live': 'polite' });
+/** What one step is. @type {readonly { value: Grain, label: string }[]} */
+const GRAINS = [
+  { value: 'event', label: 'an event' },
+  { value: 'particle', label: 'a particle' },
+  { value: 'level', label: 'a level' },
+];
+
+/**
+ * Views of a particle at one of its events: its tangent plane, the event in words, the line of the algorithm, and the
+ * slot from the side with both landings.
+ * @param {Opened} opened
+ * @param {{ at: number, grain: Signal<Grain>, go: (by: 1 | -1) => void }} how  `at`: the event that is shown first;
+ *   `go` leads to another particle
+ */
+function viewsOf(opened, { at, grain, go }) {
   const { events, subject } = opened;
   const last = events.length - 1;
-  const show = (/** @type {number} */ to) => {
-    const moment = momentAt(events, to);
-    fill(drawing, tangentPlane(opened, moment));
-    told.textContent = tell(moment, subject);
-  };
   const range = createRange({
     name: 'Event',
-    max: last,
+    max: Math.max(0, last),
     value: at < 0 ? last : at,
     say: (to) => `${formatCount(to + 1)} of ${formatCount(last + 1)}`,
-    change: show,
+    change() {},
   });
-  show(range.get());
-  const step = (/** @type {number} */ by, /** @type {string} */ label, /** @type {'back' | 'forward'} */ name) =>
-    button({
-      class: 'square',
-      icon: name,
-      'aria-label': label,
-      press: () => range.set(Math.min(last, Math.max(0, range.get() + by))),
-    });
-  const controls = h(
-    'div',
-    { class: 'controls' },
-    step(-1, 'Event back', 'back'),
-    step(1, 'Event forward', 'forward'),
-    range.element,
-  );
-  return { drawing, told, controls };
+  const moment = computed(() => momentAt(events, Math.min(range.place.value, last)));
+  const step = (/** @type {1 | -1} */ by) => {
+    const to = range.get() + by;
+    if (grain.peek() === 'event' && to >= 0 && to <= last) range.set(to);
+    else go(by);
+  };
+  const turn = (/** @type {1 | -1} */ by, /** @type {string} */ label, /** @type {'back' | 'forward'} */ icon) =>
+    button({ class: 'square', icon, 'aria-label': label, press: () => step(by) });
+  const what = createSelect({
+    name: 'One step is',
+    choices: GRAINS,
+    value: grain.peek(),
+    change: (value) => {
+      grain.value = value;
+    },
+  });
+  const parent = subject.parent === null ? 'a seed' : `child of particle ${formatCount(subject.parent)}`;
+  return [
+    h(
+      'div',
+      { class: 'two' },
+      h('div', { class: 'drawing-box' }, () => tangentPlane(opened, moment.value)),
+      h(
+        'div',
+        { class: 'side' },
+        h(
+          'p',
+          { class: 'quiet' },
+          `Particle ${formatCount(subject.particle)} on level ${formatCount(subject.level)}, ${parent}.`,
+        ),
+        h('p', { class: 'told', 'aria-live': 'polite' }, () => tell(moment.value, subject)),
+        h(
+          'div',
+          { class: 'controls' },
+          turn(-1, 'Step back', 'back'),
+          turn(1, 'Step forward', 'forward'),
+          what.element,
+          range.element,
+        ),
+        h(
+          'div',
+          { class: 'controls' },
+          button({ class: 'plain', press: () => saveTranscript(opened) }, 'Save transcript'),
+        ),
+        h('div', { class: 'particle-lines' }, () => algorithmList(lineOf(moment.value.event))),
+      ),
+    ),
+    h('div', { class: 'two', hidden: () => profileAt(opened, moment.value) === null }, () =>
+      sideOf(opened, moment.value),
+    ),
+    keyOf(opened),
+  ];
+}
+
+/** Saves all events of a particle in words. @param {Opened} opened */
+function saveTranscript({ events, subject }) {
+  const head = [`Particle ${subject.particle}, level ${subject.level}`, `Algorithm 2, r = ${subject.radius}`];
+  const moments = events.map((_, at) => momentAt(events, at));
+  const blob = new Blob([transcript(moments, subject, head)], { type: 'text/plain;charset=utf-8' });
+  download(blob, `particle-${subject.particle}.txt`);
+}
+
+/**
+ * The plane of the slot that an event is about; null if it holds the parent.
+ * @param {Opened} opened @param {Moment} moment
+ */
+const profileAt = ({ profiles }, { slot }) =>
+  profiles[slot ?? profiles.findIndex((profile) => profile !== null)] ?? null;
+
+/** The slot from the side, and where both searches land. @param {Opened} opened @param {Moment} moment */
+function sideOf(opened, moment) {
+  const profile = profileAt(opened, moment);
+  if (!profile) return null;
+  const slot = opened.profiles.indexOf(profile);
+  const child = moment.children[slot];
+  const { radius } = opened.subject;
+  const enlarged = lens(opened, profile, child);
+  const newton = profile.newtonDistance === null ? 'no landing' : inRadii(profile.newtonDistance, radius, 3);
+  return [
+    h('div', { class: 'drawing-box' }, profileOf(opened, profile, child)),
+    h(
+      'div',
+      { class: 'side' },
+      h('p', null, `Slot ${slot} from the side`),
+      facts([
+        ['The circle lands at', child.landed ? inRadii(child.landed.distance, radius, 3) : MISSING],
+        ['Newton’s method would', isSearched(child) ? newton + asideWords(profile) : MISSING],
+        ['Evaluations of f so far', formatCount(moment.evaluations)],
+      ]),
+      enlarged && h('div', { class: 'lens-box' }, enlarged, h('p', { class: 'quiet' }, 'The search, enlarged')),
+    ),
+  ];
 }
 
 /**
@@ -98,18 +190,52 @@ function fateChart(run, hidden) {
   });
 }
 
+/**
+ * The run whose particles are shown, and the first of them as a share of all: the one that the address names, in a run
+ * with its radius from the same seeds, else one in the middle of a coarse run.
+ * @param {Lab} own
+ */
+async function asked(own) {
+  const wanted = unpackParticle(readAddress(location.hash).parts.particle ?? '');
+  const coarse = await own.coarse();
+  if (!wanted) return { usual: coarse, first: 0.5 };
+  const { place, radius, seeds } = wanted;
+  // With particles this small there may be too many of them to be followed.
+  const usual = await own.run({ relax_steps: 0, radius, seeds }, { keep: true }).catch(() => coarse);
+  const { positions, radii } = usual.placed;
+  const found = nearest(positions, radii.length, place);
+  return { usual, first: ((found?.index ?? 0) + 0.5) / radii.length };
+}
+
 /** A particle amid the front, and the fates of all children. @param {Context} context */
 export async function whoWasFirst({ lab, stops }) {
+  await loadSheet(sheet);
   const own = await lab;
-  const usual = await own.coarse();
+  const { usual, first } = await asked(own);
   const run = signal(usual);
   const tolerance = signal(USUAL_TOLERANCE);
-  const place = h('div', { class: 'two' });
+  const place = h('div', { class: 'particle' });
   const runAt = async (/** @type {number} */ to) =>
     to === USUAL_TOLERANCE ? usual : own.run({ ...usual.settings, match_tolerance: to }, { keep: true });
   /** The particle that is shown, as a share of all. */
-  let share = 0.5;
+  let share = first;
+  /** @type {Signal<Grain>} */
+  const grain = signal('event');
   const status = h('p', { class: 'figure-status', role: 'status' });
+  /** Goes to the particle before or after, or to the first of a level. @param {1 | -1} by */
+  function go(by) {
+    const { levels } = run.peek().end;
+    const own = Math.floor(share * levels.length);
+    const level = levels[own] + by;
+    const to = grain.peek() === 'level' ? levels.indexOf(level) : own + by;
+    if (to < 0 || to >= levels.length) return;
+    share = (to + 0.5) / levels.length;
+    isBackwards = by < 0 && grain.peek() === 'event';
+    void show(tolerance.peek());
+  }
+  /** Whether a particle is come to from behind, at its last event. */
+  let isBackwards = false;
+  let isFirst = true;
   const show = latest(async (/** @type {number} */ to, isOld) => {
     const next = await runAt(to).catch((error) => {
       status.textContent = reasonOf(error);
@@ -122,18 +248,20 @@ export async function whoWasFirst({ lab, stops }) {
       status.textContent = '';
       const opened = await openParticle(next.client, next, Math.floor(share * next.end.radii.length));
       // The chapter is about comparing, so the drawing begins with the comparison of the first child.
-      const first = opened.events.findIndex(({ type }) => type === 'compared');
-      const { drawing, told, controls } = stepThrough(opened, first);
-      fill(place, drawing, h('div', { class: 'side' }, told, controls, keyOf(opened)));
+      const compared = opened.events.findIndex(({ type }) => type === 'compared');
+      const at = isBackwards ? -1 : isFirst || old !== next ? compared : 0;
+      isFirst = false;
+      const held = place.contains(document.activeElement) ? document.activeElement?.getAttribute('aria-label') : null;
+      fill(place, viewsOf(opened, { at, grain, go }));
+      // The button that was pressed has been made anew.
+      if (held)
+        queryAll(place, 'button')
+          .find((one) => one.getAttribute('aria-label') === held)
+          ?.focus();
     }
     if (old !== usual && old !== run.peek()) own.drop(old);
   });
   await show(tolerance.peek());
-  const next = () => {
-    const count = run.peek().end.radii.length;
-    share = ((Math.floor(share * count) + 7.5) / count) % 1;
-    void show(tolerance.peek());
-  };
   const turn = (/** @type {number} */ to) => {
     if (to === tolerance.peek()) return;
     tolerance.value = to;
@@ -142,13 +270,8 @@ export async function whoWasFirst({ lab, stops }) {
   for (const words of queryAll(document, '[data-number="tolerance"]'))
     words.replaceWith(createTolerance(() => tolerance.value, turn));
   return [
-    h(
-      'div',
-      { class: 'controls choices' },
-      button({ press: next }, 'Another particle'),
-      h('span', null, () => `of ${plural(run.value.end.radii.length, 'particle')}`),
-    ),
     place,
+    h('p', { class: 'figure-count' }, () => `A run of ${plural(run.value.end.radii.length, 'particle')}.`),
     status,
     fateChart(run, () => !stops.isOpen('predict-average')),
   ];

@@ -1,5 +1,5 @@
-/** The front that grows ring by ring: the opening picture, and the chapter on rings. */
-import { h, live, reducedMotion } from '../../ui/dom.js';
+/** The front that grows ring by ring. */
+import { h, live } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
 import { RING, ringsOf } from '../measure.js';
 import { createChart, createPlay, createRange } from '../parts.js';
@@ -33,18 +33,19 @@ function onLevels(all, isKept) {
   };
 }
 
-/** @param {Context} context */
-async function growth({ lab }, /** @type {string} */ name) {
-  const { placed } = await (await lab).run({}, { keep: true });
+/** Creates the figure of the rings, with a bar for each once its prediction was made. @param {Context} context */
+export async function rings(context) {
+  const { placed } = await (await context.lab).run({}, { keep: true });
   const orbit = new Orbit();
   orbit.fitTo(placed);
   orbit.faceFront(placed);
   const counts = countsOf(placed);
-  const picture = new Picture(orbit, { name });
+  const picture = new Picture(orbit, { name: 'The rings of the front around the seed' });
   const range = createRange({
     name: 'Level',
     max: counts.length - 1,
-    value: counts.length - 1,
+    // The ring of the question.
+    value: Math.min(RING, counts.length - 1),
     say: (level) => `${formatCount(level)} of ${formatCount(counts.length - 1)}`,
     change: (level) => show(level),
   });
@@ -56,28 +57,9 @@ async function growth({ lab }, /** @type {string} */ name) {
     if (isMounted) orbit.follow(placed, level);
   }
   let isMounted = false;
-  show(counts.length - 1);
+  show(range.get());
   isMounted = true;
   const play = createPlay(range, { label: 'Grow', totalMs: GROWTH_MS });
-  return { placed, counts, picture, range, play, show };
-}
-
-/** The opening picture grows once by itself. @param {Context} context */
-export async function opening(context) {
-  const { picture, range, play, counts } = await growth(context, 'The surface, covered by particles ring by ring');
-  const count = h('p', { class: 'figure-count' }, plural(counts[counts.length - 1], 'particle'));
-  const observer = new IntersectionObserver((entries) => {
-    if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
-    observer.disconnect();
-    if (!reducedMotion()) play.play();
-  });
-  observer.observe(picture.element);
-  return [picture.element, h('div', { class: 'controls' }, play.element, range.element, count)];
-}
-
-/** Creates the figure of the rings, with a bar for each once its prediction was made. @param {Context} context */
-export async function rings(context) {
-  const { placed, picture, range, play } = await growth(context, 'The rings of the front around the seed');
   const sizes = ringsOf(placed);
   const words = () => {
     const level = range.place.value;

@@ -6,7 +6,7 @@
 import { computed, signal } from '@preact/signals-core';
 import { MOST_STEPPED } from '../../engine/constants.js';
 import { clamp } from '../../engine/vector.js';
-import { draw, footOf, scaleOf } from '../chart.js';
+import { draw, floorOf, footOf, scaleOf } from '../chart.js';
 import { h } from '../dom.js';
 import { formatCount, formatFixed, formatShare, formatSignificant, MISSING, plural } from '../format.js';
 import { spread as statisticsOf } from '../neighbours.js';
@@ -39,17 +39,16 @@ export async function createCharts(engine, player) {
     return kept.value > 1 || steps === 2 ? movesOf(past, positions, radii) : [];
   });
   const energy = computed(() => engine.report.value?.energy ?? []);
-  const followed = computed(() => (player.grain.value === 'level' ? null : (player.panel.value?.level.value ?? null)));
-  const atLevel = computed(() => followed.value ?? (level.value === null ? null : newest.value));
+  const atLevel = computed(() => (level.value === null ? null : newest.value));
   const atStep = computed(() => {
-    if (followed.value !== null || (level.value !== null && newest.value < table.value.last)) return null;
+    if (level.value !== null && newest.value < table.value.last) return null;
     if (level.value !== null) return 0;
     return whole.value ? Math.max(0, energy.value.length - 1) : (relaxed.value ?? null);
   });
   const spread = computed(() => {
     void [engine.report.value, kept.value, table.value];
     if (!shown.value) return null;
-    const upTo = followed.value ?? (level.value === null ? null : newest.value);
+    const upTo = level.value === null ? null : newest.value;
     return spreadOf(engine.columns, { upTo, step: upTo === null ? relaxed.value : null });
   });
   const degree = computed(() => {
@@ -57,15 +56,15 @@ export async function createCharts(engine, player) {
     return degreeBins(engine.columns.valence);
   });
   /** @param {number} step */
-  const seekStep = (step) => player.seekLevel(step === 0 ? table.peek().last : table.peek().last + step);
+  const seekStep = (step) => player.seek(step === 0 ? table.peek().last : table.peek().last + step);
   const charts = [
     chartOf(
       () => freshChart(table.value, atLevel.value),
-      (k) => player.seekLevel(k),
+      (k) => player.seek(k),
     ),
     chartOf(
       () => fateChart(table.value, atLevel.value),
-      (k) => player.seekLevel(k),
+      (k) => player.seek(k),
     ),
     chartOf(() => energyChart(energy.value, atStep.value), seekStep),
     chartOf(() => moveChart(moves.value, atStep.value), seekStep),
@@ -232,12 +231,14 @@ function fateChart(table, at) {
 /** @param {readonly number[]} energy @param {number | null} at @returns {Chart} */
 function energyChart(energy, at) {
   const [from, to] = [energy[0], energy.at(-1)];
+  // Differences are small for the values: the scale begins at the least.
+  const floor = Math.min(...energy);
   const of = energy.length > 1 ? `from ${formatSignificant(from, 3)} to ${formatSignificant(to, 3)}` : '';
   return {
     title: 'Energy per step',
     kind: 'line',
-    isZoomed: true,
     rows: [{ fate: 'energy', name: 'energy', counts: [...energy] }],
+    floor: floor < Math.max(...energy) ? floor : undefined,
     first: 0,
     at,
     value: at === null || energy[at] === undefined ? '' : formatSignificant(energy[at], 3),
@@ -299,7 +300,7 @@ function chartOf(read, seek) {
     },
     () =>
       places() > 0
-        ? [draw(chart.value), ...scaleOf(chart.value).map(scaleText)]
+        ? [draw(chart.value), ...scaleTexts(chart.value)]
         : h('p', { class: 'quiet' }, chart.value.missing ?? NOTHING),
   );
   return h(
@@ -317,9 +318,15 @@ function chartOf(read, seek) {
   );
 }
 
-/** The end of a scale: the largest value is at the right, where a curve that falls leaves room, the least at the left. */
-const scaleText = (/** @type {string} */ text, /** @type {number} */ k) =>
-  h('span', { class: k === 0 ? 'chart-most' : 'chart-least', 'aria-hidden': 'true' }, text);
+/**
+ * The ends of a scale: the largest value at the right, where a curve that falls leaves room, and a least that is not 0 at
+ * the left.
+ * @param {Chart} chart
+ */
+const scaleTexts = (chart) => [
+  h('span', { class: 'chart-most', 'aria-hidden': 'true' }, scaleOf(chart)),
+  chart.floor !== undefined && h('span', { class: 'chart-least', 'aria-hidden': 'true' }, floorOf(chart)),
+];
 
 /**
  * The charts as tables.

@@ -1,35 +1,27 @@
 /** The keys of the timeline. */
 
-/** @import { Move } from './types.js' */
+/** @import { To } from './types.js' */
 
-/** Keys that move along the chosen grain; a presenter's clicker sends the pages. @type {Record<string, Move['to']>} */
-const MOVES = { PageUp: -1, PageDown: 1, Home: 'first', End: 'last' };
-/** @type {Record<string, -1 | 1>} */
-const ARROWS = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: 1, ArrowDown: -1 };
+/** Keys that move along the timeline; a presenter's clicker sends the pages. @type {Record<string, To>} */
+const MOVES = { PageUp: -1, PageDown: 1, Home: 'first', End: 'last', ArrowLeft: -1, ArrowRight: 1 };
+/** Keys that do so on the range alone. @type {Record<string, To>} */
+const UPRIGHT = { ArrowUp: 1, ArrowDown: -1 };
 
 /**
- * Returns the move of a key; null for one that means nothing here. An arrow alone moves by an event, on the range by
- * what the range goes along, with Shift by a particle, with Alt by a level.
- * @param {Pick<KeyboardEvent, 'key' | 'shiftKey' | 'altKey' | 'ctrlKey' | 'metaKey'>} event
- * @param {{ onRange: boolean, isOpen: boolean }} place  `isOpen`: a particle is followed
- * @returns {Move | null}
+ * Returns where a key leads; null for one that means nothing here.
+ * @param {Pick<KeyboardEvent, 'key' | 'shiftKey' | 'altKey' | 'ctrlKey' | 'metaKey'>} event @param {boolean} onRange
+ * @returns {To | null}
  */
-export function moveOf({ key, shiftKey, altKey, ctrlKey, metaKey }, { onRange, isOpen }) {
-  if (ctrlKey || metaKey) return null;
-  const plain = !shiftKey && !altKey;
-  if (Object.hasOwn(MOVES, key)) return plain ? { grain: 'chosen', to: MOVES[key] } : null;
-  const to = Object.hasOwn(ARROWS, key) ? ARROWS[key] : null;
-  const isUpright = key === 'ArrowUp' || key === 'ArrowDown';
-  if (to === null || (isUpright && !(onRange && plain))) return null;
-  if (altKey) return shiftKey ? null : { grain: 'level', to };
-  if (shiftKey) return { grain: 'particle', to };
-  return { grain: onRange || !isOpen ? 'chosen' : 'event', to };
+export function moveOf({ key, shiftKey, altKey, ctrlKey, metaKey }, onRange) {
+  if (ctrlKey || metaKey || shiftKey || altKey) return null;
+  if (Object.hasOwn(MOVES, key)) return MOVES[key];
+  return onRange && Object.hasOwn(UPRIGHT, key) ? UPRIGHT[key] : null;
 }
 
 /** Controls that have uses of their own for these keys. */
 const BUSY = 'input:not([type=range]), select, textarea, [contenteditable], .code-host, [role=menu] *';
-/** The parts of the page that belong to the timeline, and those where nothing else is chosen. */
-const OWN = '.panel-levels, .panel-follow';
+/** The part of the page that belongs to the timeline, and those where nothing else is chosen. */
+const OWN = '.panel-levels';
 const NEUTRAL = 'body, .canvas-host';
 
 /**

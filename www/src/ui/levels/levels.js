@@ -1,5 +1,5 @@
 /**
- * The coarsest grain of the timeline: the generation levels, then the relaxation steps, then the particles as they are.
+ * The places of the timeline: the generation levels, then the relaxation steps, then the particles as they are.
  * The place is part of the state; the viewer draws it.
  */
 import { computed, effect, signal } from '@preact/signals-core';

@@ -1,16 +1,15 @@
 // Types of the timeline, its levels and its charts.
 
 import type { Signal } from '@preact/signals-core';
-import type { Grain } from '../../engine/types.js';
-import type { Drawn, FollowPanel } from '../types.js';
+import type { Drawn } from '../types.js';
 import type { createLevels } from './levels.js';
 import type { createTimeline } from './timeline.js';
 
 export type { Player } from './player.js';
 /** `value`: of the place that is shown, or of all; `label`: the chart in words; `missing`: why nothing is known. */
 export type Chart = Drawn & { title: string; value: string; label: string; missing?: string };
-/** A move: `by` one place of a grain, or to its first or last place. The grain `chosen` is that of the timeline. */
-export type Move = { grain: 'chosen' | Grain; to: -1 | 1 | 'first' | 'last' };
+/** Where a move leads: to the place before or after, or to the first or last one. */
+export type To = -1 | 1 | 'first' | 'last';
 export type Levels = ReturnType<typeof createLevels>;
 /**
  * The table has one row per level. `fates` has eight counts per level: the fates of the children that the previous
@@ -37,8 +36,6 @@ export type Timeline = ReturnType<typeof createTimeline>;
 export interface TimelineOptions {
   /** the level in words, null while all are shown */
   told: Signal<Told | null>;
-  /** loads the panel that follows a particle */
-  loadFollow: () => Promise<FollowPanel | null>;
   /** tells what a link names and is not there */
   say: (text: string) => void;
 }

@@ -139,9 +139,8 @@ function createAll(...parts) {
  * @param {Engine} engine
  */
 function whoseFigures(engine) {
-  const { level, step, grain, follow } = engine.state.value.view;
-  const isWhole = level === null && step === null && (grain === 'level' || follow === null);
-  if (isWhole) return '';
+  const { level, step } = engine.state.value.view;
+  if (level === null && step === null) return '';
   return 'Figures describe the finished run; the picture shows an earlier step.';
 }
 

@@ -14,14 +14,14 @@ const OFFSET_PX = 16;
 
 /**
  * @param {HTMLElement} host @param {Engine} engine
- * @param {{ view: HTMLElement, follow: (index: number) => void }} parts  `view` is the part of the picture that no
- *   panel covers
+ * @param {{ view: HTMLElement, explainIt: (index: number) => void }} parts  `view` is the part of the picture that no
+ *   panel covers; `explainIt` opens the lesson at a particle
  */
-export function mountHover(host, engine, { view, follow }) {
+export function mountHover(host, engine, { view, explainIt }) {
   const { hover } = engine;
   const go = (/** @type {number} */ index) => {
     engine.dismissHover();
-    follow(index);
+    explainIt(index);
   };
   const card = h(
     'div',
@@ -30,7 +30,9 @@ export function mountHover(host, engine, { view, follow }) {
       const { value: now } = hover;
       if (!now) return null;
       const press = () => go(now.index);
-      return [rowsOf(now), now.tapped && button({ class: 'small', press }, 'Follow this particle')];
+      // A link cannot hold a model from points.
+      const isTold = now.tapped && !engine.field.value?.model;
+      return [rowsOf(now), isTold && button({ class: 'small', press }, 'Explain this particle')];
     },
   );
   host.append(card);
@@ -54,7 +56,7 @@ export function mountHover(host, engine, { view, follow }) {
       engine.dismissHover();
       query(host, '.canvas-host').focus();
     } else if (event.key === 'Enter' && !(event.target instanceof HTMLButtonElement)) {
-      // Enter takes the particle in the middle of the picture. Pressed again, it follows that one.
+      // Enter takes the particle in the middle of the picture. Pressed again, it has that one explained.
       const middle = engine.project(engine.state.peek().view.camera.target);
       if (!middle || engine.pick(middle.x, middle.y) !== hover.index) return;
       go(hover.index);

@@ -1,4 +1,4 @@
-/** The laboratory of the circle, the room around a particle, and numbers of the text that are dragged. */
+/** The figure of the circle, the room around a particle, and numbers of the text that are dragged. */
 import { expect, test } from '@playwright/test';
 import { live, openLesson, overflow } from './helpers.js';
 
@@ -20,86 +20,45 @@ async function drag(page, what, x, y) {
 /** @param {Locator} slider */
 const numberOf = async (slider) => Number(await slider.getAttribute('aria-valuenow'));
 
-/** The angle that a range says. @param {Locator} theta */
-const degrees = async (theta) =>
-  Number.parseFloat((await theta.getAttribute('aria-valuetext'))?.replace('\u2212', '-') ?? '');
-
-test('the child is turned by mouse and keyboard until f = 0, and Newton’s method stays out until it was guessed', async ({
+test('the surface bends under the finger and by keys, and Newton’s child stays out until it was guessed', async ({
   page,
 }) => {
   const { clean } = await openLesson(page, { hash: '#circle', width: 1440, height: 900 });
   const figure = await live(page, 'circle');
-  const [told, theta] = [figure.locator('.told'), figure.getByRole('slider', { name: 'θ' })];
-  await expect(told).toContainText('f is positive');
-  await expect(figure.locator('.newton-way')).toHaveCount(0);
-  await expect(figure.locator('.newton-law')).toBeHidden();
-  await expect(figure.locator('.facts')).toBeHidden();
-  // By the handle of the drawing, a quarter of the circle down.
-  const hand = figure.locator('.drawing-box .hand');
-  await drag(page, hand, -60, 120);
-  // What was tried on the way is the bracket of the search.
-  await expect(told).toContainText(/f is negative: the child is inside\. f changes its sign between −[\d.]+° and/);
-  await expect(figure.locator('.bracket')).toHaveCount(2);
-  // By the keys, half a degree at a time, up to the surface.
-  await theta.focus();
-  for (let press = 0; press < 120 && !(await told.textContent())?.startsWith('f = 0'); press += 1)
-    await page.keyboard.press('ArrowRight');
-  await expect(told).toContainText('f = 0: the child lies on the surface');
-  await expect(figure.locator('.drawing-box .hand.landed')).toHaveCount(1);
-  // The search comes to the same angle.
-  const byHand = await degrees(theta);
-  await theta.fill('200');
-  const search = figure.getByRole('button', { name: 'One step of the search' });
-  for (let step = 0; step < 10 && (await search.isEnabled()); step += 1) await search.click();
-  await expect(search).toBeDisabled();
-  expect(Math.abs((await degrees(theta)) - byHand)).toBeLessThanOrEqual(1);
+  const [sentence, told] = [figure.locator('.side > p').first(), figure.locator('.told')];
+  const [bend, radius] = ['Bend', 'r'].map((name) => figure.getByRole('slider', { name, exact: true }));
+  await expect(sentence).toContainText('At its sharpest bend this surface curves by');
+  await expect(figure.locator('.newton-end, .ruler-newton')).toHaveCount(0);
   await page.locator('#predict-newton').getByRole('radio', { name: 'Nearer' }).check();
   await page.locator('#predict-newton').getByRole('button').first().click();
-  await expect(figure.locator('.newton-way')).toHaveCount(1);
-  await expect(figure.locator('.figure-count')).toContainText(/Dots: \d+ particles/, { timeout: 60_000 });
-  await expect(figure.locator('.figure-count')).toContainText('left the plane of their slot');
-  expect(await figure.locator('.lab-chart .dot').count()).toBeGreaterThan(300);
-  // A press on a dot shows that landing, and so do the keys; the cross in the drawing is where it came down.
-  const sentence = figure.locator('.side > p').first();
-  const lands = figure.locator('.facts');
-  await figure.locator('.lab-chart .dot').nth(200).click({ force: true });
-  await expect(sentence).toContainText('Here this surface curves by');
-  const dot = figure.getByRole('slider', { name: 'Dot' });
-  await expect(dot).not.toHaveValue('0');
-  const pressed = await sentence.textContent();
-  await dot.focus();
-  await page.keyboard.press('End');
-  await expect(sentence).not.toHaveText(pressed ?? '');
-  // It is the one with the sharpest bend, which falls shortest of 2r.
-  await expect(lands).toContainText(/Newton lands at1\.[5-7]/);
-  await page.keyboard.press('Home');
-  await expect(lands).toContainText('Newton lands at1.99');
-  await figure.getByRole('button', { name: 'Back to the sharpest bend' }).click();
-  await expect(sentence).toContainText('At its sharpest bend');
-  clean();
-});
-
-test('bend and r are dragged in the sentence, by keys, too; a bend of one’s own is a sphere’s', async ({ page }) => {
-  const { clean } = await openLesson(page, { hash: '#circle' });
-  const figure = await live(page, 'circle');
-  await page.locator('#predict-newton').getByRole('button', { name: 'Skip' }).click();
-  const [bend, radius] = ['Bend', 'r'].map((name) => figure.getByRole('slider', { name, exact: true }));
-  const sentence = figure.locator('.side > p').first();
-  await expect(sentence).toContainText('At its sharpest bend this surface');
+  await expect(figure.locator('.newton-end, .ruler-newton')).toHaveCount(2);
+  await expect(told).toContainText('Newton lands at 1.659');
   const before = await numberOf(bend);
-  await drag(page, bend, 60, 0);
-  expect(await numberOf(bend)).toBeGreaterThan(before);
+  // The finger is below the tangent plane, and the surface comes to it.
+  const drawing = figure.locator('svg.drawing');
+  await drawing.scrollIntoViewIfNeeded();
+  const box = await drawing.boundingBox();
+  if (!box) throw new Error('There is no drawing.');
+  const [x, y] = [box.x + 0.72 * box.width, box.y + 0.32 * box.height];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x, y + 20);
   await expect(sentence).toContainText('A sphere curves by');
+  const bent = await numberOf(bend);
+  await page.mouse.move(x, y + 60);
+  await page.mouse.up();
+  expect(await numberOf(bend)).toBeGreaterThan(bent);
+  // By keys: without a bend both land at 2r, and smaller particles see a flatter surface.
   await bend.press('Home');
-  await expect(sentence).toContainText('bend · r = 0.00');
-  await expect(figure.locator('.facts')).toContainText('Newton lands at2.000');
+  await expect(sentence).toContainText('A plane curves by 0, and r is');
+  await expect(told).toContainText('Newton lands at 2.000');
   await bend.press('End');
   await expect(sentence).toContainText('bend · r = 0.90');
-  await expect(figure.locator('.facts')).toContainText('Newton lands at1.12');
-  // Smaller particles see a flatter surface.
+  await expect(told).toContainText('On the circle the child lands at 2.000');
+  await expect(told).toContainText('Newton lands at 1.12');
   await radius.press('Home');
   await expect(sentence).toContainText('bend · r = 0.23');
-  await expect(figure.locator('.facts')).toContainText('Newton lands at1.8');
+  await expect(told).toContainText('Newton lands at 1.8');
   await figure.getByRole('button', { name: 'Back to the sharpest bend' }).click();
   expect(await numberOf(bend)).toBe(before);
   await expect(sentence).toContainText('At its sharpest bend this surface');
@@ -112,7 +71,9 @@ test('the radii of a particle and of those around it are dragged, and φ and τ 
   const { clean } = await openLesson(page, { hash: '#angles', width: 390, height: 844 });
   const figure = await live(page, 'angles');
   const [own, other] = ['particle', 'others'].map((of) => figure.getByRole('slider', { name: `Radius of the ${of}` }));
-  await expect(figure.locator('.told')).toContainText(/takes φ = [\d.]+°; τ = [\d.]+° are free\. There is room/);
+  await expect(figure.locator('.told')).toContainText(
+    /takes φ = [\d.]+°; τ = [\d.]+° are free, \d+ % of that\. There is room/,
+  );
   await expect(figure.locator('.free')).toHaveCount(1);
   // τ is beside the numbers of the discs, not under one.
   const names = await figure
@@ -127,14 +88,14 @@ test('the radii of a particle and of those around it are dragged, and φ and τ 
   // Equal radii: six in all.
   await own.press('Home');
   await other.press('Home');
-  await expect(figure.locator('.facts')).toContainText('360° / φ6.00Placed, with the first one6');
+  await expect(figure.locator('.facts')).toContainText('360° / φ6.00Placed, where half of φ is enough6');
   await figure.getByRole('slider', { name: 'Step' }).press('End');
   await expect(figure.locator('.told')).toContainText('has no room and is not added');
   // The handle on the rim of the other makes it larger, and there is room for fewer.
   await drag(page, figure.locator('.hand').last(), 30, 0);
   expect(await numberOf(other)).toBeGreaterThan(0.6);
   expect(await numberOf(own)).toBe(0.5);
-  await expect(figure.locator('.facts')).not.toContainText('first one6');
+  await expect(figure.locator('.facts')).not.toContainText('enough6');
   await drag(page, figure.locator('.hand').first(), 12, 26);
   expect(await numberOf(own)).toBeGreaterThan(0.5);
   expect(await overflow(page)).toBe(0);
@@ -150,6 +111,9 @@ test('a number of the text is a handle of its figure, and follows it', async ({ 
     text.getByRole('slider', { name: 'Ring', exact: true }),
     text.getByRole('slider', { name: 'Particles of the ring on a plane' }),
   ];
+  // The text says what the figure shows, which is the ring of the question.
+  await expect(ring).toHaveText('12');
+  await expect(flat).toHaveText('72');
   await level.fill('5');
   await expect(ring).toHaveText('5');
   await expect(flat).toHaveText('30');

@@ -11,13 +11,13 @@ import { fingerprint, live, openLesson, overflow, settled, TORUS } from './helpe
  * @import { Locator } from '@playwright/test'
  */
 
-const FIGURES = 'why cost plane circle first rings order seams rest angles sizes moving'.split(' ');
+const FIGURES = 'judge-first plane circle first rings seams cost angles sizes judge-last moving'.split(' ');
 
 test('every chapter has a live figure, in a folder of a host, too, and is accessible, also in the dark', async ({
   page,
 }) => {
   const { clean } = await openLesson(page, { place: './sub/path/' });
-  await expect(page.locator('.chapter h2')).toHaveCount(13);
+  await expect(page.locator('.chapter h2')).toHaveCount(12);
   for (const name of FIGURES) await live(page, name);
   expect(
     await page.locator('canvas').evaluateAll((all) => all.every((one) => /** @type {any} */ (one).getContext('2d'))),
@@ -45,7 +45,7 @@ test('the learner’s own formula is carried over, and back', async ({ page }) =
   await page.getByRole('link', { name: 'Lesson' }).click();
   await page.waitForURL(/learn\/#surface=/);
   await expect(page.locator('#surface-name')).toContainText(formula);
-  await live(page, 'why');
+  await live(page, 'judge-first');
   await page.getByRole('link', { name: 'Marching Particles', exact: true }).click();
   await page.waitForURL((url) => !url.pathname.includes('learn') && url.hash.startsWith('#v1'));
   await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.engine.state.value.formula !== '');
@@ -57,7 +57,7 @@ test('a surface without a point gives way to the ellipsoid, and the page says so
     JSON.stringify({ formula: 'x^2 + y^2 + z^2 + 1 = 0', bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, from: '' }),
   ).toString('base64url');
   await openLesson(page, { hash: `#surface=${none}` });
-  await live(page, 'why');
+  await live(page, 'judge-first');
   await expect(page.locator('#notice')).toContainText('The figures show an ellipsoid.');
 });
 
@@ -73,7 +73,7 @@ test('a figure keeps the answer to itself until the question is revealed', async
   await expect(question.getByRole('status')).toContainText(/Ring 12 of this surface has \d+ particles/);
   const told = Number(/has (\d+)/.exec((await question.getByRole('status').textContent()) ?? '')?.[1]);
   await expect(rings.locator('.chart')).toBeVisible();
-  await rings.getByRole('slider', { name: 'Level' }).fill('12');
+  await expect(rings.getByRole('slider', { name: 'Level' })).toHaveValue('12');
   await expect(rings.locator('.chart')).toContainText(`Level 12: ${told} new particles.`);
 });
 
@@ -81,10 +81,12 @@ test('a question is answered from the keyboard alone, by a press on the picture,
   await openLesson(page);
   await live(page, 'cost');
   const cost = page.locator('#predict-cost');
-  await cost.getByRole('radio').first().focus();
+  await cost.getByRole('radio').last().focus();
   await page.keyboard.press('Space');
   await page.keyboard.press('Enter');
-  await expect(cost.locator('.predict-judged')).not.toBeEmpty();
+  // What is right comes first, and is marked among the choices.
+  await expect(cost.locator('.predict-judged')).toHaveText('Placing all particles. You said otherwise.');
+  await expect(cost.locator('.check[data-right]')).toHaveText('Placing all particlesright');
   const seams = await live(page, 'seams');
   const hole = page.locator('#predict-hole');
   // Where the front has not come yet there is nothing to press.
@@ -114,17 +116,16 @@ test('in a comparison one camera turns both pictures, and a press on one sets th
   await expect.poll(() => fingerprint(right)).not.toBe(unturned[1]);
   await expect.poll(() => fingerprint(left)).not.toBe(unturned[0]);
   const before = await fingerprint(right);
-  const box = await left.boundingBox();
-  if (!box) throw new Error('the picture has no box');
   // A particle of the near side of the torus.
-  await page.mouse.click(box.x + 0.5 * box.width, box.y + 0.62 * box.height);
+  const { width = 0, height = 0 } = (await left.boundingBox()) ?? {};
+  await left.click({ position: { x: 0.5 * width, y: 0.62 * height } });
   await expect(bench.getByLabel('Seed', { exact: true })).toHaveValue(/^at( -?[\d.e-]+){3}$/);
   await expect(bench.getByRole('columnheader', { name: /, at / })).toBeVisible({ timeout: 60_000 });
   await expect.poll(() => fingerprint(right)).not.toBe(before);
   // Elsewhere a press chooses nothing.
-  await bench.getByLabel('What changes').selectOption('law');
-  await bench.getByLabel('Right', { exact: true }).selectOption('one_size');
-  await expect(bench.getByRole('columnheader', { name: 'One size for all' })).toBeVisible({ timeout: 60_000 });
+  await bench.getByLabel('What changes').selectOption('step');
+  await bench.getByLabel('Right', { exact: true }).selectOption('1');
+  await expect(bench.getByRole('columnheader', { name: '1.0 r²' })).toBeVisible({ timeout: 60_000 });
   // The press on a hole turns both pictures to it.
   const turned = await fingerprint(left);
   await bench
@@ -134,10 +135,10 @@ test('in a comparison one camera turns both pictures, and a press on one sets th
     .click();
   await expect.poll(() => fingerprint(left)).not.toBe(turned);
   await expect(right).toHaveAttribute('aria-label', /Arrow keys turn it\.$/);
-  // A card shows what the paper says and what the program does.
-  await page.getByRole('button', { name: 'Show both: Who comes next' }).click();
-  const card = page.locator('.card', { hasText: 'Who comes next' });
-  await expect(card.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  // The figure that decides stands out beside the ideal.
+  await bench.getByLabel('What changes').selectOption('order');
+  await expect(bench.locator('tr.decides')).toContainText('100.0 %', { timeout: 60_000 });
+  await expect(bench.locator('tr.decides')).toContainText('better');
   clean();
 });
 
@@ -147,7 +148,7 @@ test('the match tolerance is dragged in its sentence, and the figure follows', a
   const number = page.locator('#first').getByRole('slider', { name: 'Match tolerance' });
   await expect(number).toHaveText('0.70');
   const count = async () =>
-    Number(/of ([\d,]+)/.exec(await first.locator('.choices').innerText())?.[1].replace(',', ''));
+    Number(/run of ([\d,]+)/.exec(await first.getByText(/^A run of/).innerText())?.[1].replace(',', ''));
   const usual = await count();
   const box = await number.boundingBox();
   if (!box) throw new Error('the number has no box');
@@ -165,10 +166,47 @@ test('the match tolerance is dragged in its sentence, and the figure follows', a
   clean();
 });
 
+test('a particle is followed by events, particles and levels, with its plane, its line and a slot from the side', async ({
+  page,
+}) => {
+  const { clean } = await openLesson(page, { hash: '#first' });
+  const first = await live(page, 'first');
+  const [name, told] = [first.getByText(/^Particle \d+ on level/), first.locator('.told')];
+  const [on, back] = ['Step forward', 'Step back'].map((label) => first.getByRole('button', { name: label }));
+  await expect(told).toContainText('its nearest');
+  await expect(first.locator('.algorithm [aria-current]')).toHaveText(/^For each child: find the nearest/);
+  await expect(first.locator('.profile')).toHaveCount(1);
+  await expect(first.locator('.facts')).toContainText('The circle lands at2.000');
+  const own = Number(/\d+/.exec((await name.textContent()) ?? '')?.[0]);
+  // Event by event the steps go on to the next particle, and back to the last event of the one before.
+  await first.getByRole('slider', { name: 'Event' }).press('End');
+  await expect(told).toContainText('The particle is done');
+  await on.click();
+  await expect(name).toContainText(`Particle ${own + 1} `);
+  await back.click();
+  await expect(name).toContainText(`Particle ${own} `);
+  await expect(told).toContainText('The particle is done');
+  await first.getByLabel('One step is').selectOption('particle');
+  await on.focus();
+  await page.keyboard.press('Enter');
+  await expect(name).toContainText(`Particle ${own + 1} `);
+  // The button keeps the focus, so that the keys go on.
+  await page.keyboard.press('Enter');
+  await expect(name).toContainText(`Particle ${own + 2} `);
+  const level = async () => Number(/level (\d+)/.exec((await name.textContent()) ?? '')?.[1]);
+  const before = await level();
+  await first.getByLabel('One step is').selectOption('level');
+  await on.click();
+  await expect.poll(level).toBe(before + 1);
+  await back.click();
+  await expect.poll(level).toBe(before);
+  clean();
+});
+
 test('a stop far down stays at the top while the figures above it come', async ({ page }) => {
-  await openLesson(page, { hash: '#race' });
-  const race = page.locator('#race');
-  const top = () => race.evaluate((element) => Math.round(element.getBoundingClientRect().top));
+  await openLesson(page, { hash: '#judge' });
+  const judge = page.locator('#judge');
+  const top = () => judge.evaluate((element) => Math.round(element.getBoundingClientRect().top));
   await expect(page.locator('#bench table.compare')).toBeVisible({ timeout: 60_000 });
   await expect.poll(top).toBeGreaterThanOrEqual(0);
   expect(await top()).toBeLessThan(80);
@@ -187,39 +225,43 @@ test('what the text claims of the ellipsoid is what its runs say', async ({ page
   await skip('predict-cost');
   const cost = (/** @type {RegExp} */ name) => page.locator('#cost').getByRole('row', { name });
   const [placing, relaxing, system] = [cost(/^Placing/), cost(/^Relaxation/), cost(/^Witkin/)];
-  // Placing asks f about as often as ten steps, and the steps sum all the pushes; the system does more of everything.
-  expect(Math.abs((await numberIn(placing, 0)) / (await numberIn(relaxing, 0)) - 1)).toBeLessThan(0.25);
+  // Placing asks f more often than ten steps, and the steps sum all the pushes; the system does more of everything.
+  expect((await numberIn(placing, 0)) / (await numberIn(relaxing, 0))).toBeGreaterThan(1.25);
+  expect((await numberIn(placing, 0)) / (await numberIn(relaxing, 0))).toBeLessThan(1.6);
   expect([await numberIn(placing, 1), await numberIn(relaxing, 2)]).toEqual([0, 10]);
   for (const k of [0, 1, 2]) expect(await numberIn(system, k)).toBeGreaterThan(3 * (await numberIn(relaxing, k)));
   // There are fewer rounds than the 373 of the paper.
   expect(await numberIn(system, 2)).toBeLessThan(373);
-  // Pairs are too close along seams and in unbroken lattice, about as many of either.
-  await live(page, 'seams');
+  // The front goes as far as was asked, then past the meeting; the ring is where the widest hole is.
+  const seams = await live(page, 'seams');
+  const slider = seams.getByRole('slider', { name: 'Front and relaxation' });
+  const [quarter, unturned] = [await slider.getAttribute('max'), await fingerprint(seams.locator('.picture'))];
   await skip('predict-hole');
-  const told = await page
-    .locator('#seams')
-    .getByText(/along seams/)
-    .innerText();
-  const [atSeams, inLattice] = [...told.matchAll(/([\d,]+) (?:along|in) /g)].map((match) =>
-    Number(match[1].replace(/,/g, '')),
-  );
-  expect(Math.min(atSeams, inLattice)).toBeGreaterThan(0.3 * (atSeams + inLattice));
-  // The relaxation shrinks the largest hole, to which the picture turns, and which it rings; the chart has every step.
-  const rest = await live(page, 'rest');
-  const unturned = await fingerprint(rest.locator('.picture'));
+  await expect(slider).toHaveAttribute('aria-valuetext', /^level (\d+) of \1$/);
+  expect(Number(await slider.getAttribute('max'))).toBeGreaterThan(Number(quarter));
+  await expect(seams.locator('.picture')).toHaveAttribute('data-rings', '1');
+  await expect.poll(() => fingerprint(seams.locator('.picture'))).not.toBe(unturned);
+  // Ten steps shrink the largest hole, and the arrows of the next step are drawn.
   await skip('predict-rest');
-  const hole = rest.getByRole('row', { name: /^Largest hole/ });
+  const hole = seams.getByRole('row', { name: /^Largest hole/ });
   await expect(hole).toBeVisible({ timeout: 60_000 });
-  const [before, after] = [await numberIn(hole, 0), await numberIn(hole, 1)];
-  expect(after).toBeLessThan(before - 0.15);
-  await expect(rest.locator('.picture')).toHaveAttribute('data-rings', '1');
-  expect(await fingerprint(rest.locator('.picture'))).not.toBe(unturned);
-  const chart = rest.getByRole('img', { name: /^By step/ });
-  const [, holes] = /the ideal pattern ([\d., ]+);/.exec((await chart.getAttribute('aria-label')) ?? '') ?? [];
-  expect(holes.split(', ').map(Number)).toHaveLength(11);
-  expect(holes).toMatch(new RegExp(`^${before.toFixed(2)}, .*, ${after.toFixed(2)}$`));
-  // The figure of a question comes into view with its answer, and its chart where there is room.
-  await expect(rest.locator('.picture')).toBeInViewport({ ratio: 0.9 });
+  expect(await numberIn(hole, 2)).toBeLessThan((await numberIn(hole, 1)) - 0.15);
+  await expect(slider).toHaveAttribute('aria-valuetext', /^level/);
+  const placed = await fingerprint(seams.locator('.picture'));
+  await slider.press('End');
+  await expect(slider).toHaveAttribute('aria-valuetext', 'step 10 of 10');
+  await expect(seams.locator('.figure-count').first()).toContainText('The longest move of this step');
+  await expect.poll(() => fingerprint(seams.locator('.picture'))).not.toBe(placed);
+  // The energy is charted from where ten steps have brought it.
+  await skip('predict-energy');
+  const chart = seams.getByRole('img', { name: /^Energy by step/ });
+  await expect(chart).toBeVisible();
+  const values = ((await chart.getAttribute('aria-label')) ?? '')
+    .replace(/^.*first: /, '')
+    .split(', ')
+    .map(Number);
+  expect(values).toHaveLength(11);
+  await expect(seams.locator('.plot-axis')).toHaveText(`1.000${values[10].toFixed(3)}`);
   clean();
 });
 
@@ -244,18 +286,18 @@ test('the focus goes from the button of a question to its answer', async ({ page
 test('without the bundle the text stays and a figure says what is missing', async ({ page }) => {
   await page.route(/lesson_bg.*\.wasm$/, (route) => route.abort());
   await openLesson(page);
-  const why = await settled(page, 'why');
+  const why = await settled(page, 'judge-first');
   await expect(why).toHaveAttribute('data-state', 'still');
   await expect(why.locator('img')).toBeVisible();
-  await expect(page.locator('[data-figure="why"] + .figure-status')).toContainText('did not load');
-  await expect(page.getByText('Particles are such a list.')).toBeVisible();
+  await expect(page.locator('[data-figure="judge-first"] + .figure-status')).toContainText('did not load');
+  await expect(page.getByText('Particles are such a list')).toBeVisible();
 });
 
 test.describe('without JavaScript', () => {
   test.use({ javaScriptEnabled: false });
   test('the article is complete, with a still for every figure', async ({ page }) => {
     await page.goto('./learn/');
-    await expect(page.getByText('Particles are such a list.')).toBeVisible();
+    await expect(page.getByText('Particles are such a list')).toBeVisible();
     await expect(page.locator('.opening noscript p')).toBeVisible();
     const stills = page.locator('.still');
     await expect(stills).toHaveCount(FIGURES.length);
@@ -268,7 +310,7 @@ test.describe('without JavaScript', () => {
     }
     // Every choice of the method, too.
     const choices = page.locator('.what-if-stills figure');
-    await expect(choices).toHaveCount(10);
+    await expect(choices).toHaveCount(4);
     await expect(choices.first()).toBeVisible();
     await page.getByRole('link', { name: 'Rings', exact: true }).click();
     await expect(page.locator('#rings h2')).toBeInViewport();
@@ -299,7 +341,7 @@ test('every question is answered by the run, or skipped, and on a phone nothing 
   const { clean } = await openLesson(page, { width: 390, height: 760 });
   for (const name of FIGURES) await live(page, name);
   const questions = page.locator('.predict');
-  await expect(questions).toHaveCount(10);
+  await expect(questions).toHaveCount(12);
   for (const question of await questions.all()) {
     await question.getByRole('button', { name: 'Skip' }).click();
     await expect(question).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
@@ -315,15 +357,67 @@ test('every question is answered by the run, or skipped, and on a phone nothing 
   clean();
 });
 
-test('the front grows by itself, but not under reduced motion', async ({ page }) => {
-  await openLesson(page);
-  const why = await live(page, 'why');
-  const level = why.getByRole('slider', { name: 'Level' });
-  const last = await level.getAttribute('max');
-  await expect(level).toHaveValue(last ?? '');
+test('the front grows when it is asked to, at once under reduced motion', async ({ page }) => {
+  await openLesson(page, { hash: '#rings' });
+  const rings = await live(page, 'rings');
+  const level = rings.getByRole('slider', { name: 'Level' });
+  const last = (await level.getAttribute('max')) ?? '';
+  await rings.getByRole('button', { name: 'Grow' }).click();
+  await expect(level).toHaveValue(last);
   await page.emulateMedia({ reducedMotion: 'no-preference' });
+  await rings.getByRole('button', { name: 'Grow' }).click();
+  await expect(rings.getByRole('button', { name: 'Pause' })).toBeVisible();
+  await expect(level).toHaveValue(last);
+});
+
+test('guesses and answers are there again after a reload, and are forgotten on request', async ({ page }) => {
+  await openLesson(page, { hash: '#predict-average' });
+  const average = page.locator('#predict-average');
+  await average.getByRole('radio', { name: 'About two' }).check();
+  await average.getByRole('button', { name: 'Reveal' }).click();
+  await expect(average).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
+  const words = await average.getByRole('status').textContent();
+  expect(words).toMatch(/^About one\. You said otherwise\./);
+  await page.locator('#predict-ring').getByLabel('Particles in ring 12').fill('71');
+  await page.keyboard.press('Tab');
   await page.reload();
-  await live(page, 'why');
-  await expect(why.getByRole('button', { name: 'Pause' })).toBeVisible();
-  await expect(level).toHaveValue(last ?? '');
+  await expect(average).toHaveAttribute('data-state', 'open');
+  await expect(average.getByRole('radio', { name: 'About two' })).toBeChecked();
+  await expect(average.getByRole('status')).toHaveText(words ?? '');
+  await expect(page.locator('#predict-ring').getByLabel('Particles in ring 12')).toHaveValue('71');
+  await expect(page.locator('#predict-ring')).not.toHaveAttribute('data-state', 'open');
+  await page.getByRole('button', { name: 'Forget them' }).click();
+  await expect(page.locator('#kept')).toBeHidden();
+  await expect(average).not.toHaveAttribute('data-state', 'open');
+  await expect(page.locator('#predict-ring').getByLabel('Particles in ring 12')).toHaveValue('');
+});
+
+test('the last two samplings have figures without names or marks until they are judged', async ({ page }) => {
+  await openLesson(page, { hash: '#judge' });
+  const judge = await live(page, 'judge-last');
+  await expect(judge.locator('thead')).toHaveText('IdealAB', { timeout: 60_000 });
+  await expect(judge.locator('.best, .decides')).toHaveCount(0);
+  const question = page.locator('#predict-last');
+  await question.getByRole('radio', { name: 'Sampling B' }).check();
+  await question.getByRole('button', { name: 'Reveal' }).click();
+  await expect(question.locator('.predict-judged')).toHaveText('Sampling A. You said otherwise.', { timeout: 60_000 });
+  await expect(judge.locator('.decides')).toContainText('Closest pair');
+  await expect(judge.locator('thead')).toContainText('B, by Newton’s method');
+  // Nothing is better for having larger discs.
+  await expect(judge.getByRole('row', { name: /^Surface outside/ }).locator('.best')).toHaveCount(0);
+});
+
+test('the cards are a page of their own, each with both sides, on the learner’s surface, too', async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: `#surface=${TORUS}`, width: 390 });
+  await page.getByRole('link', { name: 'Where the program differs from the paper' }).first().click();
+  await page.waitForURL(/learn\/cards\/.*#surface=/);
+  await page.getByRole('button', { name: 'Show both: Who comes next' }).click();
+  const card = page.locator('.card', { hasText: 'Who comes next' });
+  await expect(card.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  await expect(card.locator('tr.decides')).toContainText('Six neighbours', { timeout: 60_000 });
+  expect(await overflow(page)).toBe(0);
+  expect((await axe(page)).violations.map(({ id, nodes }) => [id, nodes.map(({ target }) => target)])).toEqual([]);
+  await page.getByRole('link', { name: 'Lesson', exact: true }).click();
+  await page.waitForURL(/learn\/#surface=/);
+  clean();
 });

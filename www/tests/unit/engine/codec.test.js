@@ -37,8 +37,6 @@ const elaborate = () => ({
     points: false,
     level: 12,
     step: 3,
-    grain: 'event',
-    follow: [47, 12],
     camera: { target: [0.5, 0, -0.25], distance: 6.5, yaw: -1.25, pitch: 0.5, fit: false },
   },
 });

@@ -37,29 +37,23 @@ const OPENED = {
   positions: Float32Array.from([3, 0, 0, 0, 0, 0, 1.05, 0, 0, 1.75, 0, 0]),
 };
 
-test('the run decides parents, matched and new ones, each asked before it is told', () => {
+test('the learner decides matched and new ones, each asked before it is told; the parent is given', () => {
   const decisions = decisionsOf(EVENTS);
   expect(decisions.map(({ slot, at, end, verdict, met }) => [slot, at, end, verdict.fate, met !== null])).toEqual([
-    [0, 0, 1, 'parent', false],
     [1, 2, 3, 'matched', false],
     [2, 4, 7, 'added', true],
   ]);
 });
 
-test('the line that asks is that of the parent at slot 0, of a seed, too, and else that of comparing', () => {
+test('the line that asks is that of comparing', () => {
   const asked = decisionsOf(EVENTS).map((decision) => ALGORITHM[lineAt(decision)].of[0]);
-  expect(asked).toEqual(['fate:parent', 'compared', 'compared']);
-  const ofSeed = decisionsOf([/** @type {any} */ (compared(0, null, null)), /** @type {any} */ (fate(0, 'added', 1))]);
-  expect(ALGORITHM[lineAt(ofSeed[0])].of).toEqual(['fate:parent']);
+  expect(asked).toEqual(['compared', 'compared']);
 });
 
 test('what the run decided meets no objection, and all else does, with its reason', () => {
   const decisions = decisionsOf(EVENTS);
-  const [parent, matched, added] = decisions;
+  const [matched, added] = decisions;
   for (const decision of decisions) expect(objection(OPENED, decision, decision.verdict)).toBe('');
-  expect(objection(OPENED, parent, { fate: 'added', particle: null })).toContain('Particle 0 is the parent');
-  expect(objection(OPENED, parent, { fate: 'matched', particle: 0 })).toContain('Particle 0 is the parent');
-  expect(objection(OPENED, matched, { fate: 'parent', particle: 0 })).toContain('The parent holds slot 0.');
   expect(objection(OPENED, matched, { fate: 'added', particle: null })).toMatch(
     /Particle 2 lies 0\.10\sr .*within 1\.40\sr/,
   );

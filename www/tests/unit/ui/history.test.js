@@ -57,9 +57,6 @@ describe('the history', () => {
     history.record(shape(), 0);
     // The camera follows a surface that has grown.
     history.record(seen({ distance: 7 }), 9000);
-    // Or a particle that is followed.
-    history.record(seen({ distance: 7, yaw: 3 }), 9500, { guided: true });
-    history.record(seen({ distance: 7 }), 9600, { guided: true });
     expect(history.canUndo).toBe(false);
     for (let i = 1; i <= 5; i += 1) history.record(seen({ distance: 7, yaw: i }), 10_000 * i);
     expect(history.entries.length).toBe(2);

@@ -209,29 +209,19 @@ describe('how even the particles are', () => {
 
 describe('a key', () => {
   const none = { shiftKey: false, altKey: false, ctrlKey: false, metaKey: false };
-  const panel = { onRange: false, isOpen: true };
-  const range = { onRange: true, isOpen: true };
-  test('moves by an event, with Shift by a particle, with Alt by a level', () => {
-    expect(moveOf({ ...none, key: 'ArrowRight' }, panel)).toEqual({ grain: 'event', to: 1 });
-    expect(moveOf({ ...none, key: 'ArrowLeft', shiftKey: true }, panel)).toEqual({ grain: 'particle', to: -1 });
-    expect(moveOf({ ...none, key: 'ArrowLeft', altKey: true }, range)).toEqual({ grain: 'level', to: -1 });
-  });
-
-  test('moves by what the range goes along where the range has the focus, or nothing is followed', () => {
-    expect(moveOf({ ...none, key: 'ArrowRight' }, range)).toEqual({ grain: 'chosen', to: 1 });
-    expect(moveOf({ ...none, key: 'ArrowDown' }, range)).toEqual({ grain: 'chosen', to: -1 });
-    expect(moveOf({ ...none, key: 'ArrowRight' }, { onRange: false, isOpen: false })).toEqual({
-      grain: 'chosen',
-      to: 1,
-    });
-    expect(moveOf({ ...none, key: 'ArrowDown' }, panel)).toBe(null);
+  test('moves along the levels, upright arrows on the range alone', () => {
+    expect(moveOf({ ...none, key: 'ArrowRight' }, false)).toBe(1);
+    expect(moveOf({ ...none, key: 'ArrowLeft' }, true)).toBe(-1);
+    expect(moveOf({ ...none, key: 'ArrowDown' }, true)).toBe(-1);
+    expect(moveOf({ ...none, key: 'ArrowDown' }, false)).toBe(null);
   });
 
   test('of a clicker moves as the buttons do, and other keys mean nothing', () => {
-    expect(moveOf({ ...none, key: 'PageDown' }, panel)).toEqual({ grain: 'chosen', to: 1 });
-    expect(moveOf({ ...none, key: 'Home' }, panel)).toEqual({ grain: 'chosen', to: 'first' });
-    expect(moveOf({ ...none, key: 'ArrowRight', ctrlKey: true }, panel)).toBe(null);
-    expect(moveOf({ ...none, key: 'x' }, range)).toBe(null);
+    expect(moveOf({ ...none, key: 'PageDown' }, false)).toBe(1);
+    expect(moveOf({ ...none, key: 'Home' }, false)).toBe('first');
+    expect(moveOf({ ...none, key: 'ArrowRight', ctrlKey: true }, false)).toBe(null);
+    expect(moveOf({ ...none, key: 'ArrowRight', shiftKey: true }, false)).toBe(null);
+    expect(moveOf({ ...none, key: 'x' }, true)).toBe(null);
   });
 });
 

@@ -1,17 +1,10 @@
 import { describe, expect, test } from 'vitest';
-import { nearest } from '../../../src/engine/vector.js';
-import { arcOf, inPlane, lensOf, slotPlace, tangentsOf, unrolled, widthOf } from '../../../src/figures/geometry.js';
+import { arcOf, inPlane, lensOf, slotPlace, unrolled, widthOf } from '../../../src/figures/geometry.js';
 import { isAdaptive, momentAt } from '../../../src/figures/moment.js';
-import { numbersOfRest, pushersOf, restOf, tellRest } from '../../../src/figures/rest.js';
-import { ADAPTIVE, ALGORITHM, lineOf, tell, transcript, valueText } from '../../../src/figures/words.js';
-import { placedBefore, standIn } from '../../../src/ui/follow/find.js';
-import { circleAround } from '../../../src/ui/follow/mark.js';
-import { alikeIn } from '../../../src/ui/follow/run.js';
-import { heightsOf, stretchesOf } from '../../../src/ui/follow/tracks.js';
+import { ADAPTIVE, ALGORITHM, lineOf, tell, transcript } from '../../../src/figures/words.js';
 
 /**
  * @import { LessonEvent } from '../../../src/engine/types.js'
- * @import { Rest } from '../../../src/figures/types.js'
  */
 
 /** The events of a particle with two children: one is added, one matches. @type {LessonEvent[]} */
@@ -109,14 +102,6 @@ describe('the moment of an event', () => {
 });
 
 describe('the words', () => {
-  test('name level, particle, child and what happens', () => {
-    expect(valueText(momentAt(events, 14), subject)).toBe('Level 3 of 21, particle 47, slot 2: matched particle 31');
-    expect(valueText(momentAt(events, 0), subject)).toBe('Level 3 of 21, particle 47: taken from the queue');
-    expect(valueText(momentAt(events, 4), subject)).toBe('Level 3 of 21, particle 47, slot 1: θ₁ = −0.72°');
-    expect(valueText(momentAt(events, 9), subject)).toBe('Level 3 of 21, particle 47: parent particle 20');
-    expect(valueText(momentAt(events, 11), subject)).toBe('Level 3 of 21, particle 47, slot 1: added as particle 74');
-  });
-
   test('tell each event with its lengths in radii', () => {
     expect(told(1)).toContain('Slot 0 points to its parent, particle 20');
     expect(told(5)).toBe('The child of slot 1 lands on the surface, 2.000\u00a0r from its parent.');
@@ -180,25 +165,6 @@ describe('the geometry', () => {
   });
 });
 
-describe('the particle that stands for another', () => {
-  const positions = Float32Array.of(0, 0, 0, 1, 0, 0, 2, 0, 0);
-
-  test('is the one with its number, if it is at the place', () => {
-    expect(standIn(positions, { index: 1, place: [1.1, 0, 0] }, 0.5)?.index).toBe(1);
-  });
-
-  test('is the nearest otherwise', () => {
-    expect(standIn(positions, { index: 0, place: [1.9, 0, 0] }, 0.5)?.index).toBe(2);
-    expect(standIn(positions, { index: 99, place: [0.1, 0, 0] }, 0.5)).toMatchObject({ index: 0 });
-    expect(standIn(new Float32Array(0), { index: 0, place: [0, 0, 0] }, 0.5)).toBe(null);
-  });
-
-  test('lies at the distance that is told', () => {
-    expect(nearest(positions, 3, [2, 3, 4])).toEqual({ index: 2, distance: 5 });
-    expect(nearest(positions, 0, [2, 3, 4])).toBe(null);
-  });
-});
-
 /**
  * An adaptive particle with two children: one is pushed into place and added, for the other there is no room.
  * @type {LessonEvent[]}
@@ -254,7 +220,7 @@ describe('an adaptive particle', () => {
       expect(lineOf(event, ADAPTIVE), event.type).toBeGreaterThanOrEqual(0);
     }
     const say = (/** @type {number} */ at) => tell(momentAt(sized, at), parent);
-    expect(say(8)).toBe('The child of slot 1 takes φ = 60.0°; τ = 180.0° are free. There is room.');
+    expect(say(8)).toBe('The child of slot 1 takes φ = 60.0°; τ = 180.0° are free, 300 % of that. There is room.');
     expect(say(7)).toContain('It overlaps none any more.');
     expect(say(13)).toContain('There is no room');
     expect(say(14)).toBe('The child of slot 2 has no room and is not added.');
@@ -270,134 +236,5 @@ describe('an adaptive particle', () => {
     const arc = arcOf(Math.PI / 2, Math.PI, 2);
     expect(arc[0][1]).toBeCloseTo(2);
     expect(arc.at(-1)?.[1]).toBeCloseTo(-2);
-  });
-});
-
-describe('a relaxation step of a particle', () => {
-  const moved = /** @type {const} */ ({
-    type: 'moved',
-    particle: 47,
-    force: /** @type {[number, number, number]} */ ([0.004, 0, 0]),
-    target: /** @type {[number, number, number]} */ ([1.0024, 0, 0]),
-    position: /** @type {[number, number, number]} */ ([1.0023, 0, -0.0001]),
-    normal: /** @type {[number, number, number]} */ ([0, 0, 1]),
-    radius: 0.1,
-    is_kept: false,
-  });
-  /** @type {Rest} */
-  const rest = {
-    step: 2,
-    steps: 10,
-    size: 0.6,
-    before: 0.5,
-    after: 0.4,
-    largest: 0.35,
-    place: [1, 0, 0],
-    normal: [0, 0, 1],
-    radius: 0.1,
-    pushes: [
-      { particle: 31, distance: 0.19, force: [0.03, 0, 0], energy: 0.16, at: [0.81, 0, 0], radius: 0.1 },
-      { particle: 50, distance: 0.2, force: [-0.026, 0, 0], energy: 0.12, at: [1.2, 0, 0], radius: 0.1 },
-    ],
-    moved,
-  };
-
-  test('is told with its pushes, its move and its landing', () => {
-    expect(tellRest(rest)).toBe(
-      'Step 2 of 10: 2 particles push it, together by 0.040\u00a0r. A step of 0.6 makes that a move of 0.024\u00a0r. Back on the surface it is 0.023\u00a0r from where it was.',
-    );
-    expect(tellRest({ ...rest, moved: { ...moved, is_kept: true } })).toContain('It stays where it is, since the move');
-    // A move is cut off at 0.35 r.
-    const far = {
-      ...moved,
-      force: /** @type {[number, number, number]} */ ([0.1, 0, 0]),
-      target: /** @type {[number, number, number]} */ ([1.035, 0, 0]),
-    };
-    expect(tellRest({ ...rest, moved: far })).toContain('a move of 0.350\u00a0r, cut off there');
-    expect(tellRest({ ...rest, pushes: [] })).toContain('nobody pushes it');
-  });
-
-  test('names who pushes, the strongest first, and half of the energy of each pair', () => {
-    expect(pushersOf(rest)[0]).toBe('Particle 31, 1.90\u00a0r away, pushes by 0.300\u00a0r');
-    expect(new Map(numbersOfRest(rest)).get('Its own energy before')).toBe('0.14');
-  });
-
-  test('is fetched with the places before anything moved', async () => {
-    /** @type {unknown[]} */
-    const asked = [];
-    const client = /** @type {any} */ ({
-      ask: async (/** @type {string} */ about, /** @type {any} */ ask) => {
-        asked.push([about, ask]);
-        if (about === 'pushes')
-          return [
-            { particle: 1, distance: 3, force: [0, 0, 0], energy: 0 },
-            { particle: 2, distance: 2, force: [0, 1, 0], energy: 1 },
-          ];
-        if (about === 'seek')
-          return { positions: new Float32Array(9), normals: new Float32Array(9), radii: Float32Array.of(1, 1, 1) };
-        return ask.first === 100
-          ? [{ type: 'step_begins', step: 1, size: 0.6, energy: 2 }]
-          : [{ ...moved, particle: 0 }];
-      },
-    });
-    const level = /** @type {any} */ ({ kind: 'level', first_event: 0, events: 100 });
-    const step = /** @type {any} */ ({ kind: 'relaxation', first_event: 100, events: 5, energy: 1, largest_move: 0.1 });
-    const found = await restOf(client, [level, step], 0, 1);
-    expect(found).toMatchObject({ step: 1, steps: 1, before: 2, after: 1, largest: 0.1 });
-    // One that is too far away to push is left out.
-    expect(found?.pushes.map(({ particle }) => particle)).toEqual([2]);
-    expect(asked.slice(-2)).toEqual([
-      ['seek', { event: 101 }],
-      ['pushes', { particle: 0 }],
-    ]);
-    expect(await restOf(client, [level, step], 0, 2)).toBe(null);
-  });
-});
-
-describe('what is drawn in the picture', () => {
-  test('are circles around a place, in their plane', () => {
-    const normal = [0, 0.6, 0.8];
-    const [a, b] = tangentsOf(normal);
-    for (const place of circleAround([1, 2, 3], a, b, 0.5, 12)) {
-      const way = place.map((v, k) => v - [1, 2, 3][k]);
-      expect(Math.hypot(...way)).toBeCloseTo(0.5);
-      expect(way.reduce((sum, v, k) => sum + v * normal[k], 0)).toBeCloseTo(0);
-    }
-  });
-});
-
-describe('the front at a particle', () => {
-  const none = 0xffffffff;
-
-  test('has the children of all particles before it, and its own are still to come', () => {
-    // A seed with two children; the first of them has two, the second none, the third one.
-    const parents = [none, 0, 0, 1, 1, 3];
-    expect([0, 1, 2, 3, 4, 5].map((p) => placedBefore(parents, p))).toEqual([1, 3, 5, 5, 6, 6]);
-  });
-
-  test('does not have the seeds that come later', () => {
-    const parents = [none, 0, none, 2, 2];
-    expect([0, 1, 2, 3].map((p) => placedBefore(parents, p))).toEqual([1, 2, 3, 5]);
-  });
-});
-
-describe('the tracks of the lesson', () => {
-  test('have a bar for each stretch of one level', () => {
-    expect(stretchesOf([0, 1, 1, 1, 2, 2, 0, 1])).toEqual([1, 3, 2, 1, 1]);
-    expect(stretchesOf([])).toEqual([]);
-  });
-
-  test('have a bar for each event, the ends and the fates higher than what leads to them', () => {
-    const heights = heightsOf(events);
-    expect(heights).toHaveLength(events.length);
-    expect(heights[0]).toBe(1);
-    expect(heights[3]).toBeLessThan(heights[12]);
-  });
-
-  test('know how many first particles of a run are those of the picture', () => {
-    const placed = Float32Array.of(0, 0, 0, 1, 0, 0, 5, 0, 0);
-    const run = /** @type {any} */ ({ positions: Float32Array.of(0, 0, 0, 1.01, 0, 0, 2, 0, 0, 3, 0, 0) });
-    expect(alikeIn({ placed, count: 3 }, run, 0.1)).toBe(2);
-    expect(alikeIn({ placed, count: 1 }, run, 0.1)).toBe(1);
   });
 });

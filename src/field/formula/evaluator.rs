@@ -1,0 +1,273 @@
+//! The evaluator of a formula, and of its smooth branches.
+
+use super::branches::Branches;
+use super::compiled::Compiled;
+use super::interval::{BoxRows, FactorProgram};
+use super::{Formula, eval, scalar};
+use crate::field::{Bounded, Enclosure, Evaluator, Frame, Jet, Patches};
+use crate::math::{Bounds, Interval, LANES, Lanes, Sym3};
+use crate::slices;
+use glam::{DVec3, Vec3};
+use std::sync::Arc;
+
+/// A formula at work, or one of its smooth branches.
+pub(super) struct FormulaEvaluator<'a> {
+    formula: &'a Formula,
+    frame: Frame,
+    /// What is evaluated in the place of f: a branch, or f as it is put together of the factors of a product; none for f.
+    instead: Option<Arc<Compiled>>,
+    /// Whether one branch is evaluated.
+    is_branch: bool,
+    /// The evaluator of a branch, of that which was asked for last.
+    branch: Option<Box<FormulaEvaluator<'a>>>,
+    registers: Vec<Lanes>,
+    /// Values of the nodes in double precision, with derivatives up to the second, with first ones, and alone.
+    jets: scalar::JetScratch,
+    slopes: Vec<scalar::ForwardJet<0>>,
+    doubles: Vec<f64>,
+    bounds: Option<FormulaBounds>,
+}
+
+/// Memory of the bounds of a function.
+struct FormulaBounds {
+    /// The factors of f; where the surface has creases those of each of its branches, each with the number of the branch.
+    factors: Vec<Factor>,
+    /// Boxes in the coordinates of the formula.
+    boxes: Vec<Bounds>,
+}
+
+struct Factor {
+    /// Number of the branch of which it is a factor; none if it is one of the function itself.
+    branch: Option<u32>,
+    program: FactorProgram,
+    first: BoxRows,
+    second: BoxRows,
+}
+
+impl<'a> FormulaEvaluator<'a> {
+    pub(super) fn new(formula: &'a Formula, frame: Frame) -> Self {
+        let instead = formula.branches.lock().split.clone();
+        Self::of(formula, frame, instead, false)
+    }
+
+    fn of(formula: &'a Formula, frame: Frame, instead: Option<Arc<Compiled>>, is_branch: bool) -> Self {
+        Self {
+            formula,
+            frame,
+            instead,
+            is_branch,
+            branch: None,
+            registers: Vec::new(),
+            jets: Vec::new(),
+            slopes: Vec::new(),
+            doubles: Vec::new(),
+            bounds: None,
+        }
+    }
+
+    /// Runs `find` on the branches of the formula, with the values of its parameters.
+    fn on_branches<R>(&self, find: impl FnOnce(&mut Branches, &[f64]) -> R) -> R {
+        find(&mut self.formula.branches.lock(), &self.formula.values)
+    }
+
+    /// The bounds of f, or of the branch that is evaluated.
+    fn bounds(&mut self) -> &mut FormulaBounds {
+        let Self { formula, instead, is_branch, bounds, .. } = self;
+        bounds.get_or_insert_with(|| {
+            let values = &formula.values;
+            let mut branches = formula.branches.lock();
+            let of_branches = if *is_branch { Vec::new() } else { branches.factors.clone() };
+            let own = match instead {
+                Some(branch) if *is_branch => branch.factors(),
+                _ if !of_branches.is_empty() => &[],
+                _ => formula.compiled.factors(),
+            };
+            let factor = |branch: Option<u32>, program: &FactorProgram| Factor {
+                branch,
+                program: program.clone(),
+                first: BoxRows::default(),
+                second: BoxRows::default(),
+            };
+            let mut factors: Vec<Factor> = own.iter().map(|program| factor(None, program)).collect();
+            for (number, own) in of_branches {
+                let compiled = branches.compiled(number, values).expect("a branch that has factors");
+                factors.push(factor(Some(number), &compiled.factors()[own]));
+            }
+            FormulaBounds { factors, boxes: Vec::new() }
+        })
+    }
+}
+
+/// The compiled function that is evaluated. It borrows two fields alone.
+fn active<'b>(formula: &'b Formula, instead: &'b Option<Arc<Compiled>>) -> &'b Compiled {
+    instead.as_deref().unwrap_or(&formula.compiled)
+}
+
+impl Evaluator for FormulaEvaluator<'_> {
+    fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
+        let (compiled, frame) = (active(self.formula, &self.instead), self.frame);
+        if frame.is_double() {
+            for (&p, value) in points.iter().zip(value) {
+                *value = frame.value(compiled.value(frame.place(p.as_dvec3()), &mut self.doubles));
+            }
+            return;
+        }
+        let value = &mut value[..points.len()];
+        eval::run(&compiled.value_program, &mut self.registers, points, |first, [f]| {
+            value[first..].iter_mut().zip(f.0).for_each(|(value, f)| *value = f * frame.scale);
+        });
+    }
+
+    fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
+        let (compiled, frame) = (active(self.formula, &self.instead), self.frame);
+        if frame.is_double() {
+            for (k, &p) in points.iter().enumerate() {
+                let exact = compiled.gradient(frame.place(p.as_dvec3()), &mut self.doubles);
+                (value[k], gradient[k]) = frame.gradient(exact);
+            }
+            return;
+        }
+        let (value, gradient) = (&mut value[..points.len()], &mut gradient[..points.len()]);
+        eval::run(&compiled.gradient_program, &mut self.registers, points, |first, results: [&Lanes; 4]| {
+            let slots = value[first..].iter_mut().zip(&mut gradient[first..]);
+            for (k, (value, gradient)) in slots.take(LANES).enumerate() {
+                let [f, x, y, z] = results.map(|lanes| lanes.0[k] * frame.scale);
+                (*value, *gradient) = (f, Vec3::new(x, y, z));
+            }
+        });
+    }
+
+    fn hessians(
+        &mut self,
+        points: &[Vec3],
+        value: &mut [f32],
+        gradient: &mut [Vec3],
+        hessian: &mut [Sym3<f32>],
+    ) {
+        let (compiled, frame) = (active(self.formula, &self.instead), self.frame);
+        if frame.is_double() {
+            for (k, &p) in points.iter().enumerate() {
+                let jet = compiled.jet(frame.place(p.as_dvec3()), &mut self.jets);
+                (value[k], gradient[k], hessian[k]) = frame.hessian(&jet);
+            }
+            return;
+        }
+        let n = points.len();
+        let (value, gradient, hessian) = (&mut value[..n], &mut gradient[..n], &mut hessian[..n]);
+        let store = |first: usize, results: [&Lanes; 10]| {
+            let slots = value[first..].iter_mut().zip(&mut gradient[first..]).zip(&mut hessian[first..]);
+            for (k, ((value, gradient), hessian)) in slots.take(LANES).enumerate() {
+                let [f, x, y, z, xx, xy, xz, yy, yz, zz] = results.map(|lanes| lanes.0[k] * frame.scale);
+                (*value, *gradient) = (f, Vec3::new(x, y, z));
+                *hessian = Sym3 { xx, xy, xz, yy, yz, zz };
+            }
+        };
+        eval::run(compiled.hessian_program(), &mut self.registers, points, store);
+    }
+
+    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+        let compiled = active(self.formula, &self.instead);
+        self.frame.exact(compiled.first_order(self.frame.place(p), &mut self.slopes))
+    }
+
+    fn jet(&mut self, p: DVec3) -> Jet {
+        let compiled = active(self.formula, &self.instead);
+        self.frame.jet(compiled.jet(self.frame.place(p), &mut self.jets))
+    }
+
+    fn bounded(&mut self) -> Option<&mut dyn Bounded> {
+        self.bounds();
+        Some(self)
+    }
+
+    fn patches(&mut self) -> Option<&mut dyn Patches> {
+        Some(self)
+    }
+}
+
+impl Patches for FormulaEvaluator<'_> {
+    /// The numbers are the same whatever was asked before, but for those beyond the first 256.
+    fn branch_at(&mut self, p: DVec3) -> u32 {
+        let place = self.frame.place(p);
+        self.on_branches(|branches, values| branches.at(values, place))
+    }
+
+    fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
+        let bounds = self.frame.outward(bounds);
+        self.on_branches(|branches, values| branches.within(values, &bounds))
+    }
+
+    fn branch(&mut self, branch: u32) -> &mut dyn Evaluator {
+        let compiled = self.on_branches(|branches, values| branches.compiled(branch, values));
+        let (formula, frame) = (self.formula, self.frame);
+        let own = self.branch.get_or_insert_with(|| Box::new(Self::of(formula, frame, None, true)));
+        let is_same = match (&own.instead, &compiled) {
+            (Some(known), Some(compiled)) => Arc::ptr_eq(known, compiled),
+            (None, None) => true,
+            _ => false,
+        };
+        if !is_same {
+            (own.instead, own.bounds) = (compiled, None);
+        }
+        &mut **own
+    }
+
+    fn crease_cells(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+        let bounds = self.frame.outward(bounds);
+        let cells = self
+            .on_branches(|branches, values| slices::complete(branches.crease_cells(values, &bounds, width)));
+        cells.iter().map(|cell| cell.relative_to(self.frame.origin)).collect()
+    }
+}
+
+impl Bounded for FormulaEvaluator<'_> {
+    fn operations(&self) -> usize {
+        self.formula.compiled.value_program.instructions.len()
+    }
+
+    fn factors(&self) -> usize {
+        self.bounds.as_ref().map_or(0, |bounds| bounds.factors.len())
+    }
+
+    fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]) {
+        let (frame, formula) = (self.frame, self.formula);
+        let FormulaBounds { factors, boxes: moved } = self.bounds();
+        let Factor { branch, program, first, .. } = &mut factors[factor];
+        let boxes = in_formula(frame, boxes, moved);
+        program.first.enclose(first, boxes, out);
+        if let Some(branch) = *branch {
+            formula.branches.lock().leave_out(branch, &formula.values, boxes, out);
+        }
+        frame.scale_bounds(&mut out[..boxes.len()]);
+    }
+
+    fn is_zero_of(&mut self, factor: usize, zero: DVec3) -> bool {
+        let branch = self.bounds().factors[factor].branch;
+        branch.is_none_or(|branch| self.branch_at(zero) == branch)
+    }
+
+    fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]) {
+        let frame = self.frame;
+        let FormulaBounds { factors, boxes: moved } = self.bounds();
+        let Factor { program, second, .. } = &mut factors[factor];
+        match &program.second {
+            Some(program) => program.enclose_second(second, in_formula(frame, boxes, moved), out),
+            None => out[..boxes.len()].fill(Sym3::splat(Interval::EVERYTHING)),
+        }
+        frame.scale_second(&mut out[..boxes.len()]);
+    }
+}
+
+/// Boxes in the coordinates of the formula that hold these boxes of the frame.
+fn in_formula<'b>(frame: Frame, boxes: &'b [Bounds], moved: &'b mut Vec<Bounds>) -> &'b [Bounds] {
+    if frame.origin == DVec3::ZERO {
+        return boxes;
+    }
+    moved.clear();
+    moved.extend(boxes.iter().map(|bounds| frame.outward(bounds)));
+    moved
+}

@@ -1,0 +1,11 @@
+//! Particles on a sphere, for a host without JavaScript.
+
+use marching_particles::glam::DVec3;
+use marching_particles::{Settings, sample};
+
+/// Number of particles of a sample of so many.
+#[unsafe(no_mangle)]
+pub extern "C" fn count(wanted: u32) -> u32 {
+    let sample = sample(|p: DVec3| p.length() - 1.0, &Settings::with_count(wanted));
+    sample.map_or(0, |sample| sample.report().count as u32)
+}
