@@ -319,8 +319,8 @@ function chartOf(read, seek) {
 }
 
 /**
- * The ends of a scale: the largest value at the right, where a curve that falls leaves room, and a least that is not 0 at
- * the left.
+ * The ends of a scale: the largest value at the right, where a curve that falls leaves room, and a least that is not 0
+ * at the left.
  * @param {Chart} chart
  */
 const scaleTexts = (chart) => [

@@ -242,7 +242,7 @@ test('a file and the number of its points', async ({ page }) => {
     expect(await number.getAttribute('aria-valuemax')).toBe('200');
     await number.fill('120');
     await number.press('Enter');
-    await expect(fitted).toContainText('f is fitted to 200 points from 120 of them');
+    await expect(fitted).toContainText('f is fitted to 200 points, with 120 as centres');
     await settled(page);
     // The address bar follows after a pause.
     const isInAddress = () =>
@@ -253,7 +253,7 @@ test('a file and the number of its points', async ({ page }) => {
     await expect.poll(isInAddress).toBe(true);
     await page.reload();
     await settled(page);
-    await expect(fitted).toContainText('f is fitted to 200 points from 120 of them');
+    await expect(fitted).toContainText('f is fitted to 200 points, with 120 as centres');
   });
   await clean();
 });
