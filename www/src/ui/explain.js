@@ -89,10 +89,20 @@ export function place(element, anchor, side = 'below') {
   const left = side === 'left' && beside >= MARGIN_PX;
   const [above, below] = [anchor.top - height - MARGIN_PX / 2, anchor.bottom + MARGIN_PX / 2];
   const over = side === 'above' ? above >= MARGIN_PX : below + height > innerHeight - MARGIN_PX;
-  const y = left ? anchor.top : over ? above : below;
+  const y = left ? anchor.top : over ? clear(above, height) : below;
   const x = left ? beside : anchor.left;
   element.style.left = `${clamp(x, MARGIN_PX, Math.max(MARGIN_PX, innerWidth - width - MARGIN_PX))}px`;
   element.style.top = `${clamp(y, MARGIN_PX, Math.max(MARGIN_PX, innerHeight - height - MARGIN_PX))}px`;
+}
+
+/**
+ * Returns where the top of a popover is to be so that it covers no timeline: there, or above the timeline.
+ * @param {number} top @param {number} height
+ */
+function clear(top, height) {
+  const track = document.querySelector('.levels-track')?.getBoundingClientRect();
+  const isOver = track && track.height > 0 && top < track.bottom && top + height > track.top;
+  return isOver ? Math.max(MARGIN_PX, track.top - height - MARGIN_PX / 2) : top;
 }
 
 /**

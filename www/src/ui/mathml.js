@@ -30,12 +30,14 @@ const operatorOf = (node) => (node.tag === 'mo' ? node.text : null);
 const isBreak = (node) => BREAKS.has(operatorOf(node) ?? '');
 
 /**
- * Splits a formula into parts that may be on different lines: at the operators of sums and products outside brackets.
+ * Splits a formula into parts that may be on different lines: at the operators of sums and products outside brackets,
+ * and likewise in the arguments of a function of several.
  * @param {MathNode} node
  * @returns {MathNode[][]}
  */
 export function partsOfMath(node) {
-  if (!isOpen(node)) return [[node]];
+  const isArguments = isList(node);
+  if (!isArguments && !isOpen(node)) return [[node]];
   /** @type {MathNode[][]} */
   const parts = [[]];
   for (const child of node.children) {
@@ -46,6 +48,7 @@ export function partsOfMath(node) {
     const [first, ...rest] = partsOfMath(child);
     parts.at(-1)?.push(...first);
     parts.push(...rest);
+    if (isArguments && operatorOf(child) === ',') parts.push([]);
   }
   return parts.filter((part) => part.length > 0);
 }
@@ -56,6 +59,16 @@ export function partsOfMath(node) {
  * @returns {node is Extract<MathNode, {children: unknown}>}
  */
 const isOpen = (node) => node.tag === 'mrow' && (operatorOf(node.children[0]) === null || isBreak(node.children[0]));
+
+/**
+ * Returns whether a node is the arguments of a function, in brackets and more than one.
+ * @param {MathNode} node
+ * @returns {node is Extract<MathNode, {children: unknown}>}
+ */
+const isList = (node) =>
+  node.tag === 'mrow' &&
+  operatorOf(node.children[0]) === '(' &&
+  node.children.some((child) => operatorOf(child) === ',');
 
 /**
  * Returns the lines of a formula: its definitions and its surface, which are the rows of a table.

@@ -50,6 +50,6 @@ export function fittedOf({ points, centres }) {
   const how =
     points === centres
       ? `interpolates all ${formatCount(points)} points`
-      : `is fitted to ${formatCount(points)} points from ${formatCount(centres)} of them`;
+      : `is fitted to ${formatCount(points)} points, with ${formatCount(centres)} as centres`;
   return `f ${how}, with their normals, by Hermite radial basis functions; its zeros are the surface.`;
 }

@@ -182,6 +182,9 @@ const excerptElement = ({ excerpt }) =>
     excerpt.after,
   );
 
+/** A formula that is too wide is made smaller down to this share of its size, and scrolls beyond. */
+const LEAST_SIZE = 0.7;
+
 /** Shows the formula as mathematics, and says so where it is not the one in the editor. @param {Engine} engine */
 function createPreview(engine) {
   const math = computed(() => engine.field.value?.mathml ?? null);
@@ -196,10 +199,11 @@ function createPreview(engine) {
     'aria-describedby': () => isLast.value && id,
     tabindex: 0,
   });
-  // A formula is split into parts only if it is too long for one line.
+  // A formula is split into parts only if it is too long for one line, and made smaller if a part still is.
   const fit = () => {
     const tree = math.peek();
     preview.classList.remove('long');
+    preview.style.fontSize = '';
     fill(preview, tree && mathElement(tree));
     if (!tree) return;
     if (preview.scrollWidth <= preview.clientWidth + 1) return;
@@ -208,6 +212,8 @@ function createPreview(engine) {
       preview,
       mathLines(tree).flatMap((parts, k) => [k > 0 && h('br'), ...parts.flatMap((part) => [part, h('wbr')])]),
     );
+    const { scrollWidth, clientWidth } = preview;
+    if (scrollWidth > clientWidth) preview.style.fontSize = `${Math.max(LEAST_SIZE, clientWidth / scrollWidth)}em`;
   };
   live(preview, () => {
     void math.value;

@@ -66,8 +66,12 @@ export function createGallery(engine, description) {
       shown.value = groups.find(({ entries }) => entries.some((entry) => entry.id === id))?.name ?? POINTS;
       query.value = '';
     });
-    // In the compact layout the gallery is a strip that scrolls. The chosen tile is scrolled into view.
-    gallery.querySelector(`[data-surface="${id}"]`)?.scrollIntoView({ block: 'nearest', inline: 'nearest' });
+    // In a small window the group is a strip. It alone scrolls to the chosen tile, and not the panel around it.
+    const tile = gallery.querySelector(`[data-surface="${id}"]`);
+    const strip = tile?.closest('.tiles');
+    if (!tile || !strip) return;
+    const [own, all] = [tile.getBoundingClientRect(), strip.getBoundingClientRect()];
+    strip.scrollLeft += Math.min(0, own.left - all.left) + Math.max(0, own.right - all.right);
   });
   return gallery;
 }

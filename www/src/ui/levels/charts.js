@@ -6,7 +6,7 @@
 import { computed, signal } from '@preact/signals-core';
 import { MOST_STEPPED } from '../../engine/constants.js';
 import { clamp } from '../../engine/vector.js';
-import { draw, footOf, scaleOf } from '../chart.js';
+import { draw, floorOf, footOf, scaleOf } from '../chart.js';
 import { h } from '../dom.js';
 import { formatCount, formatFixed, formatShare, formatSignificant, MISSING, plural } from '../format.js';
 import { spread as statisticsOf } from '../neighbours.js';
@@ -231,11 +231,14 @@ function fateChart(table, at) {
 /** @param {readonly number[]} energy @param {number | null} at @returns {Chart} */
 function energyChart(energy, at) {
   const [from, to] = [energy[0], energy.at(-1)];
+  // Differences are small for the values: the scale begins at the least.
+  const floor = Math.min(...energy);
   const of = energy.length > 1 ? `from ${formatSignificant(from, 3)} to ${formatSignificant(to, 3)}` : '';
   return {
     title: 'Energy per step',
     kind: 'line',
     rows: [{ fate: 'energy', name: 'energy', counts: [...energy] }],
+    floor: floor < Math.max(...energy) ? floor : undefined,
     first: 0,
     at,
     value: at === null || energy[at] === undefined ? '' : formatSignificant(energy[at], 3),
@@ -297,7 +300,7 @@ function chartOf(read, seek) {
     },
     () =>
       places() > 0
-        ? [draw(chart.value), h('span', { class: 'chart-most', 'aria-hidden': 'true' }, scaleOf(chart.value))]
+        ? [draw(chart.value), ...scaleTexts(chart.value)]
         : h('p', { class: 'quiet' }, chart.value.missing ?? NOTHING),
   );
   return h(
@@ -314,6 +317,16 @@ function chartOf(read, seek) {
     h('div', { class: 'chart-foot', 'aria-hidden': 'true' }, () => places() > 0 && footOf(chart.value)),
   );
 }
+
+/**
+ * The ends of a scale: the largest value at the right, where a curve that falls leaves room, and a least that is not 0
+ * at the left.
+ * @param {Chart} chart
+ */
+const scaleTexts = (chart) => [
+  h('span', { class: 'chart-most', 'aria-hidden': 'true' }, scaleOf(chart)),
+  chart.floor !== undefined && h('span', { class: 'chart-least', 'aria-hidden': 'true' }, floorOf(chart)),
+];
 
 /**
  * The charts as tables.

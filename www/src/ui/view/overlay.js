@@ -50,8 +50,7 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   // The field panel announces the loading.
   const mesh = computed(() => (told.value ? '' : meshOf(engine)));
   const whole = computed(() => [text.value, told.value?.text, mesh.value].filter(Boolean).join('. '));
-  // The caption has one line, and its whole text is shown where the pointer rests on it.
-  const caption = h('p', { class: 'caption', 'aria-hidden': 'true', title: () => whole.value });
+  const caption = h('p', { class: 'caption', 'aria-hidden': 'true' });
   view.append(empty, h('div', { class: 'foot' }, createKept(engine), caption, hint), spoken);
   caption.append(
     h('span', null, () => (engine.loading.value ? loadingOf(engine.loading.value) : text.value)),

@@ -218,21 +218,21 @@ test('a file and the number of its points', async ({ page }) => {
     await expect(page.getByRole('heading', { name: 'ball.ply' })).toBeVisible();
     await settled(page);
     const fitted = page.locator('.model > .quiet');
-    await expect(fitted).toContainText('f is fitted to 900 points from 200 of them');
+    await expect(fitted).toContainText('f is fitted to 900 points, with 200 as centres');
     await expect(page.locator('.story')).toContainText('The surface that is fitted to the points of this file.');
     const slider = page.getByRole('slider', { name: 'Centres' });
     const number = page.getByRole('spinbutton', { name: 'Centres, number' });
     await number.fill('350');
     await number.press('Enter');
-    await expect(fitted).toContainText('f is fitted to 900 points from 350 of them');
+    await expect(fitted).toContainText('f is fitted to 900 points, with 350 as centres');
     await settled(page);
     expect((await state(page)).centres).toBe(350);
     // Changes of one value within 0.8 s are one step of the history.
     await page.waitForTimeout(900);
     await slider.press('Home');
-    await expect(fitted).toContainText('f is fitted to 900 points from 100 of them');
+    await expect(fitted).toContainText('f is fitted to 900 points, with 100 as centres');
     await page.getByRole('button', { name: 'Undo', exact: true }).click();
-    await expect(fitted).toContainText('f is fitted to 900 points from 350 of them');
+    await expect(fitted).toContainText('f is fitted to 900 points, with 350 as centres');
     await settled(page);
     // Of a model there are no more than it has, and a link holds the number.
     await page.getByRole('button', { name: 'Points', exact: true }).click();
@@ -242,7 +242,7 @@ test('a file and the number of its points', async ({ page }) => {
     expect(await number.getAttribute('aria-valuemax')).toBe('200');
     await number.fill('120');
     await number.press('Enter');
-    await expect(fitted).toContainText('f is fitted to 200 points from 120 of them');
+    await expect(fitted).toContainText('f is fitted to 200 points, with 120 as centres');
     await settled(page);
     // The address bar follows after a pause.
     const isInAddress = () =>
@@ -253,7 +253,7 @@ test('a file and the number of its points', async ({ page }) => {
     await expect.poll(isInAddress).toBe(true);
     await page.reload();
     await settled(page);
-    await expect(fitted).toContainText('f is fitted to 200 points from 120 of them');
+    await expect(fitted).toContainText('f is fitted to 200 points, with 120 as centres');
   });
   await clean();
 });

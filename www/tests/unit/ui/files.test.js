@@ -59,7 +59,7 @@ describe('a model from points', () => {
       '95 % are nearer than 0.64%',
       'Largest distance 1.3%',
     ]);
-    expect(fittedOf(info)).toContain('f is fitted to 5,205 points from 400 of them');
+    expect(fittedOf(info)).toContain('f is fitted to 5,205 points, with 400 as centres');
     expect(fittedOf({ ...info, points: 200, centres: 200 })).toContain('f interpolates all 200 points');
   });
 

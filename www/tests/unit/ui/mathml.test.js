@@ -28,6 +28,12 @@ describe('MathML', () => {
     ]);
   });
 
+  it('is taken apart between the arguments of a function, and at the sums in them', () => {
+    const args = row(mo('('), row(mi('a'), mo('+'), mi('b')), mo(','), row(mo('−'), mi('c')), mo(')'));
+    const max = row(mi('max'), mo('\u2061'), args);
+    expect(parts(row(max, mo('='), mn('0')))).toEqual(['max \u2061 ( a', '+ b ,', '− c )', '= 0']);
+  });
+
   it('keeps a sign with what it stands before', () => {
     expect(parts(row(row(mo('−'), mi('x')), mo('='), mn('0')))).toEqual(['− x', '= 0']);
   });

@@ -1,0 +1,57 @@
+/** Every setting and what else a surface can be given, against another surface: what stays and what begins afresh. */
+import { expect, test } from 'vitest';
+import { open } from './engine.js';
+
+/** @import { SettingInfo } from '../../src/engine/types.js' */
+
+/** A value that a setting does not have of itself; a length without ends is a tenth. @param {SettingInfo} info */
+const otherOf = ({ choices, default: own, min, max }) =>
+  choices?.length ? choices.find(({ value }) => value !== own)?.value : ((own === max ? min : max) ?? 0.1);
+
+/** What belongs to the surface it was chosen for. Every other setting is of the way of sampling, and stays. */
+const OF_SURFACE = ['box_cell', 'box_faces', 'box_mode', 'thickness'];
+
+test('of all settings, those of a surface end with it, and a changed formula keeps them', async () => {
+  const p = await open();
+  const { engine } = p;
+  const settings = engine.description.value?.settings ?? [];
+  expect(settings.length).toBeGreaterThan(10);
+  const table = settings.map((info) => {
+    const { name } = info;
+    const isThere = () => name in engine.state.value.settings;
+    const value = otherOf(info);
+    if (value === undefined) throw new Error(`${name} has one value only`);
+    engine.setSurface('ellipsoid');
+    engine.setSetting(name, value);
+    const row = [name, isThere()];
+    engine.setFormula('x^2 + y^2 + 2z^2 = 1');
+    row.push(isThere());
+    engine.setSurface('torus');
+    row.push(isThere());
+    engine.resetSetting(name);
+    return row;
+  });
+  engine.stop();
+  expect(table).toEqual(settings.map(({ name }) => [name, true, true, !OF_SURFACE.includes(name)]));
+});
+
+test('plane, box, parameters and the place on the timeline end with their surface; how it is drawn stays', async () => {
+  const p = await open();
+  const { engine } = p;
+  engine.setPlane({ normal: [1, 0, 0], offset: 0 });
+  engine.setBounds({ min: [-1, -1, -1], max: [1, 1, 0.2] });
+  engine.setParameter('a', 0.8);
+  const drawn = /** @type {const} */ ({ draw: 'spheres', size: 0.7, axes: true, box: true, colour: 'plain' });
+  engine.setView({ ...drawn, level: 3 });
+  engine.setSurface('torus');
+  engine.stop();
+  expect(p.state).toMatchObject({
+    surface: 'torus',
+    plane: null,
+    bounds: null,
+    parameters: {},
+    declared: [],
+    pulls: [],
+  });
+  expect(p.state.view).toMatchObject({ ...drawn, level: null, step: null });
+});
