@@ -116,7 +116,7 @@ class Exercise {
     );
     this.#next = button(
       { class: 'primary', hidden: true, 'data-step': 'predict-children', press: goOn },
-      'Go to the cap, where the front meets itself',
+      'Go to the cap',
     );
     this.#back = button(
       { class: 'plain', 'data-back': 'predict-children', press: () => this.#queue(() => this.#takeBack()) },
