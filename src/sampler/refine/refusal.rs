@@ -13,7 +13,7 @@ use serde::Serialize;
 pub enum Refusal {
     /// The survey leads to expect too few particles for a refinement.
     #[error(
-        "The front stands, and is not refined: that takes at least {} particles, and {expected} were expected.",
+        "Not refined: that takes at least {} particles, and {expected} were expected.",
         4 * LEAST_PARTICLES
     )]
     Few {
@@ -22,33 +22,31 @@ pub enum Refusal {
     },
     /// The limit on particles leaves no room.
     #[error(
-        "The front stands, and is not refined: the limit on particles leaves no room for that. With a higher limit, or fewer \
+        "Not refined: the limit on particles leaves no room for that. With a higher limit, or fewer \
          particles, it may be."
     )]
     Full,
     /// The surface bends too much for the wanted spacing.
-    #[error(
-        "The front stands, and is not refined: near {at} the surface bends too much for particles of this size."
-    )]
+    #[error("Not refined: near {at} the surface bends too much for particles of this size.")]
     Bent {
         /// A place where the surface bends too much.
         at: Spot,
     },
     /// The gradient vanishes on the surface, and not at the tip of a cone.
-    #[error("The front stands, and is not refined: near {at} the gradient vanishes on the surface.")]
+    #[error("Not refined: near {at} the gradient vanishes on the surface.")]
     Singular {
         /// A place where the gradient vanishes.
         at: Spot,
     },
     /// The surface has a border that is not at the box.
-    #[error("The front stands, and is not refined: near {at} the surface ends inside the box.")]
+    #[error("Not refined: near {at} the surface ends inside the box.")]
     Border {
         /// A place where the surface ends.
         at: Spot,
     },
     /// The border could not be laid on the faces of the box.
     #[error(
-        "The front stands, and is not refined: near {at} the border of the surface could not be found on the faces of the box. With \
+        "Not refined: near {at} the border of the surface could not be found on the faces of the box. With \
          more particles it may be."
     )]
     Cut {
@@ -57,7 +55,7 @@ pub enum Refusal {
     },
     /// The particles could not be joined to a closed surface beyond doubt.
     #[error(
-        "The front stands, and is not refined: near {at} its particles could not be joined to a closed surface beyond doubt. With \
+        "Not refined: near {at} the particles could not be joined to a closed surface beyond doubt. With \
          more of them they may be."
     )]
     Doubtful {
@@ -65,15 +63,13 @@ pub enum Refusal {
         at: Spot,
     },
     /// Particles beside a tip could not be joined, or halving their edges led off the surface.
-    #[error(
-        "The front stands, and is not refined: near {at} the surface has a tip that is too narrow for particles of this size."
-    )]
+    #[error("Not refined: near {at} the surface has a tip that is too narrow for particles of this size.")]
     Tip {
         /// Position of the tip.
         at: Spot,
     },
     /// A refinement has left the surface, or has led onto another sheet.
-    #[error("The front stands, and is not refined: near {at} halving its edges led off the surface.")]
+    #[error("Not refined: near {at} a finer mesh left the surface.")]
     Folded {
         /// A place where halving edges led off the surface.
         at: Spot,
