@@ -26,8 +26,8 @@ pub struct Particles {
     pub level: Vec<u32>,
     /// Fates of the slots around the particle: see [`SlotFate`].
     pub slots: Vec<Slots>,
-    /// For each row, the patch of the surface on which it lies, by the number of its branch: see [`Patches::branch_at`]. Empty if the
-    /// surface has neither creases nor particles at tips.
+    /// For each row, the patch of the surface on which it lies, by the number of its branch: see
+    /// [`Patches::branch_at`]. Empty if the surface has neither creases nor particles at tips.
     ///
     /// [`Patches::branch_at`]: crate::field::Patches::branch_at
     pub patch: Vec<u32>,

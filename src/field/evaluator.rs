@@ -1,29 +1,35 @@
-//! Who evaluates a field: batches of points in single precision, single ones in double, counted from a near origin.
+//! Who evaluates a field: batches of points in single precision, single ones in double, counted
+//! from a near origin.
 
 use super::{BATCH, Enclosure, Field, Jet, STEP};
 use crate::math::{Bounds, Interval, Sym3, median, power_of_two};
 use glam::{DVec3, Vec3};
 
-/// Largest gradient that needs no scale, and the inverse of the smallest. The square of such a gradient, and of a value a million
-/// times smaller or larger, is a normal number in single precision.
+/// Largest gradient that needs no scale, and the inverse of the smallest. The square of such a
+/// gradient, and of a value a million times smaller or larger, is a normal number in single
+/// precision.
 const COMFORTABLE: f64 = (1_u64 << 40) as f64;
 
-/// How an [`Evaluator`] counts places and brings values within reach of the numbers that they are computed with.
+/// How an [`Evaluator`] counts places and brings values within reach of the numbers that they are
+/// computed with.
 ///
 /// The default counts from zero and takes f as it is. A survey of the surface chooses one for a whole run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// The point from which places and boxes are counted, in the coordinates of the field: single precision holds the places of particles
-    /// that are far from zero only so.
+    /// The point from which places and boxes are counted, in the coordinates of the field: single
+    /// precision holds the places of particles that are far from zero only so.
     pub origin: DVec3,
-    /// A power of two by which f is multiplied. With the right one, squares of values and gradients neither overflow nor underflow
-    /// in single precision, whatever units f is in. No digit is lost.
+    /// A power of two by which f is multiplied. With the right one, squares of values and gradients
+    /// neither overflow nor underflow in single precision, whatever units f is in. No digit is
+    /// lost.
     pub scale: f32,
-    /// The s of arsinh(f/s), which batches give for f, computed in double precision; none for f itself. Single points are then evaluated to
-    /// f/s. It is for fields whose values or intermediate results are beyond single precision: arsinh(f/s) has the zeros and signs of f, is
-    /// f/s near the surface, and grows like a logarithm far from it.
+    /// The s of arsinh(f/s), which batches give for f, computed in double precision; none for f
+    /// itself. Single points are then evaluated to f/s. It is for fields whose values or
+    /// intermediate results are beyond single precision: arsinh(f/s) has the zeros and signs of f,
+    /// is f/s near the surface, and grows like a logarithm far from it.
     pub double: Option<f64>,
-    /// The length of what is looked at, to which the steps of differences are small: the diagonal of the box in a run.
+    /// The length of what is looked at, to which the steps of differences are small: the diagonal
+    /// of the box in a run.
     pub length: f64,
 }
 
@@ -40,9 +46,10 @@ impl Frame {
         Self { origin, ..Self::default() }
     }
 
-    /// This frame with the power of two that brings the median magnitude of the gradient near 1, or with 1 if that is not needed. The
-    /// gradient is sampled at no more than one batch of `points`: because only the exponent of the median counts, nearly all choices of
-    /// points give the same scale.
+    /// This frame with the power of two that brings the median magnitude of the gradient near 1, or
+    /// with 1 if that is not needed. The gradient is sampled at no more than one batch of `points`:
+    /// because only the exponent of the median counts, nearly all choices of points give the same
+    /// scale.
     pub(crate) fn scaled_to(self, field: &dyn Field, points: impl ExactSizeIterator<Item = Vec3>) -> Self {
         let stride = points.len().div_ceil(BATCH).max(1);
         let points: Vec<Vec3> = points.step_by(stride).collect();
@@ -71,15 +78,16 @@ impl Frame {
         Bounds { min: lo.map(f64::next_down), max: hi.map(f64::next_up) }
     }
 
-    /// Whether batches are to be computed in double precision: the coordinates of the field may have more digits than single precision
-    /// holds.
+    /// Whether batches are to be computed in double precision: the coordinates of the field may
+    /// have more digits than single precision holds.
     #[must_use]
     pub fn is_double(&self) -> bool {
         self.double.is_some() || self.origin != DVec3::ZERO
     }
 
-    /// Length of the steps of differences at a point in the coordinates of the field: a 131,072nd of the length, but far above the
-    /// rounding of the point. It is a power of two, so that p ± h loses no digit of h.
+    /// Length of the steps of differences at a point in the coordinates of the field: a 131,072nd
+    /// of the length, but far above the rounding of the point. It is a power of two, so that p ± h
+    /// loses no digit of h.
     pub(super) fn step(&self, p: DVec3) -> f64 {
         /// √ε of double precision.
         const ROUNDING: f64 = 1.0 / 67_108_864.0;
@@ -163,9 +171,10 @@ impl Frame {
 
 /// A field at work in a [`Frame`], with the memory that this takes: what the sampler calls.
 ///
-/// A batched method reads `points` and writes the first `points.len()` entries of each output. Evaluation does not allocate once it
-/// is warm. The result at a point does not depend on the other points of the batch, and it has the same bits natively and in
-/// WebAssembly. A value is NaN where the field is undefined.
+/// A batched method reads `points` and writes the first `points.len()` entries of each output.
+/// Evaluation does not allocate once it is warm. The result at a point does not depend on the other
+/// points of the batch, and it has the same bits natively and in WebAssembly. A value is NaN where
+/// the field is undefined.
 ///
 /// # Panics
 ///
@@ -202,20 +211,23 @@ pub trait Evaluator: super::MaybeSend {
         }
     }
 
-    /// This evaluator as one that can bound f over boxes, however wide the bounds are. Of a field that cannot, which is the default, the
-    /// survey samples densely, and completeness is not proven.
+    /// This evaluator as one that can bound f over boxes, however wide the bounds are. Of a field
+    /// that cannot, which is the default, the survey samples densely, and completeness is not
+    /// proven.
     fn bounded(&mut self) -> Option<&mut dyn Bounded> {
         None
     }
 
-    /// This evaluator as one of a function that is put together of smooth [patches](Patches). By default f is smooth.
+    /// This evaluator as one of a function that is put together of smooth [patches](Patches). By
+    /// default f is smooth.
     #[doc(hidden)]
     fn patches(&mut self) -> Option<&mut dyn Patches> {
         None
     }
 }
 
-/// An evaluator that bounds values and derivatives over boxes, rounded outward: what the proofs about a surface rest on.
+/// An evaluator that bounds values and derivatives over boxes, rounded outward: what the proofs
+/// about a surface rest on.
 ///
 /// Box `boxes[i]` belongs to `out[i]`.
 pub trait Bounded: Evaluator {
@@ -224,14 +236,15 @@ pub trait Bounded: Evaluator {
         0
     }
 
-    /// Number of functions among whose zeros are those of f: the factors of a product, otherwise 1. Where f has creases, those of each of
-    /// its patches.
+    /// Number of functions among whose zeros are those of f: the factors of a product, otherwise 1.
+    /// Where f has creases, those of each of its patches.
     fn factors(&self) -> usize {
         1
     }
 
-    /// Bounds of factor `factor` of f and of its gradient over each box. What an enclosure says about being defined and continuous
-    /// holds for f as a whole. That of a patch is empty where the patch gives f nowhere in the box.
+    /// Bounds of factor `factor` of f and of its gradient over each box. What an enclosure says
+    /// about being defined and continuous holds for f as a whole. That of a patch is empty where
+    /// the patch gives f nowhere in the box.
     ///
     /// # Panics
     ///
@@ -244,8 +257,8 @@ pub trait Bounded: Evaluator {
         true
     }
 
-    /// Bounds of the second derivatives of factor `factor` over each box. They are meaningless where f is undefined or its
-    /// gradient jumps.
+    /// Bounds of the second derivatives of factor `factor` over each box. They are meaningless
+    /// where f is undefined or its gradient jumps.
     ///
     /// # Panics
     ///
@@ -253,25 +266,30 @@ pub trait Bounded: Evaluator {
     fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]);
 }
 
-/// An evaluator of a function that is one of several smooth functions at each point, its *branches*. Where two of them meet, the surface may
-/// have a crease. The part of the surface on which one branch gives f is a *patch*.
+/// An evaluator of a function that is one of several smooth functions at each point, its
+/// *branches*. Where two of them meet, the surface may have a crease. The part of the surface on
+/// which one branch gives f is a *patch*.
 #[doc(hidden)]
 pub trait Patches {
-    /// The number of the branch that gives f at `p`: it says which operand every maximum, minimum and absolute value takes there
-    /// on which f depends. Equal numbers are equal functions. Where f is smooth there is branch 0 alone.
+    /// The number of the branch that gives f at `p`: it says which operand every maximum, minimum
+    /// and absolute value takes there on which f depends. Equal numbers are equal functions. Where
+    /// f is smooth there is branch 0 alone.
     fn branch_at(&mut self, p: DVec3) -> u32;
 
-    /// The branches that may give a point of the surface in the box, each once; none if they are more than can be listed.
+    /// The branches that may give a point of the surface in the box, each once; none if they are
+    /// more than can be listed.
     fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>>;
 
-    /// The evaluator of the smooth function of `branch`, wherever that gives f or not. Its bounds are those of the branch.
+    /// The evaluator of the smooth function of `branch`, wherever that gives f or not. Its bounds
+    /// are those of the branch.
     ///
     /// # Panics
     ///
     /// If there is no such branch.
     fn branch(&mut self, branch: u32) -> &mut dyn Evaluator;
 
-    /// Cells of another box outside of which the surface has no crease: no wider than `width` but where that would take too long.
+    /// Cells of another box outside of which the surface has no crease: no wider than `width` but
+    /// where that would take too long.
     fn crease_cells(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds>;
 }
 

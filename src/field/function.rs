@@ -12,11 +12,12 @@ pub(super) const SECOND: f64 = 20.0;
 
 /// A field given by a function of a point, with its gradient or without.
 ///
-/// f is negative inside the surface; where it is undefined it returns NaN. Derivatives that are not given are found by
-/// differences, with four evaluations for a gradient and nineteen for a Hessian: a gradient makes sampling several times as fast.
-/// There are no bounds to prove by that every component of the surface was found, and edges are not known: a surface with edges, as the
-/// union of two bodies by `min`, is sampled as if it were smooth, and its mesh may be open there. A [`Formula`](crate::Formula) with `min`,
-/// `max` and `abs` has its edges.
+/// f is negative inside the surface; where it is undefined it returns NaN. Derivatives that are not
+/// given are found by differences, with four evaluations for a gradient and nineteen for a Hessian:
+/// a gradient makes sampling several times as fast. There are no bounds to prove by that every
+/// component of the surface was found, and edges are not known: a surface with edges, as the union
+/// of two bodies by `min`, is sampled as if it were smooth, and its mesh may be open there. A
+/// [`Formula`](crate::Formula) with `min`, `max` and `abs` has its edges.
 ///
 /// Give the box of the surface where it is known ([`Settings::in_box`](crate::Settings::in_box)). Without one, grids of 32 cells a side look
 /// for changes of sign over cubes around the origin, from ±4 to ±10,000, each four or five times as wide as the one before. The box is fitted to
@@ -73,7 +74,8 @@ where
         Stepped { field: self, step: &difference_step }.jet(p)
     }
 
-    /// Derivatives that are not given are differences over steps that suit the frame, those of first order forward ones.
+    /// Derivatives that are not given are differences over steps that suit the frame, those of
+    /// first order forward ones.
     fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
         Box::new(Pointwise { field: Stepped { field: self, step: move |p| frame.step(p) }, frame })
     }
@@ -118,8 +120,9 @@ pub(super) fn at_slope(p: DVec3, k: usize, h: f64) -> DVec3 {
     if k == 0 { p } else { p + DVec3::AXES[k - 1] * h }
 }
 
-/// The gradient by forward differences, from the values at the places of [`at_slope`]. Its error is of order h: less than a ten-thousandth
-/// where the surface bends within a twentieth of the box, and no more where a function computes in single precision.
+/// The gradient by forward differences, from the values at the places of [`at_slope`]. Its error is
+/// of order h: less than a ten-thousandth where the surface bends within a twentieth of the box,
+/// and no more where a function computes in single precision.
 pub(super) fn slope(f: [f64; SLOPE], h: f64) -> DVec3 {
     (DVec3::new(f[1], f[2], f[3]) - DVec3::splat(f[0])) / h
 }
@@ -128,8 +131,8 @@ pub(super) fn slope(f: [f64; SLOPE], h: f64) -> DVec3 {
 pub(super) const SLOPE: usize = 4;
 pub(super) const JET: usize = 19;
 
-/// Place `k` of those whose values give a second-order jet: the point itself, one ahead and one behind on each axis, and four around it in each
-/// plane of two axes.
+/// Place `k` of those whose values give a second-order jet: the point itself, one ahead and one
+/// behind on each axis, and four around it in each plane of two axes.
 pub(super) fn at_jet(p: DVec3, k: usize, h: f64) -> DVec3 {
     const SIGNS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
     const PLANES: [[usize; 2]; 3] = [[0, 1], [0, 2], [1, 2]];

@@ -1,4 +1,4 @@
-//! What a program may give to be sampled: a field, a function of a point, a function of a batch of points.
+//! A program gives a field, a function of a point or a function of a batch of points to be sampled.
 
 use super::function::{JET, SECOND, SLOPE, at_jet, at_slope, jet, slope};
 use super::{BATCH, Evaluator, Field, FnField, Frame, Jet, MaybeSend, MaybeSync};
@@ -8,10 +8,12 @@ use glam::{DVec3, Vec3};
 use std::error::Error;
 use std::sync::{Arc, OnceLock};
 
-/// What can be sampled: a [`Field`], a reference or an `Arc` of one, a function `Fn(DVec3) -> f64` that gives f at a point, or a function
-/// `Fn(&[DVec3], &mut [f64]) -> Result<(), E>` that writes f at each of a batch of points and may fail.
+/// What can be sampled: a [`Field`], a reference or an `Arc` of one, a function `Fn(DVec3) -> f64`
+/// that gives f at a point, or a function `Fn(&[DVec3], &mut [f64]) -> Result<(), E>` that writes f
+/// at each of a batch of points and may fail.
 ///
-/// `Kind` tells the compiler which of these it is; nobody has to name it. The type of a closure's argument has to be written.
+/// `Kind` tells the compiler which of these it is; nobody has to name it. The type of a closure's
+/// argument has to be written.
 ///
 /// ```
 /// use marching_particles::glam::DVec3;
@@ -79,10 +81,12 @@ where
     }
 }
 
-/// An error of a function of the program, as errors can be shared. In WebAssembly it may hold values of JavaScript.
+/// An error of a function of the program, as errors can be shared. In WebAssembly it may hold
+/// values of JavaScript.
 #[cfg(not(target_arch = "wasm32"))]
 pub type SharedError = Arc<dyn Error + Send + Sync>;
-/// An error of a function of the program, as errors can be shared. In WebAssembly it may hold values of JavaScript.
+/// An error of a function of the program, as errors can be shared. In WebAssembly it may hold
+/// values of JavaScript.
 #[cfg(target_arch = "wasm32")]
 pub type SharedError = Arc<dyn Error>;
 
@@ -136,9 +140,10 @@ pub type NoGradient = fn(&[DVec3], &mut [DVec3]);
 
 /// A field given by a function of a batch of points, with its gradients or without.
 ///
-/// The function writes f at each point; it is never asked for a point by itself, and for 512 at a time at most. It may fail: the run ends
-/// then, and gives the error. A function that has failed once is not asked again, by no run. Derivatives that are not given are found by differences,
-/// as those of [`FnField`], which says what else is not known of such a field.
+/// The function writes f at each point; it is never asked for a point by itself, and for 512 at a
+/// time at most. It may fail: the run ends then, and gives the error. A function that has failed
+/// once is not asked again, by no run. Derivatives that are not given are found by differences, as
+/// those of [`FnField`], which says what else is not known of such a field.
 pub struct BatchField<F, G = NoGradient, E = FieldError> {
     values: F,
     gradients: Option<G>,

@@ -1,8 +1,8 @@
 //! Fields f(x, y, z) whose zero set is the surface.
 //!
-//! A [`Field`] is a function that does not change. An [`Evaluator`] of it has the memory to evaluate batches of points, and if it is
-//! [`Bounded`] it bounds f over boxes. [`formula`] makes fields from text, [`gallery`] holds named formulas, and [`rbf`] sums
-//! radial functions.
+//! A [`Field`] is a function that does not change. An [`Evaluator`] of it has the memory to
+//! evaluate batches of points, and if it is [`Bounded`] it bounds f over boxes. [`formula`] makes
+//! fields from text, [`gallery`] holds named formulas, and [`rbf`] sums radial functions.
 
 pub(crate) mod descent;
 mod evaluator;
@@ -80,12 +80,14 @@ impl Enclosure {
     pub const NOWHERE: Self = Self { value: Interval::NOTHING, may_vanish: false, ..Self::UNKNOWN };
 }
 
-/// [`Send`] natively. In WebAssembly, where a function of JavaScript is never sent to another thread, everything is.
+/// [`Send`] natively. In WebAssembly, where a function of JavaScript is never sent to another
+/// thread, everything is.
 #[cfg(not(target_arch = "wasm32"))]
 pub trait MaybeSend: Send {}
 #[cfg(not(target_arch = "wasm32"))]
 impl<T: Send + ?Sized> MaybeSend for T {}
-/// [`Send`] natively. In WebAssembly, where a function of JavaScript is never sent to another thread, everything is.
+/// [`Send`] natively. In WebAssembly, where a function of JavaScript is never sent to another
+/// thread, everything is.
 #[cfg(target_arch = "wasm32")]
 pub trait MaybeSend {}
 #[cfg(target_arch = "wasm32")]
@@ -104,9 +106,10 @@ impl<T: ?Sized> MaybeSync for T {}
 
 /// A scalar field f with its derivatives; f < 0 inside the surface.
 ///
-/// A field is a function: it does not change, so it can be shared between runs, threads and whoever measures. One method is
-/// required, [`Field::value_and_gradient`]. The sampler calls a field through an [`Evaluator`], which has the memory that this takes; a
-/// field that can do better than one point at a time, in double precision and without bounds, brings an evaluator of its own.
+/// A field is a function: it does not change, so it can be shared between runs, threads and whoever
+/// measures. One method is required, [`Field::value_and_gradient`]. The sampler calls a field
+/// through an [`Evaluator`], which has the memory that this takes; a field that can do better than
+/// one point at a time, in double precision and without bounds, brings an evaluator of its own.
 ///
 /// f is NaN where it is undefined, and it has the same bits whenever it is asked.
 ///
@@ -142,18 +145,19 @@ pub trait Field: MaybeSend + MaybeSync {
         jet_by_differences(self, p, difference_step(p))
     }
 
-    /// An evaluator of the field in `frame`. A field that wraps another one passes this on. By default it calls the methods above, one point
-    /// at a time.
+    /// An evaluator of the field in `frame`. A field that wraps another one passes this on. By
+    /// default it calls the methods above, one point at a time.
     fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
         Box::new(Pointwise { field: self, frame })
     }
 
-    /// What is known of the field beside its values.
+    /// Returns what the field knows of itself: periods, a cell, the equation that is sampled.
     fn facts(&self) -> Facts {
         Facts::default()
     }
 
-    /// Why the field has no values any more, if a function of the program has failed. A run ends then, and gives this error.
+    /// Why the field has no values any more, if a function of the program has failed. A run ends
+    /// then, and gives this error.
     fn failure(&self) -> Option<FieldError> {
         None
     }
@@ -165,30 +169,35 @@ pub trait Field: MaybeSend + MaybeSync {
     }
 }
 
-/// What is known of a field beside its values.
+/// Facts about a field that no value tells.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Facts {
     /// The period of f along each axis: 0 if f does not change along it, none if f is not known to be periodic.
     pub periods: [Option<f64>; 3],
-    /// The box that closes the solid f ≤ 0 as a cell. What its opposite faces cut is the same along every axis that it repeats.
+    /// The box that closes the solid f ≤ 0 as a cell. What its opposite faces cut is the same along
+    /// every axis that it repeats.
     pub unit_cell: Option<UnitCell>,
-    /// The equation of the same surface that is evaluated in the place of the one that was given, if there is one.
+    /// The equation of the same surface that is evaluated in the place of the one that was given,
+    /// if there is one.
     pub sampled_as: Option<String>,
     /// A sentence for the user on why f is the same everywhere, if it is known.
     pub why_constant: Option<String>,
 }
 
-/// A field that is one of several smooth functions at each point, its *branches*. Where two of them meet, its surface may have a crease.
+/// A field that is one of several smooth functions at each point, its *branches*. Where two of them
+/// meet, its surface may have a crease.
 #[doc(hidden)]
 pub trait Creased: Field + Any {
-    /// Finds cells of a box, in slices, outside of which the surface has no crease: no wider than `width` but where that would take too
-    /// long; no cell if there is no crease. With them comes the field in which branches that meet smoothly on the surface in the box are
-    /// one, and which an evaluator of patches is to be asked of.
+    /// Finds cells of a box, in slices, outside of which the surface has no crease: no wider than
+    /// `width` but where that would take too long; no cell if there is no crease. With them comes
+    /// the field in which branches that meet smoothly on the surface in the box are one, and which
+    /// an evaluator of patches is to be asked of.
     fn creases_in<'a>(&'a self, bounds: &Bounds, width: f64) -> Work<'a, (Vec<Bounds>, Arc<dyn Creased>)>;
 
-    /// This field with the branches of another one, in which [creases were found](Creased::creases_in), where it is the same function of
-    /// other parameters; otherwise with its own.
+    /// This field with the branches of another one, in which [creases were
+    /// found](Creased::creases_in), where it is the same function of other parameters; otherwise
+    /// with its own.
     fn with_branches_of(&self, other: &dyn Creased) -> Arc<dyn Creased>;
 }
 
@@ -219,7 +228,8 @@ pub(crate) fn difference_step(p: DVec3) -> f64 {
     STEP * p.abs().max_element().max(1.0)
 }
 
-/// [`Field::jet`], with second derivatives that are central differences of the gradient with steps of this length.
+/// [`Field::jet`], with second derivatives that are central differences of the gradient with steps
+/// of this length.
 fn jet_by_differences<F: Field + ?Sized>(field: &F, p: DVec3, h: f64) -> Jet {
     let (value, gradient) = field.value_and_gradient(p);
     let [x, y, z] = DVec3::AXES.map(|axis| {

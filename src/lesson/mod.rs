@@ -334,7 +334,8 @@ impl Lesson {
         self.snapshots.add(self.chapters.len(), &self.course);
         let kind = self.course.begin_chapter();
         let evaluations = self.course.run.surface.evaluations;
-        // The search for the next seed belongs to the chapter before it: where no seed is left, it ends the placing.
+        // The search for the next seed belongs to the chapter before it: where no seed is left, it
+        // ends the placing.
         if let Some(last) = self.chapters.last_mut() {
             last.evaluations = evaluations;
         }

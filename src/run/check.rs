@@ -12,8 +12,9 @@ const SIDE: usize = 3;
 /// are told; with half of this share 99 %, with twice 96 %.
 const DIFFERENT: f64 = 0.02;
 
-/// A point of the box, counted from the origin of the frame, at which the gradient differs from the differences of f; none if it
-/// differs at fewer than half of the points, as at the kinks of a field that is right.
+/// A point of the box, counted from the origin of the frame, at which the gradient differs from the
+/// differences of f; none if it differs at fewer than half of the points, as at the kinks of a
+/// field that is right.
 pub(super) fn wrong_gradient(field: &mut dyn Evaluator, bounds: &Bounds) -> Option<DVec3> {
     let mut wrong = Vec::new();
     let mut looked_at = 0;

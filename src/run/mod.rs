@@ -120,7 +120,8 @@ enum Known {
 
 /// The sampling of one surface, in steps.
 ///
-/// A run owns its field, or borrows it where `F` is a reference. A budget is a count of work, never a time: however a run is cut into steps, its particles are the same to the last bit.
+/// A run owns its field, or borrows it where `F` is a reference. A budget is a count of work, never
+/// a time: however a run is cut into steps, its particles are the same to the last bit.
 ///
 /// ```
 /// use marching_particles::{Formula, Run, Settings};
@@ -167,7 +168,8 @@ impl<F: Field> RunField<F> {
         self.creased.as_ref().map_or(&self.given, |creased| creased)
     }
 
-    /// This field with another one in its place, of whose branches is known what is known of those of this one.
+    /// This field with another one in its place, of whose branches is known what is known of those
+    /// of this one.
     fn followed_by(&self, given: F) -> Self {
         let both = given.creased().zip(self.creased.as_deref());
         let creased = both.map(|(given, known)| given.with_branches_of(known));
@@ -189,7 +191,8 @@ impl<F: Field> Run<F> {
     ///
     /// # Errors
     ///
-    /// If a setting or the box is out of its range, the memory does not hold the particles to expect, or a function of the program fails.
+    /// If a setting or the box is out of its range, the memory does not hold the particles to
+    /// expect, or a function of the program fails.
     pub fn start<Kind>(field: impl IntoField<Kind, Field = F>, settings: &Settings) -> Result<Self, Error> {
         settings.validate()?;
         let field = field.into_field();
@@ -262,9 +265,11 @@ impl<F: Field> Run<F> {
         Ok(self.begin(settings)?)
     }
 
-    /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's share of a relaxation step. It
-    /// returns early now and then, so that a caller can show the particles. The run has ended when [`Progress::stop_reason`] is set: it is
-    /// [cancelled](StopReason::Cancelled) where a function of the program [has failed](Run::check_field).
+    /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's
+    /// share of a relaxation step. It returns early now and then, so that a caller can show the
+    /// particles. The run has ended when [`Progress::stop_reason`] is set: it is
+    /// [cancelled](StopReason::Cancelled) where a function of the program [has
+    /// failed](Run::check_field).
     pub fn step(&mut self, budget: u32) -> Progress {
         let progress = self.sampler.step(self.field.function(), budget);
         if self.field.given.failure().is_some() && progress.stop_reason.is_none() {
@@ -388,7 +393,8 @@ impl<F: Field> Run<F> {
         Ok(Sample::new(self, report))
     }
 
-    /// The error of a function of the program that has failed. The run has ended then, and its particles are those of before.
+    /// The error of a function of the program that has failed. The run has ended then, and its
+    /// particles are those of before.
     ///
     /// # Errors
     ///
@@ -466,7 +472,8 @@ impl<F: Field> Run<F> {
         &self.field.given
     }
 
-    /// An evaluator of the field in the frame of the particles: places are counted from their origin. It knows the patches of the surface.
+    /// An evaluator of the field in the frame of the particles: places are counted from their
+    /// origin. It knows the patches of the surface.
     #[must_use]
     pub fn evaluator(&self) -> Box<dyn Evaluator + '_> {
         self.field.function().evaluator(self.sampler.frame())

@@ -223,7 +223,9 @@ impl<F: Field> Run<F> {
         }))
     }
 
-    /// [`Run::report`] in slices, up to `budget` of them, with the run free between them: the report, once it is complete. A measurement that anything comes between is given up, and the next call begins anew.
+    /// [`Run::report`] in slices, up to `budget` of them, with the run free between them: the
+    /// report, once it is complete. A measurement that anything comes between is given up, and the
+    /// next call begins anew.
     pub(crate) fn measure_copy(&mut self, budget: u32) -> Option<Report>
     where
         F: Clone + 'static,

@@ -16,8 +16,9 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// Samples the surface f = 0 of a field with evenly spaced particles, and measures them. The field is anything that [`IntoField`] lists: a
-/// [`Formula`](crate::Formula), a reference or an `Arc` of a field, a closure.
+/// Samples the surface f = 0 of a field with evenly spaced particles, and measures them. The field
+/// is anything that [`IntoField`] lists: a [`Formula`](crate::Formula), a reference or an `Arc` of
+/// a field, a closure.
 ///
 /// The surface is sampled in the box of the settings, or in one that fits it: around all of a bounded surface, and of one that goes
 /// on for ever a part. The box of a field without [bounds](crate::Bounded) is fitted to what grids show ([`FnField`](crate::FnField)): give it
@@ -26,8 +27,9 @@ use std::sync::OnceLock;
 ///
 /// # Errors
 ///
-/// If a setting or the box is out of its range, the memory does not hold the particles to expect, no particle could be placed, or a
-/// function of the program fails: the error says why. Anything else that a field may do wrong is a [`Warning`] in the report.
+/// If a setting or the box is out of its range, the memory does not hold the particles to expect,
+/// no particle could be placed, or a function of the program fails: the error says why. Anything
+/// else that a field may do wrong is a [`Warning`] in the report.
 ///
 /// ```
 /// use marching_particles::{Formula, Format, Settings, sample};
@@ -160,8 +162,9 @@ impl Sample {
         export::write_mesh(&file.into(), &self.particles, &self.measured, self.mesh(), &mut out)
     }
 
-    /// Writes a file of the format that its extension names: the mesh as `glb`, `3mf`, `stl` or `obj`, the particles as `ply`, `csv`, `npy` or
-    /// `xyz`. A PLY file of the mesh is what [`Sample::write_mesh`] writes.
+    /// Writes a file of the format that its extension names: the mesh as `glb`, `3mf`, `stl` or
+    /// `obj`, the particles as `ply`, `csv`, `npy` or `xyz`. A PLY file of the mesh is what
+    /// [`Sample::write_mesh`] writes.
     ///
     /// # Errors
     ///
@@ -187,8 +190,8 @@ impl Sample {
         file.flush()
     }
 
-    /// Positions of the particles in the coordinates of the field, for a buffer of a graphics card. A particle on a crease is there once for each
-    /// patch, with the normal of each.
+    /// Positions of the particles in the coordinates of the field, for a buffer of a graphics card.
+    /// A particle on a crease is there once for each patch, with the normal of each.
     #[must_use]
     pub fn positions(&self) -> Vec<[f32; 3]> {
         (0..self.particles.len()).map(|i| self.particles.place(i).as_vec3().to_array()).collect()

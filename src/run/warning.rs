@@ -208,11 +208,11 @@ pub enum Warning {
     Overflow,
 }
 
-/// How much a warning says about the result.
+/// A severity says what a warning means for the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Severity {
-    /// What was found or done; the result is whole.
+    /// The result is whole; the warning tells what was found or done.
     Note,
     /// The result may be incomplete, or less even than it could be.
     Caution,
@@ -227,7 +227,7 @@ impl Warning {
         self.kind().0
     }
 
-    /// How much the warning says about the result.
+    /// Returns what the warning means for the result.
     #[must_use]
     pub fn severity(&self) -> Severity {
         self.kind().1

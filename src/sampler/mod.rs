@@ -126,8 +126,8 @@ struct Output {
 #[derive(Clone, Default)]
 pub(crate) struct FoundCreases {
     pub(crate) creases: Creases,
-    /// The function that is sampled in the place of the field: branches of it that meet smoothly on the surface are one. None for the
-    /// field itself.
+    /// The function that is sampled in the place of the field: branches of it that meet smoothly on
+    /// the surface are one. None for the field itself.
     pub(crate) function: Option<Arc<dyn Creased>>,
 }
 
@@ -156,9 +156,11 @@ pub(crate) fn find_creases<'a>(
     })
 }
 
-/// The frame that brings values and gradients of a field at points of a box within reach of the numbers they are computed with.
+/// The frame that brings values and gradients of a field at points of a box within reach of the
+/// numbers they are computed with.
 fn frame_for(field: &dyn Field, origin: DVec3, bounds: &Bounds) -> Frame {
-    /// Points along each axis: 125 of them, off the faces of the box and its planes of symmetry, fill one batch.
+    /// Points along each axis: 125 of them, off the faces of the box and its planes of symmetry,
+    /// fill one batch.
     const SIDE: usize = 5;
     let frame = Frame { length: bounds.diagonal(), ..Frame::around(origin) };
     let double = precision::double_scale(&mut *field.evaluator(frame), bounds);
@@ -269,10 +271,11 @@ impl Sampler {
         &self.settings
     }
 
-    /// Starts a run, with valid settings in a valid box: surveys the field (about 40,000 evaluations, 80,000 where a field has no bounds to
-    /// prove by) and fixes the radius. Particles of an earlier run are dropped. The box is counted from `origin`, as particles will be.
-    /// `creases` are those of the surface in the box; without them all that is known of field and box is kept from the last start, with
-    /// its survey.
+    /// Starts a run, with valid settings in a valid box: surveys the field (about 40,000
+    /// evaluations, 80,000 where a field has no bounds to prove by) and fixes the radius. Particles
+    /// of an earlier run are dropped. The box is counted from `origin`, as particles will be.
+    /// `creases` are those of the surface in the box; without them all that is known of field and
+    /// box is kept from the last start, with its survey.
     ///
     /// # Errors
     ///

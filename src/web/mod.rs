@@ -1,8 +1,9 @@
 //! The bindings for JavaScript: newtypes that copy, nothing else.
 //!
-//! One source makes five bundles, each with a feature of its own: `page-core`, the sampler; `page-points`, what makes fields from files;
-//! `page-lesson`, the paper's algorithms event by event, each of these in a worker of its own; `webgpu` and `webgl`, the renderer,
-//! which lives on the main thread.
+//! One source makes five bundles, each with a feature of its own: `page-core`, the sampler;
+//! `page-points`, what makes fields from files; `page-lesson`, the paper's algorithms event by
+//! event, each of these in a worker of its own; `webgpu` and `webgl`, the renderer, which lives on
+//! the main thread.
 
 #[cfg(feature = "page-core")]
 mod core;

@@ -134,7 +134,8 @@ fn random_roofs_are_refined_up_to_the_box() {
     for seed in cases::seeds(ROOFS) {
         let [text, rounded] = roof(&mut Pcg32::seed_from_u64(seed));
         let field = Formula::parse(&text).expect("a formula");
-        // Where the sheets leave a gap that is thinner than the cells, or than what rounding fills, grids are of no use.
+        // Where the sheets leave a gap that is thinner than the cells, or than what rounding fills,
+        // grids are of no use.
         let rounded = Formula::parse(&rounded).expect("a formula");
         let [euler, others @ ..] = [(&field, 56), (&rounded, 56), (&rounded, 40)]
             .map(|(field, cells)| euler_on_grid(field.clone(), &bounds, cells));

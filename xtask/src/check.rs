@@ -298,7 +298,8 @@ fn docs(project: &Project) -> Result<()> {
     dependent(project)
 }
 
-/// A program that depends on the library exports as WebAssembly what it wrote itself, and nothing of the page.
+/// A program that depends on the library exports as WebAssembly what it wrote itself, and nothing
+/// of the page.
 fn dependent(project: &Project) -> Result<()> {
     let target = WasmTarget::prepare(project)?;
     let folder = project.target.join("dependent");

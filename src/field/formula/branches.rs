@@ -428,8 +428,8 @@ fn may_cross(graph: &mut Graph, root: Id) -> bool {
     })
 }
 
-/// The branches of a formula, which its evaluators find out together. What they find does not depend on who asks first, but for the numbers
-/// of branches beyond the first [`MAX_NUMBERED`].
+/// The branches of a formula, which its evaluators find out together. What they find does not
+/// depend on who asks first, but for the numbers of branches beyond the first [`MAX_NUMBERED`].
 #[derive(Debug, Default)]
 pub(super) struct SharedBranches(Mutex<Branches>);
 
@@ -716,8 +716,8 @@ impl Branches {
         }
     }
 
-    /// Recomputes everything that depends on the parameters alone. The branches begin anew if another operation
-    /// is a choice now.
+    /// Recomputes everything that depends on the parameters alone. The branches begin anew if
+    /// another operation is a choice now.
     pub(super) fn set_parameters(&mut self, values: &[f64]) {
         if self.parts.is_empty() {
             return;

@@ -5,11 +5,11 @@ use super::operations::{Binary, Unary};
 use super::{Formula, MAX_DEPTH, MAX_OPERATIONS, display};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// An expression in x, y and z, of which a [`Formula`] is made: its derivatives and bounds are exact, and its edges are found, as those of a
-/// text are.
+/// An expression in x, y and z, of which a [`Formula`] is made: its derivatives and bounds are
+/// exact, and its edges are found, as those of a text are.
 ///
-/// Operators take expressions, references to them and numbers; of the functions the common ones are methods, and [`Expr::call`] has
-/// all of the language.
+/// Operators take expressions, references to them and numbers; of the functions the common ones are
+/// methods, and [`Expr::call`] has all of the language.
 ///
 /// ```
 /// use marching_particles::{Expr, Formula, Settings, sample};
@@ -44,7 +44,8 @@ impl Expr {
     ///
     /// # Panics
     ///
-    /// If the formula language has another meaning for the name, or the name is none: a letter comes first, then letters and digits.
+    /// If the formula language has another meaning for the name, or the name is none: a letter
+    /// comes first, then letters and digits.
     #[must_use]
     pub fn parameter(name: &str) -> Self {
         let is_name = super::lex::is_name(name) && !super::spelling::is_known(name);
@@ -55,7 +56,8 @@ impl Expr {
         Self::of(ExprKind::Parameter(name.to_owned()), &[])
     }
 
-    /// A function of the formula language, by its name, of these arguments: see [`FUNCTIONS`](super::FUNCTIONS).
+    /// A function of the formula language, by its name, of these arguments: see
+    /// [`FUNCTIONS`](super::FUNCTIONS).
     ///
     /// # Panics
     ///

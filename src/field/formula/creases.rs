@@ -69,9 +69,10 @@ impl Branches {
         found.map_or_else(Vec::new, |found| found.cells)
     }
 
-    /// Cells of the box, no wider than `width`, outside of which the surface of a function has no crease, and the branches of the function
-    /// as they are there. It has no choices if there is no cell; else only those whose operands meet smoothly on the surface are none.
-    /// Products are told by their factors if these cross.
+    /// Cells of the box, no wider than `width`, outside of which the surface of a function has no
+    /// crease, and the branches of the function as they are there. It has no choices if there is no
+    /// cell; else only those whose operands meet smoothly on the surface are none. Products are
+    /// told by their factors if these cross.
     pub(super) async fn found_in(
         f: &Compiled,
         values: &[f64],

@@ -14,14 +14,16 @@ use std::sync::Arc;
 pub(super) struct FormulaEvaluator<'a> {
     formula: &'a Formula,
     frame: Frame,
-    /// What is evaluated in the place of f: a branch, or f as it is put together of the factors of a product; none for f.
+    /// What is evaluated in the place of f: a branch, or f as it is put together of the factors of
+    /// a product; none for f.
     instead: Option<Arc<Compiled>>,
     /// Whether one branch is evaluated.
     is_branch: bool,
-    /// The evaluator of a branch, of that which was asked for last.
+    /// The evaluator of the branch that was asked for last.
     branch: Option<Box<FormulaEvaluator<'a>>>,
     registers: Vec<Lanes>,
-    /// Values of the nodes in double precision, with derivatives up to the second, with first ones, and alone.
+    /// Values of the nodes in double precision, with derivatives up to the second, with first ones,
+    /// and alone.
     jets: scalar::JetScratch,
     slopes: Vec<scalar::ForwardJet<0>>,
     doubles: Vec<f64>,
@@ -30,7 +32,8 @@ pub(super) struct FormulaEvaluator<'a> {
 
 /// Memory of the bounds of a function.
 struct FormulaBounds {
-    /// The factors of f; where the surface has creases those of each of its branches, each with the number of the branch.
+    /// The factors of f; where the surface has creases those of each of its branches, each with the
+    /// number of the branch.
     factors: Vec<Factor>,
     /// Boxes in the coordinates of the formula.
     boxes: Vec<Bounds>,
@@ -98,7 +101,7 @@ impl<'a> FormulaEvaluator<'a> {
     }
 }
 
-/// The compiled function that is evaluated. It borrows two fields alone.
+/// The compiled function that is evaluated. A method would borrow the buffers, too.
 fn active<'b>(formula: &'b Formula, instead: &'b Option<Arc<Compiled>>) -> &'b Compiled {
     instead.as_deref().unwrap_or(&formula.compiled)
 }

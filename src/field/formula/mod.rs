@@ -141,9 +141,9 @@ impl Parameter {
 
 /// Field f(x, y, z) given by a formula.
 ///
-/// Copies share all that does not depend on the values of the parameters; [another value](Formula::with) compiles nothing but where
-/// it makes another function of the formula, as a smooth minimum of width 0 is one. The Hessian and the bounds are compiled when first
-/// asked for.
+/// Copies share all that does not depend on the values of the parameters; [another
+/// value](Formula::with) compiles nothing but where it makes another function of the formula, as a
+/// smooth minimum of width 0 is one. The Hessian and the bounds are compiled when first asked for.
 ///
 /// ```
 /// use marching_particles::{Field, Formula};
@@ -424,7 +424,7 @@ impl Formula {
         self.compiled.transformed_jet(p)
     }
 
-    /// The same formula with other branches.
+    /// Returns this formula with other branches.
     fn with_branches(&self, branches: Branches) -> Arc<dyn Creased> {
         let compiled = self.compiled.clone();
         Arc::new(Self { branches: SharedBranches::new(branches), compiled, ..self.clone() })
@@ -551,8 +551,8 @@ impl Creased for Formula {
         })
     }
 
-    /// The numbers of branches outlast a change of the parameters, unless that brings the width of a smooth minimum to 0 or an exponent
-    /// to 1.
+    /// The numbers of branches outlast a change of the parameters, unless that brings the width of
+    /// a smooth minimum to 0 or an exponent to 1.
     fn with_branches_of(&self, other: &dyn Creased) -> Arc<dyn Creased> {
         let other = (other as &dyn Any).downcast_ref::<Self>();
         let is_same = |other: &&Self| Arc::ptr_eq(&self.compiled.graph, &other.compiled.graph);

@@ -38,7 +38,8 @@ pub(super) struct Instruction {
     pub(super) c: u32,
 }
 
-/// A compiled graph with any number of results, and the values of its uniforms. Copies share the instructions.
+/// A compiled graph with any number of results, and the values of its uniforms. Copies share the
+/// instructions.
 #[derive(Clone, Debug)]
 pub(super) struct Program {
     tape: Arc<Tape>,

@@ -147,7 +147,8 @@ impl RbfData {
         Jet { value, gradient, hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
     }
 
-    /// f and ∇f at each of `points`, counted from `origin`, four at a time, equal to those of [`RbfData::jet`] up to rounding.
+    /// f and ∇f at each of `points`, counted from `origin`, four at a time, equal to those of
+    /// [`RbfData::jet`] up to rounding.
     pub(super) fn gradients(
         &self,
         origin: DVec3,

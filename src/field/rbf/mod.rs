@@ -103,7 +103,8 @@ struct RbfEvaluator<'a> {
 }
 
 impl RbfEvaluator<'_> {
-    /// Calls `store` with the index of each point and with the first numbers of f, ∇f and ∇∇f at it, before they are scaled.
+    /// Calls `store` with the index of each point and with the first numbers of f, ∇f and ∇∇f at
+    /// it, before they are scaled.
     fn sums<const N: usize>(&mut self, points: &[Vec3], store: impl FnMut(usize, [f32; N])) {
         let Self { field: RbfField { data, tree, pulls }, frame, places } = self;
         let pulls = Some(pulls).filter(|pulls| !pulls.list().is_empty());

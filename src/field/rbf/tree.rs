@@ -122,7 +122,8 @@ impl CellTree {
         }
     }
 
-    /// Calls `store` for each point, counted from `origin`, with its index and f and ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy, yz, zz).
+    /// Calls `store` for each point, counted from `origin`, with its index and f and ∇f, and for
+    /// `N` = 10 also ∇∇f (xx, xy, xz, yy, yz, zz).
     pub(super) fn sums<const N: usize>(
         &self,
         data: &RbfData,
@@ -186,7 +187,8 @@ impl CellTree {
     }
 }
 
-/// A cell. `far` is the polynomial of its parent, shifted to this cell, and `among` are the near centres of its parent.
+/// A cell. `far` is the polynomial of its parent, shifted to this cell, and `among` are the near
+/// centres of its parent.
 fn cell(
     taylor: &Taylor,
     centres: &[Centre],

@@ -1,10 +1,11 @@
 //! What a particle may lie on besides the surface: the creases along which two smooth branches of f give way to each other, and the
 //! corners where more than two meet; and the [tips] of cones.
 //!
-//! A formula with maxima, minima and absolute values has a surface of *patches*. On each one smooth branch gives f
-//! ([`Patches::branch_at`](crate::field::Patches::branch_at)). Two patches meet along a *crease*, the curve on which both branches
-//! are zero; it ends at a corner, at the box, or runs back into itself. Where the factors of a product cross, four patches
-//! meet: each factor is two branches, one on either side of the other factor.
+//! A formula with maxima, minima and absolute values has a surface of *patches*. On each one smooth
+//! branch gives f ([`Patches::branch_at`](crate::field::Patches::branch_at)). Two patches meet
+//! along a *crease*, the curve on which both branches are zero; it ends at a corner, at the box, or
+//! runs back into itself. Where the factors of a product cross, four patches meet: each factor is
+//! two branches, one on either side of the other factor.
 //!
 //! 1. *Search.* The field says in which small cells of the box creases can be. There Newton's method looks for a point on each pair of
 //!    branches.
@@ -144,7 +145,8 @@ impl Creases {
         CELL * bounds.diagonal()
     }
 
-    /// Finds the creases of a field in `bounds`, which lie in these cells, in slices. Those on opposite faces of a unit cell are the same.
+    /// Finds the creases of a field in `bounds`, which lie in these cells, in slices. Those on
+    /// opposite faces of a unit cell are the same.
     pub(super) async fn find(
         probe: &mut Probe<'_>,
         bounds: &Bounds,

@@ -29,7 +29,8 @@ const BOXES: usize = 4;
 pub(super) struct BoxProgram {
     /// The nodes that the results need.
     graph: Arc<Graph>,
-    /// Bounds of the nodes that depend on no coordinate. As they contain the rounding errors they are seldom single numbers.
+    /// Bounds of the nodes that depend on no coordinate. As they contain the rounding errors they
+    /// are seldom single numbers.
     uniforms: Vec<Row<BOXES>>,
     /// Nodes of the results.
     outputs: Vec<Id>,
