@@ -14,8 +14,8 @@ use std::sync::Arc;
 pub(super) struct FormulaEvaluator<'a> {
     formula: &'a Formula,
     frame: Frame,
-    /// What is evaluated in the place of f: a branch, or f as it is put together of the factors of
-    /// a product; none for f.
+    /// The compiled function that is evaluated: a branch, or the one in which factors of a product
+    /// are choices. Without one it is f itself.
     instead: Option<Arc<Compiled>>,
     /// Whether one branch is evaluated.
     is_branch: bool,
