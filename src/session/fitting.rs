@@ -3,7 +3,6 @@
 
 use super::{FieldAnswer, Session, Source};
 use crate::extent::{self, Extent};
-use crate::field::Field;
 use crate::field::formula::Formula;
 use crate::field::gallery::Surface;
 use crate::math::Bounds;
@@ -226,7 +225,7 @@ impl Session {
         let (mut bounds, mut reach_in) = (clip, reach);
         if let Some(field) = field {
             let is_cell = closing.is_some() && choice.box_cell == BoxCell::Periodic;
-            let present = (field.thickness(), field.closing_box(), field.facts().unit_cell.is_some());
+            let present = (field.thickness(), field.closing_box(), field.is_cell());
             if present != (choice.sheet(), closing, is_cell) {
                 let solid = choice.made_of(field.clone(), closing.as_ref());
                 self.fitting.closed = BoxSearch::default();

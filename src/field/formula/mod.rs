@@ -332,6 +332,11 @@ impl Formula {
         self.solid.closed
     }
 
+    /// Whether the box that closes the solid is that of a cell, see [`Formula::repeated_in`].
+    pub(crate) fn is_cell(&self) -> bool {
+        self.solid.closed.is_some() && self.solid.is_cell
+    }
+
     /// Compiles what the surface is made to, anew from f.
     fn make_solid(&mut self) {
         let (mut graph, f) = (*self.surface).clone();
