@@ -61,7 +61,7 @@ fn solids() -> Vec<Solid> {
 fn off_the_edge(particles: &Particles, field: &mut dyn Evaluator) -> f64 {
     let mut farthest = 0.0_f64;
     for row in 0..particles.twins.len() {
-        let place = particles.position[row].as_dvec3();
+        let place = particles.local[row].as_dvec3();
         let (value, gradient) = field.on(particles.patch_of(row)).value_and_gradient(place);
         let spacing = 2.0 * f64::from(particles.radius[row]);
         farthest = farthest.max(value.abs() / gradient.length() / spacing);

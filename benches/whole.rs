@@ -26,7 +26,7 @@ use marching_particles::field::rbf::RbfField;
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::fit_model;
 use marching_particles::quality::{MeasureOptions, measure};
-use marching_particles::{Phase, Run, Sampling, Settings, SizeMode, StopReason};
+use marching_particles::{Phase, Radius, Run, Sampling, Settings, SizeMode, StopReason};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -169,7 +169,7 @@ fn parts(criterion: &mut Criterion, set: &str, count: u32) {
     let options = MeasureOptions::default();
     group.bench_function("quality", |bencher| {
         let (field, bounds) = (&mut job.field, &job.bounds);
-        bencher.iter(|| measure(&particles.position, &particles.normal, field, Some(bounds), &options));
+        bencher.iter(|| measure(&particles.local, &particles.normal, field, Some(bounds), &options));
     });
     let mut mesher = Mesher::with_vertices(count);
     group.bench_function("surface nets", |bencher| bencher.iter(|| mesher.run()));
@@ -270,7 +270,7 @@ fn search_share(id: &str, count: u32, rounds: usize) {
         if round == 0 {
             // A wanted count runs the front twice; from here on the radius is given, and it runs once.
             let radius_share = radius(&run) / surface.bounds.diagonal();
-            settings = Settings::with_radius(radius_share).in_box(surface.bounds);
+            settings = Settings::with_radius(Radius::Share(radius_share)).in_box(surface.bounds);
         } else {
             shares.push([surveyed, seeding, (surveyed + seeding) / whole]);
             cells = run.sampler().undecided_cells();

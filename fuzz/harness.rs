@@ -304,7 +304,7 @@ pub fn run(
         }
     };
     assert!(evaluations < MOST, "{}: {evaluations} evaluations", context());
-    for (p, n) in session.run.particles().position.iter().zip(&session.run.particles().normal) {
+    for (p, n) in session.run.particles().local.iter().zip(&session.run.particles().normal) {
         assert!(p.is_finite() && (n.length() - 1.0).abs() < 1e-4, "{}: {p} {n}", context());
     }
     let (search, sampled) = (session.run.sampler().search(), session.run.sampler().sampled());

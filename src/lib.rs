@@ -7,7 +7,7 @@
 //! their mesh. A [`Run`] does the same in steps, for a caller that draws or cancels.
 //!
 //! ```
-//! use marching_particles::{Formula, Format, MeshFormat, Settings, gallery, sample};
+//! use marching_particles::{Formula, Format, MeshFormat, Radius, Settings, gallery, sample};
 //!
 //! let surface = Formula::parse("x^4 + y^4 + z^4 = a")?.with("a", 0.5)?;
 //! let cushion = sample(surface, &Settings::with_count(2_000))?;
@@ -15,7 +15,7 @@
 //!
 //! // In a given box and by radius. The triangles between the particles form a torus.
 //! let torus = gallery::find("torus").ok_or("no such surface")?;
-//! let settings = Settings::with_radius(0.01).in_box(torus.bounds);
+//! let settings = Settings::with_radius(Radius::Share(0.01)).in_box(torus.bounds);
 //! let sample = sample(torus.field(), &settings)?;
 //! assert_eq!(sample.mesh().topology.components[0].euler(), 0);
 //! sample.write_mesh(MeshFormat::Glb, &mut Vec::new())?;
@@ -73,7 +73,7 @@
 //! | For | Items |
 //! |---|---|
 //! | the job | [`sample`], [`Sample`], [`Run`], [`Start`], [`Progress`], [`Phase`], [`StopReason`], [`Reporting`] |
-//! | its settings | [`Settings`], [`Sampling`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Bounds`], [`Reach`] |
+//! | its settings | [`Settings`], [`Sampling`], [`Radius`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Bounds`], [`Reach`] |
 //! | formulas | [`Formula`], [`Expr`], [`Parameter`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [gallery] |
 //! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [glam] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
@@ -165,8 +165,8 @@ pub use run::{
     Severity, Start, Warning, sample,
 };
 pub use sampler::{
-    Doubt, FateCounts, FollowError, GapPolicy, LawKind, Method, Phase, Progress, Refusal, Sampled, Sampling,
-    Search, Settings, SettingsError, SizeMode, Spot, StopReason, Unsampled,
+    Doubt, FateCounts, FollowError, GapPolicy, LawKind, Method, Phase, Progress, Radius, Refusal, Sampled,
+    Sampling, Search, Settings, SettingsError, SizeMode, Spot, StopReason, Unsampled,
 };
 pub use topology::{Component, Topology};
 

@@ -13,8 +13,9 @@ use serde::Serialize;
 pub struct Particles {
     /// The point from which positions are counted, in the coordinates of the formula. See [`Bounds::local_origin`].
     pub origin: DVec3,
-    /// Position on the surface, counted from `origin`.
-    pub position: Vec<Vec3>,
+    /// Position on the surface, counted from `origin`: [`Particles::place`] has it in the coordinates
+    /// of the formula, [`Sample::positions`](crate::Sample::positions) those of all.
+    pub local: Vec<Vec3>,
     /// Unit normal along the gradient of f: outward where f is smaller inside, as by the convention
     /// of this crate.
     pub normal: Vec<Vec3>,
@@ -169,25 +170,25 @@ impl Particles {
     /// [`Report::count`]: crate::Report::count
     #[must_use]
     pub fn len(&self) -> usize {
-        self.position.len()
+        self.local.len()
     }
 
     /// Returns the position of row `i` in the coordinates of the formula.
     #[must_use]
     pub fn place(&self, i: usize) -> DVec3 {
-        self.origin + self.position[i].as_dvec3()
+        self.origin + self.local[i].as_dvec3()
     }
 
     /// Returns whether there are no particles.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.position.is_empty()
+        self.local.is_empty()
     }
 
     /// Reserves memory for exactly `count` particles in all.
     pub fn reserve(&mut self, count: usize) {
         let more = count.saturating_sub(self.len());
-        self.position.reserve_exact(more);
+        self.local.reserve_exact(more);
         self.normal.reserve_exact(more);
         self.radius.reserve_exact(more);
         self.parent.reserve_exact(more);
@@ -205,8 +206,19 @@ impl Particles {
 
     /// The columns with a value for each row, and those that only some runs have.
     fn columns(&mut self) -> [&mut dyn Rows; 10] {
-        let Self { position, normal, radius, parent, level, slots, patch, twins, periodic, identity, .. } =
-            self;
+        let Self {
+            local: position,
+            normal,
+            radius,
+            parent,
+            level,
+            slots,
+            patch,
+            twins,
+            periodic,
+            identity,
+            ..
+        } = self;
         [position, normal, radius, parent, level, slots, patch, twins, periodic, identity]
     }
 
@@ -298,7 +310,7 @@ impl Particles {
 
     /// Adds a particle, on the patch of its parent.
     pub fn push(&mut self, position: Vec3, normal: Vec3, radius: f32, parent: u32, level: u32, slots: Slots) {
-        self.position.push(position);
+        self.local.push(position);
         self.normal.push(normal);
         self.radius.push(radius);
         self.parent.push(parent);
@@ -344,7 +356,7 @@ impl Particles {
     /// Removes the particles outside a box. One whose parent is removed is a seed then, and levels are counted from it.
     /// Returns the new row of each, as [`Self::keep`] does.
     pub(crate) fn keep_within(&mut self, bounds: &Bounds) -> Vec<u32> {
-        let is_inside: Vec<bool> = self.position.iter().map(|&p| bounds.contains(p)).collect();
+        let is_inside: Vec<bool> = self.local.iter().map(|&p| bounds.contains(p)).collect();
         let place = self.keep(|i| is_inside[i]);
         for i in 0..self.len() {
             // Parents come before their children, so the new level is known.
@@ -397,7 +409,7 @@ impl Particles {
         }
         let mut word = |bits: u32| hash = fnv(hash, &bits.to_le_bytes());
         for i in 0..self.len() {
-            for v in [self.position[i], self.normal[i]] {
+            for v in [self.local[i], self.normal[i]] {
                 for c in v.to_array() {
                     word(c.to_bits());
                 }

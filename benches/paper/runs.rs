@@ -200,7 +200,7 @@ impl Job {
         let total = clock.seconds();
         let particles = run.particles();
         let set = Set {
-            position: particles.position.clone(),
+            position: particles.local.clone(),
             normal: particles.normal.clone(),
             radius: particles.radius.clone(),
             level: particles.level.clone(),

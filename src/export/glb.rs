@@ -63,7 +63,7 @@ fn columns(particles: &Particles, Indexed { rows, normals, triangles }: &Indexed
     if triangles.is_empty() {
         return Vec::new();
     }
-    let positions: Vec<Vec3> = rows.iter().map(|&row| particles.position[row as usize]).collect();
+    let positions: Vec<Vec3> = rows.iter().map(|&row| particles.local[row as usize]).collect();
     let mut lo = Vec3::INFINITY;
     let mut hi = Vec3::NEG_INFINITY;
     for &p in &positions {

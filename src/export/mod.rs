@@ -166,7 +166,7 @@ fn coordinates(particles: &Particles, i: usize) -> [CellValue; 3] {
     if is_double(particles) {
         particles.place(i).to_array().map(CellValue::Double)
     } else {
-        particles.position[i].to_array().map(CellValue::Float)
+        particles.local[i].to_array().map(CellValue::Float)
     }
 }
 
@@ -391,7 +391,7 @@ mod tests {
     fn two() -> Particles {
         Particles {
             origin: DVec3::ZERO,
-            position: vec![Vec3::new(0.1, -2.0, 1e-9), Vec3::new(1.0 / 3.0, 4.0, 5.0)],
+            local: vec![Vec3::new(0.1, -2.0, 1e-9), Vec3::new(1.0 / 3.0, 4.0, 5.0)],
             normal: vec![Vec3::Z, Vec3::new(0.6, 0.8, 0.0)],
             radius: vec![0.25, 0.5],
             parent: vec![Particles::NO_PARENT, 0],
@@ -465,7 +465,7 @@ mod tests {
     #[test]
     fn rows_of_a_particle_on_a_crease_tell_their_patch_and_their_particle() {
         let mut particles = two();
-        particles.position[1] = particles.position[0];
+        particles.local[1] = particles.local[0];
         (particles.patch, particles.twins) = (vec![4, 9], vec![0, 0]);
         let mut out = Vec::new();
         write(&Format::Csv.into(), &particles, &quality::Measurements::default(), &mut out)

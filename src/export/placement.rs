@@ -114,7 +114,7 @@ impl Placement {
         }
         let (mut particles, mut measured) = (particles.clone(), measured.clone());
         let length = |length: &mut f32| *length = (f64::from(*length) * scale) as f32;
-        for p in &mut particles.position {
+        for p in &mut particles.local {
             *p = (DVec3::from_array(self.up.turned(p.as_dvec3().to_array())) * scale).as_vec3();
         }
         for n in &mut particles.normal {

@@ -5,6 +5,7 @@
 //! fields from text, [`gallery`] holds named formulas, and [`rbf`] sums radial functions.
 
 pub(crate) mod descent;
+mod differences;
 mod evaluator;
 pub mod formula;
 mod function;
@@ -14,8 +15,8 @@ pub mod model;
 pub mod rbf;
 
 pub use evaluator::{Bounded, Evaluator, Frame, Patches};
-pub use function::FnField;
-pub use given::{BatchField, FieldError, IntoField, NoGradient, SharedError, kind};
+pub use function::{BatchField, FnField};
+pub use given::{FieldError, IntoField, SharedError, kind};
 
 use evaluator::Pointwise;
 
@@ -142,7 +143,7 @@ pub trait Field: MaybeSend + MaybeSync {
 
     /// f, ∇f and ∇∇f at `p`. By default the second derivatives are central differences of the gradient.
     fn jet(&self, p: DVec3) -> Jet {
-        jet_by_differences(self, p, difference_step(p))
+        jet_by_differences(self, p)
     }
 
     /// An evaluator of the field in `frame`. A field that wraps another one passes this on. By
@@ -154,6 +155,12 @@ pub trait Field: MaybeSend + MaybeSync {
     /// Returns what the field knows of itself: periods, a cell, the equation that is sampled.
     fn facts(&self) -> Facts {
         Facts::default()
+    }
+
+    /// The points for which functions of the program have been asked so far, of values and of
+    /// gradients; none where there are no such functions, or they are not counted.
+    fn calls(&self) -> Option<u64> {
+        None
     }
 
     /// Why the field has no values any more, if a function of the program has failed. A run ends
@@ -228,9 +235,9 @@ pub(crate) fn difference_step(p: DVec3) -> f64 {
     STEP * p.abs().max_element().max(1.0)
 }
 
-/// [`Field::jet`], with second derivatives that are central differences of the gradient with steps
-/// of this length.
-fn jet_by_differences<F: Field + ?Sized>(field: &F, p: DVec3, h: f64) -> Jet {
+/// [`Field::jet`], with second derivatives that are central differences of the gradient.
+fn jet_by_differences<F: Field + ?Sized>(field: &F, p: DVec3) -> Jet {
+    let h = difference_step(p);
     let (value, gradient) = field.value_and_gradient(p);
     let [x, y, z] = DVec3::AXES.map(|axis| {
         let [ahead, behind] = [p + h * axis, p - h * axis].map(|q| field.value_and_gradient(q).1);
@@ -265,6 +272,10 @@ impl<P: Deref<Target: Field> + MaybeSend + MaybeSync> Field for P {
 
     fn facts(&self) -> Facts {
         (**self).facts()
+    }
+
+    fn calls(&self) -> Option<u64> {
+        (**self).calls()
     }
 
     fn failure(&self) -> Option<FieldError> {

@@ -557,14 +557,14 @@ mod tests {
             let (fast, radius) = (sampled.particles(), f64::from(sampled.sampler().radius() as f32));
             let settings = LessonSettings {
                 radius,
-                seeds: vec![fast.position[0].as_dvec3().to_array()],
+                seeds: vec![fast.local[0].as_dvec3().to_array()],
                 relax_steps: 0,
                 ..LessonSettings::of_fast_front()
             };
             let placed: Vec<Particle> = (0..fast.len())
                 .map(|i| {
                     let parent = Some(fast.parent[i]).filter(|&parent| parent != Particles::NO_PARENT);
-                    let (position, normal) = (fast.position[i].as_dvec3(), fast.normal[i].as_dvec3());
+                    let (position, normal) = (fast.local[i].as_dvec3(), fast.normal[i].as_dvec3());
                     Particle::placed(position, normal, radius, parent, fast.level[i])
                 })
                 .collect();
@@ -590,7 +590,7 @@ mod tests {
                         );
                     } else {
                         assert_eq!(Some(fast.parent[i]), particle.parent, "{id}, {share}: child {i}");
-                        farthest = farthest.max(fast.position[i].as_dvec3().distance(particle.p()) / radius);
+                        farthest = farthest.max(fast.local[i].as_dvec3().distance(particle.p()) / radius);
                     }
                 }
             }

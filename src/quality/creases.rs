@@ -192,11 +192,11 @@ impl CreaseRows {
         let count = rows.patch.len();
         // Rows that are left out have no position.
         let (position, normals) = (vec![Vec3::NAN; count], vec![Vec3::ZERO; count]);
-        let mut particles = Particles { position, normal: normals, ..rows.clone() };
+        let mut particles = Particles { local: position, normal: normals, ..rows.clone() };
         let mut place = vec![NONE; count];
         for (k, &row) in tree.origin.iter().enumerate() {
             let row = row as usize;
-            (particles.position[row], particles.normal[row]) = (tree.position[k], normal[k]);
+            (particles.local[row], particles.normal[row]) = (tree.position[k], normal[k]);
             place[row] = k as u32;
         }
         let mesh = build::in_slices(&particles, bounds).await;

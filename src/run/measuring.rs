@@ -51,7 +51,7 @@ impl Measuring {
 /// Copy of the columns of particles that a later measurement needs.
 pub(super) fn measured_columns(particles: &Particles) -> Particles {
     Particles {
-        position: particles.position.clone(),
+        local: particles.local.clone(),
         normal: particles.normal.clone(),
         radius: particles.radius.clone(),
         patch: particles.patch.clone(),
@@ -73,7 +73,7 @@ pub(super) async fn measure(
     let radii = (sampling == Sampling::Adaptive).then_some(&particles.radius[..]);
     let options =
         quality::MeasureOptions { radii, rows: Some(particles), ..quality::MeasureOptions::default() };
-    quality::in_slices(&particles.position, &particles.normal, field, Some(bounds), &options, crossings).await
+    quality::in_slices(&particles.local, &particles.normal, field, Some(bounds), &options, crossings).await
 }
 
 /// Results of a measurement.
@@ -115,14 +115,14 @@ impl MeasuringInput {
 
 /// Number of particles nearer than 2r to one of the same patch that faces the other way.
 async fn facing_another_sheet(particles: &Particles) -> usize {
-    let tree = Tree::in_slices(particles.position.iter().copied().zip(0..).collect()).await;
+    let tree = Tree::in_slices(particles.local.iter().copied().zip(0..).collect()).await;
     let mut near = Vec::new();
     let mut count = 0;
     for range in ranges(tree.len(), HEAVY) {
         // In tree order: near particles look at the same memory.
         for k in range {
             let i = tree.origin[k] as usize;
-            let (p, n) = (particles.position[i], particles.normal[i]);
+            let (p, n) = (particles.local[i], particles.normal[i]);
             let reach = 2.0 * particles.radius[i];
             near.clear();
             tree.within_box(p - Vec3::splat(reach), p + Vec3::splat(reach), &mut near);

@@ -159,11 +159,22 @@ pub struct Run<F> {
 /// The field of a run.
 struct RunField<F> {
     given: F,
+    /// Calls of its functions before this run.
+    calls: u64,
     /// The function that is sampled in its place, see [`FoundCreases::function`].
     creased: Option<Arc<dyn Creased>>,
 }
 
 impl<F: Field> RunField<F> {
+    fn new(given: F) -> Self {
+        Self { calls: given.calls().unwrap_or(0), given, creased: None }
+    }
+
+    /// Calls of its functions by this run.
+    fn calls(&self) -> Option<u64> {
+        self.given.calls().map(|calls| calls - self.calls)
+    }
+
     fn function(&self) -> &dyn Field {
         self.creased.as_ref().map_or(&self.given, |creased| creased)
     }
@@ -173,7 +184,7 @@ impl<F: Field> RunField<F> {
     fn followed_by(&self, given: F) -> Self {
         let both = given.creased().zip(self.creased.as_deref());
         let creased = both.map(|(given, known)| given.with_branches_of(known));
-        Self { given, creased }
+        Self { creased, ..Self::new(given) }
     }
 }
 
@@ -195,15 +206,15 @@ impl<F: Field> Run<F> {
     /// expect, or a function of the program fails.
     pub fn start<Kind>(field: impl IntoField<Kind, Field = F>, settings: &Settings) -> Result<Self, Error> {
         settings.validate()?;
-        let field = field.into_field();
+        let field = RunField::new(field.into_field());
         let (bounds, reach) = match settings.bounds {
             Some(bounds) => (bounds, None),
             None => {
-                let extent = extent::find(&field);
-                (extent.with_room(|_| settings.largest_share()), Some(extent.reach))
+                let extent = extent::find(&field.given);
+                (extent.with_room(|bounds| settings.largest_share(bounds)), Some(extent.reach))
             }
         };
-        let mut run = Self { reach, ..Self::idle(field, bounds) };
+        let mut run = Self { reach, ..Self::of(field, bounds) };
         let begun = run.begin(settings);
         run.check_field()?;
         begun?;
@@ -212,8 +223,12 @@ impl<F: Field> Run<F> {
 
     /// A run that has not begun.
     pub(crate) fn idle(field: F, bounds: Bounds) -> Self {
+        Self::of(RunField::new(field), bounds)
+    }
+
+    fn of(field: RunField<F>, bounds: Bounds) -> Self {
         Self {
-            field: RunField { given: field, creased: None },
+            field,
             bounds,
             reach: None,
             sampler: Sampler::default(),
@@ -231,11 +246,14 @@ impl<F: Field> Run<F> {
     pub(crate) fn begin(&mut self, settings: &Settings) -> Result<Start, SettingsError> {
         settings.validate()?;
         self.bounds.check()?;
+        let settings = &settings.in_shares_of(&self.bounds)?;
         self.sampler.limit_memory(self.most_particles.saturating_mul(bytes_per_particle(settings)));
         self.sampler.set_box_given(self.reach.is_none());
         let origin = self.bounds.local_origin();
         let bounds = self.bounds.relative_to(origin);
-        let creases = (self.known != Known::Survey).then(|| {
+        let is_surveyed =
+            self.known == Known::Survey && self.sampler.settings().survey_cells == settings.survey_cells;
+        let creases = (!is_surveyed).then(|| {
             let known = self.creases.take();
             let search = || slices::complete(sampler::find_creases(&self.field.given, origin, &bounds));
             let FoundCreases { creases, function } = known.unwrap_or_else(search);
@@ -495,7 +513,7 @@ impl<F: Field> Run<F> {
     /// Principal curvatures (κ₁, κ₂) at the particles from `from` on, in inverse units of length; NaN where the surface has none.
     pub fn curvatures(&self, from: usize) -> Vec<[f32; 2]> {
         let count = self.rows();
-        let positions = &self.sampler.particles().position[from.min(count)..count];
+        let positions = &self.sampler.particles().local[from.min(count)..count];
         let mut curvatures = vec![Curvature::default(); positions.len()];
         let field = &mut *self.evaluator();
         differential::curvatures(field, positions, &mut curvatures);

@@ -98,6 +98,11 @@ pub struct Growth {
     pub fates: FateCounts,
     /// Field evaluations of the whole run, counted as [`Progress::evaluations`](crate::Progress::evaluations).
     pub evaluations: u64,
+    /// Points for which functions of the program were asked, of values and of gradients, from the
+    /// search for a box to this report; none of fields that do not [count](crate::Field::calls) them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(test, ts(skip))]
+    pub calls: Option<u64>,
     /// Field evaluations of the front per particle.
     pub evaluations_per_particle: f64,
     /// Times that a coarse front was refined; none where it was not, or the front stands.
@@ -330,7 +335,7 @@ impl<F: Field> Run<F> {
     fn at_border(&self) -> usize {
         let (particles, bounds) = (self.particles(), self.local_bounds());
         let is_inside = |i: usize, reach: Vec3| {
-            let (p, reach) = (particles.position[i], 2.0 * particles.radius[i] * reach);
+            let (p, reach) = (particles.local[i], 2.0 * particles.radius[i] * reach);
             bounds.contains(p - reach) && bounds.contains(p + reach)
         };
         let is_at = |&i: &usize| {
@@ -392,6 +397,7 @@ impl<F: Field> Run<F> {
             gaps_filled: counts.gaps_filled,
             fates: counts.fates,
             evaluations,
+            calls: self.field.calls(),
             evaluations_per_particle: counts.front_evaluations as f64 / particles.count().max(1) as f64,
             refined_levels: counts.refined_levels,
             energy: Some(self.sampler.energy()).filter(|energy| !energy.is_empty()).map(<[f64]>::to_vec),

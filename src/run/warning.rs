@@ -336,7 +336,7 @@ impl<F: Field> Run<F> {
     /// The warning about the faces of a cell across an axis, if particles lie on them, and not the same ones.
     fn unpaired(&self, axis: usize) -> Option<Warning> {
         let cell = self.field.given.facts().unit_cell?.relative_to(self.particles().origin);
-        let Particles { position, opposite, .. } = self.particles();
+        let Particles { local: position, opposite, .. } = self.particles();
         let faces = [cell.bounds.min[axis], cell.bounds.max[axis]].map(|at| at as f32);
         let is_paired = opposite.iter().any(|faces| usize::from(faces.axis) == axis);
         let is_reached = || position.iter().any(|p| faces.contains(&p[axis]));

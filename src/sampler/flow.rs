@@ -363,7 +363,7 @@ impl Flow {
         self.grids.reset(radii, |radius| GAUSSIAN_RANGE * radius);
         self.columns.handle.clear();
         for i in 0..particles.len() {
-            let handle = self.grids.insert(particles.position[i], particles.radius[i], i as u32);
+            let handle = self.grids.insert(particles.local[i], particles.radius[i], i as u32);
             self.columns.handle.push(handle);
             if self.columns.is_dead[i] {
                 self.grids.remove(handle);
@@ -447,7 +447,7 @@ impl Flow {
 
     /// Adds the energy of two particles, if they are neighbours.
     fn add_energy(&mut self, particles: &Particles, i: usize, j: usize) {
-        let offset = particles.position[j] - particles.position[i];
+        let offset = particles.local[j] - particles.local[i];
         let (sum, distance_sq) = (particles.radius[i] + particles.radius[j], offset.length_squared());
         let reach = 0.5 * GAUSSIAN_RANGE * sum;
         let pair = OrientedPoint::of(particles, i).pair(offset, particles.normal[j]);
@@ -679,7 +679,7 @@ pub(crate) fn is_leap(
     length: f64,
 ) -> Result<bool, FollowError> {
     let mut is_near = |i: usize| {
-        let (value, gradient) = field.value_and_gradient(particles.position[i].as_dvec3());
+        let (value, gradient) = field.value_and_gradient(particles.local[i].as_dvec3());
         let reach = f64::from(TRANSPORT_REACH * particles.radius[i]);
         value.abs() <= reach * gradient.length()
     };

@@ -30,7 +30,9 @@ pub use flow::FollowError;
 pub use phase::{Phase, StopReason};
 pub use progress::{Counts, Forecast, Progress};
 pub use refine::{Refusal, Spot};
-pub use settings::{COUNT_ROOM, GapPolicy, LawKind, Method, Sampling, Settings, SettingsError, SizeMode};
+pub use settings::{
+    COUNT_ROOM, GapPolicy, LawKind, Method, Radius, Sampling, Settings, SettingsError, SizeMode,
+};
 
 pub(crate) use attempt::COUNT_TOLERANCE;
 pub(crate) use discovery::precision::Blur;
@@ -44,6 +46,7 @@ use attempt::Attempt;
 pub use constraint::Creases;
 use constraint::tips::Tip;
 use core::hint::black_box;
+use discovery::grid::DENSE_CELLS;
 use discovery::search::ComponentSearch;
 use discovery::singular::{Bend, NearSurvey, Singular};
 use discovery::survey::{Absence, Survey, bare_among, bare_size, spacing, survey};
@@ -349,7 +352,8 @@ impl Sampler {
             self.frame = frame_for(function, self.output.particles.origin, &self.bounds);
             let field = &mut *function.evaluator(self.frame);
             let is_dense = field.bounded().is_none();
-            self.survey = survey(&mut Probe::new(field, &mut self.tools.memory), &self.bounds, is_dense);
+            let cells = is_dense.then(|| self.settings.survey_cells.unwrap_or(DENSE_CELLS));
+            self.survey = survey(&mut Probe::new(field, &mut self.tools.memory), &self.bounds, cells);
             self.survey.absence = match self.survey.absence {
                 Absence::Undefined if precision::overflows_double(field, &self.bounds) => Absence::TooLarge,
                 Absence::Constant if precision::varies(field, &self.bounds) => Absence::NotSeen,
@@ -497,7 +501,7 @@ impl Sampler {
     /// in the middle of a run cannot be caught.
     fn has_room_for(&self, particles: usize) -> bool {
         let bytes = |particles: usize| particles.checked_mul(bytes_per_particle(&self.settings));
-        let more = particles.saturating_sub(self.output.particles.position.capacity());
+        let more = particles.saturating_sub(self.output.particles.local.capacity());
         let is_there = |more: usize| {
             let mut memory = Vec::<u8>::new();
             let is_there = memory.try_reserve_exact(more).is_ok();
@@ -571,7 +575,7 @@ impl Sampler {
         let frame = frame_for(function, self.output.particles.origin, bounds);
         let field = &mut *function.evaluator(frame);
         let probe = &mut Probe::new(field, &mut self.tools.memory);
-        let seen = survey(probe, bounds, false);
+        let seen = survey(probe, bounds, None);
         if seen.area == 0.0 {
             // What remains is not seen on the grid.
             return;
@@ -626,7 +630,7 @@ impl Sampler {
         let settled = self.settled();
         let is_beyond = |p: &Vec3| !self.bounds.contains(*p);
         self.output.inside = None;
-        if !is_marching || !self.output.particles.position[..settled].iter().any(is_beyond) {
+        if !is_marching || !self.output.particles.local[..settled].iter().any(is_beyond) {
             return;
         }
         let mut inside = self.output.particles.clone();

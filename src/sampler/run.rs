@@ -456,7 +456,7 @@ impl Sampler {
         let Output { particles, .. } = &self.output;
         let is_near = |point: &Singular, p: DVec3| point.position.distance(p) <= singular::SAME * point.reach;
         let is_pinned = |point: &&Singular| {
-            (0..particles.twins.len()).any(|row| is_near(point, particles.position[row].as_dvec3()))
+            (0..particles.twins.len()).any(|row| is_near(point, particles.local[row].as_dvec3()))
         };
         let point = self.components.singular().iter().find(|point| !is_pinned(point))?;
         let at = point.position.as_vec3().into();

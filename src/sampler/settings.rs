@@ -64,7 +64,17 @@ pub enum GapPolicy {
     Leave,
 }
 
-/// Settings of a run. `Default` gives the paper's values where it names them.
+/// The repulsion radius of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Radius {
+    /// As a length, in the units of the coordinates.
+    Length(f64),
+    /// As a share of the diagonal of the box.
+    Share(f64),
+}
+
+/// Settings of a run. `Default` gives the paper's values where it names them. As text it has no
+/// other names than these.
 ///
 /// ```
 /// use marching_particles::{Bounds, Settings};
@@ -74,13 +84,20 @@ pub enum GapPolicy {
 /// assert!(settings.validate().is_ok());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[serde(default, deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Settings {
-    /// Box that is sampled, in the coordinates of the field; without one it is fitted to the surface. It is no part of the settings as
-    /// text: there a box is given with the field.
-    #[serde(skip)]
+    /// Box that is sampled, in the coordinates of the field; without one it is fitted to the surface.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub bounds: Option<Bounds>,
+    /// Repulsion radius r as a length. With one, `size_mode` and `radius_share` do not count.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f64>,
+    /// Cells along the longest side of the box of the grid on which a surface is looked for whose
+    /// field has no [bounds](crate::Bounded): a part smaller than a cell may be missed. Half as many
+    /// take a quarter of the evaluations. Without a number there are 64.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub survey_cells: Option<u32>,
     /// Uniform or adaptive sampling.
     pub sampling: Sampling,
     /// The quantity by which the size of the particles is given.
@@ -196,6 +213,8 @@ impl Settings {
     /// the smaller one gives 300,000 particles on a sphere and the larger one 340. There is room for ten times the default count.
     pub const DEFAULT: Self = Self {
         bounds: None,
+        radius: None,
+        survey_cells: None,
         sampling: Sampling::Uniform,
         size_mode: SizeMode::Radius,
         radius_share: 0.006,
@@ -222,11 +241,26 @@ impl Settings {
         Self { size_mode: SizeMode::Count, count, max_particles, ..Self::DEFAULT }
     }
 
-    /// Default settings for particles whose repulsion radius is this share of the box diagonal: a length over [`Bounds::diagonal`] of the box
-    /// that is given. Adaptive sampling takes its radii from the curvature instead.
+    /// Default settings for particles with this repulsion radius, with room for as many as there can
+    /// be; neighbours sit two radii apart. Adaptive sampling takes its radii from the curvature
+    /// instead.
+    ///
+    /// ```
+    /// use marching_particles::{Radius, Settings, sample};
+    ///
+    /// let sphere = |p: marching_particles::glam::DVec3| p.length() - 1.0;
+    /// let even = sample(sphere, &Settings::with_radius(Radius::Length(0.05)))?;
+    /// assert!((even.report().sizes.radius - 0.05).abs() < 1e-9);
+    /// # Ok::<(), marching_particles::Error>(())
+    /// ```
     #[must_use]
-    pub fn with_radius(share: f64) -> Self {
-        Self { radius_share: share, ..Self::DEFAULT }
+    pub fn with_radius(radius: Radius) -> Self {
+        let max_particles = (COUNT_ROOM * MOST_WANTED) as u32;
+        let settings = Self { max_particles, ..Self::DEFAULT };
+        match radius {
+            Radius::Length(length) => Self { radius: Some(length), ..settings },
+            Radius::Share(share) => Self { radius_share: share, ..settings },
+        }
     }
 
     /// Default settings for adaptive sampling in which triangles of neighbours keep this distance from the surface: a length over
@@ -266,17 +300,34 @@ impl Settings {
         NUMBERS.iter().find(|number| number.0 == name).map(|&(_, min, max, _)| min..=max)
     }
 
-    /// The radius of the largest particle as a share of the diagonal, estimated where a number of particles is wanted; at most the
-    /// largest that is accepted.
+    /// The radius of the largest particle as a share of the diagonal of this box, estimated where a
+    /// number of particles is wanted; at most the largest that is accepted.
     #[must_use]
-    pub fn largest_share(&self) -> f64 {
-        let share = match (self.size_mode, self.sampling) {
+    pub fn largest_share(&self, bounds: &Bounds) -> f64 {
+        let share = match (self.size_mode, self.sampling, self.radius) {
+            (_, Sampling::Uniform, Some(length)) => length / bounds.diagonal(),
+            (SizeMode::Radius, Sampling::Uniform, None) => self.radius_share,
             // On an area of one squared diagonal, about that of a sphere; each particle takes 2√3 r².
-            (SizeMode::Count, _) => (1.0 / (12_f64.sqrt() * f64::from(self.count))).sqrt(),
-            (SizeMode::Radius, Sampling::Uniform) => self.radius_share,
-            (SizeMode::Radius, Sampling::Adaptive) => self.radius_max_share,
+            (SizeMode::Count, _, None) => (1.0 / (12_f64.sqrt() * f64::from(self.count))).sqrt(),
+            (_, Sampling::Adaptive, _) => self.radius_max_share,
         };
         share.min(MOST_SHARE)
+    }
+
+    /// These settings with the radius as a share of the diagonal of a box.
+    ///
+    /// # Errors
+    ///
+    /// If it is a length that is out of its range there.
+    pub(crate) fn in_shares_of(self, bounds: &Bounds) -> Result<Self, SettingsError> {
+        let Some(length) = self.radius else { return Ok(self) };
+        let diagonal = bounds.diagonal();
+        let (min, max) = (LEAST_SHARE * diagonal, MOST_SHARE * diagonal);
+        if !(min..=max).contains(&length) {
+            return Err(SettingsError::OutOfRange { name: "radius", value: length, min, max });
+        }
+        let radius_share = (length / diagonal).clamp(LEAST_SHARE, MOST_SHARE);
+        Ok(Self { radius_share, size_mode: SizeMode::Radius, ..self })
     }
 
     /// Checks every value against its range, and that the smallest radius is not above the largest.
@@ -286,9 +337,10 @@ impl Settings {
     /// The first setting found out of range.
     pub fn validate(&self) -> Result<(), SettingsError> {
         let numbers = NUMBERS.iter().map(|&(name, min, max, read)| (name, min, max, read(self)));
+        let cells = self.survey_cells.map(|cells| ("survey_cells", 8.0, 512.0, cells.into()));
         // The smallest radius is not above the largest.
         let least = ("radius_min_share", LEAST_SHARE, self.radius_max_share, self.radius_min_share);
-        for (name, min, max, value) in numbers.chain([least]) {
+        for (name, min, max, value) in numbers.chain([least]).chain(cells) {
             if !(min..=max).contains(&value) {
                 return Err(SettingsError::OutOfRange { name, value, min, max });
             }

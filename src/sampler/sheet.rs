@@ -39,7 +39,7 @@ pub(crate) struct OrientedPoint {
 impl OrientedPoint {
     /// The position and normal of particle `i`.
     pub(crate) fn of(particles: &Particles, i: usize) -> Self {
-        Self { position: particles.position[i], normal: particles.normal[i] }
+        Self { position: particles.local[i], normal: particles.normal[i] }
     }
 
     /// The pair of this point and one at `offset` from it with the unit normal `other`.
@@ -310,7 +310,7 @@ pub(crate) fn numbers(largest_lift: f32, particles: &Particles, neighbours: &Pac
         |&(i, j): &(usize, usize)| number[i] != number[j] && particles.patch_of(i) == particles.patch_of(j);
     for (i, j) in near.chain(far).filter(is_joinable) {
         let one = OrientedPoint::of(particles, i);
-        let pair = one.pair(particles.position[j] - one.position, particles.normal[j]);
+        let pair = one.pair(particles.local[j] - one.position, particles.normal[j]);
         if pair.faces_one_way() && pair.lift() <= largest_lift {
             met.join(number[i], number[j]);
         }

@@ -62,6 +62,8 @@ pub struct SolidSettings {
 }
 
 impl SolidSettings {
+    /// Names of these settings, which the page gives together with those of a run.
+    pub const NAMES: [&str; 4] = ["box_mode", "box_faces", "box_cell", "thickness"];
     /// The values of [`SolidSettings::thickness`] that are accepted.
     pub const THICKNESSES: RangeInclusive<f64> = 0.0..=*Bounds::DIAGONALS.end();
 
@@ -211,7 +213,7 @@ impl Session {
     ) -> Option<FieldAnswer> {
         let choice = self.fitting.choice;
         let field = self.run.field().formula().filter(|field| !field.is_constant());
-        let share_in = |bounds: &Bounds| settings_in(bounds).largest_share();
+        let share_in = |bounds: &Bounds| settings_in(bounds).largest_share(bounds);
         let is_fitted = field.is_some() && self.is_to_fit();
         let (mut clip, mut reach) = (self.own_box(), None);
         if let Some(field) = field.filter(|_| is_fitted) {

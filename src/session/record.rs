@@ -100,7 +100,7 @@ impl Session {
             bounds: self.run.bounds(),
             faces: (self.fitting.choice.box_faces == BoxFaces::Closed).then_some(self.clip),
             solid: self.fitting.choice,
-            settings: *settings,
+            settings: Settings { bounds: None, ..*settings },
         }
     }
 

@@ -10,8 +10,8 @@ use crate::session::{
     Fault, FaultKind, FieldRequest, FileRecord, FileRequest, Session, SolidSettings, describe,
 };
 use glam::{DVec3, Vec3};
-use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
+use wasm_bindgen::{JsCast, JsValue};
 
 /// Where the declarations of the bundle find the types of the values.
 #[wasm_bindgen(typescript_custom_section)]
@@ -154,7 +154,7 @@ impl Core {
     pub fn positions(&self, from: usize) -> Vec<f32> {
         let particles = self.session.run.particles();
         if particles.origin == DVec3::ZERO {
-            return self.vectors(&particles.position, from);
+            return self.vectors(&particles.local, from);
         }
         self.exact_positions(from).into_iter().map(|coordinate| coordinate as f32).collect()
     }
@@ -223,7 +223,7 @@ impl Core {
     ) -> JsValue {
         let vectors = |floats: &[f32]| floats.as_chunks().0.iter().copied().map(Vec3::from_array).collect();
         let placed = Particles {
-            position: vectors(positions),
+            local: vectors(positions),
             normal: vectors(normals),
             radius: radii.to_vec(),
             ..Particles::default()
@@ -325,7 +325,12 @@ impl Core {
     fn read_settings(&mut self, settings: JsValue) -> Result<Settings, Fault> {
         let solid: SolidSettings = read(settings.clone(), FaultKind::Settings)?;
         self.session.choose(solid).map_err(|error| Fault::new(FaultKind::Settings, &error))?;
-        read(settings, FaultKind::Settings)
+        let of_run = js_sys::Object::assign(&js_sys::Object::new(), settings.unchecked_ref());
+        for name in SolidSettings::NAMES {
+            // Nothing is deleted where it is not there; a copy can be changed.
+            let _ = js_sys::Reflect::delete_property(&of_run, &name.into());
+        }
+        read(of_run.into(), FaultKind::Settings)
     }
 
     fn column<T: Copy>(&self, column: &[T], from: usize) -> Vec<T> {

@@ -41,7 +41,7 @@ fn on_ripples_about_as_wide_as_particles_they_do_not_crowd() {
 fn largest_hole(particles: &Particles) -> f32 {
     let mut largest = 0.0_f32;
     for triangle in triangulate(particles, None).triangles {
-        let [a, b, c] = triangle.map(|i| particles.position[i as usize]);
+        let [a, b, c] = triangle.map(|i| particles.local[i as usize]);
         let twice_area = (b - a).cross(c - a).length();
         let around = (b - a).length() * (c - a).length() * (b - c).length() / (2.0 * twice_area);
         let radius = triangle.iter().map(|&i| particles.radius[i as usize]).sum::<f32>() / 3.0;
@@ -57,14 +57,14 @@ fn closest(particles: &Particles) -> f32 {
     let mut found = Vec::new();
     let mut least = f32::INFINITY;
     for i in 0..particles.len() {
-        grid.gather(particles.position[i], particles.radius[i] + largest, &mut found);
+        grid.gather(particles.local[i], particles.radius[i] + largest, &mut found);
         for near in &found {
             let j = near.index as usize;
             if particles.normal[i].dot(particles.normal[j]) > 0.0 {
                 least = least.min(near.distance_sq.sqrt() / (particles.radius[i] + particles.radius[j]));
             }
         }
-        grid.insert(particles.position[i], i as u32);
+        grid.insert(particles.local[i], i as u32);
     }
     least
 }
@@ -76,7 +76,7 @@ fn untouched(particles: &Particles) -> f32 {
         .filter(|&i| particles.parent[i] != Particles::NO_PARENT)
         .map(|i| {
             let parent = particles.parent[i] as usize;
-            let distance = particles.position[i].distance(particles.position[parent]);
+            let distance = particles.local[i].distance(particles.local[parent]);
             (distance / (particles.radius[i] + particles.radius[parent]) - 1.0).abs()
         })
         .collect();
@@ -242,7 +242,7 @@ fn every_run_on_the_gallery_ends_with_particles_inside_the_box() {
         let context = format!("{}, {} particles", surface.id, particles.len());
         assert!(particles.len() > 500, "{context}");
         for i in 0..particles.len() {
-            assert!(surface.bounds.contains(particles.position[i]), "{context}: {i}");
+            assert!(surface.bounds.contains(particles.local[i]), "{context}: {i}");
             assert!((particles.normal[i].length() - 1.0).abs() < 1e-5, "{context}: {i}");
             assert!(particles.radius[i] > 0.0 && particles.radius[i].is_finite(), "{context}: {i}");
         }
@@ -306,7 +306,7 @@ fn a_front_of_many_sizes_has_as_many_and_as_large_particles_as_the_paper_s() {
             law_scale: scale,
             radius_min: least * diagonal,
             radius_max: largest * diagonal,
-            seeds: vec![fast.position[0].as_dvec3().to_array()],
+            seeds: vec![fast.local[0].as_dvec3().to_array()],
             matched: Matched::Stay,
             relax_steps: 0,
             ..lesson::LessonSettings::default()

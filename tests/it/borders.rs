@@ -25,7 +25,7 @@ fn mesh_of(particles: &Particles, bounds: &Bounds) -> Triangulation {
 }
 
 fn assert_inside(particles: &Particles, bounds: &Bounds) {
-    let outside = particles.position.iter().find(|&&p| !bounds.contains(p));
+    let outside = particles.local.iter().find(|&&p| !bounds.contains(p));
     assert_eq!(outside, None, "outside the box");
 }
 
@@ -36,7 +36,7 @@ fn assert_border_on_box(particles: &Particles, bounds: &Bounds, euler: i64, name
     assert_eq!(mesh.topology.euler(), euler, "{name}");
     let slack = 1e-6 * bounds.diagonal();
     for &v in mesh.topology.borders.iter().flatten() {
-        let p = particles.position[v as usize].as_dvec3();
+        let p = particles.local[v as usize].as_dvec3();
         let depth = (p - bounds.lo()).min(bounds.hi() - p).min_element();
         assert!(depth <= slack, "{name}: {p} is on the border and not on the box");
     }
@@ -128,7 +128,7 @@ fn acute_corners_hold_no_crowded_pair() {
             let name = format!("{formula} in {bounds:?}, {count} particles");
             let sampler = refined(formula, &bounds, count);
             assert_eq!(sampler.counts().refusal, None, "{name}");
-            let position = &sampler.particles().position;
+            let position = &sampler.particles().local;
             assert!(
                 (position.len() as f64 / f64::from(count) - 1.0).abs() <= 0.02,
                 "{name}: {}",
@@ -274,9 +274,9 @@ proptest! {
             let front = sampled(&field, &bounds, &settings(Method::Front, 900, 0), 10_000);
             // Wherever the front has a particle, there is one.
             let reach = 3.0 * sampler.radius() as f32;
-            for &p in &front.particles().position {
+            for &p in &front.particles().local {
                 let is_near = |q: &&Vec3| q.distance(p) <= reach;
-                let found = sampler.particles().position.iter().find(is_near);
+                let found = sampler.particles().local.iter().find(is_near);
                 prop_assert!(found.is_some(), "nothing near {p} in {bounds:?}");
             }
         }
@@ -292,9 +292,9 @@ fn what_a_coarse_front_places_beyond_the_box_is_not_shown() {
     loop {
         let progress = sampler.step(&field, 300);
         let particles = sampler.particles();
-        assert_eq!(particles.position.len(), particles.slots.len());
+        assert_eq!(particles.local.len(), particles.slots.len());
         assert!(progress.particles <= particles.len());
-        let now = &particles.position[..progress.particles];
+        let now = &particles.local[..progress.particles];
         let outside = now.iter().find(|&&p| !surface.bounds.contains(p));
         assert_eq!(outside, None, "outside the box");
         // What is shown stays, but where the run says that it has moved.

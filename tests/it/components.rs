@@ -57,8 +57,8 @@ fn two_spheres_a_thousandth_apart_are_two_components() {
         assert_eq!(report.measures.quality.map(|q| q.connectivity.euler), Some(4), "{formula}");
         // The component labels distinguish the two.
         let component = &session.run.measured().component;
-        for (p, &label) in session.run.particles().position.iter().zip(component) {
-            let left = session.run.particles().position.iter().zip(component).find(|(q, _)| q.x < 0.0);
+        for (p, &label) in session.run.particles().local.iter().zip(component) {
+            let left = session.run.particles().local.iter().zip(component).find(|(q, _)| q.x < 0.0);
             let same = left.is_some_and(|(_, &other)| other == label);
             assert_eq!(p.x < 0.0, same, "{formula}: {p} has the label {label}");
         }
@@ -143,7 +143,7 @@ fn a_sphere_of_two_radii_in_a_large_box_is_found() {
         );
         let cover = cover(&report, 4.0 * core::f64::consts::PI * radius * radius);
         assert!((0.7..1.5).contains(&cover), "{centre:?}: {} particles are {cover} of a cover", report.count);
-        for p in &session.run.particles().position {
+        for p in &session.run.particles().local {
             let d = p.as_dvec3() - glam::DVec3::from_array(centre);
             assert!((d.length() - radius).abs() < 1e-3 * radius, "{centre:?}: {p}");
         }
@@ -182,7 +182,7 @@ fn each_of_many_pieces_of_one_factor_between_the_nodes_of_the_survey_is_found() 
     );
     for centre in centres {
         let is_near = |p: &Vec3| (p.as_dvec3() - centre).length() < 0.01;
-        assert!(session.run.particles().position.iter().any(is_near), "{centre}");
+        assert!(session.run.particles().local.iter().any(is_near), "{centre}");
     }
 }
 
@@ -303,7 +303,7 @@ fn a_small_component_beside_a_cone_point_is_found() {
         let (session, report) = sampled(&formula, 0.25, 0.002);
         is_proven(&report, &formula);
         let is_near = |p: &Vec3| (p.as_dvec3() - DVec3::new(x, y, z)).length() < 0.02;
-        assert!(session.run.particles().position.iter().any(is_near), "{formula}");
+        assert!(session.run.particles().local.iter().any(is_near), "{formula}");
     }
 }
 
@@ -396,8 +396,8 @@ fn thin_sheets_nearer_than_a_spacing_are_never_joined() {
     assert_eq!(report.proof.components, 4, "{report:?}");
     check(nested.run.particles(), &sheet, "shells");
     let labels = &nested.run.measured().component;
-    for (p, &label) in nested.run.particles().position.iter().zip(labels) {
-        let other = nested.run.particles().position.iter().zip(labels).find(|(q, _)| sheet(**q) == sheet(*p));
+    for (p, &label) in nested.run.particles().local.iter().zip(labels) {
+        let other = nested.run.particles().local.iter().zip(labels).find(|(q, _)| sheet(**q) == sheet(*p));
         assert_eq!(other.map(|(_, &label)| label), Some(label));
     }
     let cover = cover(&report, 4.0 * core::f64::consts::PI * (0.49 + 0.4761 + 0.4356 + 0.4225));
@@ -432,7 +432,7 @@ fn check(particles: &Particles, sheet: &dyn Fn(Vec3) -> u32, context: &str) {
     for i in 0..particles.len() {
         let parent = particles.parent[i];
         if parent != Particles::NO_PARENT {
-            let (p, q) = (particles.position[i], particles.position[parent as usize]);
+            let (p, q) = (particles.local[i], particles.local[parent as usize]);
             let facing = particles.normal[i].dot(particles.normal[parent as usize]);
             assert!(facing > 0.0, "{context}: {p} is a child of {q}, which faces the other way");
             let sheets = (sheet(p), sheet(q));
@@ -468,7 +468,7 @@ fn sheets_that_face_the_same_way_hold_particles_each_however_near() {
     for share in [0.006, 0.0019] {
         let (session, report) = sampled(formula, 1.5, share);
         let mut counts = [0_usize; 3];
-        for p in &session.run.particles().position {
+        for p in &session.run.particles().local {
             let sheet = (p.as_dvec3().length() - 1.0) * 1e4;
             counts[(sheet + 0.5).clamp(0.0, 2.0) as usize] += 1;
         }
@@ -484,7 +484,7 @@ fn sheets_that_face_the_same_way_hold_particles_each_however_near() {
         let settings = settings!(sampling, radius_share: 0.02; ..Settings::default());
         let (session, report) = finished("z*(z-0.001)*(z-0.002)", Bounds::cube(1.0), &settings);
         let on = |height: f32| {
-            session.run.particles().position.iter().filter(|p| (p.z - height).abs() < 2e-4).count()
+            session.run.particles().local.iter().filter(|p| (p.z - height).abs() < 2e-4).count()
         };
         let counts = [0.0, 0.001, 0.002].map(on);
         let alike =
@@ -510,7 +510,7 @@ fn sheets_that_face_the_same_way_are_counted_apart_at_any_distance() {
         assert!((0.99..1.06).contains(&area), "{context}: {area}");
         // Every component is a sphere.
         for label in 0..3 {
-            let of_it = session.run.particles().position.iter().zip(&session.run.measured().component);
+            let of_it = session.run.particles().local.iter().zip(&session.run.measured().component);
             let distances = of_it.filter(|(_, l)| **l == label).map(|(p, _)| f64::from(p.length()));
             let [least, most] = distances.fold([2.0, 0.0_f64], |[lo, hi], d| [d.min(lo), d.max(hi)]);
             assert!(most - least < 0.5 * gap, "{context}: from {least} to {most}");
@@ -540,7 +540,7 @@ fn a_piece_smaller_than_a_particle_beside_a_large_one_is_sampled_or_named() {
         let (session, report) = sampled(&formula, 1.0, share);
         is_proven(&report, &formula);
         let on_it = |p: &Vec3| ((p.as_dvec3() - DVec3::from_array(tiny.0)).length() - size).abs() < 0.01 * r;
-        if session.run.particles().position.iter().any(on_it) {
+        if session.run.particles().local.iter().any(on_it) {
             assert_eq!(
                 (report.proof.sampled.missing, report.proof.sampled.above),
                 (Some(0), Some(0.0)),
@@ -571,7 +571,7 @@ fn told_of_a_small_ellipsoid(size: f64, height: f64, r: f64) -> (usize, usize, R
     let (session, report) = sampled(&formula, 1.5, r / 27.0_f64.sqrt());
     let half_axes = DVec3::new(size, size, 3.0 * size);
     let is_on_it = |p: DVec3| (((p - height * DVec3::Z) / half_axes).length() - 1.0).abs() < 0.1;
-    let particles = session.run.particles().position.iter().filter(|p| is_on_it(p.as_dvec3())).count();
+    let particles = session.run.particles().local.iter().filter(|p| is_on_it(p.as_dvec3())).count();
     let names = report
         .proof
         .sampled

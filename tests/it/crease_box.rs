@@ -89,7 +89,7 @@ fn check(sample: &Sample, bounds: &Bounds, euler: Option<i64>, what: &str) -> us
     assert!(mesh.topology.is_manifold() && mesh.unfilled.is_empty(), "{what}");
     let found = mesh.topology.euler();
     assert!(euler.is_none_or(|euler| found == euler), "{what}: Euler number {found}, not {euler:?}");
-    assert!(particles.position.iter().all(|&p| bounds.contains(p)), "{what}: outside the box");
+    assert!(particles.local.iter().all(|&p| bounds.contains(p)), "{what}: outside the box");
     let mut edges: BTreeMap<[u32; 2], u32> = BTreeMap::new();
     for triangle in &mesh.triangles {
         let [a, b, c] = triangle.map(|row| particles.first_row(row as usize) as u32);
@@ -98,7 +98,7 @@ fn check(sample: &Sample, bounds: &Bounds, euler: Option<i64>, what: &str) -> us
         }
     }
     let faces_of = |row: u32| {
-        let p = particles.position[row as usize].to_array();
+        let p = particles.local[row as usize].to_array();
         let [low, high] = [bounds.min, bounds.max].map(|corner| corner.map(|x| x as f32));
         core::array::from_fn::<bool, 6, _>(|k| p[k / 2] == if k % 2 == 0 { low[k / 2] } else { high[k / 2] })
     };

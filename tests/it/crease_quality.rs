@@ -7,7 +7,7 @@ use marching_particles::quality::{MeasureOptions, Measurements, measure};
 
 fn measured(particles: &Particles, solid: Creased) -> Measurements {
     let options = MeasureOptions { rows: Some(particles), ..MeasureOptions::default() };
-    measure(&particles.position, &particles.normal, &solid.field(), None, &options)
+    measure(&particles.local, &particles.normal, &solid.field(), None, &options)
 }
 
 /// The figures of a closed surface of patches, held to what is known of it.
@@ -31,7 +31,7 @@ fn figures(name: &str, solid: Creased, euler: i64, flatness: f64) -> Measurement
     let once: Vec<usize> = (0..particles.len()).filter(|&i| particles.first_row(i) == i).collect();
     for i in 0..particles.len() {
         let others = once.iter().filter(|&&j| j != particles.first_row(i));
-        let distance = |&j: &usize| particles.position[i].distance(particles.position[j]);
+        let distance = |&j: &usize| particles.local[i].distance(particles.local[j]);
         let nearest = others.map(distance).fold(f32::INFINITY, f32::min);
         assert!(
             (measured.nearest[i] - nearest).abs() < 1e-6,

@@ -32,7 +32,7 @@ fn a_curve_beside_a_surface_is_left_out_and_told() {
     let text = "((x^2 + y^2 - 1)^2 + z^2)*(x^2 + y^2 + z^2 - 4) = 0";
     let sample = sample(formula(text), &Settings::with_count(1_000)).expect("a sample");
     let off = |p: &glam::Vec3| (p.length() - 2.0).abs();
-    assert!(sample.particles().position.iter().all(|p| off(p) < 1e-3));
+    assert!(sample.particles().local.iter().all(|p| off(p) < 1e-3));
     let warnings = &sample.report().warnings;
     assert!(warnings.iter().any(|warning| matches!(warning, Warning::Bare { .. })), "{warnings:?}");
 }

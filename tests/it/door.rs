@@ -2,12 +2,12 @@
 
 use marching_particles::glam::DVec3;
 use marching_particles::{
-    BatchField, Bounds, BoxError, Error, Field, FnField, Format, Formula, MeshFormat, Method, Particles, Run,
-    Settings, SettingsError, Severity, StopReason, Warning, sample,
+    BatchField, Bounds, BoxError, Error, Field, FnField, Format, Formula, MeshFormat, Method, Particles,
+    Radius, Run, Settings, SettingsError, Severity, StopReason, Warning, sample,
 };
 use std::cell::Cell;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 const FEW: u32 = 1_500;
 
@@ -43,7 +43,7 @@ fn a_closure_is_sampled_as_evenly_as_the_formula_of_its_surface() {
         assert_eq!(report.warnings, []);
         assert_eq!((report.proof.components, sample.mesh().topology.euler()), (1, 2));
         assert!(report.measures.quality.unwrap().order.six > 0.85);
-        let off = sample.particles().position.iter().map(|p| (p.length() - 1.0).abs()).fold(0.0, f32::max);
+        let off = sample.particles().local.iter().map(|p| (p.length() - 1.0).abs()).fold(0.0, f32::max);
         assert!(off < 1e-5, "{off}");
     }
 }
@@ -201,7 +201,7 @@ fn a_run_that_borrows_its_field_is_the_same_as_the_whole_job() {
 
 #[test]
 fn what_is_known_at_the_start_is_told_before_the_first_step_and_measuring_can_be_left_out() {
-    let run = || Run::start(FnField::new(sphere), &Settings::with_radius(0.03)).unwrap();
+    let run = || Run::start(FnField::new(sphere), &Settings::with_radius(Radius::Share(0.03))).unwrap();
     let mut measured = run();
     let start = measured.start_report().clone();
     assert!((start.area / (4.0 * std::f64::consts::PI) - 1.0).abs() < 0.05, "{start:?}");
@@ -301,7 +301,9 @@ fn any_field_is_measured_in_slices_and_none_is_measured_twice() {
 #[test]
 fn the_fraction_goes_forward_alone_and_relaxation_is_refused_under_way() {
     let by_count = Settings::with_count(10_000);
-    for settings in [by_count, by_count.adaptive(), by_count.refined(), Settings::with_radius(0.02)] {
+    for settings in
+        [by_count, by_count.adaptive(), by_count.refined(), Settings::with_radius(Radius::Share(0.02))]
+    {
         let mut run = Run::start(FnField::new(sphere).with_gradient(outward), &settings).unwrap();
         let mut last = 0.0;
         loop {
@@ -415,7 +417,7 @@ fn a_field_with_faults_in_places_ends_in_particles_of_the_rest_or_in_a_sentence(
         for settings in runs {
             match sample(&mut field, &settings) {
                 Ok(sample) => {
-                    let Particles { position, normal, .. } = sample.particles();
+                    let Particles { local: position, normal, .. } = sample.particles();
                     assert!(position.iter().all(|p| p.is_finite()), "{what}, {settings:?}");
                     assert!(normal.iter().all(|n| (n.length() - 1.0).abs() < 1e-4), "{what}, {settings:?}");
                     // Values beyond single precision are computed in double precision, and nothing is amiss.
@@ -445,9 +447,91 @@ fn settings_out_of_range_are_refused_before_any_work() {
         let error = sample(untouched(), &Settings::with_count(FEW).in_box(bounds)).unwrap_err();
         assert_eq!(error, Error::Settings(SettingsError::Box(fault)));
     }
-    let error = sample(untouched(), &Settings::with_radius(0.5)).unwrap_err();
+    let error = sample(untouched(), &Settings::with_radius(Radius::Share(0.5))).unwrap_err();
     assert!(
         matches!(error, Error::Settings(SettingsError::OutOfRange { name: "radius_share", .. })),
         "{error:?}"
     );
+}
+
+#[test]
+fn every_call_of_a_function_is_counted_and_a_limit_ends_the_run() {
+    let settings = Settings::with_count(FEW).in_box(Bounds::cube(1.2));
+    let asked = AtomicU64::new(0);
+    let function = |p: DVec3| {
+        asked.fetch_add(1, Ordering::Relaxed);
+        sphere(p)
+    };
+    let report_of = |settings: &Settings| {
+        asked.store(0, Ordering::Relaxed);
+        sample(function, settings).unwrap().report().clone()
+    };
+    let report = report_of(&settings);
+    let all = report.growth.calls.unwrap();
+    assert_eq!(all, asked.load(Ordering::Relaxed));
+    let coarse = report_of(&settings!(survey_cells: Some(24); ..settings));
+    assert_eq!(coarse.growth.calls, Some(asked.load(Ordering::Relaxed)));
+    assert!(coarse.growth.calls.unwrap() + 200_000 < all && coarse.count.abs_diff(FEW as usize) <= 45);
+    // Formulas call no function of the program.
+    let formula = sample(Formula::parse("x^2 + y^2 + z^2 = 1").unwrap(), &settings).unwrap();
+    assert_eq!(formula.report().growth.calls, None);
+
+    // One field for two runs: the first one needs all that is allowed.
+    let field = FnField::new(function).limit_calls(all);
+    asked.store(0, Ordering::Relaxed);
+    assert_eq!(sample(&field, &settings).unwrap().report().growth.calls, Some(all));
+    let error = sample(&field, &settings).unwrap_err();
+    assert!(error.to_string().contains(&format!("more than {all} points")), "{error}");
+    assert_eq!(asked.load(Ordering::Relaxed), all);
+    // A copy has been asked for nothing.
+    assert!(sample(field.clone(), &settings).is_ok());
+    for most in [0, all / 2, all - 1] {
+        asked.store(0, Ordering::Relaxed);
+        let error = sample(FnField::new(function).limit_calls(most), &settings).unwrap_err();
+        assert!(matches!(error, Error::Field(_)), "{error:?}");
+        assert!(asked.load(Ordering::Relaxed) <= most);
+    }
+}
+
+#[test]
+fn a_survey_with_other_cells_is_made_anew() {
+    let settings = Settings::with_count(FEW).in_box(Bounds::cube(1.2));
+    let field = FnField::new(sphere);
+    let mut run = Run::start(&field, &settings).unwrap();
+    let first = field.calls().unwrap();
+    run.restart(&settings).unwrap();
+    let again = field.calls().unwrap() - first;
+    assert!(again < first / 10, "{again} of {first}");
+    run.restart(&settings!(survey_cells: Some(32); ..settings)).unwrap();
+    assert!(field.calls().unwrap() - first - again > first / 10);
+}
+
+#[test]
+fn a_radius_is_a_length_or_a_share_and_makes_room() {
+    let bounds = Bounds::cube(1.5);
+    let by_length = Settings::with_radius(Radius::Length(0.02)).in_box(bounds);
+    let by_share = Settings::with_radius(Radius::Share(0.02 / bounds.diagonal())).in_box(bounds);
+    let [length, share] = [by_length, by_share].map(|settings| sample(sphere, &settings).unwrap());
+    assert_eq!(length.particles().digest(), share.particles().digest());
+    // In a fitted box the length is what it is.
+    let fitted = sample(sphere, &Settings::with_radius(Radius::Length(0.02))).unwrap();
+    assert!((fitted.report().sizes.radius - 0.02).abs() < 1e-12);
+    let shell = Formula::parse("x^2 + y^2 + z^2 = 1").unwrap();
+    let fine = settings!(relax_steps: 0; ..Settings::with_radius(Radius::Length(0.003)));
+    let mut run = Run::start(shell, &fine).unwrap();
+    while run.step(u32::MAX).stop_reason.is_none() {}
+    assert!(run.count() > Settings::DEFAULT.max_particles as usize);
+    let error =
+        sample(sphere, &Settings::with_radius(Radius::Length(2.0)).in_box(Bounds::cube(1.0))).unwrap_err();
+    assert!(error.to_string().starts_with("radius is 2, but must lie between 0.000346"), "{error}");
+}
+
+#[test]
+fn settings_as_text_keep_the_box_and_refuse_names_that_they_do_not_have() {
+    let settings = settings!(radius: Some(0.1), survey_cells: Some(32); ..Settings::with_count(7).in_box(Bounds::cube(1.5)));
+    let text = serde_json::to_string(&settings).unwrap();
+    assert_eq!(serde_json::from_str::<Settings>(&text).unwrap(), settings);
+    assert_eq!(serde_json::from_str::<Settings>("{}").unwrap(), Settings::DEFAULT);
+    let error = serde_json::from_str::<Settings>("{\"relax_step\": 3}").unwrap_err();
+    assert!(error.to_string().starts_with("unknown field `relax_step`"), "{error}");
 }

@@ -26,7 +26,7 @@ fn sampled(formula: &str, half: f64, settings: &Settings) -> (Session, Progress,
     assert!(progress.stop_reason.is_some(), "{formula}: not done after 10 million units of work");
     let report = session.report();
     let columns = session.run.particles();
-    for (p, n) in columns.position.iter().zip(&columns.normal) {
+    for (p, n) in columns.local.iter().zip(&columns.normal) {
         assert!(p.is_finite() && (n.length() - 1.0).abs() < 1e-5, "{formula}: {p} with the normal {n}");
     }
     (session, progress, report)
@@ -52,7 +52,7 @@ fn poles_are_not_taken_for_zeros() {
     }
     // There are three planes of zeros, at 0 and ±π/4, and two of poles between them, at ±π/8.
     let (session, _, report) = sampled("tan(4x)", 1.0, &coarse());
-    for p in &session.run.particles().position {
+    for p in &session.run.particles().local {
         let from_zero = (p.x / core::f32::consts::FRAC_PI_4).round() * core::f32::consts::FRAC_PI_4 - p.x;
         assert!(from_zero.abs() < 1e-4, "{p}");
     }
@@ -114,7 +114,7 @@ fn an_undefined_region_ends_the_front_and_is_counted() {
         "{:?}",
         report.warnings
     );
-    assert!(session.run.particles().position.iter().all(|p| p.x > 0.0));
+    assert!(session.run.particles().local.iter().all(|p| p.x > 0.0));
     let share = report.count as f64 / expected(core::f64::consts::TAU * 0.6, &report);
     assert!((0.9..1.2).contains(&share), "{share}");
 }
@@ -186,7 +186,7 @@ fn singular_points_are_counted_and_the_particles_next_to_them_marked() {
             "y^2 = x^3" | "x^2 = y^2" => |p: Vec3| p.truncate().length(),
             _ => continue,
         };
-        for (i, &p) in columns.position.iter().enumerate() {
+        for (i, &p) in columns.local.iter().enumerate() {
             let share = distance(p) / (2.0 * columns.radius[i]);
             assert!((share - 1.0).abs() < 0.01 || marked(i) == (share < 1.0), "{formula}: {p} at {share}");
         }
@@ -253,7 +253,7 @@ fn a_run_that_is_cancelled_marks_the_particles_next_to_singular_points() {
     assert_eq!(session.run.count(), whole);
     assert_eq!(session.report().proof.singular_points, Some(1));
     let columns = session.run.particles();
-    for (p, slots) in columns.position.iter().zip(&columns.slots) {
+    for (p, slots) in columns.local.iter().zip(&columns.slots) {
         assert!(p.length() > 1.9 * columns.radius[0] || slots.is_singular(), "{p} is not marked");
     }
     assert!(columns.slots.iter().any(|slots| slots.is_singular()), "none is marked");
@@ -324,7 +324,7 @@ fn a_square_that_is_not_written_as_one_is_sampled_with_a_warning() {
         "{:?}",
         report.warnings
     );
-    for p in &session.run.particles().position {
+    for p in &session.run.particles().local {
         assert!((p.length() - 0.5_f32.sqrt()).abs() < 1e-3, "{p}");
     }
     let (_, _, report) = sampled("x^2 + y^2 + z^2 - 0.5", 1.0, &coarse());
@@ -377,7 +377,7 @@ fn digits_that_double_precision_does_not_hold_are_said_with_where_and_how_much()
         assert_eq!(blur.is_some(), is_blurred, "{formula}: {:?}", report.warnings);
         let Some((position, distance)) = blur else { continue };
         let off = |p: DVec3| (p.length() - 1.0).abs();
-        let farthest = session.run.particles().position.iter().map(|p| off(p.as_dvec3())).fold(0.0, f64::max);
+        let farthest = session.run.particles().local.iter().map(|p| off(p.as_dvec3())).fold(0.0, f64::max);
         // The bound is that of every rounding at its worst, the cosine's with room.
         assert!((5e-3..1.0).contains(&(farthest / distance)), "{formula}: {farthest} against {distance}");
         assert!(off(position) <= distance, "{formula}: {position}");
@@ -401,7 +401,7 @@ fn jumps_are_no_surface_and_end_the_projection_along_the_circle() {
         "{:?}",
         report.warnings
     );
-    for p in &session.run.particles().position {
+    for p in &session.run.particles().local {
         assert!(((5.0 * p.x).floor() / 5.0 - p.y).abs() < 1e-4, "{p}");
     }
     // A projection takes at most 50 evaluations, and each of a particle's six slots is projected once.
@@ -416,7 +416,7 @@ fn an_open_surface_ends_at_the_box_and_its_border_is_counted() {
         assert_eq!(progress.stop_reason, Some(StopReason::Complete), "{formula}");
         assert!(report.growth.fates.outside > 50, "{formula}: {:?}", report.growth.fates);
         assert!(report.measures.quality.is_some_and(|q| q.boundary_excluded > 50), "{formula}");
-        assert!(session.run.particles().position.iter().all(|p| p.abs().cmple(Vec3::ONE).all()), "{formula}");
+        assert!(session.run.particles().local.iter().all(|p| p.abs().cmple(Vec3::ONE).all()), "{formula}");
     }
 }
 
@@ -438,7 +438,7 @@ fn steep_and_flat_functions_have_the_surface_of_the_tame_ones() {
         let (session, progress, report) = sampled(formula, 1.0, &coarse());
         assert_eq!(progress.stop_reason, Some(StopReason::Complete), "{formula}");
         assert!((report.count as f64 / tame.count as f64 - 1.0).abs() < 0.05, "{formula}: {}", report.count);
-        assert!(session.run.particles().position.iter().all(|p| p.x.abs() < 1e-4), "{formula}");
+        assert!(session.run.particles().local.iter().all(|p| p.x.abs() < 1e-4), "{formula}");
     }
 }
 
@@ -453,7 +453,7 @@ fn sheets_nearer_than_a_spacing_are_kept_apart() {
         report.warnings
     );
     assert_eq!(report.proof.components, 2);
-    let position = &session.run.particles().position;
+    let position = &session.run.particles().local;
     let upper = position.iter().filter(|p| p.z > 0.0).count() as f64;
     let lower = position.len() as f64 - upper;
     assert!(upper > 100.0 && (upper / lower - 1.0).abs() < 0.1, "{upper} above, {lower} below");

@@ -112,7 +112,7 @@ fn a_particle_keeps_its_number_and_its_level() {
 fn a_component_that_is_born_gets_particles() {
     let two = "exp(-4*((x+0.6)^2+y^2+z^2))+q*exp(-4*((x-0.6)^2+y^2+z^2))-0.4";
     let mut run = started(two, 0.3, 1.5, &Settings::with_count(1_000));
-    assert!(run.particles().position.iter().all(|p| p.x < 0.0));
+    assert!(run.particles().local.iter().all(|p| p.x < 0.0));
     sweep(&mut run, two, [0.3, 0.6], 30, u32::MAX);
     let figures = run.report().measures.quality.expect("figures");
     assert_eq!((figures.connectivity.components, figures.connectivity.euler), (2, 4));
@@ -125,7 +125,7 @@ fn what_leaves_the_box_is_dropped_and_what_comes_in_is_covered() {
     let mut run = started(ball, 0.0, 1.0, &settings);
     sweep(&mut run, ball, [0.0, 0.8], 80, u32::MAX);
     let bounds = Bounds::cube(1.0);
-    assert!(run.particles().position.iter().all(|&p| bounds.contains(p)));
+    assert!(run.particles().local.iter().all(|&p| bounds.contains(p)));
     sweep(&mut run, ball, [0.8, 0.0], 80, u32::MAX);
     let figures = run.report().measures.quality.expect("figures");
     assert_eq!((figures.connectivity.components, figures.connectivity.euler), (1, 2));

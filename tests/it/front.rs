@@ -30,7 +30,7 @@ fn reference_of(id: &str, sampler: &Sampler) -> Lesson {
     assert_eq!(sampler.counts().seeds, 1, "{id}");
     let settings = lesson::LessonSettings {
         radius: f64::from(sampler.radius() as f32),
-        seeds: vec![sampler.particles().position[0].as_dvec3().to_array()],
+        seeds: vec![sampler.particles().local[0].as_dvec3().to_array()],
         relax_steps: 0,
         ..lesson::LessonSettings::of_fast_front()
     };
@@ -50,7 +50,7 @@ fn agreement(id: &str, fast: &Particles, reference: &[Particle]) -> (usize, f64)
     for (i, particle) in reference[..first].iter().enumerate() {
         assert_eq!(fast.parent[i], particle.parent.unwrap_or(Particles::NO_PARENT), "{id}: {i}");
         assert_eq!(fast.level[i], particle.level, "{id}: {i}");
-        apart = apart.max(fast.position[i].as_dvec3().distance(particle.p()));
+        apart = apart.max(fast.local[i].as_dvec3().distance(particle.p()));
     }
     (first, apart)
 }
@@ -140,7 +140,7 @@ fn filling_gaps_shrinks_the_largest_hole_and_crowds_nothing() {
         let (left, particles) = (left.particles(), filled.particles());
         let count = filled.counts().gaps_filled as usize;
         assert_eq!(particles.len(), left.len() + count, "{surface}");
-        assert_eq!(particles.position[..left.len()], left.position, "{surface}");
+        assert_eq!(particles.local[..left.len()], left.local, "{surface}");
         let (was, is) = (gallery_figures(surface, left, None), gallery_figures(surface, particles, None));
         // The unit is 2r, because the hexagonal spacing changes with the count.
         let hole = |f: &Figures| f.coverage.cover * f.d_hex / 3.0_f64.sqrt() / (2.0 * filled.radius());
@@ -148,7 +148,7 @@ fn filling_gaps_shrinks_the_largest_hole_and_crowds_nothing() {
         assert!(hole(&is) < 0.83, "{surface}: {}", hole(&is));
         for i in left.len()..particles.len() {
             for j in 0..i {
-                let d = particles.position[i].distance(particles.position[j]);
+                let d = particles.local[i].distance(particles.local[j]);
                 let near = particles.normal[i].dot(particles.normal[j]) > 0.0;
                 assert!(
                     !near || f64::from(d) >= 0.8 * 2.0 * filled.radius() * (1.0 - 1e-6),
@@ -181,7 +181,7 @@ fn every_child_is_two_radii_from_its_parent() {
                 parent < i && particles.level[i] == particles.level[parent] + 1,
                 "{surface}: particle {i}"
             );
-            let d = particles.position[i].distance(particles.position[parent]);
+            let d = particles.local[i].distance(particles.local[parent]);
             assert!((d / distance - 1.0).abs() < 1e-4, "{surface}: particle {i} is {d} from its parent");
         }
     }
@@ -227,14 +227,13 @@ fn where_the_surface_moves_little_the_seed_does_and_most_places_keep_their_level
             });
             let (old, new) = (before.particles(), after.particles());
             let spacing = 2.0 * before.radius() as f32;
-            let way = old.position[0].distance(new.position[0]);
+            let way = old.local[0].distance(new.local[0]);
             assert!(way < 0.5 * spacing, "{id}, {seed}: the seed moves by {} spacings", way / spacing);
             let nearest = |p: Vec3| {
-                let distance = |&i: &usize| new.position[i].distance_squared(p);
+                let distance = |&i: &usize| new.local[i].distance_squared(p);
                 (0..new.len()).min_by(|i, j| distance(i).total_cmp(&distance(j))).expect("a particle")
             };
-            let kept =
-                (0..old.len()).filter(|&i| new.level[nearest(old.position[i])] == old.level[i]).count();
+            let kept = (0..old.len()).filter(|&i| new.level[nearest(old.local[i])] == old.level[i]).count();
             // Of seeds that have nothing to do with each other, one in thirty.
             assert!(2 * kept > old.len(), "{id}, {seed}: {kept} of {} keep their level", old.len());
         }

@@ -65,7 +65,7 @@ fn radii_are_those_of_the_law_and_their_cells_cover_the_surface() {
     let field = surface.field();
     let particles = sampler.particles();
     let mut as_law = 0;
-    for (p, &r) in particles.position.iter().zip(&particles.radius) {
+    for (p, &r) in particles.local.iter().zip(&particles.radius) {
         let law = settings.curvature_scale / exact_curvature(&field.jet(p.as_dvec3())).max_abs();
         let law = law.min(settings.radius_max_share * surface.bounds.diagonal());
         assert!(f64::from(r) <= 1.001 * law, "{r} at {p}, the law gives {law}");
@@ -109,6 +109,6 @@ fn what_is_cancelled_can_be_relaxed() {
         assert!(sampler.step(&field, 0).stop_reason.is_some());
         assert!(sampler.relax(1));
         while sampler.step(&field, 500).stop_reason.is_none() {}
-        assert!(sampler.particles().position.iter().all(|p| p.is_finite()));
+        assert!(sampler.particles().local.iter().all(|p| p.is_finite()));
     }
 }

@@ -74,7 +74,7 @@ fn agrees(formula: &str, share: f64, seed: u64) -> bool {
         let Some(p) = landed(&mut field, start) else { continue };
         let near = |q: &Vec3| (q.as_dvec3() - p).length_squared();
         let hole =
-            session.run.particles().position.iter().map(near).fold(f64::INFINITY, f64::min).sqrt() / ideal;
+            session.run.particles().local.iter().map(near).fold(f64::INFINITY, f64::min).sqrt() / ideal;
         largest = largest.max(hole);
         // The figure leaves out what is near the border.
         if p.abs().max_element() < HALF - 4.5 * figures.d_hex {

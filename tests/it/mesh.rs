@@ -17,7 +17,7 @@ fn of_count(count: u32, seed: u64, match_tolerance: f64, relax_steps: u32) -> Se
 /// The triangles of a set of points, held to what is promised of every set.
 #[track_caller]
 fn mesh(position: &[Vec3], normal: &[Vec3], bounds: Option<&Bounds>) -> Triangulation {
-    let points = Particles { position: position.to_vec(), normal: normal.to_vec(), ..Particles::default() };
+    let points = Particles { local: position.to_vec(), normal: normal.to_vec(), ..Particles::default() };
     let mesh = triangulate(&points, bounds);
     assert!(mesh.topology.is_manifold(), "{:?}", mesh.topology);
     let mut is_used = vec![false; position.len()];
@@ -38,7 +38,7 @@ fn mesh(position: &[Vec3], normal: &[Vec3], bounds: Option<&Bounds>) -> Triangul
 #[track_caller]
 fn assert_closed(surface: &Surface, settings: &Settings) {
     let particles = of_gallery(surface.id, settings).particles().clone();
-    let mesh = mesh(&particles.position, &particles.normal, Some(&surface.bounds));
+    let mesh = mesh(&particles.local, &particles.normal, Some(&surface.bounds));
     let genus = i64::from(surface.genus.expect("a closed surface"));
     let told = format!("{}, {} particles, {settings:?}", surface.id, particles.len());
     assert!(mesh.topology.is_closed(), "{told}: borders {:?}", mesh.topology.borders);
@@ -80,14 +80,14 @@ fn surfaces_that_the_box_cuts_have_borders_at_the_box_alone() {
         for (seed, relax_steps) in [(0, 10), (1, 0), (2, 10)] {
             let particles =
                 of_gallery(surface.id, &of_count(14_000, seed, 0.75, relax_steps)).particles().clone();
-            let mesh = mesh(&particles.position, &particles.normal, Some(&surface.bounds));
+            let mesh = mesh(&particles.local, &particles.normal, Some(&surface.bounds));
             let told = format!("{id}, seed {seed}");
             assert_eq!(mesh.unfilled, [[0_u32; 0]; 0], "{told}");
             assert!(!mesh.topology.borders.is_empty(), "{told}");
             // A front comes within a spacing of the box, the steps of its rows within another.
             let reach = f64::from(4.0 * particles.radius[0]);
             for &v in mesh.topology.borders.iter().flatten() {
-                let p = particles.position[v as usize].as_dvec3();
+                let p = particles.local[v as usize].as_dvec3();
                 let depth = (p - surface.bounds.lo()).min(surface.bounds.hi() - p).min_element();
                 assert!(depth <= reach, "{told}: a border at {p}, {depth} from the box");
             }
@@ -101,7 +101,7 @@ fn a_tube_that_the_box_cuts_stays_open_however_few_points_are_round_it() {
     let surface = gallery::find("schwarz-p").expect("a surface of the gallery");
     let particles = of_gallery(surface.id, &of_count(3000, 0, 0.7, 10)).particles().clone();
     for bounds in [None, Some(&surface.bounds)] {
-        let mesh = mesh(&particles.position, &particles.normal, bounds);
+        let mesh = mesh(&particles.local, &particles.normal, bounds);
         assert_eq!(mesh.topology.borders.len(), 24);
         assert!(mesh.topology.borders.iter().all(|border| border.len() < 24));
         assert_eq!(mesh.unfilled.len(), 0);

@@ -85,7 +85,7 @@ fn glb_holds_triangles_normals_and_levels() {
         let (document, buffer) = parts(&bytes);
         let primitive = &document["meshes"][0]["primitives"][0];
         let attribute = |name: &str| column(&document, buffer, &primitive["attributes"][name]);
-        assert_eq!(vectors(attribute("POSITION")), particles.position);
+        assert_eq!(vectors(attribute("POSITION")), particles.local);
         assert_eq!(vectors(attribute("NORMAL")), particles.normal);
         assert_eq!(triples(column(&document, buffer, &primitive["indices"])), mesh.triangles);
         let levels: Vec<f32> = particles.level.iter().map(|&level| level as f32).collect();
@@ -124,7 +124,7 @@ fn a_glb_without_triangles_is_an_empty_scene() {
 fn obj_holds_vertices_normals_and_triangles() {
     let (particles, mesh) = sampled("torus", 0.01);
     let obj = Obj::read(&written(MeshFormat::Obj, &particles, &mesh));
-    assert_eq!(obj.points, particles.position);
+    assert_eq!(obj.points, particles.local);
     assert_eq!(obj.normals, particles.normal);
     assert_eq!((&obj.triangles, &obj.of_normals), (&mesh.triangles, &mesh.triangles));
 }
@@ -173,7 +173,7 @@ fn stl_holds_triangles_that_face_outward() {
     let mut volume = 0.0;
     for (record, triangle) in bytes[84..].chunks_exact(50).zip(triangles) {
         let read = vectors(&record[..48]);
-        let corners = triangle.map(|v| particles.position[v as usize]);
+        let corners = triangle.map(|v| particles.local[v as usize]);
         assert_eq!(read[1..], corners);
         assert!((read[0].length() - 1.0).abs() < 1e-5);
         assert!(read[0].dot(particles.normal[triangle[0] as usize]) > 0.5);
@@ -211,7 +211,7 @@ fn ply_of_a_mesh_holds_numbers_of_one_type_and_the_triangles() {
     assert_eq!(face, format!("{}\nproperty list uchar uint vertex_indices\n", mesh.triangles.len()));
     assert_eq!(ply_triangles(data, mesh.triangles.len()), mesh.triangles);
     for (k, row) in data[..24 * particles.len()].chunks_exact(24).enumerate() {
-        assert_eq!(vectors(row), [particles.position[k], particles.normal[k]]);
+        assert_eq!(vectors(row), [particles.local[k], particles.normal[k]]);
     }
 }
 
@@ -225,7 +225,7 @@ fn ply_with_columns_holds_those_of_the_particles() {
     assert_eq!(ply_triangles(data, mesh.triangles.len()), mesh.triangles);
     let rows = &data[..data.len() - 13 * mesh.triangles.len()];
     for (k, row) in rows.chunks_exact(rows.len() / particles.len()).enumerate() {
-        assert_eq!(vectors(&row[..24]), [particles.position[k], particles.normal[k]]);
+        assert_eq!(vectors(&row[..24]), [particles.local[k], particles.normal[k]]);
         assert_eq!(word(row, 28), particles.level[k]);
     }
 }
@@ -367,7 +367,7 @@ fn files_face_outward_whichever_way_f_grows_and_the_report_says_so() {
         // round them.
         let particles = sample.particles();
         assert!(face_alike(
-            &particles.position,
+            &particles.local,
             sample.mesh().corners(),
             &particles.normal,
             sample.mesh().corners()
@@ -441,7 +441,7 @@ fn three_mf_holds_each_particle_of_a_triangle_once_with_its_unit() {
 #[test]
 fn meshes_are_written_in_the_size_and_orientation_asked_for() {
     let (particles, triangles) = sampled("ellipsoid", 0.015);
-    let first = particles.position[triangles.triangles[0][0] as usize].to_array();
+    let first = particles.local[triangles.triangles[0][0] as usize].to_array();
     let corner = |placement: &Placement| {
         vectors(&placed(MeshFormat::Stl, &particles, &triangles, placement)[96..108])[0]
     };
@@ -454,7 +454,7 @@ fn meshes_are_written_in_the_size_and_orientation_asked_for() {
     let bytes = placed(MeshFormat::Glb, &particles, &triangles, &placement);
     let (document, buffer) = parts(&bytes);
     let position = &document["meshes"][0]["primitives"][0]["attributes"]["POSITION"];
-    for (written, p) in vectors(column(&document, buffer, position)).iter().zip(&particles.position) {
+    for (written, p) in vectors(column(&document, buffer, position)).iter().zip(&particles.local) {
         assert!((*written - *p * 0.02).length() < 1e-6);
     }
 }

@@ -51,7 +51,7 @@ fn check_faces(sample: &Sample, bounds: &Bounds, axes: &[u8], what: &str) -> usi
     for faces in &particles.opposite {
         let axis = usize::from(faces.axis);
         let tangential = |row: u32| {
-            let mut bits = particles.position[row as usize].to_array().map(f32::to_bits);
+            let mut bits = particles.local[row as usize].to_array().map(f32::to_bits);
             bits[axis] = 0;
             bits
         };
@@ -63,7 +63,7 @@ fn check_faces(sample: &Sample, bounds: &Bounds, axes: &[u8], what: &str) -> usi
             assert_eq!(master, image, "{what}");
             let at = [bounds.lo()[axis], bounds.hi()[axis]];
             for (side, (&row, at)) in rows.iter().zip(at).enumerate() {
-                assert_eq!(particles.position[row as usize][axis], at as f32, "{what}");
+                assert_eq!(particles.local[row as usize][axis], at as f32, "{what}");
                 assert_eq!(particles.patch[row as usize], faces.patches[side], "{what}");
                 sides[side].insert(row);
             }

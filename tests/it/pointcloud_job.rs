@@ -423,7 +423,7 @@ fn noisy(points: &[(DVec3, DVec3)], noise: f64, has_normals: bool, random: &mut 
 fn distance_of(fit: Fit, distance: impl Fn(DVec3) -> f64) -> (usize, i64, f64) {
     let (session, report) = sampled(fit, &Settings::with_count(2000));
     let connectivity = report.measures.quality.expect("particles").connectivity;
-    let distances = session.run.particles().position.iter().map(|p| distance(p.as_dvec3()));
+    let distances = session.run.particles().local.iter().map(|p| distance(p.as_dvec3()));
     let (sum, count) = distances.fold((0.0, 0.0), |(sum, count), d| (sum + d * d, count + 1.0));
     (connectivity.components, connectivity.euler, (sum / count).sqrt())
 }
@@ -470,7 +470,7 @@ fn a_noisy_bunny_keeps_its_form() {
     let true_points: Vec<(DVec3, DVec3)> = session
         .run
         .particles()
-        .position
+        .local
         .iter()
         .map(|p| (p.as_dvec3(), field.value_and_gradient(p.as_dvec3()).1.normalize_or_zero()))
         .collect();

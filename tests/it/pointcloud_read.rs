@@ -285,7 +285,7 @@ fn files_of_our_own_are_read_back_to_the_same_bits() {
     let point = |i: usize| Vec3::new((i as f32).sqrt(), 1.0 / (i + 1) as f32, i as f32 * 1e-9);
     let particles = Particles {
         origin: glam::DVec3::ZERO,
-        position: (0..count).map(point).collect(),
+        local: (0..count).map(point).collect(),
         normal: (0..count).map(|i| Vec3::new(1.0, i as f32, -0.3).normalize_or(Vec3::Z)).collect(),
         radius: vec![0.25; count],
         parent: vec![Particles::NO_PARENT; count],
@@ -303,10 +303,7 @@ fn files_of_our_own_are_read_back_to_the_same_bits() {
         export::write(&file, &particles, &quality::Measurements::default(), &mut bytes)
             .expect("writing to memory does not fail");
         let (_, mesh) = read(&format!("a.{ending}"), bytes);
-        assert!(
-            mesh.position.iter().zip(&particles.position).all(|(read, p)| read.as_vec3() == *p),
-            "{ending}"
-        );
+        assert!(mesh.position.iter().zip(&particles.local).all(|(read, p)| read.as_vec3() == *p), "{ending}");
         assert!(mesh.normal.iter().zip(&particles.normal).all(|(read, n)| read.as_vec3() == *n), "{ending}");
         assert_eq!((mesh.position.len(), mesh.normal.len()), (count, count), "{ending}");
     }

@@ -181,7 +181,7 @@ fn holds(case: &Case, context: &str) -> bool {
         distances.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
     };
     let mut is_told = vec![false; pieces.len()];
-    for p in &session.run.particles().position {
+    for p in &session.run.particles().local {
         nearest(p.as_dvec3()).iter().for_each(|&k| is_told[k] = true);
     }
     let mut names = vec![0; pieces.len()];

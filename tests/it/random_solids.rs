@@ -93,10 +93,10 @@ fn check(seed: u64) -> bool {
     let mut at: BTreeMap<[u32; 3], usize> = BTreeMap::new();
     for (i, residual) in run.measured().residual.iter().enumerate() {
         let (place, first) = (particles.place(i), particles.first_row(i));
-        let known = *at.entry(particles.position[i].to_array().map(f32::to_bits)).or_insert(first);
+        let known = *at.entry(particles.local[i].to_array().map(f32::to_bits)).or_insert(first);
         assert!(known == first || is_double, "two particles at {place}: {warnings:?}");
         assert!(run.bounds().holds(place), "{place} is not in {:?}", run.bounds());
-        let value = field.on(particles.patch_of(i)).value_and_gradient(particles.position[i].as_dvec3()).0;
+        let value = field.on(particles.patch_of(i)).value_and_gradient(particles.local[i].as_dvec3()).0;
         assert!(!value.is_finite() || residual.is_finite(), "{residual} at {place}, where f is {value}");
     }
     // The mesh of each patch is a manifold, also where patches cross or touch.

@@ -462,7 +462,7 @@ fn the_particles_of_a_model_follow_a_pull_and_come_back() {
         if step == 10 {
             let end = (DVec3::from(pulls[0].at) + DVec3::from(pulls[0].by)).as_vec3();
             let radius = session.run.particles().radius[0];
-            let near = session.run.particles().position.iter().map(|p| p.distance(end));
+            let near = session.run.particles().local.iter().map(|p| p.distance(end));
             assert!(near.fold(f32::INFINITY, f32::min) < 1.5 * radius, "nothing has come along");
         }
     }

@@ -147,7 +147,7 @@ fn two_spheres() -> (Formula, Bounds) {
 }
 
 fn on_small_sphere(particles: &Particles) -> usize {
-    particles.position.iter().filter(|p| p.x > 1.2).count()
+    particles.local.iter().filter(|p| p.x > 1.2).count()
 }
 
 #[test]
@@ -272,7 +272,7 @@ fn a_refined_run_has_the_mesh_that_it_led_to() {
         assert_eq!(topology.euler(), euler, "{name}");
         assert_eq!(topology.borders.is_empty(), name != "gyroid", "{name}");
         for &[a, b, c] in sampler.triangles() {
-            let [p, q, r] = [a, b, c].map(|v| particles.position[v as usize]);
+            let [p, q, r] = [a, b, c].map(|v| particles.local[v as usize]);
             let upright = (q - p).cross(r - p).dot(particles.normal[a as usize]);
             assert!(upright > 0.0, "{name}: the triangle of {a}, {b} and {c} faces inward");
         }

@@ -33,7 +33,7 @@ fn same_sheet_weight(cosine: f32) -> f64 {
 
 /// Energy per particle by its definition, over all pairs. A sweep along one axis excludes most of the pairs.
 fn energy(particles: &Particles, radius: f64) -> f64 {
-    let Particles { position, normal, .. } = particles;
+    let Particles { local: position, normal, .. } = particles;
     let mut order: Vec<usize> = (0..particles.len()).collect();
     order.sort_by(|&i, &j| position[i].x.total_cmp(&position[j].x));
     let mut sum = 0.0;
@@ -165,7 +165,7 @@ fn every_gallery_surface_is_sampled_with_particles_on_it_and_in_its_box() {
         let particles = sampler.particles();
         assert!(particles.len() > 500, "{}: {} particles", surface.id, particles.len());
         let mut residual = Vec::new();
-        for (p, n) in particles.position.iter().zip(&particles.normal) {
+        for (p, n) in particles.local.iter().zip(&particles.normal) {
             assert!(surface.bounds.contains(*p), "{}: {p} outside the box", surface.id);
             assert!((n.length() - 1.0).abs() < 1e-5, "{}: normal {n}", surface.id);
             let (value, gradient) = field.value_and_gradient(p.as_dvec3());

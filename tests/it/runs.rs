@@ -57,7 +57,7 @@ pub(crate) fn assert_fates(sampler: &Sampler, context: &str) {
 pub(crate) fn figures(
     field: &dyn Field,
     bounds: &Bounds,
-    Particles { position, normal, .. }: &Particles,
+    Particles { local: position, normal, .. }: &Particles,
     radii: Option<&[f32]>,
 ) -> Figures {
     measure(position, normal, field, Some(bounds), &MeasureOptions { radii, ..MeasureOptions::default() })

@@ -214,9 +214,9 @@ fn a_session_can_be_used_again_with_the_same_result() {
 fn another_seed_begins_elsewhere() {
     let mut session = Session::new();
     run(&mut session, &sized(500), 1000);
-    let first = session.run.particles().position[0];
+    let first = session.run.particles().local[0];
     run(&mut session, &settings!(seed: 1; ..sized(500)), 1000);
-    assert_ne!(session.run.particles().position[0], first);
+    assert_ne!(session.run.particles().local[0], first);
 }
 
 #[test]
@@ -278,7 +278,7 @@ fn cancelling_keeps_the_particles() {
             particles.slots.len(),
         ];
         assert_eq!(columns, [particles.len(); 5]);
-        assert!(particles.position.iter().all(|p| p.is_finite()));
+        assert!(particles.local.iter().all(|p| p.is_finite()));
         let report = session.report();
         assert_eq!(report.count, progress.particles);
         assert!(
@@ -474,7 +474,7 @@ fn a_field_from_points_takes_the_formulas_place_and_gives_it_back() {
     let report = session.report();
     assert_eq!(report.stop_reason, Some(StopReason::Complete));
     assert_eq!(report.measures.quality.expect("particles").connectivity.euler, 2);
-    assert!(session.run.particles().position.iter().all(|p| (p.length() - 1.0).abs() < 1e-2));
+    assert!(session.run.particles().local.iter().all(|p| (p.length() - 1.0).abs() < 1e-2));
 
     // Only the box of such a field can be changed. An invalid box changes nothing.
     let smaller = FieldRequest { bounds: Some(Bounds::cube(1.2)), ..FieldRequest::default() };
@@ -678,7 +678,7 @@ mod solids {
         let bounds = run_on(&mut session, given, closed, &settings);
         assert_eq!((bounds.min, bounds.max), ([-2.0, -2.0, -1.0], [2.0, 2.0, 3.0]));
         let heights = |session: &Session| {
-            let z = session.run.particles().position.iter().map(|p| p.z);
+            let z = session.run.particles().local.iter().map(|p| p.z);
             (z.clone().fold(f32::MAX, f32::min), z.fold(f32::MIN, f32::max))
         };
         assert_eq!(heights(&session), (-1.0, 3.0));
@@ -687,8 +687,7 @@ mod solids {
         assert_eq!(session.fit(&|_| settings, true, u32::MAX).expect("a box").bounds, bounds);
         run(&mut session, &settings, u32::MAX);
         assert_eq!(heights(&session), (-1.0, 3.0));
-        let widest =
-            session.run.particles().position.iter().map(|p| p.truncate().length()).fold(0.0, f32::max);
+        let widest = session.run.particles().local.iter().map(|p| p.truncate().length()).fold(0.0, f32::max);
         assert!((widest - 2_f32.sqrt()).abs() < 1e-4, "{widest}");
     }
 

@@ -33,7 +33,7 @@ fn check(settings: Settings) {
             let proof = &sample.report().proof;
             assert_eq!([proof.creases, proof.corners], creases.map(Some), "{name}");
             for (i, &first) in rows.twins.iter().enumerate() {
-                let [own, other] = [i, first as usize].map(|row| (rows.position[row], rows.radius[row]));
+                let [own, other] = [i, first as usize].map(|row| (rows.local[row], rows.radius[row]));
                 assert_eq!(own, other, "{name}: row {i}");
             }
         }

@@ -22,13 +22,13 @@ fn adaptive(count: u32, relax_steps: u32) -> Settings {
 fn pairs(particles: &Particles, reach: f32) -> Vec<(usize, usize, f32)> {
     let largest = particles.radius.iter().fold(0.0_f32, |a, &b| a.max(b));
     let mut grid = CellGrid::new(largest);
-    for (i, &p) in particles.position.iter().enumerate() {
+    for (i, &p) in particles.local.iter().enumerate() {
         grid.insert(p, i as u32);
     }
     let (mut found, mut pairs) = (Vec::new(), Vec::new());
     for i in 0..particles.len() {
         // The larger particle of a pair finds the smaller one.
-        grid.gather(particles.position[i], 2.0 * reach * particles.radius[i], &mut found);
+        grid.gather(particles.local[i], 2.0 * reach * particles.radius[i], &mut found);
         for near in &found {
             let j = near.index as usize;
             let (a, b) = (particles.radius[i], particles.radius[j]);
@@ -81,7 +81,7 @@ fn no_particle_is_larger_than_its_law_and_most_are_as_large() {
         let sampler = of_gallery(surface.id, &settings);
         let particles = sampler.particles();
         let mut curvature = vec![Curvature::default(); particles.len()];
-        curvatures(&mut *surface.field().evaluator(Frame::default()), &particles.position, &mut curvature);
+        curvatures(&mut *surface.field().evaluator(Frame::default()), &particles.local, &mut curvature);
         let diagonal = surface.bounds.diagonal();
         let (error, least) = (settings.chord_error * diagonal, settings.radius_min_share * diagonal);
         let greatest = settings.radius_max_share * diagonal;

@@ -94,18 +94,14 @@ fn one_particle_stands_at_a_tip_and_the_sheets_close_around_it() {
             );
             assert_eq!((&mesh.unfilled[..], &mesh.left_out[..]), (&[][..], &[][..]), "{name}");
             for i in at_tips {
-                let (tip, spacing) = (particles.position[i], 2.0 * particles.radius[i]);
-                assert_eq!(
-                    (particles.level[i], tip),
-                    (0, particles.position[particles.first_row(i)]),
-                    "{name}"
-                );
+                let (tip, spacing) = (particles.local[i], 2.0 * particles.radius[i]);
+                assert_eq!((particles.level[i], tip), (0, particles.local[particles.first_row(i)]), "{name}");
                 let around: Vec<Vec3> = mesh
                     .triangles
                     .iter()
                     .filter(|triangle| triangle.contains(&(i as u32)))
                     .flatten()
-                    .map(|&v| particles.position[v as usize])
+                    .map(|&v| particles.local[v as usize])
                     .filter(|&p| p != tip)
                     .collect();
                 assert!(around.len() >= 8, "{name}: {} corners around {tip}", around.len());

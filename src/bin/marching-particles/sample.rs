@@ -94,7 +94,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     }
     let mut made = session.record(None).expect("a run that has started has a record");
     // The steps that were asked for, though an even surface takes fewer.
-    made.settings = settings;
+    made.settings.relax_steps = settings.relax_steps;
     if model.is_some() {
         made.surface.clone_from(&arguments.surface.surface);
     }
@@ -133,7 +133,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         formula: made.formula,
         parameters: made.parameters,
         bounds: made.bounds,
-        settings,
+        settings: made.settings,
         predicted_count,
         report,
         mesh,

@@ -145,7 +145,7 @@ impl Chord {
 
 /// Cosine of the angle between the normal of a triangle and the mean one at its corners; 0 for a triangle without an area.
 fn follows(rows: [u32; 3], particles: &Particles) -> f32 {
-    let [a, b, c] = rows.map(|row| particles.position[row as usize]);
+    let [a, b, c] = rows.map(|row| particles.local[row as usize]);
     let mean: Vec3 = rows.iter().map(|&row| particles.normal[row as usize]).sum();
     (b - a).cross(c - a).normalize_or_zero().dot(mean.normalize_or_zero())
 }

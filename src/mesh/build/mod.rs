@@ -107,7 +107,7 @@ impl Triangulation {
     /// Positive whether f is smaller or larger inside. `None` where they are not closed.
     #[must_use]
     pub fn volume(&self, particles: &Particles) -> Option<f64> {
-        let at = |i: u32| particles.position[i as usize].as_dvec3();
+        let at = |i: u32| particles.local[i as usize].as_dvec3();
         let of = |&[a, b, c]: &[u32; 3]| at(a).dot(at(b).cross(at(c))) / 6.0;
         self.topology.encloses().then(|| self.triangles.iter().map(of).sum())
     }
@@ -118,7 +118,7 @@ impl Triangulation {
     pub fn smallest_angle(&self, particles: &Particles) -> Option<f64> {
         // In a triangle the smallest angle has the largest cosine.
         let cosine = |&[a, b, c]: &[u32; 3]| {
-            let [a, b, c] = [a, b, c].map(|i| particles.position[i as usize].as_dvec3());
+            let [a, b, c] = [a, b, c].map(|i| particles.local[i as usize].as_dvec3());
             let at = |p: DVec3, q: DVec3, r: DVec3| {
                 let (u, v) = (q - p, r - p);
                 u.dot(v) / (u.length() * v.length())
@@ -170,7 +170,7 @@ impl Joined {
             sides.any(|side| edges.binary_search(&side).is_ok())
         };
         let is_unfilled: Vec<bool> = topology.borders.iter().map(is_open).collect();
-        let Facing { turned, inside } = facing(&particles.position, &triangles, &topology).await;
+        let Facing { turned, inside } = facing(&particles.local, &triangles, &topology).await;
         if !turned.is_empty() {
             if corners.is_empty() {
                 corners.clone_from(&triangles);
@@ -207,7 +207,7 @@ pub fn triangulate(particles: &Particles, bounds: Option<&Bounds>) -> Triangulat
 
 /// [`triangulate`] in slices of work. The last few look at all rows and triangles, for some 50 ns each.
 pub(crate) async fn in_slices(particles: &Particles, bounds: Option<&Bounds>) -> Triangulation {
-    let Particles { position, normal, .. } = particles;
+    let Particles { local: position, normal, .. } = particles;
     if particles.patch.is_empty() {
         return join(position, normal, bounds, &[], &[]).await.counted(particles).await;
     }

@@ -209,7 +209,7 @@ impl Creases {
             }
             place[i] = next.len() as u32;
             let pair = face_at(i, 0);
-            let (mut position, normal) = (particles.position[i], particles.normal[i]);
+            let (mut position, normal) = (particles.local[i], particles.normal[i]);
             if let Some(k) = pair {
                 position[repeats[k].axis] = repeats[k].at[0] as f32;
             }
@@ -267,7 +267,7 @@ fn is_same<'a>(probe: &mut Probe, branches: impl Iterator<Item = &'a u32>, p: DV
 fn crease_pairs(particles: &Particles, pair: &FacePair) -> Option<Vec<[u32; 2]>> {
     // The two coordinates in the face, by their bits.
     let place = |&row: &u32| {
-        let p = particles.position[row as usize].to_array().map(|x| u64::from(x.to_bits()));
+        let p = particles.local[row as usize].to_array().map(|x| u64::from(x.to_bits()));
         p[(pair.axis + 1) % 3] << 32 | p[(pair.axis + 2) % 3]
     };
     let [lower, upper] = pair.patches.map(|patch| {

@@ -157,7 +157,7 @@ fn particles_on_creases_are_evenly_spaced_and_have_a_row_for_each_patch() {
     assert_eq!((particles.count(), along.len()), (filled.list.len(), particles.len()));
     for i in 0..particles.len() {
         let first = particles.first_row(i);
-        assert_eq!(particles.position[i], particles.position[first]);
+        assert_eq!(particles.local[i], particles.local[first]);
         assert!(first == i || particles.normal[i].dot(particles.normal[first]).abs() < 1e-6);
     }
 }
@@ -174,7 +174,7 @@ fn every_level_of_a_ladder_halves_the_ways_along_the_creases() {
     let ladder = filled.into_ladder(&rows, None);
     // The circle of circumference 2π √¾ has room for 14 particles at a distance of 0.4.
     let mut place: BTreeMap<u32, Vec3> =
-        (0..).zip(&rows.position).map(|(row, &p)| (rows.first_row(row) as u32, p)).collect();
+        (0..).zip(&rows.local).map(|(row, &p)| (rows.first_row(row) as u32, p)).collect();
     for to_come in (0..3).rev() {
         for ([a, b], _) in ladder.pairs(to_come + 1) {
             let (number, middle) = ladder.middle(a, b).expect("the middle of a pair");

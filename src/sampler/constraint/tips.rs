@@ -179,10 +179,10 @@ pub(in super::super) fn add(
         let place = tip.position.as_vec3();
         let radius = radius(probe, place);
         let Some(around) = tip.rings(probe, 2.0 * f64::from(radius)) else { continue };
-        let is_there = |&row: &usize| particles.position[row].distance(place) <= ONE_CORNER as f32 * radius;
+        let is_there = |&row: &usize| particles.local[row].distance(place) <= ONE_CORNER as f32 * radius;
         let rows: Vec<usize> = (0..particles.len()).filter(is_there).collect();
         let first = rows.first().map_or(particles.len() as u32, |&row| particles.twins[row]);
-        let position = rows.first().map_or(place, |&row| particles.position[row]);
+        let position = rows.first().map_or(place, |&row| particles.local[row]);
         let mut known =
             rows.into_iter().filter(|&row| particles.is_on(row, Some(tip.patch))).collect::<Vec<_>>();
         for mut ring in around {
@@ -201,12 +201,12 @@ pub(in super::super) fn add(
         }
     }
     for Ring { tip, distance, points } in rings {
-        let (others, apex) = (particles.len(), particles.position[tip as usize].as_dvec3());
+        let (others, apex) = (particles.len(), particles.local[tip as usize].as_dvec3());
         let radius = particles.radius[tip as usize];
         for (k, LinkPoint { direction, normal }) in points.into_iter().enumerate() {
             let (position, normal) = ((apex + direction * distance).as_vec3(), normal.as_vec3());
             let is_free = (0..others).all(|i| {
-                particles.position[i].distance(position) > match_share * radius
+                particles.local[i].distance(position) > match_share * radius
                     || particles.normal[i].dot(normal) <= 0.0
             });
             if is_free && bounds.contains(position) {

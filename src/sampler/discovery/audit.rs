@@ -118,7 +118,7 @@ impl Audit {
         while budget > 0 && self.next < particles.len() {
             let last = (self.next + SCANNED).min(particles.len());
             for i in self.next..last {
-                let (p, reach) = (particles.position[i], REACH * particles.radius[i]);
+                let (p, reach) = (particles.local[i], REACH * particles.radius[i]);
                 found.clear();
                 tree.within_box(p - reach, p + reach, &mut found);
                 for &k in &found {
@@ -155,7 +155,7 @@ impl Audit {
         let normal = value_at(field, factor, exact).1.try_normalize().unwrap_or(DVec3::Z);
         let from = ExactPoint { position: exact, normal };
         let near = on_factor(field, factor, particles, near, *slack);
-        let place_of = |j: usize| particles.position[j].as_dvec3();
+        let place_of = |j: usize| particles.local[j].as_dvec3();
         let segments: Vec<Segment> =
             near.iter().take(TOGETHER).map(|&j| Segment { from, to: place_of(j) }).collect();
         let mut prover = Prover { field, factor, slack: *slack, region: *region };
@@ -166,7 +166,7 @@ impl Audit {
         }
         let seen = &mut Probe::new(&mut *prover.field, probe.memory);
         let seems_held = near.iter().take(TOGETHER).any(|&j| {
-            let offset = particles.position[j] - seed.position;
+            let offset = particles.local[j] - seed.position;
             let pair = PointPair { offset, normal: seed.normal, other: particles.normal[j] };
             pair.faces_one_way() && rule.is_one_sheet(seen, seed.position, pair)
         });
@@ -205,11 +205,11 @@ fn on_factor(
     slack: f64,
 ) -> Vec<usize> {
     let boxes: Vec<Bounds> =
-        near.iter().map(|near| Bounds::point(particles.position[near.index].as_dvec3())).collect();
+        near.iter().map(|near| Bounds::point(particles.local[near.index].as_dvec3())).collect();
     let mut known = vec![Enclosure::UNKNOWN; boxes.len()];
     field.enclose(factor, &boxes, &mut known);
     let index_if_on = |(near, known): (&NearParticle, Enclosure)| {
-        let p = particles.position[near.index].as_dvec3();
+        let p = particles.local[near.index].as_dvec3();
         let steepest = DVec3::from_array(known.gradient.map(Interval::magnitude)).length();
         // As near as the particle is to its own sheet: that of another factor may be within the slack too. By the slack alone 1 of 200
         // random surfaces has a component without particles that is not named.
@@ -299,7 +299,7 @@ pub(crate) fn holds_any(
     slack: f64,
 ) -> bool {
     indices.any(|j| {
-        let p = particles.position[j].as_dvec3();
+        let p = particles.local[j].as_dvec3();
         let (value, gradient) = value_at(field, seed.factor, p);
         (p - seed.exact).length() <= reach && value.abs() <= 2.0 * slack * gradient.length()
     })

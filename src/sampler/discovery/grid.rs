@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 pub(crate) const CELLS: f64 = 32.0;
 /// Grid cells along the longest side of the box for fields without bounds, of which only the grid shows the surface. It does not
 /// miss a sphere whose radius is 1.4 % of the box's longest side: half the diagonal of a cell.
-const DENSE_CELLS: f64 = 64.0;
+pub(crate) const DENSE_CELLS: u32 = 64;
 
 /// The regular grid at whose nodes the field is evaluated.
 pub(super) struct Grid {
@@ -24,11 +24,11 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// The grid over a box, which has a whole number of blocks if it `is_dense`.
-    pub(super) fn over(bounds: &Bounds, is_dense: bool) -> Self {
+    /// The grid over a box, which has a whole number of blocks if it is to have so many `dense` cells.
+    pub(super) fn over(bounds: &Bounds, dense: Option<u32>) -> Self {
         let size = bounds.hi() - bounds.lo();
-        let spacing = size.max_element() / if is_dense { DENSE_CELLS } else { CELLS };
-        let block = if is_dense { COARSEST as f64 } else { 1.0 };
+        let spacing = size.max_element() / dense.map_or(CELLS, f64::from);
+        let block = if dense.is_some() { COARSEST as f64 } else { 1.0 };
         let cells = block * (size / (block * spacing)).ceil();
         let nodes = cells.to_array().map(|c| c as usize + 1);
         Self { lo: bounds.lo(), step: size / cells, nodes, spacing }

@@ -42,7 +42,7 @@ pub(crate) fn blur(field: &mut dyn Evaluator, particles: &Particles) -> Option<B
     let field = field.bounded()?;
     let mut most = (MOST_MOVED, None);
     for particle in (0..particles.len()).step_by(particles.len().div_ceil(SAMPLES).max(1)) {
-        let at = [Bounds::point(particles.position[particle].as_dvec3())];
+        let at = [Bounds::point(particles.local[particle].as_dvec3())];
         // The particle lies on the nearest of the factors.
         let of_factors = (0..field.factors()).map(|factor| {
             let mut known = [Enclosure::UNKNOWN];

@@ -176,13 +176,13 @@ impl ComponentSearch {
         let from = ExactPoint { position: position.as_dvec3(), normal: normal.as_dvec3() };
         let tried = near.iter().take(TOGETHER);
         let segments: Vec<Segment> =
-            tried.map(|&j| Segment { from, to: particles.position[j as usize].as_dvec3() }).collect();
+            tried.map(|&j| Segment { from, to: particles.local[j as usize].as_dvec3() }).collect();
         let is_proven = prover.are_connected(&segments, None).contains(&true)
             || segments.iter().any(|&segment| prover.is_connected_by_segments(segment));
         is_proven
             || near.iter().take(TOGETHER).any(|&j| {
                 let j = j as usize;
-                let offset = particles.position[j] - position;
+                let offset = particles.local[j] - position;
                 rule.is_one_sheet(probe, position, PointPair { offset, normal, other: particles.normal[j] })
             })
     }

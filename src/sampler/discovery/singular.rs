@@ -301,7 +301,7 @@ pub(crate) fn mark(field: &mut dyn Evaluator, points: &[Singular], particles: &m
     let apart = on_curves.reduce(f64::min).unwrap_or(0.0);
     let mut near = Vec::new();
     for i in 0..particles.len() {
-        let (p, reach) = (particles.position[i], 2.0 * particles.radius[i]);
+        let (p, reach) = (particles.local[i], 2.0 * particles.radius[i]);
         let around = Vec3::splat(reach + apart as f32);
         near.clear();
         tree.within_box(p - around, p + around, &mut near);

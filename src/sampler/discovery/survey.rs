@@ -224,10 +224,10 @@ impl Candidates {
 
 /// Distance between the nodes of the grid of a survey that is not dense.
 pub(crate) fn spacing(bounds: &Bounds) -> f64 {
-    Grid::over(bounds, false).spacing
+    Grid::over(bounds, None).spacing
 }
 
-/// Surveys `field` over `bounds`, on a finer grid if it `is_dense`.
+/// Surveys `field` over `bounds`, on a grid of so many `dense` cells if there is such a number.
 ///
 /// Three kinds of candidates are tried: grid edges whose ends differ in sign, edges between whose ends f has the other sign (two
 /// sheets within a cell), and nodes whose first-order distance |f|/|∇f| is below the spacing (surfaces that f touches without
@@ -236,9 +236,9 @@ pub(crate) fn spacing(bounds: &Bounds) -> f64 {
 ///
 /// The area follows from the edges by Cauchy's formula: an edge along an axis crosses the surface once in s² of
 /// projected area, so each crossing stands for s²/(|n_x| + |n_y| + |n_z|) of true area.
-pub(crate) fn survey(probe: &mut Probe, bounds: &Bounds, is_dense: bool) -> Survey {
-    let grid = Grid::over(bounds, is_dense);
-    let dense = is_dense.then(|| Dense::new(probe, &grid));
+pub(crate) fn survey(probe: &mut Probe, bounds: &Bounds, dense: Option<u32>) -> Survey {
+    let grid = Grid::over(bounds, dense);
+    let dense = dense.map(|_| Dense::new(probe, &grid));
     let mut found = Candidates::new();
     let [mut lower, mut upper] = [0, 1].map(|_| GridLayer::new(&grid));
     let layers = grid.nodes[2];

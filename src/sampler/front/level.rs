@@ -183,7 +183,7 @@ impl FrontLevel {
     /// Notes to where child `k` of the level was projected.
     pub(super) fn note_landing(&mut self, particles: &Particles, k: usize, landing: ChildLanding) {
         if let ChildLanding::On(spot) = landing {
-            let moved = (spot.position - particles.position[self.first_child + k]).length();
+            let moved = (spot.position - particles.local[self.first_child + k]).length();
             self.children.drift = self.children.drift.max(moved);
         }
         self.children.landings.push(landing);
@@ -282,13 +282,13 @@ impl SlotFrame {
     /// The frame of a particle. That of one on a crease has its first axis in the direction in `along`, which has an entry for each of
     /// them.
     pub(crate) fn of(particles: &Particles, particle: usize, along: &[Vec3]) -> Self {
-        let (p, n) = (particles.position[particle], particles.normal[particle]);
+        let (p, n) = (particles.local[particle], particles.normal[particle]);
         let parent = particles.parent[particle];
         let is_seed = parent == Particles::NO_PARENT;
         let towards = if is_seed {
             along.get(particle).copied().unwrap_or(Vec3::ZERO)
         } else {
-            particles.position[parent as usize] - p
+            particles.local[parent as usize] - p
         };
         let towards = (towards - n * towards.dot(n)).normalize_or_zero();
         let (u, w) = if towards == Vec3::ZERO { tangent_frame(n) } else { (towards, n.cross(towards)) };

@@ -189,7 +189,7 @@ impl Front {
         let (level, placing) = self.parts();
         level.along.extend_from_slice(along);
         for i in 0..context.particles.len() {
-            let position = context.particles.position[i];
+            let position = context.particles.local[i];
             let patch = context.particles.patch_of(i);
             context.on(patch, |context| placing.add_parent(context, position, i));
             level.grids.insert(position, context.particles.radius[i], i as u32);
@@ -212,7 +212,7 @@ impl Front {
         let last = particles.len() - 1;
         let radius = particles.radius[last];
         let FrontLevel { grids, found, .. } = &mut self.level;
-        grids.gather(particles.position[last], |largest| radius + largest, found);
+        grids.gather(particles.local[last], |largest| radius + largest, found);
         found.iter().any(|near| {
             let j = near.index as usize;
             j != last && near.distance_sq.sqrt() <= radius + particles.radius[j]
@@ -318,7 +318,7 @@ fn settle_on_patch(
         ChildLanding::On(spot) if placing.has_room(level, context, child, &spot) => {
             let (index, particles) = (level.settled, &mut *context.particles);
             level.grids.update(handle, spot.position, spot.radius, index as u32);
-            particles.position[index] = spot.position;
+            particles.local[index] = spot.position;
             particles.normal[index] = spot.normal;
             particles.radius[index] = spot.radius;
             particles.parent[index] = parent;

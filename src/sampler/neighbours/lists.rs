@@ -121,7 +121,7 @@ impl NeighbourLists {
 
     /// Puts particle `i` into the grid.
     pub(crate) fn insert(&mut self, particles: &Particles, i: usize) {
-        self.grid.insert(particles.position[i], particles.radius[i], i as u32);
+        self.grid.insert(particles.local[i], particles.radius[i], i as u32);
     }
 
     /// Begins a renewal: drops the far pairs of stale lists.
@@ -165,7 +165,7 @@ impl NeighbourLists {
 
     /// Forms the group around particle `i`, and collects all particles near it.
     fn gather(&mut self, particles: &Particles, i: usize) {
-        let positions = &particles.position;
+        let positions = &particles.local;
         let p = positions[i];
         let (mut lo, mut hi, mut largest) = (p, p, particles.radius[i]);
         self.group.clear();
@@ -218,7 +218,7 @@ impl NeighbourLists {
     /// Finds the neighbours of particle `i` of the group, itself among them, in what [`Self::gather`] has collected.
     #[inline]
     fn find(&mut self, particles: &Particles, i: usize) {
-        let (p, n, radius) = (particles.position[i], particles.normal[i], particles.radius[i]);
+        let (p, n, radius) = (particles.local[i], particles.normal[i], particles.radius[i]);
         self.near.resize(self.found.len(), 0);
         let mut len = 0;
         let mut weighted = BVec4A::FALSE;

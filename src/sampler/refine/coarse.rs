@@ -89,10 +89,10 @@ pub(super) fn join(ground: &mut Ground, part: &FrontPart, surface: &SurfaceFacts
     let mesh = HalfEdges::from_triangles(rows.len(), &triangles).ok_or_else(|| doubtful(particles, 0))?;
     let mut net = Net {
         mesh,
-        position: rows.iter().map(|&row| particles.position[row as usize]).collect(),
+        position: rows.iter().map(|&row| particles.local[row as usize]).collect(),
         normal: rows.iter().map(|&row| particles.normal[row as usize]).collect(),
         slots: rows.iter().map(|&row| particles.slots[row as usize]).collect(),
-        walls: Walls::new(bounds, &particles.position, spacing),
+        walls: Walls::new(bounds, &particles.local, spacing),
         ..Net::default()
     };
     if let Some(ladder) = ladder {
@@ -157,7 +157,7 @@ fn judge_creases(net: &Net, ladder: &CreaseLadder) -> Result<(), Refusal> {
 
 /// Judges the triangles in the box: beyond it they are cut away.
 fn judge_triangles(joined: &Triangulation, particles: &Particles, bounds: &Bounds) -> Result<(), Refusal> {
-    let is_inside = |&v: &u32| bounds.contains(particles.position[v as usize]);
+    let is_inside = |&v: &u32| bounds.contains(particles.local[v as usize]);
     let mut left_out = joined.left_out.iter().copied().filter(is_inside);
     if let Some(v) = joined.unfilled.iter().flatten().copied().find(is_inside) {
         return Err(doubtful(particles, v));
@@ -171,7 +171,7 @@ fn judge_triangles(joined: &Triangulation, particles: &Particles, bounds: &Bound
 }
 
 pub(super) fn doubtful(particles: &Particles, v: u32) -> Refusal {
-    Refusal::Doubtful { at: particles.position.get(v as usize).copied().unwrap_or_default().into() }
+    Refusal::Doubtful { at: particles.local.get(v as usize).copied().unwrap_or_default().into() }
 }
 
 #[cfg(test)]
@@ -197,7 +197,7 @@ mod tests {
         assert_eq!(judge_triangles(&good, &particles, &bounds), Ok(()));
         let beyond = Triangulation { left_out: (988..1000).collect(), ..good.clone() };
         assert_eq!(judge_triangles(&beyond, &particles, &bounds), Ok(()));
-        let doubtful_at = |v: usize| Err(Refusal::Doubtful { at: particles.position[v].into() });
+        let doubtful_at = |v: usize| Err(Refusal::Doubtful { at: particles.local[v].into() });
         for (bad, place) in [
             (Triangulation { triangles: Vec::new(), ..good.clone() }, 0),
             (Triangulation { unfilled: vec![vec![990, 991], vec![995, 30]], ..good.clone() }, 30),

@@ -138,14 +138,14 @@ impl CoarseFronts {
         let &SurfaceFacts { ref bounds, failures, .. } = surface;
         let mut parts = split(particles);
         // Beyond the box there may be others.
-        parts.retain(|part| part.position.iter().any(|&p| bounds.contains(p)));
+        parts.retain(|part| part.local.iter().any(|&p| bounds.contains(p)));
         *self = Self { are_several: parts.len() > 1, ..Self::default() };
         for part in &parts {
             let mut refinement = Refinement::of_component(probe, surface, part, target)?;
             let mut part = part.clone();
             part.keep_within(bounds);
             if self.are_several {
-                let largest = largest_curvatures(probe.field, &part.position).into_iter().fold(0.0, f64::max);
+                let largest = largest_curvatures(probe.field, &part.local).into_iter().fold(0.0, f64::max);
                 let bend = largest * 2.0 * f64::from(target.radius);
                 let count = (part.len() as f64) * f64::from(1_u32 << (2 * target.halvings));
                 let candidate = Candidate {
@@ -201,7 +201,7 @@ impl CoarseFronts {
             let is_in_box = |row: usize| {
                 let number = part.twins.get(row);
                 let is_at_box = number.is_some_and(|&number| ladder.is_at_box(number));
-                surface.bounds.contains(part.position[row]) && !is_at_box
+                surface.bounds.contains(part.local[row]) && !is_at_box
             };
             // Beyond the box there may be others.
             if !(0..part.len()).any(is_in_box) {
@@ -289,7 +289,7 @@ fn gather(particles: &Particles, part_of: impl Iterator<Item = usize>) -> Parts 
         };
         let own = &mut parts.particles[part];
         parts.place.push(own.len() as u32);
-        let (position, normal) = (particles.position[i], particles.normal[i]);
+        let (position, normal) = (particles.local[i], particles.normal[i]);
         own.push(position, normal, particles.radius[i], parent, particles.level[i], particles.slots[i]);
         own.twins.extend(particles.twins.get(i));
     }
@@ -441,7 +441,7 @@ fn joined(components: &[AcceptedComponent], to_come: u32, ladder: Option<&Crease
         for (AcceptedComponent { refinement, particles: own, .. }, place) in components.iter().zip(&places) {
             let on_creases = own.twins.len();
             for i in if is_on_crease { 0..on_creases } else { on_creases..own.len() } {
-                let (position, normal, radius) = (own.position[i], own.normal[i], own.radius[i]);
+                let (position, normal, radius) = (own.local[i], own.normal[i], own.radius[i]);
                 let parent = match own.parent[i] {
                     Particles::NO_PARENT => Particles::NO_PARENT,
                     parent => place.row(parent),

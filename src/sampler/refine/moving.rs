@@ -113,7 +113,7 @@ impl MovingMesh {
         }
         particles.keep(|i| place[i] != NONE);
         for (row, &v) in old.iter().enumerate() {
-            particles.position[row] = net.position[v as usize];
+            particles.local[row] = net.position[v as usize];
             particles.normal[row] = net.normal[v as usize];
             if net.is_graded() {
                 particles.radius[row] = radius * net.size_of(v);
@@ -148,11 +148,11 @@ impl Net {
         let largest = size.iter().copied().reduce(f32::max).unwrap_or(1.0);
         Some(Self {
             mesh: HalfEdges::from_triangles(particles.len(), triangles)?,
-            position: particles.position.clone(),
+            position: particles.local.clone(),
             normal: particles.normal.clone(),
             slots: vec![Slots::default(); particles.len()],
             size,
-            walls: Walls::new(bounds, &particles.position, spacing * largest),
+            walls: Walls::new(bounds, &particles.local, spacing * largest),
             is_born: vec![false; particles.len()],
             ..Self::default()
         })

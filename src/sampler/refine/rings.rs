@@ -52,7 +52,7 @@ impl Rings {
             }
         }
         for &v in &rings.order {
-            rings.ready.position.push(net.position[v as usize]);
+            rings.ready.local.push(net.position[v as usize]);
             rings.ready.normal.push(net.normal[v as usize]);
             rings.ready.radius.push(radius * net.size_of(v));
             rings.ready.slots.push(net.fates(v));

@@ -106,7 +106,7 @@ impl Forces {
     ) {
         for &[i, j] in pairs.far() {
             let (i, j) = (i as usize, j as usize);
-            let offset = particles.position[i] - particles.position[j];
+            let offset = particles.local[i] - particles.local[j];
             let mean = 0.5 * (law.radius(particles, i) + law.radius(particles, j));
             let (weight, of_pair) = law.pairs(Vec4::splat(offset.length_squared()), Vec4::splat(mean));
             let share = repulsion_weight(particles.normal[i].dot(particles.normal[j]));
@@ -129,12 +129,12 @@ impl PairBatch {
         let mut count = 0;
         let mut ends = [0; BATCH_PARTICLES];
         for (end, i) in ends.iter_mut().zip(range) {
-            let p = particles.position[i].extend(0.0);
+            let p = particles.local[i].extend(0.0);
             for j in pairs.near(i) {
                 // A list holds at most ROOM neighbours, so the remainder is the count itself; it spares the bounds
                 // checks.
                 let k = count % MOST_PAIRS;
-                self.offset[k] = p - particles.position[j].extend(0.0);
+                self.offset[k] = p - particles.local[j].extend(0.0);
                 self.other[k] = j as u32;
                 if L::RESIZES {
                     self.mean[k] = 0.5 * (particles.radius[i] + particles.radius[j]);

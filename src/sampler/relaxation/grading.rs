@@ -37,7 +37,7 @@ pub(super) fn grade_far(slope: f32, pairs: &PackedNeighbours, particles: &mut Pa
 
 /// Lowers the larger of two radii to what the slope allows beside the smaller, if the particles face the same way. Returns whether it was lowered.
 fn grade(slope: f32, particles: &mut Particles, i: usize, j: usize) -> bool {
-    let rise = slope * (particles.position[i] - particles.position[j]).length();
+    let rise = slope * (particles.local[i] - particles.local[j]).length();
     let (a, b) = (particles.radius[i], particles.radius[j]);
     let is_steep = (a > b + rise || b > a + rise) && face_one_way(particles.normal[i], particles.normal[j]);
     if is_steep && a > b {

@@ -417,7 +417,7 @@ impl Relaxation {
                         (landing.trust, landing.reach) = (TRANSPORT_TRUST, TRANSPORT_REACH);
                     }
                     landing.renews_radii = true;
-                    landing.position[..range.len()].copy_from_slice(&particles.position[range.clone()]);
+                    landing.position[..range.len()].copy_from_slice(&particles.local[range.clone()]);
                 }
             }
             stepper.land(law, probe, lists, particles, range.clone(), &mut landing);

@@ -132,7 +132,7 @@ impl Stepper {
         landing: &mut LandingBatch,
     ) {
         for (point, i) in landing.position.iter_mut().zip(range) {
-            let p = particles.position[i];
+            let p = particles.local[i];
             let normal = particles.normal[i];
             let radius = law.radius(particles, i);
             let force = self.forces.take(i);
@@ -156,7 +156,7 @@ impl Stepper {
         landing: &mut LandingBatch,
     ) {
         for (point, i) in landing.position.iter_mut().zip(range) {
-            let distance = (particles.position[i] - self.previous[i]).length();
+            let distance = (particles.local[i] - self.previous[i]).length();
             let radius = particles.radius[i];
             self.restore(particles, i);
             self.forces.take(i);
@@ -164,13 +164,13 @@ impl Stepper {
                 self.radius_travel[i] = (self.radius_travel[i] - distance).max(0.0);
             }
             add_travel(law, lists, particles, i, distance, particles.radius[i] - radius);
-            *point = particles.position[i];
+            *point = particles.local[i];
         }
     }
 
     /// Restores the position and the radius that particle `i` had before the step.
     pub(super) fn restore(&self, particles: &mut Particles, i: usize) {
-        particles.position[i] = self.previous[i];
+        particles.local[i] = self.previous[i];
         if let Some(&radius) = self.previous_radius.get(i) {
             particles.radius[i] = radius;
         }
@@ -194,7 +194,7 @@ impl Stepper {
         if L::RESIZES {
             landing.radius[..range.len()].copy_from_slice(&particles.radius[range.clone()]);
             for (k, i) in range.clone().enumerate() {
-                let distance = (landing.position[k] - particles.position[i]).length();
+                let distance = (landing.position[k] - particles.local[i]).length();
                 landing.radius_travel[k] = self.radius_travel[i] + distance;
             }
         }
@@ -216,7 +216,7 @@ impl Stepper {
                 // A turn of the normal counts as a move: the turn that makes a list stale as the distance that does.
                 let turn_sq = 2.0 - 2.0 * cosine;
                 let per_turn = 0.5 * L::SKIN / STALE_TURN * law.radius(particles, i);
-                let distance_sq = (position - particles.position[i]).length_squared();
+                let distance_sq = (position - particles.local[i]).length_squared();
                 let distance = larger(distance_sq, turn_sq * (per_turn * per_turn)).sqrt();
                 let mut grown = 0.0;
                 if L::RESIZES {
@@ -225,7 +225,7 @@ impl Stepper {
                     self.radius_travel[i] = landing.radius_travel[k];
                 }
                 add_travel(law, lists, particles, i, distance, grown);
-                particles.position[i] = position;
+                particles.local[i] = position;
                 particles.normal[i] = normal;
             }
         }
@@ -255,7 +255,7 @@ impl Stepper {
             let mut which = [0; BATCH];
             for k in (0..landing.count).filter(|&k| has_left(landing, k)) {
                 let (m, i) = (again.count, first + k);
-                let p = particles.position[i];
+                let p = particles.local[i];
                 which[m] = k;
                 again.position[m] = p.lerp(goal[k], share);
                 if L::RESIZES {

@@ -12,7 +12,7 @@ fn sizing_of(surface: &Surface, settings: &Settings) -> Sizing {
     let mut evaluator = field.evaluator(Frame::default());
     let mut memory = ProbeMemory::default();
     let probe = &mut Probe::new(&mut *evaluator, &mut memory);
-    let found = survey(probe, &surface.bounds, false);
+    let found = survey(probe, &surface.bounds, None);
     Sizing::new(probe, &surface.bounds, settings, &found, &Creases::default())
 }
 

@@ -164,7 +164,7 @@ impl Placing for AdaptivePlacing {
         let reach = self.rules.reach * radius;
         let patch = particles.patch_of(parent);
         let probe = &mut probe.on(patch);
-        level.gather(particles, patch, particles.position[parent], |_| reach);
+        level.gather(particles, patch, particles.local[parent], |_| reach);
         let is_fine = level.rule.is_fine();
         if is_fine {
             level.drop_strangers(probe, particles, parent, 2.0 * radius);
@@ -226,7 +226,7 @@ impl Placing for AdaptivePlacing {
         let FrontContext { probe, particles, .. } = context;
         let parent = self.parents.level[self.proposals[child].parent as usize];
         let provisional = level.first_child + child;
-        let moved = (spot.position - particles.position[provisional]).length();
+        let moved = (spot.position - particles.local[provisional]).length();
         let surprise = spot.radius - particles.radius[provisional];
         let grown = surprise.max(0.0) + self.growth;
         let clearance = level.children.list[child].clearance;

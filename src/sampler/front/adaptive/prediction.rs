@@ -92,7 +92,7 @@ impl AdaptivePlacing {
                     SlotFate::Capped
                 }
                 Some(child) => {
-                    let (centre, normal) = (particles.position[parent], particles.normal[parent]);
+                    let (centre, normal) = (particles.local[parent], particles.normal[parent]);
                     let PredictedChild { direction, distance, turn, slope, largest, .. } = child;
                     let circle = ChildCircle { centre, normal, direction, radius: distance, guess: turn };
                     let parent_radius = particles.radius[parent];

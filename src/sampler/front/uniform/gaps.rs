@@ -55,7 +55,7 @@ impl UniformPlacing {
     /// Fills the widest gap beside particle `i`, if a particle has room there.
     fn fill_beside(&mut self, level: &mut FrontLevel, context: &mut FrontContext, i: usize) {
         let FrontContext { probe, neighbours, particles, .. } = context;
-        let (p, n, patch) = (particles.position[i], particles.normal[i], particles.patch_of(i));
+        let (p, n, patch) = (particles.local[i], particles.normal[i], particles.patch_of(i));
         let probe = &mut probe.on(patch);
         let spacing = 2.0 * self.radius;
         let reach = (GAUSSIAN_RANGE + GAUSSIAN_SKIN) * self.radius;

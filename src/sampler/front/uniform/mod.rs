@@ -203,7 +203,7 @@ impl Placing for UniformPlacing {
     fn place_children(&mut self, level: &mut FrontLevel, context: &mut FrontContext, parent: usize) {
         let parent = self.parents.start + parent;
         let FrontContext { probe, neighbours, particles, .. } = context;
-        let p = particles.position[parent];
+        let p = particles.local[parent];
         let patch = particles.patch_of(parent);
         let probe = &mut probe.on(patch);
         level.gather(particles, patch, p, |_| self.reach());
@@ -294,7 +294,7 @@ impl Placing for UniformPlacing {
         let FrontContext { probe, particles, .. } = context;
         let &SurfacePoint { position, normal, .. } = spot;
         let provisional = level.first_child + child;
-        let moved = (position - particles.position[provisional]).length();
+        let moved = (position - particles.local[provisional]).length();
         // No particle is nearer than the clearance minus the distances that both have moved. The clearance counts all sheets, because
         // the final normal may belong to another sheet than the provisional one.
         let is_clear =
