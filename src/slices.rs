@@ -4,8 +4,8 @@
 //! state machine. It never waits for anything, so it needs no waker. The owner does as many slices as there is time
 //! for, and cancels the computation by dropping it. The result does not depend on how slices were grouped.
 //!
-//! The phases of the sampler do not stand on this: a caller hands them the field anew at each step, and a computation under way would have to
-//! keep it borrowed. Each of them keeps its place as a value.
+//! A method of the sampler is such a function, too. It works on what the sampler has, with a field
+//! that comes anew with every step: see its desk.
 
 use core::future::poll_fn;
 use core::ops::Range;

@@ -533,6 +533,13 @@ impl<F: Field> Run<F> {
         &self.sampler
     }
 
+    /// Ends the run and returns its sampler, with the method where it is.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn into_sampler(self) -> Sampler {
+        self.sampler
+    }
+
     /// The clip box, counted from the origin of the particles.
     pub(crate) fn local_bounds(&self) -> Bounds {
         self.bounds.relative_to(self.particles().origin)

@@ -10,7 +10,7 @@ use glam::DVec3;
 impl Sampler {
     /// A sentence for the user where the reason for the end needs one.
     pub(crate) fn message(&self) -> Option<String> {
-        Some(match self.phase.stop_reason()? {
+        Some(match self.stop_reason? {
             StopReason::Complete | StopReason::Cancelled => return None,
             StopReason::Cap if self.settings.size_mode == SizeMode::Count => format!(
                 "Stopped at the limit of {} particles, which do not cover the surface as {} would: raise the limit, or ask for fewer.",

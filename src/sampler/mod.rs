@@ -1,4 +1,4 @@
-//! The sampler is a state machine that covers a surface with particles and relaxes them.
+//! The sampler covers a surface with particles and relaxes them.
 //!
 //! [`Sampler::begin`] surveys the field and fixes the radius; [`Sampler::step`] then does a given number of units of work and
 //! returns, as often as the caller likes. A budget is a count, never a time, and how a run is cut into steps does not change its
@@ -7,11 +7,13 @@
 
 mod attempt;
 mod constraint;
+mod desk;
 mod discovery;
 mod fates;
 mod flow;
 mod front;
 mod message;
+mod methods;
 mod neighbours;
 mod phase;
 pub(crate) mod probe;
@@ -19,10 +21,10 @@ mod progress;
 mod projection;
 mod refine;
 mod relaxation;
-mod run;
 mod settings;
 pub(crate) mod sheet;
 mod sizing;
+mod steps;
 
 pub use discovery::completeness::{Doubt, Sampled, Search, Unsampled};
 pub use fates::FateCounts;
@@ -46,6 +48,7 @@ use attempt::Attempt;
 pub use constraint::Creases;
 use constraint::tips::Tip;
 use core::hint::black_box;
+use desk::{Method as MethodUnderWay, Request};
 use discovery::grid::DENSE_CELLS;
 use discovery::search::ComponentSearch;
 use discovery::singular::{Bend, NearSurvey, Singular};
@@ -55,11 +58,10 @@ use flow::Flow;
 use front::Front;
 use glam::{DVec3, Vec3};
 use neighbours::packed::PackedNeighbours;
-use phase::PhaseState;
+use phase::SurveyCursor;
 use probe::{Probe, ProbeMemory};
-use refine::CoarseFronts;
+use refine::{CoarseFronts, Components, MovingMesh};
 use relaxation::Relaxation;
-use run::RunInput;
 use sizing::Sizing;
 use std::sync::Arc;
 
@@ -76,7 +78,7 @@ pub(crate) fn bytes_per_particle(settings: &Settings) -> usize {
 }
 
 /// A sampler, which covers one surface at a time with particles. A new one has nothing to do.
-#[derive(Clone, Default)]
+#[derive(Default)]
 pub struct Sampler {
     settings: Settings,
     bounds: Bounds,
@@ -88,7 +90,17 @@ pub struct Sampler {
     singular: Vec<Singular>,
     tips: Vec<Tip>,
     attempt: Attempt,
-    phase: PhaseState,
+    /// The method that is under way, if one is.
+    method: Option<MethodUnderWay>,
+    phase: Phase,
+    /// Why the last method has ended; none while one is under way.
+    stop_reason: Option<StopReason>,
+    /// The next seed of the survey.
+    seeds: SurveyCursor,
+    /// The refinement of a coarse front, while there is one.
+    refinement: Option<Box<Components>>,
+    /// The mesh with which particles follow a moving surface, while there is one.
+    moving_mesh: Option<MovingMesh>,
     components: ComponentSearch,
     tools: Tools,
     output: Output,
@@ -330,10 +342,10 @@ impl Sampler {
             self.settings.max_particles = settings.max_particles.max(room);
         }
         if !self.has_room_for(Attempt::reserved(predicted, &self.settings)) {
-            self.next(RunInput::Refuse);
+            (self.method, self.stop_reason, self.phase) = (None, None, Phase::Idle);
             return Err(SettingsError::Memory { particles: predicted as u64 });
         }
-        self.next(RunInput::Start);
+        self.carry_out(MethodUnderWay::begin(methods::sample), Phase::Seeding);
         let (radius, area) = (self.attempt.radius, self.survey.area);
         Ok(Forecast { radius, predicted_count: predicted as u64, area })
     }
@@ -517,9 +529,11 @@ impl Sampler {
     /// particles to relax. If not, nothing has changed.
     #[must_use]
     pub fn relax(&mut self, steps: u32) -> bool {
-        let can_relax = self.phase.stop_reason().is_some() && self.output.particles.len() > 1;
+        let can_relax = self.stop_reason.is_some() && self.output.particles.len() > 1;
         if can_relax {
-            self.next(RunInput::Relax(steps));
+            self.settings.relax_steps = self.tools.relaxation.steps_done() + steps;
+            self.begin_relaxation();
+            self.carry_out(MethodUnderWay::begin(methods::relax_further), Phase::Relaxation);
         }
         can_relax
     }
@@ -538,11 +552,11 @@ impl Sampler {
     ) -> Result<(), FollowError> {
         let particles = &self.output.particles;
         // A front that was stopped has not covered the surface.
-        let covers = match self.phase {
-            PhaseState::Done(reason) => reason == StopReason::Complete || !particles.identity.is_empty(),
+        let covers = match (self.phase, self.stop_reason) {
+            (Phase::Done, reason) => reason == Some(StopReason::Complete) || !particles.identity.is_empty(),
             // A frame that has not ended: the next one goes on from where the particles are.
-            PhaseState::Flow(_) => true,
-            PhaseState::Idle => false,
+            (Phase::Flow, _) => true,
+            (Phase::Idle, _) => false,
             _ => return Err(FollowError::UnderWay),
         };
         if !covers || particles.len() < 2 {
@@ -565,7 +579,7 @@ impl Sampler {
         if self.tools.flow.is_due() {
             self.look_again(field);
         }
-        self.next(RunInput::Follow);
+        self.carry_out(MethodUnderWay::begin(methods::follow), Phase::Flow);
         Ok(())
     }
 
@@ -593,11 +607,20 @@ impl Sampler {
         }
     }
 
-    /// Ends the run where it is; the particles placed so far stay. The next step marks those next to singular points, even if its
-    /// budget is 0.
+    /// Takes a method as the one that is under way.
+    fn carry_out(&mut self, method: MethodUnderWay, phase: Phase) {
+        (self.refinement, self.moving_mesh) = (None, None);
+        (self.method, self.stop_reason, self.phase) = (Some(method), None, phase);
+        self.output.fraction = 0.0;
+    }
+
+    /// Ends the run where it is; the particles placed so far stay. The next step tidies them, even if
+    /// its budget is 0.
     pub fn cancel(&mut self) {
         self.output.inside = None;
-        self.next(RunInput::Cancel);
+        if let Some(method) = &mut self.method {
+            method.stop();
+        }
     }
 
     /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's share of a relaxation step.
@@ -605,14 +628,20 @@ impl Sampler {
     /// and then during both.
     pub fn step(&mut self, field: &dyn Field, budget: u32) -> Progress {
         let field = &mut *field.evaluator(self.frame);
+        let mut memory = core::mem::take(&mut self.tools.memory);
+        let probe = &mut Probe::new(field, &mut memory);
         let mut left = budget;
-        let first = self.phase.name();
-        while self.is_under_way() && left > 0 && (self.phase.name() == first || !self.is_turning()) {
-            self.next(RunInput::Work { field, left: &mut left });
+        while let Some(method) = &mut self.method {
+            match method.request(left) {
+                Request::Slice(slice) => slice(self, probe, &mut left),
+                Request::Step => break,
+                Request::End(reason) => {
+                    (self.method, self.stop_reason, self.phase) = (None, Some(reason), Phase::Done);
+                    (self.refinement, self.moving_mesh) = (None, None);
+                }
+            }
         }
-        if matches!(self.phase, PhaseState::Marking(_)) {
-            self.next(RunInput::Work { field, left: &mut left });
-        }
+        self.tools.memory = memory;
         // The refinement makes its particles anew.
         self.output.particles.origin = self.frame.origin;
         self.look_inside();
@@ -623,7 +652,7 @@ impl Sampler {
 
     /// Finds the particles to be shown of a front that marches beyond the box.
     fn look_inside(&mut self) {
-        let is_marching = match self.phase.name() {
+        let is_marching = match self.phase {
             Phase::Seeding | Phase::Generation | Phase::Search => self.attempt.refining.is_some(),
             _ => false,
         };
@@ -637,18 +666,5 @@ impl Sampler {
         inside.truncate(settled);
         inside.keep_within(&self.bounds);
         self.output.inside = Some(inside);
-    }
-
-    fn is_under_way(&self) -> bool {
-        !matches!(self.phase, PhaseState::Idle | PhaseState::Marking(_) | PhaseState::Done(_))
-    }
-
-    /// Whether a step returns before it does any work of the present phase, once it has come from another one.
-    fn is_turning(&self) -> bool {
-        match self.phase {
-            PhaseState::Search => !self.components.is_searched(),
-            PhaseState::Relaxation => true,
-            _ => false,
-        }
     }
 }

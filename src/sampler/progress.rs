@@ -3,7 +3,7 @@
 use super::{Sampler, StopReason};
 use crate::particles::Particles;
 use crate::sampler::fates::FateCounts;
-use crate::sampler::phase::{Phase, PhaseState};
+use crate::sampler::phase::Phase;
 use crate::sampler::refine::{self, Refusal};
 use serde::Serialize;
 
@@ -92,12 +92,10 @@ impl Sampler {
         let settled = self.settled();
         let columns = self.output.inside.as_ref().unwrap_or(&self.output.particles);
         let rows = self.output.inside.as_ref().map_or(settled, Particles::len);
-        let (refine_level, refine_levels) = match &self.phase {
-            PhaseState::Refinement(refinement) => refinement.level(),
-            _ => (0, 0),
-        };
+        let refinement = self.refinement.as_ref().filter(|_| self.phase == Phase::Refinement);
+        let (refine_level, refine_levels) = refinement.map_or((0, 0), |refinement| refinement.level());
         Progress {
-            phase: self.phase.name(),
+            phase: self.phase,
             particles: columns.count_of_first(rows),
             rows,
             level: self.output.particles.level[..settled].last().copied().unwrap_or(0),
@@ -107,7 +105,7 @@ impl Sampler {
             relax_steps: self.settings.relax_steps,
             evaluations: self.tools.memory.evaluations,
             fraction: self.fraction(settled).max(self.output.fraction),
-            stop_reason: self.phase.stop_reason(),
+            stop_reason: self.stop_reason,
             message: self.message(),
             radius: self.attempt.radius,
             moved: self.output.moved,
@@ -117,7 +115,7 @@ impl Sampler {
     /// Rows of the columns that will stay.
     pub(super) fn settled(&self) -> usize {
         match self.phase {
-            PhaseState::Generation(_) | PhaseState::Filling => self.tools.front.level().settled,
+            Phase::Generation => self.tools.front.level().settled,
             _ => self.output.particles.len(),
         }
     }
@@ -126,14 +124,14 @@ impl Sampler {
     fn fraction(&self, particles: usize) -> f64 {
         let relax_steps = f64::from(self.settings.relax_steps);
         let generation = 1.0 / (1.0 + RELAXATION_STEP_COST * relax_steps);
-        match &self.phase {
-            PhaseState::Idle => 0.0,
-            PhaseState::Refinement(refinement) => refinement.fraction(),
-            PhaseState::Relaxation => {
+        match (self.phase, &self.refinement) {
+            (Phase::Idle, _) => 0.0,
+            (Phase::Refinement, Some(refinement)) => refinement.fraction(),
+            (Phase::Relaxation, _) => {
                 let relaxed = f64::from(self.tools.relaxation.steps_done()) / relax_steps.max(1.0);
                 generation + (1.0 - generation) * relaxed
             }
-            PhaseState::Audit(_) | PhaseState::Marking(_) | PhaseState::Done(_) => 1.0,
+            (Phase::Done, _) => 1.0,
             // In all other phases the number of particles grows.
             _ => {
                 // A coarse front is the smaller part of its run, and so is a pilot. Any front may place more particles than are expected.

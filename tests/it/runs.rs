@@ -11,14 +11,14 @@ use marching_particles::{Report, Run};
 
 /// A sampler that has begun a run on a field in a box.
 pub(crate) fn begun(field: &dyn Field, bounds: &Bounds, settings: &Settings) -> Sampler {
-    Run::start(field, &settings.in_box(*bounds)).expect("valid settings").sampler().clone()
+    Run::start(field, &settings.in_box(*bounds)).expect("valid settings").into_sampler()
 }
 
 /// A field, sampled in a box by steps of `budget`.
 pub(crate) fn sampled(field: &dyn Field, bounds: &Bounds, settings: &Settings, budget: u32) -> Sampler {
     let mut run = Run::start(field, &settings.in_box(*bounds)).expect("valid settings");
     while run.step(budget).stop_reason.is_none() {}
-    run.sampler().clone()
+    run.into_sampler()
 }
 
 /// Samples a field in a box, and finds the same particles however the run is cut into steps.

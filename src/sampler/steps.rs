@@ -1,7 +1,8 @@
-//! The state machine of a run: the work of every phase, and the transitions between them.
+//! The steps of the [methods](super::methods), on the state of a run. A step that takes long does as
+//! much as the budget allows, and has a result once it is done.
 
+use super::methods::Verdict;
 use super::{Output, Sampler, Tools};
-use crate::field::Evaluator;
 use crate::sampler::attempt::{Attempt, Refining};
 use crate::sampler::constraint::tips::{self, Tip};
 use crate::sampler::discovery::audit::holds_any;
@@ -9,9 +10,9 @@ use crate::sampler::discovery::singular::{self, Singular};
 use crate::sampler::discovery::survey::Absence;
 use crate::sampler::flow::{BALANCE_EVERY, FlowSurface, Settled};
 use crate::sampler::front::{Front, FrontContext, FrontSetup};
-use crate::sampler::phase::{FlowStage, PhaseState, StopReason, SurveyCursor};
+use crate::sampler::phase::{Phase, StopReason, SurveyCursor};
 use crate::sampler::probe::Probe;
-use crate::sampler::refine::{self, Components, MovingMesh, Next, Refusal, Turn};
+use crate::sampler::refine::{self, MovingMesh, Next, Refusal, Turn};
 use crate::sampler::relaxation::{MoveLimits, RepulsionLaw};
 use crate::sampler::settings::{GapPolicy, Method, Sampling, Settings, SizeMode};
 use crate::sampler::sheet::OrientedPoint;
@@ -26,88 +27,11 @@ const SLICE: u32 = 8_192;
 /// random surfaces.
 const MOST_LONE_SEEDS: usize = 256;
 
-/// The events that change the state.
-pub(super) enum RunInput<'a> {
-    /// A run starts: its field has been surveyed and its radius is known.
-    Start,
-    /// There is no memory for the run.
-    Refuse,
-    /// The caller asks for so many more relaxation steps of a run that has ended.
-    Relax(u32),
-    /// The surface of a finished run has moved, but its particles can follow.
-    Follow,
-    /// The caller ends the run.
-    Cancel,
-    /// The caller gives a budget; `left` is the rest of it.
-    Work { field: &'a mut dyn Evaluator, left: &'a mut u32 },
-}
-
 impl Sampler {
-    /// Makes the transition that the input asks for: the only place where the phase changes.
-    pub(super) fn next(&mut self, input: RunInput) {
-        if !matches!(input, RunInput::Work { .. } | RunInput::Cancel) {
-            self.output.fraction = 0.0;
-        }
-        let phase = core::mem::replace(&mut self.phase, PhaseState::Idle);
-        self.phase = match input {
-            RunInput::Start => self.begin_attempt(),
-            RunInput::Refuse => PhaseState::Idle,
-            RunInput::Relax(steps) => self.relax_again(steps),
-            RunInput::Follow => self.begin_flow(),
-            RunInput::Cancel => match phase {
-                PhaseState::Idle | PhaseState::Marking(_) | PhaseState::Done(_) => phase,
-                PhaseState::Seeding(_)
-                | PhaseState::Generation(_)
-                | PhaseState::Search
-                | PhaseState::Filling => {
-                    self.tools.front.stop(&mut self.output.particles);
-                    self.output.particles =
-                        self.tools.coarse.end().unwrap_or(core::mem::take(&mut self.output.particles));
-                    self.drop_beyond();
-                    self.attempt.end_refinement();
-                    PhaseState::Marking(StopReason::Cancelled)
-                }
-                PhaseState::Relaxation => {
-                    self.output.moved |= self.tools.relaxation.abandon(&mut self.output.particles);
-                    PhaseState::Marking(StopReason::Cancelled)
-                }
-                // The next frame goes on from where the particles are.
-                PhaseState::Flow(_) => PhaseState::Marking(StopReason::Cancelled),
-                // Nothing moves any more, but the audit has not come to its end.
-                PhaseState::Audit(_) => PhaseState::Marking(StopReason::Cancelled),
-                // The columns hold the last level that was finished, or the coarse front.
-                PhaseState::Refinement(_) => {
-                    self.attempt.end_refinement();
-                    PhaseState::Marking(StopReason::Cancelled)
-                }
-            },
-            RunInput::Work { field, left } => {
-                let mut memory = core::mem::take(&mut self.tools.memory);
-                let next = self.work(&mut Probe::new(field, &mut memory), left, phase);
-                self.tools.memory = memory;
-                next
-            }
-        };
-    }
-
-    /// Does work of the present phase, up to a budget of which `left` is the rest, and returns the next phase.
-    fn work(&mut self, probe: &mut Probe, left: &mut u32, phase: PhaseState) -> PhaseState {
-        match phase {
-            PhaseState::Idle | PhaseState::Done(_) => phase,
-            PhaseState::Seeding(cursor) => self.find_seed(probe, left, cursor),
-            PhaseState::Generation(after) => self.grow(probe, left, after),
-            PhaseState::Search => self.search_components(probe, left),
-            PhaseState::Filling => self.fill(probe, left),
-            PhaseState::Refinement(refinement) => self.refine(probe, left, refinement),
-            PhaseState::Relaxation => self.relax_particles(probe, left),
-            PhaseState::Flow(stage) => self.flow(probe, left, stage),
-            PhaseState::Audit(reason) => self.audit(probe, left, reason),
-            PhaseState::Marking(reason) => self.mark(probe.field, reason),
-        }
-    }
-
-    /// Empties the columns and prepares fronts of the present radius.
-    fn begin_attempt(&mut self) -> PhaseState {
+    /// Empties the columns and prepares fronts of the present radius. Says whether an earlier coarse
+    /// front is known, over whose components this one is to be.
+    pub(super) fn begin_attempt(&mut self) -> bool {
+        (self.phase, self.seeds) = (Phase::Seeding, SurveyCursor::default());
         self.attempt.grade_front(&self.settings);
         self.output.moved = true;
         self.output.particles.clear();
@@ -124,13 +48,14 @@ impl Sampler {
             }
         }
         self.reset_front(&settings, expected);
-        if self.tools.coarse.known().is_none() {
+        let is_known = self.tools.coarse.known().is_some();
+        if !is_known {
             self.counts.seeds = 0;
             (self.counts.left_out, self.counts.ended_early) = (0, false);
             self.counts.front_evaluations = 0;
             self.components.restart();
         }
-        PhaseState::Seeding(SurveyCursor::default())
+        is_known
     }
 
     /// Prepares a front of the present radii for about the `expected` number of particles.
@@ -144,33 +69,30 @@ impl Sampler {
         });
     }
 
-    /// Looks for the next survey point that no particle covers and starts a front there.
-    fn find_seed(&mut self, probe: &mut Probe, left: &mut u32, mut cursor: SurveyCursor) -> PhaseState {
-        if let Some(known) = self.tools.coarse.known() {
-            let seed = OrientedPoint::of(known, 0);
-            return self.begin_front(probe, seed, None).unwrap_or(PhaseState::Search);
-        }
-        if !cursor.has_creases {
-            cursor.has_creases = true;
-            if self.begin_at_creases(probe) {
-                return PhaseState::Generation(Some(cursor));
-            }
-        }
+    /// Starts a front over a component of which an earlier coarse front is known. Says whether it has.
+    pub(super) fn begin_at_known(&mut self, probe: &mut Probe) -> bool {
+        let seed = self.tools.coarse.known().map(|known| OrientedPoint::of(known, 0));
+        seed.is_some_and(|seed| self.begin_front(probe, seed))
+    }
+
+    /// Looks for the next survey point that no particle covers and starts a front there. Says whether
+    /// there was one.
+    pub(super) fn find_seed(&mut self, probe: &mut Probe, left: &mut u32) -> Option<bool> {
         while *left > 0 {
-            if self.has_too_many_lone_seeds() {
-                return PhaseState::Search;
+            if self.tools.front.level().capped || self.has_too_many_lone_seeds() {
+                return Some(false);
             }
             let start = probe.evaluations();
             let mut point = None;
-            if !core::mem::replace(&mut cursor.has_drawn, true) {
+            if !core::mem::replace(&mut self.seeds.has_drawn, true) {
                 let mut random = rand_pcg::Pcg32::seed_from_u64(self.settings.seed);
                 point = self.survey.on_random_line(probe, &self.bounds, &mut random);
             }
             let Some(point) = point.or_else(|| {
-                cursor.next += 1;
-                self.survey.point(cursor.next - 1)
+                self.seeds.next += 1;
+                self.survey.point(self.seeds.next - 1)
             }) else {
-                return PhaseState::Search;
+                return Some(false);
             };
             *left -= 1;
             let patch = self.patch_at(probe, point.position);
@@ -179,11 +101,11 @@ impl Sampler {
             let is_seed = !front.is_covered(own, &self.output.particles, point, patch)
                 && self.survey.is_zero(own, point);
             self.counts.seeding_evaluations += probe.evaluations() - start;
-            if is_seed && let Some(next) = self.begin_front(probe, point, Some(cursor)) {
-                return next;
+            if is_seed && self.begin_front(probe, point) {
+                return Some(true);
             }
         }
-        PhaseState::Seeding(cursor)
+        None
     }
 
     /// The patch of a point; none if the surface has no creases.
@@ -193,7 +115,7 @@ impl Sampler {
     }
 
     /// Places particles on the creases, on the tips and around these, and starts fronts from them. Says whether there are any.
-    fn begin_at_creases(&mut self, probe: &mut Probe) -> bool {
+    pub(super) fn begin_at_creases(&mut self, probe: &mut Probe) -> bool {
         let before = probe.evaluations();
         let uniform = self.attempt.front_radius() as f32;
         let sizing = self.attempt.sizing.as_ref();
@@ -218,20 +140,16 @@ impl Sampler {
         self.counts.seeds += self.creases.pieces() + (particles.twins.len() - along.len()) as u32;
         self.counts.seeding_evaluations += probe.evaluations() - before;
         self.with_front(probe, |front, context| front.add_creases(context, &along));
+        self.phase = Phase::Generation;
         true
     }
 
-    /// Starts a front, after which the seeding goes on from the cursor. Where the limit on particles is reached the search is
-    /// next; where the surface has no radius an adaptive front cannot start, and there is no transition.
-    fn begin_front(
-        &mut self,
-        probe: &mut Probe,
-        seed: OrientedPoint,
-        after: Option<SurveyCursor>,
-    ) -> Option<PhaseState> {
+    /// Starts a front. Says whether it has: not where the limit on particles is reached, nor where the
+    /// surface has no radius for an adaptive one.
+    fn begin_front(&mut self, probe: &mut Probe, seed: OrientedPoint) -> bool {
         if self.output.particles.len() >= self.settings.max_particles as usize {
             self.tools.front.cap();
-            return Some(PhaseState::Search);
+            return false;
         }
         let patch = self.patch_at(probe, seed.position);
         if patch.is_some() {
@@ -240,28 +158,28 @@ impl Sampler {
             let (place, size) = (seed.position, self.attempt.front_radius() as f32);
             let normal = probe.gradient(place).1.normalize_or_zero();
             if ![normal, -normal].into_iter().all(|aside| probe.is_on_patch(place, aside, size, patch)) {
-                return None;
+                return false;
             }
         }
         let is_started = self.with_front(probe, |front, context| front.add_seed(context, seed, patch));
-        is_started.then(|| {
+        if is_started {
             self.counts.seeds += u32::from(self.tools.coarse.known().is_none());
-            PhaseState::Generation(after)
-        })
+            self.phase = Phase::Generation;
+        }
+        is_started
     }
 
     /// Lets the front grow until it has met itself, another one or the box everywhere.
-    fn grow(&mut self, probe: &mut Probe, left: &mut u32, after: Option<SurveyCursor>) -> PhaseState {
+    pub(super) fn grow(&mut self, probe: &mut Probe, left: &mut u32) -> Option<()> {
         self.spend_on_front(probe, left, |front, context, budget| front.step(context, budget));
-        if !self.tools.front.is_done() {
-            return PhaseState::Generation(after);
-        }
-        let is_dropped = self.drop_lone_seed(probe, after.is_none());
+        self.tools.front.is_done().then_some(())
+    }
+
+    /// Ends a front, whose seed `is_witness` if the search has found it.
+    pub(super) fn end_front(&mut self, probe: &mut Probe, is_witness: bool) {
+        let is_dropped = self.drop_lone_seed(probe, is_witness);
         self.counts.left_out += u32::from(is_dropped);
-        match after {
-            Some(cursor) if !self.tools.front.level().capped => PhaseState::Seeding(cursor),
-            _ => PhaseState::Search,
-        }
+        self.phase = if is_witness { Phase::Search } else { Phase::Seeding };
     }
 
     /// Takes the last seed back if it stayed alone beside another particle, unless it `is_witness` of a small piece of its own.
@@ -323,14 +241,18 @@ impl Sampler {
         self.counts.front_evaluations += evaluations;
     }
 
-    /// Looks for the next witness that no particle covers and starts a front there. After the last one the surface is covered
-    /// but for the gaps.
-    fn search_components(&mut self, probe: &mut Probe, left: &mut u32) -> PhaseState {
+    /// Begins the search for components that the survey has missed. Says whether there is more to
+    /// search for than was found for an earlier front.
+    pub(super) fn begin_search(&mut self) -> bool {
+        self.phase = Phase::Search;
+        !self.components.is_searched()
+    }
+
+    /// Looks for the next witness that no particle covers and starts a front there. Says whether there
+    /// was one: after the last one the surface is covered but for the gaps.
+    pub(super) fn find_witness(&mut self, probe: &mut Probe, left: &mut u32) -> Option<bool> {
         if self.tools.front.level().capped {
-            return self.end_generation(probe);
-        }
-        if self.tools.coarse.known().is_some() {
-            return self.begin_filling(probe);
+            return Some(false);
         }
         let tolerance = self.attempt.tolerance(&self.survey);
         let slice = (*left).min(SLICE);
@@ -338,18 +260,16 @@ impl Sampler {
         let unused = self.components.search(probe, &self.bounds, tolerance, least_gap, slice);
         if unused == 0 {
             *left = 0;
-            return PhaseState::Search;
+            return None;
         }
         *left -= slice - unused;
         while *left > 0 {
-            if self.has_too_many_lone_seeds() {
-                return self.begin_filling(probe);
+            if self.tools.front.level().capped || self.has_too_many_lone_seeds() {
+                return Some(false);
             }
             let (witness, unused) = self.components.next(*left);
             *left = unused;
-            let Some(seed) = witness else {
-                return self.begin_filling(probe);
-            };
+            let Some(seed) = witness else { return Some(false) };
             let rule = self.tools.front.level().rule;
             let point = OrientedPoint { position: seed.position, normal: seed.normal };
             let patch = self.patch_at(probe, point.position);
@@ -358,11 +278,11 @@ impl Sampler {
             let is_covered =
                 self.components.is_covered(probe, &self.output.particles, seed, &near, tolerance, rule);
             self.counts.seeding_evaluations += probe.evaluations() - start;
-            if !is_covered && let Some(next) = self.begin_front(probe, point, None) {
-                return next;
+            if !is_covered && self.begin_front(probe, point) {
+                return Some(true);
             }
         }
-        PhaseState::Search
+        None
     }
 
     /// Whether so many seeds were taken back, because they stayed alone beside other particles, that no more are tried. A front
@@ -374,52 +294,62 @@ impl Sampler {
         is_over
     }
 
-    fn begin_filling(&mut self, probe: &mut Probe) -> PhaseState {
-        let has_gaps = self.settings.gaps == GapPolicy::Fill && self.tools.front.begin_filling();
-        if has_gaps { PhaseState::Filling } else { self.end_generation(probe) }
-    }
-
-    /// Fills gaps until no particle fits into any.
-    fn fill(&mut self, probe: &mut Probe, left: &mut u32) -> PhaseState {
-        self.spend_on_front(probe, left, |front, context, budget| front.fill(context, budget));
+    /// Says whether there are gaps to be filled, and lists them.
+    pub(super) fn begin_filling(&mut self) -> bool {
         let front = &mut self.tools.front;
-        if !front.is_done() || front.begin_filling() {
-            PhaseState::Filling
-        } else {
-            self.end_generation(probe)
+        let has_gaps =
+            self.settings.gaps == GapPolicy::Fill && !front.level().capped && front.begin_filling();
+        if has_gaps {
+            self.phase = Phase::Generation;
         }
+        has_gaps
     }
 
-    /// Decides what follows once the surface is covered: another attempt, the relaxation, or the end.
-    fn end_generation(&mut self, probe: &mut Probe) -> PhaseState {
+    /// Fills the gaps that are listed.
+    pub(super) fn fill(&mut self, probe: &mut Probe, left: &mut u32) -> Option<()> {
+        self.spend_on_front(probe, left, |front, context, budget| front.fill(context, budget));
+        self.tools.front.is_done().then_some(())
+    }
+
+    /// Decides what follows once the surface is covered.
+    pub(super) fn judge_front(&mut self, probe: &mut Probe) -> Verdict {
         let count = self.output.particles.count();
         if count == 0 {
-            return self.begin_audit(match self.survey.absence {
+            return Verdict::Stands(match self.survey.absence {
                 Absence::Constant => StopReason::Constant,
                 Absence::Undefined | Absence::TooLarge => StopReason::Undefined,
                 _ => StopReason::NoSurface,
             });
         }
-        if let Some(next) = self.begin_refinement(probe) {
-            return next;
+        if let Some(verdict) = self.begin_refinement(probe) {
+            return verdict;
         }
         let is_capped = self.tools.front.level().capped;
         if self.attempt.is_corrected(&self.settings, count, is_capped) {
-            return self.begin_attempt();
+            return Verdict::Again;
         }
         let is_alone = self.tools.front.level().fates.added == 0 && self.output.particles.twins.is_empty();
         if is_alone && !is_capped {
-            self.begin_audit(StopReason::OneParticle)
+            Verdict::Stands(StopReason::OneParticle)
         } else if self.settings.relax_steps == 0 && self.settings.sampling == Sampling::Uniform {
-            self.begin_audit(self.reason_for_end())
+            Verdict::Stands(self.reason_for_end())
         } else {
-            self.begin_relaxation()
+            Verdict::Relax
         }
+    }
+
+    /// Takes back what a front that was stopped has not settled.
+    pub(super) fn leave_front(&mut self, _: &mut Probe) {
+        self.tools.front.stop(&mut self.output.particles);
+        self.output.particles =
+            self.tools.coarse.end().unwrap_or(core::mem::take(&mut self.output.particles));
+        self.drop_beyond();
+        self.attempt.end_refinement();
     }
 
     /// Begins to refine the front that has covered the surface, or another one over a component that may be coarser. Does nothing
     /// where the front stands.
-    fn begin_refinement(&mut self, probe: &mut Probe) -> Option<PhaseState> {
+    fn begin_refinement(&mut self, probe: &mut Probe) -> Option<Verdict> {
         let target = self.attempt.target(&self.settings)?;
         let unpinned = self.unpinned();
         let refining = self.attempt.refining.as_mut()?;
@@ -436,7 +366,7 @@ impl Sampler {
         Some(match next {
             Ok(Next::Front(fewer)) => {
                 refining.halvings = fewer;
-                self.begin_attempt()
+                Verdict::Again
             }
             Ok(Next::Refine(components)) => {
                 self.tools.front.release();
@@ -445,9 +375,13 @@ impl Sampler {
                 // The last front was one of several.
                 self.output.moved |= self.tools.coarse.are_several;
                 self.drop_beyond();
-                PhaseState::Refinement(components)
+                (self.phase, self.refinement) = (Phase::Refinement, Some(components));
+                Verdict::Refine
             }
-            Err(refusal) => self.refuse(refusal),
+            Err(refusal) => {
+                self.refuse(refusal);
+                Verdict::Again
+            }
         })
     }
 
@@ -466,14 +400,14 @@ impl Sampler {
 
     /// Tries a front of half the radius, or goes back to one of the wanted radius. Patches between creases are refined once at least, and
     /// so is a lone component of sizes that differ.
-    fn refuse(&mut self, refusal: Refusal) -> PhaseState {
+    fn refuse(&mut self, refusal: Refusal) {
         let is_lone = !self.tools.coarse.are_several;
         self.tools.coarse.end();
         let least = |refining: &Refining| {
             u32::from(refining.ladder.is_some() || is_lone && refining.sizing.is_some())
         };
         if self.attempt.refining.as_mut().is_some_and(Refining::recall_nearest) {
-            return self.begin_attempt();
+            return;
         }
         match &mut self.attempt.refining {
             Some(refining) if refining.halvings > least(refining) && refusal.is_coarse() => {
@@ -493,45 +427,53 @@ impl Sampler {
                 self.attempt = self.attempt.without_refinement(&self.settings, self.bounds.diagonal());
             }
         }
-        self.begin_attempt()
     }
 
-    fn refine(&mut self, probe: &mut Probe, left: &mut u32, mut refinement: Box<Components>) -> PhaseState {
+    /// Brings the coarse front into order and refines it. Says whether it stands then; if not, another
+    /// front is to be tried.
+    pub(super) fn refine(&mut self, probe: &mut Probe, left: &mut u32) -> Option<bool> {
         let before = probe.evaluations();
-        let Some(refining) = &self.attempt.refining else { return self.begin_audit(StopReason::Complete) };
+        let (Some(refining), Some(refinement)) = (&self.attempt.refining, &mut self.refinement) else {
+            return Some(true);
+        };
         let surface = refining.surface(&self.bounds);
         let step = refinement.step(probe, &surface, &mut self.output.particles, *left);
         self.counts.generation_evaluations += probe.evaluations() - before;
-        match step {
+        let fewest = refinement.fewest_halvings();
+        let (units, has_changed) = match step {
+            Ok(done) => done,
             Err(refusal) => {
                 if let Some(refining) = &mut self.attempt.refining {
                     refining.failures += 1;
                     refining.failure = Some(refusal);
                     // The component that was refined least sets how coarse the next front may be.
-                    refining.halvings = refinement.fewest_halvings();
+                    refining.halvings = fewest;
                 }
-                self.refuse(refusal)
+                self.refuse(refusal);
+                return Some(false);
             }
-            Ok((units, has_changed)) => {
-                *left = left.saturating_sub(units);
-                self.output.moved |= has_changed;
-                if !refinement.is_done() {
-                    return PhaseState::Refinement(refinement);
-                }
-                if let Some(refining) = &mut self.attempt.refining {
-                    // Of the front over all components.
-                    refining.halvings = refinement.fewest_halvings();
-                }
-                let count = self.output.particles.count();
-                if self.attempt.is_front_corrected(&self.settings, count, refinement.are_in_order()) {
-                    return self.begin_attempt();
-                }
-                self.counts.refined_levels = Some(refinement.most_halvings());
-                self.output.corners = refinement.into_corners();
-                self.attempt.end_refinement();
-                self.begin_audit(StopReason::Complete)
-            }
+        };
+        *left = left.saturating_sub(units);
+        self.output.moved |= has_changed;
+        let refinement = self.refinement.take_if(|refinement| refinement.is_done())?;
+        if let Some(refining) = &mut self.attempt.refining {
+            // Of the front over all components.
+            refining.halvings = fewest;
         }
+        let count = self.output.particles.count();
+        if self.attempt.is_front_corrected(&self.settings, count, refinement.are_in_order()) {
+            return Some(false);
+        }
+        self.counts.refined_levels = Some(refinement.most_halvings());
+        self.output.corners = refinement.into_corners();
+        self.attempt.end_refinement();
+        Some(true)
+    }
+
+    /// Ends a refinement that was stopped: the columns hold the last level that was finished, or the
+    /// coarse front.
+    pub(super) fn leave_refinement(&mut self, _: &mut Probe) {
+        self.attempt.end_refinement();
     }
 
     /// Drops the particles of a coarse front that has grown beyond the box.
@@ -554,7 +496,9 @@ impl Sampler {
         }
     }
 
-    fn begin_relaxation(&mut self) -> PhaseState {
+    /// Begins the relaxation of the particles that are there.
+    pub(super) fn begin_relaxation(&mut self) {
+        self.phase = Phase::Relaxation;
         self.output.corners = Vec::new();
         self.tools.front.release();
         self.output.particles.shrink();
@@ -564,86 +508,76 @@ impl Sampler {
         let limits =
             MoveLimits { bounds: self.bounds, largest_lift: self.tools.front.level().rule.largest_lift() };
         self.tools.relaxation.begin(law, limits, steps, &self.output.particles, &mut self.tools.neighbours);
-        PhaseState::Relaxation
     }
 
-    /// Goes on relaxing the particles of a finished run.
-    fn relax_again(&mut self, steps: u32) -> PhaseState {
-        self.settings.relax_steps = self.tools.relaxation.steps_done() + steps;
-        self.begin_relaxation()
-    }
-
-    /// Begins a frame of particles that follow a moving surface: with the mesh of a refined run, as long as that can follow.
-    fn begin_flow(&mut self) -> PhaseState {
+    /// Begins a frame of particles that follow a moving surface with the mesh of a refined run. Says
+    /// whether there is one that can.
+    pub(super) fn begin_mesh(&mut self) -> bool {
         if self.output.corners.is_empty() || self.tools.flow.is_closed {
-            return self.begin_transport();
+            return false;
         }
         let (particles, corners) = (&self.output.particles, &self.output.corners);
         let (target, spacing) = (self.attempt.moving_target(&self.settings), self.attempt.spacing());
         let turn = Turn { at: self.tools.flow.turn(), of: BALANCE_EVERY };
-        match MovingMesh::new(particles, corners, &self.bounds, target, spacing, turn) {
-            Some(mesh) => PhaseState::Flow(FlowStage::Mesh(Box::new(mesh))),
-            None => self.begin_transport(),
-        }
+        self.moving_mesh = MovingMesh::new(particles, corners, &self.bounds, target, spacing, turn);
+        self.moving_mesh.is_some()
     }
 
-    fn begin_transport(&mut self) -> PhaseState {
+    /// Begins to bring the particles to the surface that has moved.
+    pub(super) fn begin_transport(&mut self) {
         self.output.corners = Vec::new();
         let are_listed = self.tools.flow.begin_frame();
         let limits = MoveLimits { bounds: self.bounds, largest_lift: f32::INFINITY };
         let (law, particles) = (self.law(), &self.output.particles);
         self.tools.relaxation.begin_transport(law, limits, particles, &mut self.tools.neighbours, are_listed);
-        PhaseState::Flow(FlowStage::Transport)
     }
 
-    /// Goes on with a frame of particles that follow a moving surface.
-    fn flow(&mut self, probe: &mut Probe, left: &mut u32, stage: FlowStage) -> PhaseState {
-        if let FlowStage::Mesh(mesh) = stage {
-            return self.move_mesh(probe, left, mesh);
-        }
-        self.relax_slice(probe, left);
-        if !self.tools.relaxation.is_done() {
-            return PhaseState::Flow(stage);
-        }
+    /// Particles that were brought to the surface are born and die there. Returns the number of steps
+    /// of relaxation that they make.
+    pub(super) fn settle(&mut self, probe: &mut Probe) -> u32 {
         let Tools { relaxation, flow, neighbours, front, .. } = &mut self.tools;
         let particles = &mut self.output.particles;
-        let settled = match stage {
-            FlowStage::Step(steps) => Settled { rows: None, steps: steps - 1 },
-            _ => {
-                let surface = FlowSurface {
-                    bounds: self.bounds,
-                    survey: &self.survey,
-                    rule: front.level().rule,
-                    sizing: self.attempt.sizing.as_ref(),
-                    radius: self.attempt.radius as f32,
-                    count: (self.settings.size_mode == SizeMode::Count).then_some(self.settings.count),
-                    max_particles: self.settings.max_particles as usize,
-                };
-                flow.settle(probe, &surface, relaxation.lost(), neighbours, particles)
-            }
+        let surface = FlowSurface {
+            bounds: self.bounds,
+            survey: &self.survey,
+            rule: front.level().rule,
+            sizing: self.attempt.sizing.as_ref(),
+            radius: self.attempt.radius as f32,
+            count: (self.settings.size_mode == SizeMode::Count).then_some(self.settings.count),
+            max_particles: self.settings.max_particles as usize,
         };
+        let Settled { rows, steps } = flow.settle(probe, &surface, relaxation.lost(), neighbours, particles);
         if particles.is_empty() {
-            return PhaseState::Done(StopReason::NoSurface);
+            return 0;
         }
-        if settled.steps == 0 {
-            flow.is_whole = true;
-            if flow.is_late() {
-                return self.begin_transport();
-            }
-            if flow.is_last() && flow.is_seeded {
-                self.join_again(probe);
-            }
-            return PhaseState::Done(StopReason::Complete);
-        }
-        if let Some(rows) = settled.rows {
+        if let Some(rows) = rows.filter(|_| steps > 0) {
             relaxation.keep(&rows, particles, neighbours);
         }
-        relaxation.begin_following();
-        PhaseState::Flow(FlowStage::Step(settled.steps))
+        steps
     }
 
-    /// Goes on with a frame in which the particles move with a mesh. Where that cannot follow, they go on without it.
-    fn move_mesh(&mut self, probe: &mut Probe, left: &mut u32, mut mesh: Box<MovingMesh>) -> PhaseState {
+    /// Begins a step of relaxation on the surface that has moved.
+    pub(super) fn begin_following(&mut self) {
+        self.tools.relaxation.begin_following();
+    }
+
+    /// Ends a frame of particles that follow a moving surface. Says whether they have to be brought to
+    /// it once more.
+    pub(super) fn end_frame(&mut self, probe: &mut Probe) -> bool {
+        self.tools.flow.is_whole = true;
+        if self.tools.flow.is_late() {
+            return true;
+        }
+        if self.tools.flow.is_last() && self.tools.flow.is_seeded {
+            self.join_again(probe);
+        }
+        false
+    }
+
+    /// Moves the particles with their mesh. Says whether it could follow; where it could not, they go
+    /// on without it.
+    pub(super) fn move_mesh(&mut self, probe: &mut Probe, left: &mut u32) -> Option<bool> {
+        let Some(mesh) = &mut self.moving_mesh else { return Some(false) };
         let start = probe.evaluations();
         let stepped = mesh.step(probe, &self.bounds, self.attempt.sizing.as_ref(), *left);
         self.counts.relaxation_evaluations += probe.evaluations() - start;
@@ -651,12 +585,11 @@ impl Sampler {
             Ok(units) => *left -= units.min(*left),
             Err(_) => {
                 self.tools.flow.hurry();
-                return self.begin_transport();
+                self.moving_mesh = None;
+                return Some(false);
             }
         }
-        if !mesh.is_done() {
-            return PhaseState::Flow(FlowStage::Mesh(mesh));
-        }
+        let mesh = self.moving_mesh.take_if(|mesh| mesh.is_done())?;
         if self.settings.size_mode == SizeMode::Count && self.attempt.sizing.is_none() {
             self.attempt.radius *= mesh.growth();
         }
@@ -666,7 +599,7 @@ impl Sampler {
         if !self.tools.flow.end_with_mesh(particles, &self.survey) {
             *corners = Vec::new();
         }
-        PhaseState::Done(StopReason::Complete)
+        Some(true)
     }
 
     /// Joins the particles of a refined run to a mesh again, which they have lost where the surface has torn or joined.
@@ -684,17 +617,8 @@ impl Sampler {
         }
     }
 
-    fn relax_particles(&mut self, probe: &mut Probe, left: &mut u32) -> PhaseState {
-        self.relax_slice(probe, left);
-        if self.tools.relaxation.is_done() {
-            self.begin_audit(self.reason_for_end())
-        } else {
-            PhaseState::Relaxation
-        }
-    }
-
     /// Does a slice of the relaxation, or of the frame of a flow.
-    fn relax_slice(&mut self, probe: &mut Probe, left: &mut u32) {
+    pub(super) fn relax_slice(&mut self, probe: &mut Probe, left: &mut u32) -> Option<()> {
         let start = probe.evaluations();
         let sizing = self.attempt.sizing.as_ref();
         let slice = (*left).min(SLICE);
@@ -707,20 +631,27 @@ impl Sampler {
         );
         *left = 0;
         self.counts.relaxation_evaluations += probe.evaluations() - start;
+        self.tools.relaxation.is_done().then_some(())
     }
 
-    fn begin_audit(&mut self, reason: StopReason) -> PhaseState {
+    /// Takes back a step that is only half made.
+    pub(super) fn leave_step(&mut self, _: &mut Probe) {
+        self.output.moved |= self.tools.relaxation.abandon(&mut self.output.particles);
+    }
+
+    /// Begins to find out which components hold particles. All particles are placed then.
+    pub(super) fn begin_audit(&mut self) {
+        (self.phase, self.output.fraction) = (Phase::Search, 1.0);
         if self.creases.repeat_faces(&mut self.output.particles, &mut self.output.corners) {
             self.output.moved = true;
             // They are those of the particles before.
             self.tools.neighbours.clear();
         }
         self.components.restart_audit();
-        PhaseState::Audit(reason)
     }
 
     /// Finds out which components hold particles.
-    fn audit(&mut self, probe: &mut Probe, left: &mut u32, reason: StopReason) -> PhaseState {
+    pub(super) fn audit(&mut self, probe: &mut Probe, left: &mut u32) -> Option<()> {
         let tolerance = self.attempt.tolerance(&self.survey);
         let slice = (*left).min(SLICE);
         let start = probe.evaluations();
@@ -735,24 +666,24 @@ impl Sampler {
         self.counts.seeding_evaluations += probe.evaluations() - start;
         if unused == 0 {
             *left = 0;
-            return PhaseState::Audit(reason);
+            return None;
         }
         *left -= slice - unused;
-        PhaseState::Marking(reason)
+        Some(())
     }
 
-    fn reason_for_end(&self) -> StopReason {
+    /// Why a run ends that has covered the surface.
+    pub(super) fn reason_for_end(&self) -> StopReason {
         if self.tools.front.level().capped { StopReason::Cap } else { StopReason::Complete }
     }
 
     /// Marks the particles next to singular points, where there are any.
-    fn mark(&mut self, field: &mut dyn Evaluator, reason: StopReason) -> PhaseState {
+    pub(super) fn mark(&mut self, probe: &mut Probe) {
         if !self.components.singular().is_empty() {
-            singular::mark(field, self.components.singular(), &mut self.output.particles);
+            singular::mark(probe.field, self.components.singular(), &mut self.output.particles);
             self.output.moved = true;
             let singular = self.components.singular().to_vec();
-            self.find_bare_place(field, &singular);
+            self.find_bare_place(probe.field, &singular);
         }
-        PhaseState::Done(reason)
     }
 }

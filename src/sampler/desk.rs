@@ -1,0 +1,151 @@
+//! How a method is carried out in slices. A method is an async function that reads from top to
+//! bottom as the method does. It owns nothing: it puts the next slice of its work on its desk, as a
+//! function of the sampler, and waits. The sampler takes the slice from the desk when it is given a
+//! budget, does it with the field that comes with the budget, and lets the method go on.
+
+use super::Sampler;
+use super::phase::StopReason;
+use super::probe::Probe;
+use crate::slices::pause;
+use core::pin::Pin;
+use core::task::{Context, Poll, Waker};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// The caller has stopped the run.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stopped;
+
+/// A slice of work, which takes what it needs from the budget.
+pub(super) type Slice = Box<dyn FnOnce(&mut Sampler, &mut Probe, &mut u32) + Send>;
+
+/// What a method waits for.
+enum Wish {
+    /// A slice of work, once there is budget left.
+    Work(Slice),
+    /// Something that takes no time worth a budget.
+    Now(Slice),
+    /// The next call of the caller, who can look at the particles before.
+    Turn,
+}
+
+#[derive(Default)]
+struct State {
+    wish: Option<Wish>,
+    is_stopped: bool,
+}
+
+/// Where a method says what it waits for.
+#[derive(Clone, Default)]
+pub(super) struct Desk(Arc<Mutex<State>>);
+
+impl Desk {
+    /// Nobody holds the lock while something that could panic is done.
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits for a wish to be granted: its result, or nothing if the run was stopped meanwhile.
+    async fn wait_for<R: Send + 'static>(
+        &self,
+        wish: fn(Slice) -> Wish,
+        slice: impl FnOnce(&mut Sampler, &mut Probe, &mut u32) -> R + Send + 'static,
+    ) -> Result<R, Stopped> {
+        let result = Arc::new(Mutex::new(None));
+        let there = Arc::clone(&result);
+        let slice: Slice = Box::new(move |sampler, probe, left| {
+            let result = slice(sampler, probe, left);
+            *there.lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
+        });
+        self.state().wish = Some(wish(slice));
+        pause().await;
+        let mut result = result.lock().unwrap_or_else(PoisonError::into_inner);
+        result.take().ok_or(Stopped)
+    }
+
+    fn check(&self) -> Result<(), Stopped> {
+        if self.state().is_stopped { Err(Stopped) } else { Ok(()) }
+    }
+
+    /// Does slices of work until one has a result.
+    pub(super) async fn until<R: Send + 'static>(
+        &self,
+        slice: impl Fn(&mut Sampler, &mut Probe, &mut u32) -> Option<R> + Copy + Send + 'static,
+    ) -> Result<R, Stopped> {
+        loop {
+            self.check()?;
+            if let Some(result) = self.wait_for(Wish::Work, slice).await? {
+                return Ok(result);
+            }
+        }
+    }
+
+    /// Does something that takes no time worth a budget.
+    pub(super) async fn now<R: Send + 'static>(
+        &self,
+        what: impl FnOnce(&mut Sampler, &mut Probe) -> R + Send + 'static,
+    ) -> Result<R, Stopped> {
+        self.check()?;
+        self.wait_for(Wish::Now, |sampler, probe, _| what(sampler, probe)).await
+    }
+
+    /// Does something at the end, also of a run that was stopped.
+    pub(super) async fn finally(&self, what: impl FnOnce(&mut Sampler, &mut Probe) + Send + 'static) {
+        // It is lost only with the method.
+        let _ = self.wait_for(Wish::Now, |sampler, probe, _| what(sampler, probe)).await;
+    }
+
+    /// Ends the caller's step: the next slice is done in another one.
+    pub(super) async fn turn(&self) -> Result<(), Stopped> {
+        self.state().wish = Some(Wish::Turn);
+        pause().await;
+        self.check()
+    }
+}
+
+/// A method under way.
+pub(super) struct Method {
+    desk: Desk,
+    work: Pin<Box<dyn Future<Output = StopReason> + Send>>,
+}
+
+/// What a method asks of the sampler.
+pub(super) enum Request {
+    /// This slice of work.
+    Slice(Slice),
+    /// A budget, or the next step of the caller.
+    Step,
+    /// Nothing more: it has ended.
+    End(StopReason),
+}
+
+impl Method {
+    /// A method that begins.
+    pub(super) fn begin<F: Future<Output = StopReason> + Send + 'static>(method: fn(Desk) -> F) -> Self {
+        let desk = Desk::default();
+        Self { work: Box::pin(method(desk.clone())), desk }
+    }
+
+    /// Stops the method. What it does [finally](Desk::finally) it asks for next.
+    pub(super) fn stop(&mut self) {
+        *self.desk.state() = State { wish: None, is_stopped: true };
+    }
+
+    /// What the method asks for, if so much of a budget is left.
+    pub(super) fn request(&mut self, left: u32) -> Request {
+        loop {
+            let wish = self.desk.state().wish.take();
+            match wish {
+                Some(Wish::Turn) => return Request::Step,
+                Some(work @ Wish::Work(_)) if left == 0 => {
+                    self.desk.state().wish = Some(work);
+                    return Request::Step;
+                }
+                Some(Wish::Work(slice) | Wish::Now(slice)) => return Request::Slice(slice),
+                None => match self.work.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
+                    Poll::Ready(reason) => return Request::End(reason),
+                    Poll::Pending => {}
+                },
+            }
+        }
+    }
+}

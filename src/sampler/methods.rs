@@ -1,0 +1,150 @@
+//! The three methods, from top to bottom: a front with its relaxation or refinement, more steps of
+//! the relaxation, and particles that follow a surface that moves. Each name of the [`Sampler`] is a
+//! step of a method; [`Desk`] says how it is done in slices.
+
+use super::Sampler;
+use super::desk::{Desk, Stopped};
+use super::phase::StopReason;
+
+/// What follows once a front has covered the surface.
+pub(super) enum Verdict {
+    /// Another front, with other radii.
+    Again,
+    /// The relaxation.
+    Relax,
+    /// The refinement of the front, which is a coarse one.
+    Refine,
+    /// The front stands as it is, and the run ends for this reason.
+    Stands(StopReason),
+}
+
+/// The paper's method (§4 and §5), or the refined one: fronts cover the surface, until their number
+/// of particles is the wanted one, and are relaxed or refined.
+pub(super) async fn sample(desk: Desk) -> StopReason {
+    ended(&desk, place(&desk).await).await
+}
+
+async fn place(desk: &Desk) -> Result<StopReason, Stopped> {
+    let reason = loop {
+        let covered = cover(desk).await;
+        if covered.is_err() {
+            desk.finally(Sampler::leave_front).await;
+        }
+        covered?;
+        match desk.now(Sampler::judge_front).await? {
+            Verdict::Again => {}
+            Verdict::Refine => {
+                let refined = desk.until(Sampler::refine).await;
+                if refined.is_err() {
+                    desk.finally(Sampler::leave_refinement).await;
+                }
+                if refined? {
+                    break StopReason::Complete;
+                }
+            }
+            Verdict::Relax => {
+                desk.now(|sampler, _| sampler.begin_relaxation()).await?;
+                desk.turn().await?;
+                relax(desk).await?;
+                break desk.now(|sampler, _| sampler.reason_for_end()).await?;
+            }
+            Verdict::Stands(reason) => break reason,
+        }
+    };
+    audit(desk).await?;
+    Ok(reason)
+}
+
+/// Covers the surface with particles: from its creases and tips, from seeds that the survey knows,
+/// from witnesses of components that the survey has missed, and in the gaps that are left.
+async fn cover(desk: &Desk) -> Result<(), Stopped> {
+    let is_known = desk.now(|sampler, _| sampler.begin_attempt()).await?;
+    if is_known {
+        // Over a component of which an earlier front is known, one seed is enough.
+        if desk.until(|sampler, probe, _| Some(sampler.begin_at_known(probe))).await? {
+            grow(desk, true).await?;
+        }
+    } else {
+        if desk.until(|sampler, probe, _| Some(sampler.begin_at_creases(probe))).await? {
+            grow(desk, false).await?;
+        }
+        while desk.until(Sampler::find_seed).await? {
+            grow(desk, false).await?;
+        }
+        if desk.now(|sampler, _| sampler.begin_search()).await? {
+            desk.turn().await?;
+        }
+        while desk.until(Sampler::find_witness).await? {
+            grow(desk, true).await?;
+        }
+    }
+    while desk.now(|sampler, _| sampler.begin_filling()).await? {
+        desk.until(Sampler::fill).await?;
+    }
+    Ok(())
+}
+
+/// Places children level by level, until the front has met itself, another one or the box
+/// everywhere. A seed `is_witness` where the search has found it.
+async fn grow(desk: &Desk, is_witness: bool) -> Result<(), Stopped> {
+    desk.until(Sampler::grow).await?;
+    desk.now(move |sampler, probe| sampler.end_front(probe, is_witness)).await
+}
+
+/// More steps of the relaxation, which has begun, on the particles of a run that has ended.
+pub(super) async fn relax_further(desk: Desk) -> StopReason {
+    let reason = async {
+        relax(&desk).await?;
+        audit(&desk).await?;
+        desk.now(|sampler, _| sampler.reason_for_end()).await
+    };
+    let reason = reason.await;
+    ended(&desk, reason).await
+}
+
+async fn relax(desk: &Desk) -> Result<(), Stopped> {
+    let relaxed = desk.until(Sampler::relax_slice).await;
+    if relaxed.is_err() {
+        desk.finally(Sampler::leave_step).await;
+    }
+    relaxed
+}
+
+/// Finds out which components hold particles.
+async fn audit(desk: &Desk) -> Result<(), Stopped> {
+    desk.now(|sampler, _| sampler.begin_audit()).await?;
+    desk.until(Sampler::audit).await
+}
+
+/// Marks the particles next to singular points, also those of a run that was stopped.
+async fn ended(desk: &Desk, reason: Result<StopReason, Stopped>) -> StopReason {
+    desk.finally(Sampler::mark).await;
+    reason.unwrap_or(StopReason::Cancelled)
+}
+
+/// A frame of particles that follow a moving surface: with the mesh of a refined run, as long as
+/// that can follow.
+pub(super) async fn follow(desk: Desk) -> StopReason {
+    follow_surface(&desk).await.unwrap_or(StopReason::Cancelled)
+}
+
+async fn follow_surface(desk: &Desk) -> Result<StopReason, Stopped> {
+    if desk.now(|sampler, _| sampler.begin_mesh()).await? && desk.until(Sampler::move_mesh).await? {
+        return Ok(StopReason::Complete);
+    }
+    loop {
+        desk.now(|sampler, _| sampler.begin_transport()).await?;
+        desk.until(Sampler::relax_slice).await?;
+        let steps = desk.now(Sampler::settle).await?;
+        for _ in 0..steps {
+            desk.now(|sampler, _| sampler.begin_following()).await?;
+            desk.until(Sampler::relax_slice).await?;
+        }
+        if desk.now(|sampler, _| sampler.particles().is_empty()).await? {
+            return Ok(StopReason::NoSurface);
+        }
+        if !desk.now(Sampler::end_frame).await? {
+            return Ok(StopReason::Complete);
+        }
+    }
+}
