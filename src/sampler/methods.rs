@@ -5,6 +5,7 @@
 use super::Sampler;
 use super::desk::{Desk, Stopped};
 use super::phase::StopReason;
+use super::relaxation::{Grading, Sweep};
 
 /// What follows once a front has covered the surface.
 pub(super) enum Verdict {
@@ -80,15 +81,27 @@ async fn cover(desk: &Desk) -> Result<(), Stopped> {
     }
     while desk.now(|sampler, _| sampler.begin_filling()).await? {
         desk.until(Sampler::fill).await?;
+        grow_levels(desk).await?;
     }
     Ok(())
 }
 
-/// Places children level by level, until the front has met itself, another one or the box
-/// everywhere. A seed `is_witness` where the search has found it.
+/// Grows a front from a seed, which `is_witness` where the search has found it.
 async fn grow(desk: &Desk, is_witness: bool) -> Result<(), Stopped> {
-    desk.until(Sampler::grow).await?;
+    grow_levels(desk).await?;
     desk.now(move |sampler, probe| sampler.end_front(probe, is_witness)).await
+}
+
+/// Lets a front grow level by level, until it has met itself, another one or the box everywhere
+/// (paper §4.2 to §4.4): parents predict children, these are projected onto the surface, and those
+/// that have room there are the parents of the next level.
+async fn grow_levels(desk: &Desk) -> Result<(), Stopped> {
+    while !desk.now(|sampler, _| sampler.has_closed()).await? {
+        desk.until(Sampler::place_children).await?;
+        desk.until(Sampler::project_children).await?;
+        desk.until(Sampler::settle_children).await?;
+    }
+    Ok(())
 }
 
 /// More steps of the relaxation, which has begun, on the particles of a run that has ended.
@@ -102,12 +115,64 @@ pub(super) async fn relax_further(desk: Desk) -> StopReason {
     ended(&desk, reason).await
 }
 
+/// The relaxation (§4.5 and the end of §5), whose steps stand only if they lower the energy.
 async fn relax(desk: &Desk) -> Result<(), Stopped> {
-    let relaxed = desk.until(Sampler::relax_slice).await;
+    let relaxed = make_steps(desk).await;
     if relaxed.is_err() {
         desk.finally(Sampler::leave_step).await;
     }
     relaxed
+}
+
+async fn make_steps(desk: &Desk) -> Result<(), Stopped> {
+    if !desk.now(|sampler, _| sampler.relaxation().is_only_graded()).await? {
+        sum_forces(desk, Grading::WhereUneven).await?;
+        desk.now(|sampler, _| sampler.relaxation().record_first()).await?;
+        while !desk.now(|sampler, _| sampler.relaxation().is_even()).await? {
+            sweep(desk, Sweep::Move).await?;
+            sum_forces(desk, Grading::WhereUneven).await?;
+            if desk.now(|sampler, _| sampler.relaxation().judge()).await? {
+                desk.turn().await?;
+            } else {
+                sweep(desk, Sweep::TakeBack).await?;
+                sum_forces(desk, Grading::WhereUneven).await?;
+            }
+        }
+        sweep(desk, Sweep::Polish).await?;
+        if !desk.now(|sampler, _| sampler.relaxation().distrust_lists()).await? {
+            return Ok(());
+        }
+    }
+    list_neighbours(desk, Grading::Always).await
+}
+
+/// The forces on all particles and their energy, by lists of neighbours that are complete.
+async fn sum_forces(desk: &Desk, grading: Grading) -> Result<(), Stopped> {
+    list_neighbours(desk, grading).await?;
+    sweep(desk, Sweep::SumForces).await
+}
+
+/// Lists the neighbours of those particles whose lists are stale, and lowers the radii that are too
+/// large beside a neighbour's.
+async fn list_neighbours(desk: &Desk, grading: Grading) -> Result<(), Stopped> {
+    let (wants_lists, wants_grid) = desk.now(|sampler, _| sampler.relaxation().wants_lists()).await?;
+    if wants_grid {
+        sweep(desk, Sweep::FillGrid).await?;
+    }
+    if wants_lists {
+        sweep(desk, Sweep::RenewLists).await?;
+    }
+    if desk.now(move |sampler, _| sampler.relaxation().wants_grading(grading)).await? {
+        sweep(desk, Sweep::Grade).await?;
+        while desk.now(|sampler, _| sampler.relaxation().has_lowered()).await? {
+            sweep(desk, Sweep::Grade).await?;
+        }
+    }
+    Ok(())
+}
+
+async fn sweep(desk: &Desk, sweep: Sweep) -> Result<(), Stopped> {
+    desk.until(move |sampler, probe, left| sampler.sweep(sweep, probe, left)).await
 }
 
 /// Finds out which components hold particles.
@@ -134,11 +199,12 @@ async fn follow_surface(desk: &Desk) -> Result<StopReason, Stopped> {
     }
     loop {
         desk.now(|sampler, _| sampler.begin_transport()).await?;
-        desk.until(Sampler::relax_slice).await?;
+        sweep(desk, Sweep::Transport).await?;
         let steps = desk.now(Sampler::settle).await?;
         for _ in 0..steps {
-            desk.now(|sampler, _| sampler.begin_following()).await?;
-            desk.until(Sampler::relax_slice).await?;
+            desk.now(|sampler, _| sampler.relaxation().distrust_grid()).await?;
+            sum_forces(desk, Grading::Always).await?;
+            sweep(desk, Sweep::Move).await?;
         }
         if desk.now(|sampler, _| sampler.particles().is_empty()).await? {
             return Ok(StopReason::NoSurface);

@@ -13,7 +13,7 @@ use crate::sampler::front::{Front, FrontContext, FrontSetup};
 use crate::sampler::phase::{Phase, StopReason, SurveyCursor};
 use crate::sampler::probe::Probe;
 use crate::sampler::refine::{self, MovingMesh, Next, Refusal, Turn};
-use crate::sampler::relaxation::{MoveLimits, RepulsionLaw};
+use crate::sampler::relaxation::{MoveLimits, Relaxation, RepulsionLaw, Sweep, Swept};
 use crate::sampler::settings::{GapPolicy, Method, Sampling, Settings, SizeMode};
 use crate::sampler::sheet::OrientedPoint;
 use glam::{DVec3, Vec3};
@@ -169,10 +169,24 @@ impl Sampler {
         is_started
     }
 
-    /// Lets the front grow until it has met itself, another one or the box everywhere.
-    pub(super) fn grow(&mut self, probe: &mut Probe, left: &mut u32) -> Option<()> {
-        self.spend_on_front(probe, left, |front, context, budget| front.step(context, budget));
-        self.tools.front.is_done().then_some(())
+    /// Whether the front has met itself, another one or the box everywhere.
+    pub(super) fn has_closed(&self) -> bool {
+        self.tools.front.is_done()
+    }
+
+    /// [`Front::place_children`].
+    pub(super) fn place_children(&mut self, probe: &mut Probe, left: &mut u32) -> Option<()> {
+        self.spend_on_front(probe, left, Front::place_children)
+    }
+
+    /// [`Front::project_children`].
+    pub(super) fn project_children(&mut self, probe: &mut Probe, left: &mut u32) -> Option<()> {
+        self.spend_on_front(probe, left, Front::project_children)
+    }
+
+    /// [`Front::settle_children`].
+    pub(super) fn settle_children(&mut self, probe: &mut Probe, left: &mut u32) -> Option<()> {
+        self.spend_on_front(probe, left, Front::settle_children)
     }
 
     /// Ends a front, whose seed `is_witness` if the search has found it.
@@ -227,18 +241,20 @@ impl Sampler {
         call(&mut self.tools.front, &mut context)
     }
 
-    /// Calls a method of the front that uses up the budget, and counts its evaluations.
+    /// Calls a method of the front that uses up the budget, and counts its evaluations. It says whether
+    /// it is done.
     fn spend_on_front(
         &mut self,
         probe: &mut Probe,
         left: &mut u32,
-        call: impl FnOnce(&mut Front, &mut FrontContext, u32) -> u32,
-    ) {
+        call: impl FnOnce(&mut Front, &mut FrontContext, &mut u32) -> bool,
+    ) -> Option<()> {
         let start = probe.evaluations();
-        *left = self.with_front(probe, |front, context| call(front, context, *left));
+        let is_done = self.with_front(probe, |front, context| call(front, context, left));
         let evaluations = probe.evaluations() - start;
         self.counts.generation_evaluations += evaluations;
         self.counts.front_evaluations += evaluations;
+        is_done.then_some(())
     }
 
     /// Begins the search for components that the survey has missed. Says whether there is more to
@@ -305,10 +321,9 @@ impl Sampler {
         has_gaps
     }
 
-    /// Fills the gaps that are listed.
+    /// [`Front::fill`].
     pub(super) fn fill(&mut self, probe: &mut Probe, left: &mut u32) -> Option<()> {
-        self.spend_on_front(probe, left, |front, context, budget| front.fill(context, budget));
-        self.tools.front.is_done().then_some(())
+        self.spend_on_front(probe, left, Front::fill)
     }
 
     /// Decides what follows once the surface is covered.
@@ -556,11 +571,6 @@ impl Sampler {
         steps
     }
 
-    /// Begins a step of relaxation on the surface that has moved.
-    pub(super) fn begin_following(&mut self) {
-        self.tools.relaxation.begin_following();
-    }
-
     /// Ends a frame of particles that follow a moving surface. Says whether they have to be brought to
     /// it once more.
     pub(super) fn end_frame(&mut self, probe: &mut Probe) -> bool {
@@ -617,21 +627,23 @@ impl Sampler {
         }
     }
 
-    /// Does a slice of the relaxation, or of the frame of a flow.
-    pub(super) fn relax_slice(&mut self, probe: &mut Probe, left: &mut u32) -> Option<()> {
+    /// Goes on with a sweep of the relaxation over all particles.
+    pub(super) fn sweep(&mut self, sweep: Sweep, probe: &mut Probe, left: &mut u32) -> Option<()> {
         let start = probe.evaluations();
         let sizing = self.attempt.sizing.as_ref();
-        let slice = (*left).min(SLICE);
-        self.output.moved |= self.tools.relaxation.step(
-            probe,
-            sizing,
-            &mut self.tools.neighbours,
-            &mut self.output.particles,
-            slice,
-        );
-        *left = 0;
+        *left = (*left).min(SLICE);
+        let Output { particles, moved, .. } = &mut self.output;
+        let Tools { relaxation, neighbours, .. } = &mut self.tools;
+        let Swept { has_moved, is_done } =
+            relaxation.go_on(sweep, probe, sizing, neighbours, particles, left);
+        *moved |= has_moved;
         self.counts.relaxation_evaluations += probe.evaluations() - start;
-        self.tools.relaxation.is_done().then_some(())
+        is_done.then_some(())
+    }
+
+    /// The relaxation.
+    pub(super) fn relaxation(&mut self) -> &mut Relaxation {
+        &mut self.tools.relaxation
     }
 
     /// Takes back a step that is only half made.

@@ -55,18 +55,6 @@ impl FrontSetup<'_> {
     }
 }
 
-/// Stage of a level: the work that is done for each parent or child in turn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum LevelStage {
-    /// Predict the children of a parent.
-    #[default]
-    Place,
-    /// Project children onto the surface.
-    Project,
-    /// Decide the fate of a child.
-    Settle,
-}
-
 /// A point of the surface, with the radius and the curvature there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SurfacePoint {
@@ -101,8 +89,7 @@ pub(super) struct Child {
 /// State of a front within its level, and its limits.
 #[derive(Clone, Default)]
 pub(crate) struct FrontLevel {
-    pub(super) stage: LevelStage,
-    /// Next parent of the stage, or next child.
+    /// The parent or the child that is next.
     pub(super) next: usize,
     /// Index that the first child of this level has while it is provisional, and that the first one placed keeps.
     pub(super) first_child: usize,
@@ -128,8 +115,17 @@ pub(crate) struct FrontLevel {
 impl FrontLevel {
     /// Begins a level. Its children follow the particles that are final.
     pub(super) fn begin(&mut self) {
-        (self.stage, self.next) = (LevelStage::Place, 0);
+        self.next = 0;
         self.first_child = self.settled;
+    }
+
+    /// Whether all of so many have had their turn; the first is next then.
+    pub(super) fn has_reached(&mut self, count: usize) -> bool {
+        let is_done = self.next >= count;
+        if is_done {
+            self.next = 0;
+        }
+        is_done
     }
 
     /// Finds the particles of a patch around a place: of each layer of radii those within `reach` of its largest one.
@@ -232,10 +228,10 @@ pub(super) trait Placing {
     /// Makes a particle at a place a parent of the level that is about to begin. Returns the radius that a particle has there.
     fn add_parent(&mut self, context: &mut FrontContext, place: Vec3, particle: usize) -> f32;
 
-    /// Stage one: finds the free slots of a parent of the level and enters a provisional child in each.
+    /// Finds the free slots of a parent of the level and enters a provisional child in each.
     fn place_children(&mut self, level: &mut FrontLevel, context: &mut FrontContext, parent: usize);
 
-    /// Stage two: projects a batch of children onto the surface.
+    /// Projects a batch of children onto the surface.
     fn project_children(
         &mut self,
         level: &mut FrontLevel,
@@ -243,7 +239,7 @@ pub(super) trait Placing {
         children: Range<usize>,
     );
 
-    /// Stage three: whether a child has room at its final place; if so, it is about to become the next settled particle.
+    /// Whether a child has room at its final place; if so, it is about to become the next settled particle.
     fn has_room(
         &mut self,
         level: &mut FrontLevel,

@@ -1,9 +1,10 @@
 //! The front of a run: the uniform one of paper §4 or the adaptive one of §5, and what fills the gaps behind it.
 //!
-//! A front grows in generation levels, each of which has three stages. Every parent predicts its children, which get provisional
-//! places in the particle columns. All children are projected onto the surface, a batch at a time. Their fates are then decided
-//! one by one in the order of the queue, and those that are placed close up over those that are not. The two kinds of front share
-//! this loop, and differ in how they place children ([`Placing`]).
+//! A front grows in generation levels (`methods::grow`). Every parent of a level predicts its children,
+//! which get provisional places in the particle columns. All children are projected onto the surface,
+//! a batch at a time: this is where the front differs from the paper, which projects them one by one.
+//! Their fates are then decided in the order of the queue, and those that are placed close up over
+//! those that are not. The two kinds of front differ in how they place children ([`Placing`]).
 
 mod adaptive;
 mod level;
@@ -15,7 +16,7 @@ pub(crate) use uniform::gaps::widest_gap;
 use crate::math::{SQRT_3, sort_few};
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::front::adaptive::AdaptivePlacing;
-use crate::sampler::front::level::{ChildLanding, FrontLevel, LevelStage, Placing};
+use crate::sampler::front::level::{ChildLanding, FrontLevel, Placing};
 use crate::sampler::front::uniform::UniformPlacing;
 use crate::sampler::neighbours::grids::GridHandle;
 use crate::sampler::probe::{BATCH, Probe};
@@ -95,33 +96,56 @@ impl Front {
         self.parents() == 0
     }
 
-    /// Does up to `budget` units (the slots of a parent, the projection of a child, the fate of a child) and returns what is
-    /// left.
-    pub(crate) fn step(&mut self, context: &mut FrontContext, mut budget: u32) -> u32 {
-        while budget > 0 && !self.is_done() {
-            let (next, children) = (self.level.next, self.level.children.list.len());
-            let count = match self.level.stage {
-                LevelStage::Place => (self.parents() - next).min(1),
-                LevelStage::Project => {
-                    let most = (children - next).min(BATCH).min(budget as usize);
-                    self.on_one_patch(context.particles, next, most)
-                }
-                LevelStage::Settle => (children - next).min(1),
-            };
-            if count == 0 {
-                self.end_stage(context.particles);
-                continue;
-            }
+    /// Predicts the children of each parent of the level (paper §4.2), as far as `left` of a budget
+    /// allows. Says whether the last parent has predicted its own.
+    pub(crate) fn place_children(&mut self, context: &mut FrontContext, left: &mut u32) -> bool {
+        while self.level.next < self.parents() && *left > 0 {
             let (level, placing) = self.parts();
-            match level.stage {
-                LevelStage::Place => placing.place_children(level, context, next),
-                LevelStage::Project => placing.project_children(level, context, next..next + count),
-                LevelStage::Settle => settle_child(level, placing, context, next),
-            }
-            self.level.next += count;
-            budget -= count as u32;
+            placing.place_children(level, context, level.next);
+            level.next += 1;
+            *left -= 1;
         }
-        budget
+        let parents = self.parents();
+        self.level.has_reached(parents)
+    }
+
+    /// Projects the children of the level onto the surface (paper §4.3), as far as `left` of a budget
+    /// allows. Says whether all are projected.
+    pub(crate) fn project_children(&mut self, context: &mut FrontContext, left: &mut u32) -> bool {
+        let children = self.level.children.list.len();
+        while self.level.next < children && *left > 0 {
+            let next = self.level.next;
+            let most = (children - next).min(BATCH).min(*left as usize);
+            let count = self.on_one_patch(context.particles, next, most);
+            let (level, placing) = self.parts();
+            placing.project_children(level, context, next..next + count);
+            level.next += count;
+            *left -= count as u32;
+        }
+        self.level.has_reached(children)
+    }
+
+    /// Decides the fates of the children of the level (paper §4.4), as far as `left` of a budget
+    /// allows. Says whether the level is at its end; those that were placed are the next parents.
+    pub(crate) fn settle_children(&mut self, context: &mut FrontContext, left: &mut u32) -> bool {
+        let children = self.level.children.list.len();
+        let (level, placing) = self.parts();
+        while level.next < children && *left > 0 {
+            settle_child(level, placing, context, level.next);
+            level.next += 1;
+            *left -= 1;
+        }
+        let is_done = level.has_reached(children);
+        if is_done {
+            context.particles.truncate(level.settled);
+            placing.end_level(level);
+            level.children.clear();
+            if level.capped {
+                placing.clear_level();
+            }
+            level.begin();
+        }
+        is_done
     }
 
     /// Number of children from child `first` on, `most` at most, that lie on one patch.
@@ -130,25 +154,6 @@ impl Front {
         let patch = particles.patch_of(first);
         let is_on = |&k: &usize| particles.is_on(first + k, patch);
         if patch.is_none() { most } else { (0..most).take_while(is_on).count() }
-    }
-
-    /// Goes on to the next stage, or to the next level.
-    fn end_stage(&mut self, particles: &mut Particles) {
-        let (level, placing) = self.parts();
-        level.next = 0;
-        match level.stage {
-            LevelStage::Place => level.stage = LevelStage::Project,
-            LevelStage::Project => level.stage = LevelStage::Settle,
-            LevelStage::Settle => {
-                particles.truncate(level.settled);
-                placing.end_level(level);
-                level.children.clear();
-                if level.capped {
-                    placing.clear_level();
-                }
-                level.begin();
-            }
-        }
     }
 
     /// Ends the front where it is: what is not final is dropped.
@@ -280,12 +285,13 @@ impl Front {
         placing.begin_filling(level)
     }
 
-    /// Fills gaps with up to `budget` units of work and returns what is left.
-    pub(crate) fn fill(&mut self, context: &mut FrontContext, budget: u32) -> u32 {
-        match self.sampling {
-            Sampling::Uniform => self.uniform.fill_gaps(&mut self.level, context, budget),
-            Sampling::Adaptive => self.step(context, budget),
+    /// Fills gaps, as far as `left` of a budget allows. Says whether that is all: an adaptive front
+    /// grows into its gaps.
+    pub(crate) fn fill(&mut self, context: &mut FrontContext, left: &mut u32) -> bool {
+        if self.sampling == Sampling::Uniform {
+            *left = self.uniform.fill_gaps(&mut self.level, context, *left);
         }
+        true
     }
 }
 

@@ -4,15 +4,7 @@
 //! The repulsion is a law for pairs of particles ([`Repulsion`]): a Gaussian for particles of one size, the overlap of
 //! discs for particles of many. Steps, neighbour lists and the return to the surface are the same for both.
 //!
-//! ```text
-//!            ┌────────────── next pass ─┐
-//! FillGrid → RenewLists → Grade ────────┴─→ SumForces → Move ────┐   (after the last step) → Polish → Done
-//!    ↑            ↑         ↑                ↑      └→ TakeBack ─┤
-//!    └────────────┴─────────┴────────────────┴──────────────────┘
-//! ```
-//!
-//! Lists are renewed only where they are stale, and only adaptive particles are graded. After the polish adaptive
-//! particles go through the grid, the lists and the grading once more.
+//! A relaxation is a sequence of [sweeps](Sweep) over all particles; `methods::relax` has the order.
 //!
 //! # Differs from the paper
 //!
@@ -44,42 +36,34 @@ use core::ops::Range;
 /// Units of work that the renewal of a list counts for: it takes ten times as long as the forces on a particle.
 const RENEWAL_UNITS: u32 = 10;
 
-/// Stage of a relaxation: the work that is done for each particle in turn.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum RelaxationStage {
+/// What is done for each particle in turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sweep {
     /// Bring the particles to a surface that has moved.
     Transport,
     /// Put all particles into the grid.
     FillGrid,
     /// Renew the stale neighbour lists.
     RenewLists,
-    /// Lower radii that are too large beside a neighbour's. This takes as many passes as lower one.
-    Grade { has_lowered: bool },
+    /// Lower radii that are too large beside a neighbour's.
+    Grade,
     /// Sum the forces, and the energy of all particles.
-    SumForces { energy: f64 },
+    SumForces,
     /// Move the particles along the forces.
     Move,
     /// Put the particles back where they were before the last move.
     TakeBack,
     /// Bring the particles onto the surface as close as single precision allows.
     Polish,
-    /// The relaxation has ended.
-    #[default]
-    Done,
 }
 
-/// Purpose for which the lists are renewed and the radii graded: the part of the relaxation that follows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Purpose {
-    /// The next step: the particles have not moved, or were put back.
-    Step,
-    /// The judgement of the step just made, and then the next step.
-    Judge,
-    /// The one step of particles on a surface that moves: it stands, whatever it does to the energy.
-    Follow,
-    /// The end of the relaxation.
-    #[default]
-    End,
+/// When radii are graded, where they differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Grading {
+    /// At the first step, and once a radius had to be lowered at every step.
+    WhereUneven,
+    /// In any case.
+    Always,
 }
 
 /// A law of repulsion, with the tolerance for particles on the surface.
@@ -126,18 +110,29 @@ pub(crate) struct Relaxation {
     law: RepulsionLaw,
     /// Steps to be done in all.
     target: u32,
-    stage: RelaxationStage,
-    purpose: Purpose,
-    /// The next particle in this stage.
+    /// The sweep under way, and the next particle in it.
+    sweep: Option<Sweep>,
     next: usize,
-    /// Units done beyond the budgets so far, to be paid from the next ones.
-    debt: u32,
+    /// Energy per particle, as the last forces gave it.
+    sum: f64,
+    /// Whether the last grading has lowered a radius.
+    has_lowered: bool,
+    /// Whether the grid holds the particles where they are.
+    grid_serves: bool,
     /// Whether a grading has lowered a radius, so that radii are graded before every step.
     is_steep: bool,
     lists: NeighbourLists,
     stepper: Stepper,
     /// Particles that the transport has not brought to the surface, in ascending order.
     lost: Vec<u32>,
+}
+
+/// What a slice of a sweep has done.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Swept {
+    pub(crate) has_moved: bool,
+    /// Whether it has come through all particles.
+    pub(crate) is_done: bool,
 }
 
 /// Largest distance, in radii, that a particle is transported: that of its neighbours. A surface that has moved farther is sampled anew.
@@ -150,7 +145,6 @@ const TRANSPORT_TRUST: f32 = 0.1;
 impl Relaxation {
     /// Forgets an earlier run.
     pub(crate) fn clear(&mut self) {
-        self.stage = RelaxationStage::Done;
         self.stepper.clear();
     }
 
@@ -172,9 +166,7 @@ impl Relaxation {
         let particles = particles.len();
         self.law = law;
         self.target = target;
-        self.purpose = if target == 0 && law.resizes() { Purpose::End } else { Purpose::Step };
-        self.next = 0;
-        self.debt = 0;
+        (self.sweep, self.grid_serves) = (None, false);
         self.is_steep = false;
         // A first step that was cancelled has moved particles, so the lists of the front no longer hold.
         let is_first = self.stepper.energy().is_empty();
@@ -183,13 +175,10 @@ impl Relaxation {
         self.lists.sheets = sheets;
         // The front's lists may hold pairs on two near sheets.
         let are_lists_right = pairs.len() == particles && is_first && self.lists.sheets.is_empty();
-        self.stage = if are_lists_right && self.purpose != Purpose::End {
-            self.after_lists()
-        } else {
+        if !are_lists_right || self.is_only_graded() {
             pairs.extend_to(particles);
             self.lists.make_all_stale();
-            RelaxationStage::FillGrid
-        };
+        }
     }
 
     /// Brings the particles to the surface of a field that has changed. `are_listed` says whether the lists were those of these particles
@@ -203,14 +192,12 @@ impl Relaxation {
         are_listed: bool,
     ) {
         self.law = law;
-        self.purpose = Purpose::Follow;
+        (self.sweep, self.grid_serves) = (None, false);
         self.stepper.follow(limits, law.first_step());
         if !are_listed {
             self.list_anew(particles, pairs);
         }
         self.lost.clear();
-        (self.next, self.debt) = (0, 0);
-        self.stage = RelaxationStage::Transport;
     }
 
     /// Keeps the lists of those particles that have a new row, [`Particles::NO_PARENT`] for one that is gone. Those that came after the listed
@@ -220,12 +207,6 @@ impl Relaxation {
         pairs.keep(rows, Particles::NO_PARENT);
         self.lists.keep(rows, Particles::NO_PARENT);
         self.stepper.resize(particles.len(), self.law.resizes());
-    }
-
-    /// Makes a step on the surface to which the particles were transported.
-    pub(crate) fn begin_following(&mut self) {
-        (self.next, self.debt) = (0, 0);
-        self.stage = if self.lists.has_stale() { RelaxationStage::FillGrid } else { self.after_lists() };
     }
 
     /// Makes all lists stale, for rows that may be others than before.
@@ -244,8 +225,55 @@ impl Relaxation {
         &self.lost
     }
 
-    pub(crate) fn is_done(&self) -> bool {
-        self.stage == RelaxationStage::Done
+    /// Whether there is no step to be made, and the radii are only graded.
+    pub(crate) fn is_only_graded(&self) -> bool {
+        self.target == 0 && self.law.resizes()
+    }
+
+    /// Whether all steps are done, or none lowers the energy any more.
+    pub(crate) fn is_even(&self) -> bool {
+        self.stepper.done() >= self.target || self.stepper.is_stuck()
+    }
+
+    /// Whether lists have to be renewed, and the grid filled before.
+    pub(crate) fn wants_lists(&self) -> (bool, bool) {
+        let has_stale = self.lists.has_stale();
+        (has_stale, has_stale && !self.grid_serves)
+    }
+
+    /// Whether radii are to be graded.
+    pub(crate) fn wants_grading(&self, grading: Grading) -> bool {
+        self.law.resizes() && (grading == Grading::Always || self.is_steep || !self.stepper.has_begun())
+    }
+
+    /// Whether the last grading has lowered a radius.
+    pub(crate) fn has_lowered(&self) -> bool {
+        self.has_lowered
+    }
+
+    /// Takes the energy of the last forces as that before the first step, unless that is known.
+    pub(crate) fn record_first(&mut self) {
+        self.stepper.record_first(self.sum);
+    }
+
+    /// Whether the last step stands: whether it has lowered the energy.
+    pub(crate) fn judge(&mut self) -> bool {
+        self.stepper.judge(self.sum, self.law.first_step())
+    }
+
+    /// Has the grid filled before lists are renewed: particles may have been born or have died.
+    pub(crate) fn distrust_grid(&mut self) {
+        self.grid_serves = false;
+    }
+
+    /// Has all lists made anew. The grading is a promise about all pairs: none may be missing that the
+    /// front or a change of radii has left out.
+    pub(crate) fn distrust_lists(&mut self) -> bool {
+        if self.law.resizes() {
+            self.lists.make_all_stale();
+            self.distrust_grid();
+        }
+        self.law.resizes()
     }
 
     pub(crate) fn steps_done(&self) -> u32 {
@@ -259,40 +287,41 @@ impl Relaxation {
 
     /// Takes back a step that is only half made, and ends. Returns whether positions changed.
     pub(crate) fn abandon(&mut self, particles: &mut Particles) -> bool {
-        let moved = match self.stage {
-            RelaxationStage::Move => 0..self.next,
-            RelaxationStage::TakeBack => self.next..particles.len(),
+        let moved = match self.sweep {
+            Some(Sweep::Move) => 0..self.next,
+            Some(Sweep::TakeBack) => self.next..particles.len(),
             _ => 0..0,
         };
         for i in moved.clone() {
             self.stepper.restore(particles, i);
         }
-        self.stage = RelaxationStage::Done;
+        self.sweep = None;
         !moved.is_empty()
     }
 
-    /// Does up to `budget` units of work and returns whether particles moved. A unit is one particle in one stage;
-    /// costly ones count for several. It returns early where a step stands, so that its particles can be looked at.
+    /// Goes on with a sweep over all particles, as far as `left` of a budget allows: one unit a
+    /// particle, more for a costly one. Returns whether particles moved, once it has come to the end.
     /// Particles of many radii need the radius field `sizing` of their run.
     ///
     /// # Panics
     ///
     /// If particles of many radii come without a radius field.
-    pub(crate) fn step(
+    pub(crate) fn go_on(
         &mut self,
+        sweep: Sweep,
         probe: &mut Probe,
         sizing: Option<&Sizing>,
         pairs: &mut PackedNeighbours,
         particles: &mut Particles,
-        budget: u32,
-    ) -> bool {
+        left: &mut u32,
+    ) -> Swept {
         match (self.law, sizing) {
             (RepulsionLaw::Gaussian { radius, tolerance }, _) => {
-                self.run(&Gaussian::new(radius, tolerance), probe, pairs, particles, budget)
+                self.run(sweep, &Gaussian::new(radius, tolerance), probe, pairs, particles, left)
             }
             (RepulsionLaw::Overlap { residual_limits, min_gradient }, Some(sizing)) => {
                 let law = Overlap { sizing, residual_limits, min_gradient };
-                self.run(&law, probe, pairs, particles, budget)
+                self.run(sweep, &law, probe, pairs, particles, left)
             }
             (RepulsionLaw::Overlap { .. }, None) => panic!("an adaptive run has a radius field"),
         }
@@ -300,66 +329,86 @@ impl Relaxation {
 
     fn run<L: Repulsion>(
         &mut self,
+        sweep: Sweep,
         law: &L,
         probe: &mut Probe,
         pairs: &mut PackedNeighbours,
         particles: &mut Particles,
-        mut budget: u32,
-    ) -> bool {
+        left: &mut u32,
+    ) -> Swept {
         let n = particles.len();
+        if self.sweep.replace(sweep) != Some(sweep) {
+            self.next = 0;
+            (self.sum, self.has_lowered) = (0.0, false);
+        }
         let mut has_moved = false;
-        let paid = self.debt.min(budget);
-        self.debt -= paid;
-        budget -= paid;
-        let steps = self.stepper.done();
-        while budget > 0 && self.stage != RelaxationStage::Done && self.stepper.done() == steps {
-            let (last, units) = self.affordable(budget, n);
-            let range = self.next..last;
-            self.debt = units.saturating_sub(budget);
-            budget = budget.saturating_sub(units);
-            self.next = last;
-            match &mut self.stage {
-                RelaxationStage::FillGrid => self.fill_grid(law, particles, range),
-                RelaxationStage::RenewLists => self.renew_lists(pairs, particles, range),
-                RelaxationStage::Grade { has_lowered } => {
-                    *has_lowered |= grading::grade_near(law.slope(), pairs, particles, range);
-                }
-                RelaxationStage::SumForces { energy } => {
-                    for first in range.step_by(BATCH_PARTICLES) {
-                        let few = first..last.min(first + BATCH_PARTICLES);
-                        self.stepper.forces.add_near(law, pairs, particles, few, energy);
-                    }
-                }
-                RelaxationStage::Transport
-                | RelaxationStage::Move
-                | RelaxationStage::TakeBack
-                | RelaxationStage::Polish => {
-                    has_moved |= !range.is_empty();
-                    self.displace(law, probe, pairs, particles, range);
-                }
-                RelaxationStage::Done => {}
+        let range = self.affordable(sweep, left, n);
+        self.next = range.end;
+        match sweep {
+            Sweep::FillGrid => self.fill_grid(law, particles, range),
+            Sweep::RenewLists => self.renew_lists(pairs, particles, range),
+            Sweep::Grade => {
+                self.has_lowered |= grading::grade_near(law.slope(), pairs, particles, range);
             }
-            if last == n {
-                self.next = 0;
-                self.stage = self.following(law, pairs, particles);
+            Sweep::SumForces => {
+                let last = range.end;
+                for first in range.step_by(BATCH_PARTICLES) {
+                    let few = first..last.min(first + BATCH_PARTICLES);
+                    self.stepper.forces.add_near(law, pairs, particles, few, &mut self.sum);
+                }
+            }
+            Sweep::Transport | Sweep::Move | Sweep::TakeBack | Sweep::Polish => {
+                has_moved |= !range.is_empty();
+                self.displace(sweep, law, probe, pairs, particles, range);
             }
         }
-        has_moved
+        let is_done = self.next == n;
+        if is_done {
+            self.end(sweep, law, pairs, particles);
+        }
+        Swept { has_moved, is_done }
     }
 
-    /// Returns how far this stage comes with a budget, and the units that takes: the last particle may go beyond the
-    /// budget.
-    fn affordable(&self, budget: u32, n: usize) -> (usize, u32) {
-        let cost = |i: usize| match self.stage {
-            RelaxationStage::RenewLists if self.lists.is_stale(i) => RENEWAL_UNITS,
+    /// Ends a sweep that has come through all particles.
+    fn end<L: Repulsion>(
+        &mut self,
+        sweep: Sweep,
+        law: &L,
+        pairs: &PackedNeighbours,
+        particles: &mut Particles,
+    ) {
+        self.sweep = None;
+        match sweep {
+            Sweep::FillGrid => self.grid_serves = true,
+            Sweep::RenewLists => self.lists.end_renewal(),
+            Sweep::Grade => {
+                self.has_lowered |= grading::grade_far(law.slope(), pairs, particles);
+                self.is_steep |= self.has_lowered;
+            }
+            Sweep::SumForces => {
+                self.stepper.forces.add_far(law, pairs, particles, &mut self.sum);
+                self.sum /= particles.len() as f64;
+            }
+            Sweep::Transport | Sweep::Move | Sweep::TakeBack => {
+                self.grid_serves = self.lists.end_move(L::SLACK * law.radius(particles, 0));
+            }
+            Sweep::Polish => {}
+        }
+    }
+
+    /// The particles that a sweep comes through with what is `left` of a budget, which pays for them:
+    /// the last one may go beyond it.
+    fn affordable(&self, sweep: Sweep, left: &mut u32, n: usize) -> Range<usize> {
+        let cost = |i: usize| match sweep {
+            Sweep::RenewLists if self.lists.is_stale(i) => RENEWAL_UNITS,
             _ => 1,
         };
-        let (mut last, mut units) = (self.next, 0);
-        while last < n && units < budget {
-            units += cost(last);
+        let mut last = self.next;
+        while last < n && *left > 0 {
+            *left = left.saturating_sub(cost(last));
             last += 1;
         }
-        (last, units)
+        self.next..last
     }
 
     fn fill_grid<L: Repulsion>(&mut self, law: &L, particles: &Particles, range: Range<usize>) {
@@ -375,27 +424,25 @@ impl Relaxation {
         if range.start == 0 {
             self.lists.begin_renewal(pairs);
         }
-        let last = range.end;
         for i in range {
             if self.lists.is_stale(i) {
-                let renewed = self.lists.renew(pairs, particles, i);
-                let beyond = renewed.iter().filter(|&&j| j as usize >= last).count() as u32;
-                self.debt += beyond * RENEWAL_UNITS;
+                self.lists.renew(pairs, particles, i);
             }
         }
     }
 
-    /// Moves the particles of `range` as this stage says, and lands them.
+    /// Moves the particles of `range` as a sweep says, and lands them.
     fn displace<L: Repulsion>(
         &mut self,
+        sweep: Sweep,
         law: &L,
         probe: &mut Probe,
         pairs: &PackedNeighbours,
         particles: &mut Particles,
         range: Range<usize>,
     ) {
-        let Self { stage, lists, stepper, lost, .. } = self;
-        let is_transport = *stage == RelaxationStage::Transport;
+        let Self { lists, stepper, lost, .. } = self;
+        let is_transport = sweep == Sweep::Transport;
         let mut landing = LandingBatch::new();
         let mut next = range.start;
         while next < range.end {
@@ -406,9 +453,9 @@ impl Relaxation {
             // Near a bend the energy depends on the normal, which is therefore evaluated at the final position; and near another
             // sheet a short correction may lead far away.
             landing.trust = if is_checked { 0.0 } else { TRUSTED_CORRECTION };
-            match *stage {
-                RelaxationStage::Move => stepper.advance(law, particles, range.clone(), &mut landing),
-                RelaxationStage::TakeBack => {
+            match sweep {
+                Sweep::Move => stepper.advance(law, particles, range.clone(), &mut landing),
+                Sweep::TakeBack => {
                     stepper.take_back(law, lists, particles, range.clone(), &mut landing);
                 }
                 _ => {
@@ -425,94 +472,5 @@ impl Relaxation {
                 lost.extend(range.clone().filter(|i| !landing.ok[i - range.start]).map(|i| i as u32));
             }
         }
-    }
-
-    /// Returns the stage that follows, once all particles have been through the present one.
-    fn following<L: Repulsion>(
-        &mut self,
-        law: &L,
-        pairs: &PackedNeighbours,
-        particles: &mut Particles,
-    ) -> RelaxationStage {
-        match self.stage {
-            RelaxationStage::FillGrid => RelaxationStage::RenewLists,
-            RelaxationStage::RenewLists => {
-                self.lists.end_renewal();
-                self.after_lists()
-            }
-            RelaxationStage::Grade { mut has_lowered } => {
-                has_lowered |= grading::grade_far(law.slope(), pairs, particles);
-                self.is_steep |= has_lowered;
-                match self.purpose {
-                    _ if has_lowered => RelaxationStage::Grade { has_lowered: false },
-                    Purpose::End => RelaxationStage::Done,
-                    _ => RelaxationStage::SumForces { energy: 0.0 },
-                }
-            }
-            RelaxationStage::SumForces { mut energy } => {
-                self.stepper.forces.add_far(law, pairs, particles, &mut energy);
-                if self.purpose == Purpose::Follow {
-                    return RelaxationStage::Move;
-                }
-                self.after_forces::<L>(energy / particles.len() as f64)
-            }
-            RelaxationStage::Move if self.purpose != Purpose::Follow => self.after_moving(law, particles),
-            RelaxationStage::Transport | RelaxationStage::Move => {
-                self.lists.end_move(L::SLACK * law.radius(particles, 0));
-                RelaxationStage::Done
-            }
-            RelaxationStage::TakeBack => {
-                self.purpose = Purpose::Step;
-                self.after_moving(law, particles)
-            }
-            RelaxationStage::Polish if L::RESIZES => {
-                // The grading is a promise about all pairs: none may be missing that the front or a change of radii has
-                // left out.
-                self.purpose = Purpose::End;
-                self.lists.make_all_stale();
-                RelaxationStage::FillGrid
-            }
-            RelaxationStage::Polish | RelaxationStage::Done => RelaxationStage::Done,
-        }
-    }
-
-    /// Returns what follows complete lists: the forces, or the grading if radii may be too different.
-    fn after_lists(&self) -> RelaxationStage {
-        let is_uneven = match self.purpose {
-            Purpose::End | Purpose::Follow => true,
-            Purpose::Step | Purpose::Judge => self.is_steep || !self.stepper.has_begun(),
-        };
-        if self.law.resizes() && is_uneven {
-            RelaxationStage::Grade { has_lowered: false }
-        } else {
-            RelaxationStage::SumForces { energy: 0.0 }
-        }
-    }
-
-    /// Returns what follows a move: first the renewal of the stale lists, if there are any.
-    fn after_moving<L: Repulsion>(&mut self, law: &L, particles: &Particles) -> RelaxationStage {
-        let grid_serves = self.lists.end_move(L::SLACK * law.radius(particles, 0));
-        if !self.lists.has_stale() {
-            self.after_lists()
-        } else if grid_serves {
-            RelaxationStage::RenewLists
-        } else {
-            RelaxationStage::FillGrid
-        }
-    }
-
-    /// Returns what follows the forces: the next step, the end, or the return from a step that has not lowered the
-    /// energy.
-    fn after_forces<L: Repulsion>(&mut self, energy: f64) -> RelaxationStage {
-        if self.purpose != Purpose::Judge {
-            self.stepper.record_first(energy);
-        } else if !self.stepper.judge(energy, L::STEP) {
-            return RelaxationStage::TakeBack;
-        }
-        if self.stepper.done() >= self.target || self.stepper.is_stuck() {
-            return RelaxationStage::Polish;
-        }
-        self.purpose = Purpose::Judge;
-        RelaxationStage::Move
     }
 }
