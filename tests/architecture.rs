@@ -72,7 +72,7 @@ const ROOMS: [Room; 4] = [
         &[
             ("settings", &[]),
             ("fates", &[]),
-            ("phase", &["refine"]),
+            ("phase", &[]),
             ("probe", &[]),
             ("projection", &["probe"]),
             ("neighbours", &["probe"]),
@@ -97,10 +97,13 @@ const ROOMS: [Room; 4] = [
                 "attempt",
                 &["settings", "projection", "neighbours", "constraint", "discovery", "sizing", "refine"],
             ),
-            // The state machine, which alone knows every room.
+            ("desk", &["phase", "probe"]),
+            ("methods", &["desk", "phase", "relaxation"]),
+            // The steps of the methods, which alone know every room.
             (
-                "run",
+                "steps",
                 &[
+                    "methods",
                     "settings",
                     "phase",
                     "attempt",
@@ -150,7 +153,8 @@ const ROOMS: [Room; 4] = [
             ("formula", &[]),
             ("descent", &[]),
             ("evaluator", &[]),
-            ("function", &[]),
+            ("differences", &[]),
+            ("function", &["differences"]),
             ("given", &["function"]),
             ("gallery", &["formula"]),
             ("model", &[]),

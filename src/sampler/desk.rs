@@ -82,10 +82,31 @@ impl Desk {
     /// Does something that takes no time worth a budget.
     pub(super) async fn now<R: Send + 'static>(
         &self,
+        what: impl FnOnce(&mut Sampler) -> R + Send + 'static,
+    ) -> Result<R, Stopped> {
+        self.with_field(|sampler, _| what(sampler)).await
+    }
+
+    /// [`Desk::now`], with the field.
+    pub(super) async fn with_field<R: Send + 'static>(
+        &self,
         what: impl FnOnce(&mut Sampler, &mut Probe) -> R + Send + 'static,
     ) -> Result<R, Stopped> {
         self.check()?;
         self.wait_for(Wish::Now, |sampler, probe, _| what(sampler, probe)).await
+    }
+
+    /// The result of a part of a method. If the run was stopped in it, what is half made is tidied up.
+    pub(super) async fn leaving<R>(
+        &self,
+        part: impl Future<Output = Result<R, Stopped>>,
+        tidy: fn(&mut Sampler, &mut Probe),
+    ) -> Result<R, Stopped> {
+        let result = part.await;
+        if result.is_err() {
+            self.finally(tidy).await;
+        }
+        result
     }
 
     /// Does something at the end, also of a run that was stopped.

@@ -27,27 +27,20 @@ pub(super) async fn sample(desk: Desk) -> StopReason {
 
 async fn place(desk: &Desk) -> Result<StopReason, Stopped> {
     let reason = loop {
-        let covered = cover(desk).await;
-        if covered.is_err() {
-            desk.finally(Sampler::leave_front).await;
-        }
-        covered?;
-        match desk.now(Sampler::judge_front).await? {
+        desk.leaving(cover(desk), Sampler::leave_front).await?;
+        match desk.with_field(Sampler::judge_front).await? {
             Verdict::Again => {}
             Verdict::Refine => {
-                let refined = desk.until(Sampler::refine).await;
-                if refined.is_err() {
-                    desk.finally(Sampler::leave_refinement).await;
-                }
-                if refined? {
+                let refined = desk.until(Sampler::refine);
+                if desk.leaving(refined, Sampler::leave_refinement).await? {
                     break StopReason::Complete;
                 }
             }
             Verdict::Relax => {
-                desk.now(|sampler, _| sampler.begin_relaxation()).await?;
+                desk.now(Sampler::begin_relaxation).await?;
                 desk.turn().await?;
                 relax(desk).await?;
-                break desk.now(|sampler, _| sampler.reason_for_end()).await?;
+                break desk.now(|sampler| sampler.reason_for_end()).await?;
             }
             Verdict::Stands(reason) => break reason,
         }
@@ -59,7 +52,7 @@ async fn place(desk: &Desk) -> Result<StopReason, Stopped> {
 /// Covers the surface with particles: from its creases and tips, from seeds that the survey knows,
 /// from witnesses of components that the survey has missed, and in the gaps that are left.
 async fn cover(desk: &Desk) -> Result<(), Stopped> {
-    let is_known = desk.now(|sampler, _| sampler.begin_attempt()).await?;
+    let is_known = desk.now(Sampler::begin_attempt).await?;
     if is_known {
         // Over a component of which an earlier front is known, one seed is enough.
         if desk.until(|sampler, probe, _| Some(sampler.begin_at_known(probe))).await? {
@@ -72,14 +65,14 @@ async fn cover(desk: &Desk) -> Result<(), Stopped> {
         while desk.until(Sampler::find_seed).await? {
             grow(desk, false).await?;
         }
-        if desk.now(|sampler, _| sampler.begin_search()).await? {
+        if desk.now(Sampler::begin_search).await? {
             desk.turn().await?;
         }
         while desk.until(Sampler::find_witness).await? {
             grow(desk, true).await?;
         }
     }
-    while desk.now(|sampler, _| sampler.begin_filling()).await? {
+    while desk.now(Sampler::begin_filling).await? {
         desk.until(Sampler::fill).await?;
         grow_levels(desk).await?;
     }
@@ -89,14 +82,14 @@ async fn cover(desk: &Desk) -> Result<(), Stopped> {
 /// Grows a front from a seed, which `is_witness` where the search has found it.
 async fn grow(desk: &Desk, is_witness: bool) -> Result<(), Stopped> {
     grow_levels(desk).await?;
-    desk.now(move |sampler, probe| sampler.end_front(probe, is_witness)).await
+    desk.with_field(move |sampler, probe| sampler.end_front(probe, is_witness)).await
 }
 
 /// Lets a front grow level by level, until it has met itself, another one or the box everywhere
 /// (paper §4.2 to §4.4): parents predict children, these are projected onto the surface, and those
 /// that have room there are the parents of the next level.
 async fn grow_levels(desk: &Desk) -> Result<(), Stopped> {
-    while !desk.now(|sampler, _| sampler.has_closed()).await? {
+    while !desk.now(|sampler| sampler.has_closed()).await? {
         desk.until(Sampler::place_children).await?;
         desk.until(Sampler::project_children).await?;
         desk.until(Sampler::settle_children).await?;
@@ -109,29 +102,27 @@ pub(super) async fn relax_further(desk: Desk) -> StopReason {
     let reason = async {
         relax(&desk).await?;
         audit(&desk).await?;
-        desk.now(|sampler, _| sampler.reason_for_end()).await
+        desk.now(|sampler| sampler.reason_for_end()).await
     };
     let reason = reason.await;
     ended(&desk, reason).await
 }
 
-/// The relaxation (§4.5 and the end of §5), whose steps stand only if they lower the energy.
+/// The relaxation (§4.5 and the end of §5).
 async fn relax(desk: &Desk) -> Result<(), Stopped> {
-    let relaxed = make_steps(desk).await;
-    if relaxed.is_err() {
-        desk.finally(Sampler::leave_step).await;
-    }
-    relaxed
+    desk.leaving(make_steps(desk), Sampler::leave_step).await
 }
 
+/// Steps stand only if they lower the energy. At the end all particles are brought onto the surface
+/// as closely as single precision allows, and radii that differ are graded once more.
 async fn make_steps(desk: &Desk) -> Result<(), Stopped> {
-    if !desk.now(|sampler, _| sampler.relaxation().is_only_graded()).await? {
+    if !desk.now(|sampler| sampler.relaxation().is_only_graded()).await? {
         sum_forces(desk, Grading::WhereUneven).await?;
-        desk.now(|sampler, _| sampler.relaxation().record_first()).await?;
-        while !desk.now(|sampler, _| sampler.relaxation().is_even()).await? {
+        desk.now(|sampler| sampler.relaxation().record_first()).await?;
+        while !desk.now(|sampler| sampler.relaxation().is_even()).await? {
             sweep(desk, Sweep::Move).await?;
             sum_forces(desk, Grading::WhereUneven).await?;
-            if desk.now(|sampler, _| sampler.relaxation().judge()).await? {
+            if desk.now(|sampler| sampler.relaxation().judge()).await? {
                 desk.turn().await?;
             } else {
                 sweep(desk, Sweep::TakeBack).await?;
@@ -139,7 +130,7 @@ async fn make_steps(desk: &Desk) -> Result<(), Stopped> {
             }
         }
         sweep(desk, Sweep::Polish).await?;
-        if !desk.now(|sampler, _| sampler.relaxation().distrust_lists()).await? {
+        if !desk.now(|sampler| sampler.relaxation().distrust_lists()).await? {
             return Ok(());
         }
     }
@@ -155,16 +146,16 @@ async fn sum_forces(desk: &Desk, grading: Grading) -> Result<(), Stopped> {
 /// Lists the neighbours of those particles whose lists are stale, and lowers the radii that are too
 /// large beside a neighbour's.
 async fn list_neighbours(desk: &Desk, grading: Grading) -> Result<(), Stopped> {
-    let (wants_lists, wants_grid) = desk.now(|sampler, _| sampler.relaxation().wants_lists()).await?;
+    let (wants_lists, wants_grid) = desk.now(|sampler| sampler.relaxation().wants_lists()).await?;
     if wants_grid {
         sweep(desk, Sweep::FillGrid).await?;
     }
     if wants_lists {
         sweep(desk, Sweep::RenewLists).await?;
     }
-    if desk.now(move |sampler, _| sampler.relaxation().wants_grading(grading)).await? {
+    if desk.now(move |sampler| sampler.relaxation().wants_grading(grading)).await? {
         sweep(desk, Sweep::Grade).await?;
-        while desk.now(|sampler, _| sampler.relaxation().has_lowered()).await? {
+        while desk.now(|sampler| sampler.relaxation().has_lowered()).await? {
             sweep(desk, Sweep::Grade).await?;
         }
     }
@@ -177,7 +168,7 @@ async fn sweep(desk: &Desk, sweep: Sweep) -> Result<(), Stopped> {
 
 /// Finds out which components hold particles.
 async fn audit(desk: &Desk) -> Result<(), Stopped> {
-    desk.now(|sampler, _| sampler.begin_audit()).await?;
+    desk.now(Sampler::begin_audit).await?;
     desk.until(Sampler::audit).await
 }
 
@@ -194,22 +185,22 @@ pub(super) async fn follow(desk: Desk) -> StopReason {
 }
 
 async fn follow_surface(desk: &Desk) -> Result<StopReason, Stopped> {
-    if desk.now(|sampler, _| sampler.begin_mesh()).await? && desk.until(Sampler::move_mesh).await? {
+    if desk.now(Sampler::begin_mesh).await? && desk.until(Sampler::move_mesh).await? {
         return Ok(StopReason::Complete);
     }
     loop {
-        desk.now(|sampler, _| sampler.begin_transport()).await?;
+        desk.now(Sampler::begin_transport).await?;
         sweep(desk, Sweep::Transport).await?;
-        let steps = desk.now(Sampler::settle).await?;
+        let steps = desk.with_field(Sampler::settle).await?;
         for _ in 0..steps {
-            desk.now(|sampler, _| sampler.relaxation().distrust_grid()).await?;
+            desk.now(|sampler| sampler.relaxation().distrust_grid()).await?;
             sum_forces(desk, Grading::Always).await?;
             sweep(desk, Sweep::Move).await?;
         }
-        if desk.now(|sampler, _| sampler.particles().is_empty()).await? {
+        if desk.now(|sampler| sampler.particles().is_empty()).await? {
             return Ok(StopReason::NoSurface);
         }
-        if !desk.now(Sampler::end_frame).await? {
+        if !desk.with_field(Sampler::end_frame).await? {
             return Ok(StopReason::Complete);
         }
     }
