@@ -2,7 +2,7 @@
 //! surface of a formula; the solid that is made of the surface in it; and its creases.
 
 use super::{FieldAnswer, Session, Source};
-use crate::extent::{self, Extent};
+use crate::extent::{self, Extent, Reach};
 use crate::field::formula::Formula;
 use crate::field::gallery::Surface;
 use crate::math::Bounds;
@@ -211,50 +211,87 @@ impl Session {
         only_grows: bool,
         budget: u32,
     ) -> Option<FieldAnswer> {
-        let choice = self.fitting.choice;
-        let field = self.run.field().formula().filter(|field| !field.is_constant());
-        let share_in = |bounds: &Bounds| settings_in(bounds).largest_share(bounds);
-        let is_fitted = field.is_some() && self.is_to_fit();
-        let (mut clip, mut reach) = (self.own_box(), None);
-        if let Some(field) = field.filter(|_| is_fitted) {
-            let found = self.fitting.unclosed.step(|| choice.made_of(field.clone(), None), budget)?;
-            let before = (only_grows && self.fitting.is_fitted).then_some(self.clip);
-            (clip, reach) = (found.with_room(share_in), Some(found.reach));
-            clip = before.map_or(clip, |before| clip.joined(&before));
-        }
-        let closing = field.and_then(|field| choice.faces(field, clip, self.is_to_choose()));
-        clip = closing.unwrap_or(clip);
-        let (mut bounds, mut reach_in) = (clip, reach);
-        if let Some(field) = field {
-            let is_cell = closing.is_some() && choice.box_cell == BoxCell::Periodic;
-            let present = (field.thickness(), field.closing_box(), field.is_cell());
-            if present != (choice.sheet(), closing, is_cell) {
-                let solid = choice.made_of(field.clone(), closing.as_ref());
-                self.fitting.closed = BoxSearch::default();
-                self.fitting.creases = None;
-                self.run.set_field(Source::Formula(solid), false);
-            }
-        }
-        if let Some(solid) = self.run.field().formula().filter(|field| field.closing_box().is_some()) {
-            (bounds, reach_in) = match settings_in(&clip).bounds {
-                Some(bounds) => (bounds, None),
-                None => {
-                    let found = self.fitting.closed.step(|| solid.clone(), budget)?;
-                    (found.with_room(share_in), Some(found.reach))
-                }
-            };
-        }
+        let is_fitted = self.own_formula().is_some() && self.is_to_fit();
+        let (clip, reach) = self.fit_clip(settings_in, only_grows, budget)?;
+        let clip = self.make_solid(clip);
+        let (bounds, reach_in) = self.fit_solid(settings_in, (clip, reach), budget)?;
         (self.clip, self.reach) = (clip, reach);
         self.run.set_bounds(bounds, reach_in);
+        self.fit_creases(budget)?;
+        (self.fitting.is_fitted, self.fitting.is_settled) = (is_fitted, true);
+        Some(self.answer())
+    }
+
+    /// The clip box, fitted to the surface that no box closes or as it was given, with the reach of
+    /// the surface where it was fitted.
+    fn fit_clip(
+        &mut self,
+        settings_in: &dyn Fn(&Bounds) -> Settings,
+        only_grows: bool,
+        budget: u32,
+    ) -> Option<(Bounds, Option<Reach>)> {
+        let choice = self.fitting.choice;
+        let Some(field) = self.own_formula().filter(|_| self.is_to_fit()) else {
+            return Some((self.own_box(), None));
+        };
+        let field = field.clone();
+        let found = self.fitting.unclosed.step(|| choice.made_of(field, None), budget)?;
+        let clip = found.with_room(|bounds| settings_in(bounds).largest_share(bounds));
+        let before = (only_grows && self.fitting.is_fitted).then_some(self.clip);
+        Some((before.map_or(clip, |before| clip.joined(&before)), Some(found.reach)))
+    }
+
+    /// Takes the solid that is made of the surface in a clip box as the field of the next run. Returns
+    /// the box, which a unit cell may have moved.
+    fn make_solid(&mut self, clip: Bounds) -> Bounds {
+        let choice = self.fitting.choice;
+        let Some(field) = self.own_formula() else { return clip };
+        let closing = choice.faces(field, clip, self.is_to_choose());
+        let is_cell = closing.is_some() && choice.box_cell == BoxCell::Periodic;
+        let present = (field.thickness(), field.closing_box(), field.is_cell());
+        if present != (choice.sheet(), closing, is_cell) {
+            let solid = choice.made_of(field.clone(), closing.as_ref());
+            self.fitting.closed = BoxSearch::default();
+            self.fitting.creases = None;
+            self.run.set_field(Source::Formula(solid), false);
+        }
+        closing.unwrap_or(clip)
+    }
+
+    /// The box of the next run: around the solid where the clip box closes it, else the clip box.
+    fn fit_solid(
+        &mut self,
+        settings_in: &dyn Fn(&Bounds) -> Settings,
+        (clip, reach): (Bounds, Option<Reach>),
+        budget: u32,
+    ) -> Option<(Bounds, Option<Reach>)> {
+        let Some(solid) = self.run.field().formula().filter(|field| field.closing_box().is_some()) else {
+            return Some((clip, reach));
+        };
+        if let Some(bounds) = settings_in(&clip).bounds {
+            return Some((bounds, None));
+        }
+        let found = self.fitting.closed.step(|| solid.clone(), budget)?;
+        let bounds = found.with_room(|bounds| settings_in(bounds).largest_share(bounds));
+        Some((bounds, Some(found.reach)))
+    }
+
+    /// Finds the creases of the surface of a formula in the box of the next run.
+    fn fit_creases(&mut self, budget: u32) -> Option<()> {
         if self.run.field().formula().is_some() && !self.run.knows_creases() {
+            let bounds = self.run.bounds();
             let under_way = self.fitting.creases.take().filter(|(of, _)| *of == bounds);
             let search = under_way.unwrap_or_else(|| (bounds, self.run.find_creases()));
             let found = slices::advance(self.fitting.creases.insert(search).1.as_mut(), budget)?;
             self.fitting.creases = None;
             self.run.know_creases(found);
         }
-        (self.fitting.is_fitted, self.fitting.is_settled) = (is_fitted, true);
-        Some(self.answer())
+        Some(())
+    }
+
+    /// The formula of the field, unless f is the same everywhere.
+    fn own_formula(&self) -> Option<&Formula> {
+        self.run.field().formula().filter(|field| !field.is_constant())
     }
 
     /// The clip box where it is not to be fitted.
