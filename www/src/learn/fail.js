@@ -83,10 +83,10 @@ export function createFail(lab, { choose, isLocked }) {
     made.select.disabled = isLocked;
     return made;
   });
-  const number = createTolerance(
-    () => Number(partsOf(own.value)[1]),
-    (to) => turn(1, String(to)),
-  );
+  const number = createTolerance({
+    value: () => Number(partsOf(own.value)[1]),
+    change: (to) => turn(1, String(to)),
+  });
   if (isLocked) number.setAttribute('aria-disabled', 'true');
   const keptRow = h('div', { class: 'kept', role: 'group', 'aria-label': 'Kept so far' }, () =>
     tries.ends.value.map(({ value, score }, k) =>

@@ -247,6 +247,8 @@ export interface NumberOptions {
   value: () => number;
   say: (value: number) => string;
   change: (value: number) => void;
+  /** the figure that follows the number, if it is not the one around it */
+  stage?: () => HTMLElement | null;
 }
 export interface RangeOptions {
   name: string;

@@ -268,7 +268,9 @@ export async function whoWasFirst({ lab, stops }) {
     void show(to);
   };
   for (const words of queryAll(document, '[data-number="tolerance"]'))
-    words.replaceWith(createTolerance(() => tolerance.value, turn));
+    words.replaceWith(
+      createTolerance({ value: () => tolerance.value, change: turn, stage: () => place.closest('.stage') }),
+    );
   return [
     place,
     h('p', { class: 'figure-count' }, () => `A run of ${plural(run.value.end.radii.length, 'particle')}.`),
