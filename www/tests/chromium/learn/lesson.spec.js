@@ -270,6 +270,14 @@ test('what the text claims of the ellipsoid is what its runs say', async ({ page
   await skip('predict-rest');
   const hole = seams.getByRole('row', { name: /^Largest hole/ });
   await expect(hole).toBeVisible({ timeout: 60_000 });
+  // The pushes of the neighbours on a particle are drawn: first of that beside the hole, then of the one that is pressed.
+  const pushes = seams.locator('.pushes-box');
+  const pushed = () => pushes.locator('.number').textContent();
+  await expect(pushes).toContainText(/\d neighbours push particle \d+\. Their pushes add up to \d+ % of the strongest/);
+  const besideHole = await pushed();
+  await expect(pushes.locator('.push')).toHaveCount(await pushes.locator('.disc').count());
+  await seams.getByRole('application').press('Enter');
+  await expect.poll(pushed).not.toBe(besideHole);
   expect(await numberIn(hole, 2)).toBeLessThan((await numberIn(hole, 1)) - 0.15);
   await expect(slider).toHaveAttribute('aria-valuetext', /^level/);
   const placed = await fingerprint(seams.locator('.picture'));
