@@ -31,8 +31,8 @@ export function bindLearnLink(link, engine) {
 }
 
 /**
- * Where the lesson explains a particle of the picture. It follows particles of one size only: of many sizes it shows how
- * they find room.
+ * Where the lesson explains a particle of the picture. It follows particles of one size only: of many sizes it shows
+ * how they find room.
  * @param {Engine} engine @param {number} index
  */
 export function particleLink(engine, index) {
