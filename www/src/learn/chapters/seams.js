@@ -6,7 +6,7 @@ import { formatCount, formatFixed, formatSignificant, plural } from '../../ui/fo
 import { reasonOf } from '../figure.js';
 import { latest } from '../latest.js';
 import { energiesOf, nearestDistances, widestHole } from '../measure.js';
-import { createChart, createPlay, createRange, createScale } from '../parts.js';
+import { createChart, createPlay, createRangeRow, createScale } from '../parts.js';
 import { byValue, Orbit, Picture } from '../picture.js';
 import { pushesOn } from '../pushes.js';
 import { scoreOf } from '../score.js';
@@ -112,7 +112,7 @@ export async function seams({ lab, stops }) {
   const isRelaxing = () => isFree() && stops.isOpen('predict-rest');
   /** The slider goes on with every answer. */
   const limit = () => (isRelaxing() ? last : isFree() ? front : quarter);
-  const range = createRange({
+  const range = createRangeRow({
     name: 'Front and relaxation',
     max: limit,
     value: quarter,
