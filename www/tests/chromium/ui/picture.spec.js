@@ -96,6 +96,8 @@ async function pictureAt(page, { config, packets }, place) {
       if (!last) throw new Error('no picture');
       const canvas = new OffscreenCanvas(last.displayWidth, last.displayHeight);
       canvas.getContext('2d')?.drawImage(last, 0, 0);
+      last.close();
+      decoder.close();
       const png = new Uint8Array(await (await canvas.convertToBlob({ type: 'image/png' })).arrayBuffer());
       return btoa(Array.from(png, (byte) => String.fromCharCode(byte)).join(''));
     },
