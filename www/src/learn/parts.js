@@ -118,7 +118,10 @@ export function createSelectRow({ name, choices, value = choices[0]?.value, chan
   const id = uniqueId('select');
   /** @type {Signal<string>} */
   const chosen = signal(value);
-  /** With the value that is shown and is none of the choices. @type {Signal<readonly { value: string, label: string }[]>} */
+  /**
+   * With the value that is shown and is none of the choices.
+   * @type {Signal<readonly { value: string, label: string }[]>}
+   */
   const all = signal(choices);
   const select = createSelect({
     choices: () => all.value,
