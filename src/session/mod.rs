@@ -70,6 +70,8 @@ pub struct FieldAnswer {
     pub bounds: Bounds,
     /// Whether the surface, closed by no box, is bounded, if the box was fitted to it.
     pub reach: Option<Reach>,
+    /// Period of the surface along each axis: 0 if it does not change along it, none if it is not known to be periodic.
+    pub periods: [Option<f64>; 3],
     /// The formula as MathML; none if there is no formula.
     pub mathml: Option<MathNode>,
     /// What has become of the surface that was to pass through the pins of the request; none without pins.
@@ -175,6 +177,7 @@ impl Session {
             auto: Vec::new(),
             bounds: self.clip,
             reach: self.reach,
+            periods: [None; 3],
             mathml: None,
             grip: None,
         };
@@ -183,6 +186,7 @@ impl Session {
                 formula: field.text().to_owned(),
                 parameters: field.parameters().to_vec(),
                 auto: field.auto().to_vec(),
+                periods: field.surface_periods(),
                 mathml: Some(field.mathml()),
                 ..answer
             },

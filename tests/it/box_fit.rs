@@ -92,6 +92,23 @@ fn what_goes_on_for_ever_is_cut_and_said_to_be() {
 }
 
 #[test]
+fn the_periods_of_the_surface_are_told_with_the_values_of_its_parameters() {
+    use core::f64::consts::TAU;
+    let mut session = Session::new();
+    let mut told = |formula: &str| {
+        set(&mut session, formula);
+        session.answer().periods
+    };
+    assert_eq!(told("sin(x)cos(y)+sin(y)cos(z)+sin(z)cos(x)"), [Some(TAU); 3]);
+    assert_eq!(told("x^2+y^2+sin(2z)=1"), [None, None, Some(TAU / 2.0)]);
+    assert_eq!(told("sin(x)=y"), [Some(TAU), None, Some(0.0)]);
+    set(&mut session, "cos(x/k)+cos(y)+cos(z)");
+    let request = FieldRequest { parameters: [("k".to_owned(), 0.5)].into(), ..FieldRequest::default() };
+    let answer = session.set_field(&request).expect("a value of the parameter");
+    assert_eq!(answer.periods, [Some(TAU / 2.0), Some(TAU), Some(TAU)]);
+}
+
+#[test]
 fn a_box_that_is_given_stays_and_a_surface_that_it_cuts_is_told() {
     let mut session = Session::new();
     let given = Bounds::cube(0.8);

@@ -164,6 +164,8 @@ export type FieldAnswer = {
   bounds: Bounds,
   /** Whether the surface, closed by no box, is bounded, if the box was fitted to it. */
   reach: Reach | null,
+  /** Period of the surface along each axis: 0 if it does not change along it, none if it is not known to be periodic. */
+  periods: [number | null, number | null, number | null],
   /** The formula as MathML; none if there is no formula. */
   mathml: MathNode | null,
   /** What has become of the surface that was to pass through the pins of the request; none without pins. */

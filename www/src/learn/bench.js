@@ -1,7 +1,7 @@
 /** The bench on which two runs are compared. */
 import { fill, h } from '../ui/dom.js';
 import { createPair } from './pair.js';
-import { createSelect } from './parts.js';
+import { createSelectRow } from './parts.js';
 import { COMMON, setupOf, sidesOf, whatIfOf } from './whatifs.js';
 
 /** @import { Control, Lab, Setup, WhatIf } from './types.js' */
@@ -25,7 +25,7 @@ export function createBench(host, lab, { setup: first = setupOf(COMMON[0].id), l
   let follow = (/** @type {Setup} */ _next) => {};
   /** What is kept of several choices at once. @type {ReturnType<typeof import('./fail.js').createFail> | null} */
   let fail = null;
-  const what = createSelect({
+  const what = createSelectRow({
     name: 'What changes',
     choices: COMMON.map(({ id, name }) => ({ value: id, label: name })),
     value: setup.what,
@@ -126,7 +126,7 @@ export function createBench(host, lab, { setup: first = setupOf(COMMON[0].id), l
 function createSides(choices, locks, change) {
   const sides = /** @type {const} */ (['left', 'right']).map((side, k) => {
     const name = k === 0 ? 'Left' : 'Right';
-    const control = createSelect({ name, choices, change: (value) => change(side, value) });
+    const control = createSelectRow({ name, choices, change: (value) => change(side, value) });
     control.select.disabled = locks.includes(side);
     return { side, ...control };
   });

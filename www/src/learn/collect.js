@@ -62,7 +62,7 @@ export async function mountCollect(host) {
     tables,
   );
   const inOrder = () =>
-    [...works.values()].sort((a, b) => a.group.localeCompare(b.group) || a.name.localeCompare(b.name));
+    [...works.values()].sort((a, b) => order.compare(a.group, b.group) || order.compare(a.name, b.name));
 
   /** @param {readonly File[]} files */
   async function take(files) {
@@ -217,6 +217,9 @@ function answersOf(title, works) {
   ];
 }
 
+/** Numbers in names and labels are ordered by their values. */
+const order = new Intl.Collator('en', { numeric: true });
+
 /** What tells a run from another. @param {any} run */
 const keyOf = ({ label, figures }) => JSON.stringify([label, figures]);
 
@@ -230,6 +233,9 @@ function runTable(works) {
     for (const [key, run] of own) found.set(key, { run, count: (found.get(key)?.count ?? 0) + 1 });
   }
   if (found.size === 0) return null;
+  const rows = [...found.values()].sort(
+    (a, b) => b.count - a.count || order.compare(String(a.run.label), String(b.run.label)),
+  );
   const table = h(
     'table',
     { class: 'compare' },
@@ -246,7 +252,7 @@ function runTable(works) {
     h(
       'tbody',
       null,
-      [...found.values()].map(({ run, count }) =>
+      rows.map(({ run, count }) =>
         h(
           'tr',
           null,

@@ -4,6 +4,7 @@ import { h, queryAll } from '../ui/dom.js';
 import { formatCount, formatFixed } from '../ui/format.js';
 import { afterKey, toPlace, toValue } from '../ui/scale.js';
 import { rangePlaces } from './parts.js';
+import { pin } from './pinned.js';
 import { TOLERANCES } from './whatifs.js';
 
 /** @import { Point } from '../figures/types.js' */
@@ -16,12 +17,18 @@ const RANGE_PX = 240;
  * A number in a sentence: a slider that is dragged sideways, or turned by its keys.
  * @param {NumberOptions} about
  */
-export function createNumber({ name, scale, value, say, change }) {
+export function createNumber({ name, scale, value, say, change, stage }) {
   /** Where the drag is; null without one. @type {{ place: number, x: number } | null} */
   let drag = null;
   const end = () => {
     drag = null;
   };
+  /** @param {number} to */
+  function set(to) {
+    const host = stage ? stage() : element.closest('.stage, .bench');
+    if (host instanceof HTMLElement) pin(element, host);
+    change(to);
+  }
   const element = h(
     'span',
     {
@@ -39,7 +46,7 @@ export function createNumber({ name, scale, value, say, change }) {
           const next = afterKey(scale, value(), event);
           if (next === null) return;
           event.preventDefault();
-          change(next);
+          set(next);
         },
         pointerdown(event) {
           if (event.button !== 0) return;
@@ -53,7 +60,7 @@ export function createNumber({ name, scale, value, say, change }) {
           const fineness = event.shiftKey ? 10 : 1;
           drag.place = clamp(drag.place + (event.clientX - drag.x) / RANGE_PX / fineness, 0, 1);
           drag.x = event.clientX;
-          change(toValue(scale, drag.place, fineness));
+          set(toValue(scale, drag.place, fineness));
         },
         pointerup: end,
         pointercancel: end,
@@ -65,12 +72,15 @@ export function createNumber({ name, scale, value, say, change }) {
   return element;
 }
 
-/** The match tolerance as a number in a sentence. @param {() => number} value @param {(to: number) => void} change */
-export const createTolerance = (value, change) =>
+/**
+ * The match tolerance as a number in a sentence.
+ * @param {Pick<NumberOptions, 'value' | 'change' | 'stage'>} about
+ */
+export const createTolerance = ({ change, ...about }) =>
   createNumber({
+    ...about,
     name: 'Match tolerance',
     scale: TOLERANCES,
-    value,
     say: (to) => formatFixed(to, 2),
     change: (to) => change(Number(to.toPrecision(3))),
   });
@@ -92,6 +102,7 @@ export function mountNumbers(stage) {
       scale,
       value: () => times * place.value,
       say: formatCount,
+      stage: () => stage,
       change(value) {
         input.valueAsNumber = value / times;
         input.dispatchEvent(new Event('input', { bubbles: true }));

@@ -6,7 +6,7 @@ import { kept } from '../ui/remembered.js';
 import { packed } from '../ui/surface-link.js';
 import { createTolerance } from './drag.js';
 import { reasonOf } from './figure.js';
-import { createSelect } from './parts.js';
+import { createSelectRow } from './parts.js';
 import { blame, isWorse, reasonWhy, share, tryOut, widest } from './verdict.js';
 import { FAIL, KNOBS, knobWords, partsOf, partWords, SEED, seedAt, turned, USUAL } from './whatifs.js';
 
@@ -79,14 +79,14 @@ export function createFail(lab, { choose, isLocked }) {
   const turn = (/** @type {number} */ k, /** @type {string} */ part) => setTo(turned(own.peek(), k, part));
   const knobs = KNOBS.map(({ name, values, scale }, k) => {
     if (scale) return null;
-    const made = createSelect({ name, choices: values, change: (part) => turn(k, part) });
+    const made = createSelectRow({ name, choices: values, change: (part) => turn(k, part) });
     made.select.disabled = isLocked;
     return made;
   });
-  const number = createTolerance(
-    () => Number(partsOf(own.value)[1]),
-    (to) => turn(1, String(to)),
-  );
+  const number = createTolerance({
+    value: () => Number(partsOf(own.value)[1]),
+    change: (to) => turn(1, String(to)),
+  });
   if (isLocked) number.setAttribute('aria-disabled', 'true');
   const keptRow = h('div', { class: 'kept', role: 'group', 'aria-label': 'Kept so far' }, () =>
     tries.ends.value.map(({ value, score }, k) =>

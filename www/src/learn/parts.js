@@ -4,45 +4,37 @@ import { signal } from '@preact/signals-core';
 import { clamp } from '../engine/vector.js';
 import { button } from '../ui/button.js';
 import { draw, endsOf, floorOf, footOf, scaleOf } from '../ui/chart.js';
-import { h, live, reducedMotion, uniqueId } from '../ui/dom.js';
+import { h, reducedMotion, uniqueId } from '../ui/dom.js';
 import { icon } from '../ui/icons.js';
+import { createRange } from '../ui/range.js';
+import { createSelect } from '../ui/select.js';
 
 /** @import { Signal } from '@preact/signals-core' */
 /** @import { Children, Drawn } from '../ui/types.js' */
 
-/** @import { RangeOptions, SelectOptions } from './types.js' */
+/** @import { RangeRowOptions, SelectRowOptions } from './types.js' */
 
 /** The value of each range, by its input. @type {WeakMap<Element, Signal<number>>} */
 export const rangePlaces = new WeakMap();
 
 /**
- * A native range with its name and its value in words.
- * @param {RangeOptions} about
+ * A range with its name and its value in words.
+ * @param {RangeRowOptions} about
  */
-export function createRange({ name, max, value = 0, say, change }) {
+export function createRangeRow({ name, max, value = 0, say, change }) {
   const id = uniqueId('range');
-  /** The value of the slider. */
+  /** The value of the range. */
   const place = signal(value);
-  const most = () => (typeof max === 'number' ? max : max());
   const set = (/** @type {number} */ to) => {
     place.value = to;
     change(to);
   };
-  const input = h('input', {
-    type: 'range',
-    class: 'slider',
+  const input = createRange({
     id,
-    min: 0,
-    max: typeof max === 'number' ? max : max(),
-    step: 1,
-    'aria-valuetext': () => say(place.value),
-    style: { '--place': () => (most() > 0 ? Math.min(1, place.value / most()) : 0) },
-    on: { input: () => set(Number(input.value)) },
-  });
-  // The limit comes before the value, which it cuts.
-  live(input, () => {
-    input.max = String(most());
-    input.value = String(place.value);
+    max: () => (typeof max === 'number' ? max : max()),
+    at: () => place.value,
+    say: () => say(place.value),
+    change: set,
   });
   rangePlaces.set(input, place);
   const output = h('output', { class: 'range-value', for: id }, () => say(place.value));
@@ -57,7 +49,7 @@ export function createRange({ name, max, value = 0, say, change }) {
 
 /**
  * A button that moves a range from its beginning to its end. Under reduced motion it goes there at once.
- * @param {ReturnType<typeof createRange>} range @param {{ label: string, totalMs: number | (() => number) }} about
+ * @param {ReturnType<typeof createRangeRow>} range @param {{ label: string, totalMs: number | (() => number) }} about
  */
 export function createPlay(range, { label, totalMs }) {
   const max = () => Number(range.input.max);
@@ -120,25 +112,33 @@ export function createChart({ hidden, chart, label, words, press = () => {} }) {
 /**
  * A select with its name.
  * @template {string} T
- * @param {SelectOptions<T>} about
+ * @param {SelectRowOptions<T>} about
  */
-export function createSelect({ name, choices, value, change }) {
+export function createSelectRow({ name, choices, value = choices[0]?.value, change }) {
   const id = uniqueId('select');
-  const select = h(
-    'select',
-    { class: 'select', id, on: { change: () => change(/** @type {T} */ (select.value)) } },
-    choices.map((choice) => h('option', { value: choice.value, selected: choice.value === value }, choice.label)),
-  );
+  /** @type {Signal<string>} */
+  const chosen = signal(value);
+  /**
+   * With the value that is shown and is none of the choices.
+   * @type {Signal<readonly { value: string, label: string }[]>}
+   */
+  const all = signal(choices);
+  const select = createSelect({
+    choices: () => all.value,
+    value: () => chosen.value,
+    change(next) {
+      chosen.value = next;
+      change(/** @type {T} */ (next));
+    },
+  });
+  select.id = id;
   return {
     element: h('div', { class: 'select-row' }, h('label', { for: id }, name), select),
     select,
     /** Shows a value, which need not be one of the choices. @param {string} own @param {string} [words] */
     set(own, words = own) {
-      if (!choices.some((choice) => choice.value === own) && select.value !== own) {
-        for (const old of [...select.options].slice(choices.length)) old.remove();
-        select.append(h('option', { value: own }, words));
-      }
-      select.value = own;
+      if (!all.peek().some((choice) => choice.value === own)) all.value = [...choices, { value: own, label: words }];
+      chosen.value = own;
     },
   };
 }

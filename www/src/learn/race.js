@@ -10,7 +10,7 @@ import { adaptiveRun } from './adaptive.js';
 import { reasonOf } from './figure.js';
 import { USUAL } from './lab.js';
 import { nearestDistances } from './measure.js';
-import { createSelect } from './parts.js';
+import { createSelectRow } from './parts.js';
 import { byLevel, byValue, Orbit, Picture } from './picture.js';
 import { createReplay, MOST_SHOTS } from './replay.js';
 import { scoreOf } from './score.js';
@@ -128,7 +128,7 @@ function createLane(orbit, name) {
 export function mountRace(host, lab) {
   const course = new Course(lab);
   const { kind, race, isPaused, place, result } = course;
-  const choose = createSelect({
+  const choose = createSelectRow({
     name: 'Race',
     choices: KINDS,
     change: (value) => {

@@ -6,7 +6,7 @@ import { signal } from '@preact/signals-core';
 import { h } from '../ui/dom.js';
 import { latest } from './latest.js';
 import { shotAt } from './measure.js';
-import { createPlay, createRange, createSelect } from './parts.js';
+import { createPlay, createRangeRow, createSelectRow } from './parts.js';
 import { createScorecard } from './scorecard.js';
 
 /** @import { ReplayOptions, Snapshot } from './types.js' */
@@ -38,7 +38,7 @@ export function createReplay({ films, names, axes, axisName, name, places, at, m
     for (const [k, shot] of pair.entries()) show(k, shot);
     await measure({ pair, caption: axis.peek().moment(cost) });
   }
-  const range = createRange({
+  const range = createRangeRow({
     name,
     max: places,
     value: at,
@@ -47,7 +47,7 @@ export function createReplay({ films, names, axes, axisName, name, places, at, m
   });
   let speed = 1;
   const play = createPlay(range, { label: 'Replay', totalMs: () => REPLAY_MS / speed });
-  const what = createSelect({
+  const what = createSelectRow({
     name: axisName,
     choices: axes,
     change: (value) => {
@@ -55,7 +55,7 @@ export function createReplay({ films, names, axes, axisName, name, places, at, m
       void seek();
     },
   });
-  const pace = createSelect({
+  const pace = createSelectRow({
     name: 'Speed',
     choices: SPEEDS,
     change: (value) => {

@@ -247,8 +247,10 @@ export interface NumberOptions {
   value: () => number;
   say: (value: number) => string;
   change: (value: number) => void;
+  /** the figure that follows the number, if it is not the one around it */
+  stage?: () => HTMLElement | null;
 }
-export interface RangeOptions {
+export interface RangeRowOptions {
   name: string;
   max: number | (() => number);
   value?: number;
@@ -256,7 +258,7 @@ export interface RangeOptions {
   say: (value: number) => string;
   change: (value: number) => void;
 }
-export interface SelectOptions<T extends string> {
+export interface SelectRowOptions<T extends string> {
   name: string;
   choices: readonly { value: T; label: string }[];
   value?: NoInfer<T>;

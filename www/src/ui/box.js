@@ -9,6 +9,22 @@ export function doubled({ min, max }) {
   return { min: end(-1), max: end(1) };
 }
 
+/**
+ * Returns the box that holds a number of whole periods along every axis that has some, around the same middle.
+ * @param {Bounds} bounds @param {readonly (number | null)[]} periods  0 or null where there are none
+ * @param {number} times
+ */
+export function wholePeriods({ min, max }, periods, times) {
+  /** @type {Bounds} */
+  const next = { min: [...min], max: [...max] };
+  for (const [k, period] of periods.entries()) {
+    if (!period) continue;
+    const middle = (min[k] + max[k]) / 2;
+    [next.min[k], next.max[k]] = [middle - (times * period) / 2, middle + (times * period) / 2];
+  }
+  return next;
+}
+
 /** Smallest thickness of the box after a drag, as a share of its side before. */
 const LEAST_SHARE = 0.02;
 /** Digits of a side that a drag sets. */

@@ -30,9 +30,14 @@ export function bindLearnLink(link, engine) {
   });
 }
 
-/** Where the lesson explains a particle of the picture. @param {Engine} engine @param {number} index */
+/**
+ * Where the lesson explains a particle of the picture. It follows particles of one size only: of many sizes it shows
+ * how they find room.
+ * @param {Engine} engine @param {number} index
+ */
 export function particleLink(engine, index) {
   const { columns } = engine;
+  if (columns.adaptive) return `${PAGE}#angles&${carried(engine)}`;
   const seeds = [];
   for (let i = 0; i < columns.count; i += 1)
     if (columns.parents[i] === NO_PARENT) seeds.push(triple(columns.placed, i));

@@ -3,11 +3,12 @@
  * double click resets the value. The number can be typed and stepped.
  */
 
-import { untracked } from '@preact/signals-core';
+import { signal, untracked } from '@preact/signals-core';
 import { clamp } from '../engine/vector.js';
-import { h, live, setAttribute, uniqueId } from './dom.js';
+import { live, uniqueId } from './dom.js';
 import { decimalsOf } from './format.js';
 import { numberBox, showNumber } from './number.js';
+import { createRange } from './range.js';
 import { afterKey, KEYS, nudge, toPlace, toValue } from './scale.js';
 
 /** @import { Scale, Slider, SliderOptions } from './types.js' */
@@ -48,16 +49,47 @@ export function createSlider(options) {
 
 /** The value, its scale, and the inputs that show them. */
 class Model {
+  #scale;
+  #value;
+
   /** @param {SliderOptions} options */
   constructor(options) {
     this.options = options;
-    this.scale = options.scale;
-    this.value = typeof options.value === 'function' ? untracked(options.value) : options.value;
+    this.#scale = signal(options.scale);
+    this.#value = signal(typeof options.value === 'function' ? untracked(options.value) : options.value);
     this.factor = options.factor ?? 1;
     this.dragging = false;
     const name = options.name;
-    this.range = h('input', { type: 'range', class: 'slider', min: 0, max: PLACES, step: 1, 'aria-label': name });
+    this.range = createRange({
+      max: () => PLACES,
+      at: () => Math.round(toPlace(this.#scale.value, this.#value.value) * PLACES),
+      say: () => options.describe(this.#value.value),
+      change: (place) => {
+        if (!this.dragging) this.take(toValue(this.scale, place / PLACES), true);
+      },
+      'aria-label': () => {
+        // The name is that of the present surface's parameter, as the scale is.
+        void this.#scale.value;
+        return this.options.name;
+      },
+    });
     this.box = options.number === false ? null : numberBox({ name: `${name}, number`, id: uniqueId('number') });
+  }
+
+  get scale() {
+    return this.#scale.peek();
+  }
+
+  set scale(scale) {
+    this.#scale.value = scale;
+  }
+
+  get value() {
+    return this.#value.peek();
+  }
+
+  set value(value) {
+    this.#value.value = value;
   }
 
   /** Adopts and reports a value. @param {number} next @param {boolean} live */
@@ -68,19 +100,14 @@ class Model {
     this.options.change(next, live);
   }
 
-  /** Shows the value in the inputs. @param {Element} [except]  an input to leave as it is */
+  /** Shows the value in the box. @param {Element} [except]  an input to leave as it is */
   write(except) {
-    const { range, box, scale, value } = this;
-    const place = toPlace(scale, value);
-    range.valueAsNumber = Math.round(place * PLACES);
-    range.style.setProperty('--place', place.toFixed(4));
-    range.setAttribute('aria-valuetext', this.options.describe(value));
+    const { box, scale, value } = this;
     if (box && except !== box) showNumber(box, this.#numberOf(exact(scale, value)));
   }
 
   writeScale() {
-    const { range, box, scale } = this;
-    setAttribute(range, 'aria-label', this.options.name);
+    const { box, scale } = this;
     if (!box) return;
     box.setAttribute('aria-valuemin', this.#numberOf(scale.min));
     box.setAttribute('aria-valuemax', this.#numberOf(scale.max));
@@ -186,10 +213,6 @@ function listenToPointer(model) {
 /** Handles keys and the values that assistive technology sets directly. @param {Model} model */
 function listenToKeys(model) {
   const { range, options } = model;
-  range.addEventListener('input', () => {
-    if (model.dragging) model.write();
-    else model.take(toValue(model.scale, range.valueAsNumber / PLACES), true);
-  });
   range.addEventListener('change', () => {
     if (!model.dragging) options.change(model.value, false);
   });

@@ -162,6 +162,20 @@ export type Shortcut = {
   ctrl?: boolean;
   shift?: boolean;
 };
+export interface RangeOptions {
+  /** the last place, from signals */
+  max: () => number;
+  /** the present place, from signals */
+  at: () => number;
+  /** the place in words, from signals */
+  say: () => string;
+  change: (place: number) => void;
+  /** in place of the class of a slider */
+  look?: string;
+  id?: string;
+  disabled?: () => boolean;
+  'aria-label'?: string | (() => string);
+}
 export interface SliderOptions {
   /** accessible name */
   name: string;

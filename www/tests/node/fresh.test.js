@@ -1,5 +1,6 @@
 /** Every setting and what else a surface can be given, against another surface: what stays and what begins afresh. */
 import { expect, test } from 'vitest';
+import { keptOf } from '../../src/ui/kept.js';
 import { open } from './engine.js';
 
 /** @import { SettingInfo } from '../../src/engine/types.js' */
@@ -33,6 +34,31 @@ test('of all settings, those of a surface end with it, and a changed formula kee
   });
   engine.stop();
   expect(table).toEqual(settings.map(({ name }) => [name, true, true, !OF_SURFACE.includes(name)]));
+});
+
+test('what of a surface stays with a changed formula is told, with the button that ends it', async () => {
+  const p = await open();
+  const { engine } = p;
+  engine.setSurface('ellipsoid');
+  expect(keptOf(engine)).toEqual([]);
+  engine.setPlane({ normal: [1, 0, 0], offset: 0 });
+  engine.setBounds({ min: [-1, -1, -1], max: [1, 1, 0.2] });
+  const chosen = { box_cell: 'periodic', box_faces: 'closed', box_mode: 'fixed', thickness: 0.1 };
+  expect(Object.keys(chosen)).toEqual(OF_SURFACE);
+  for (const [name, value] of Object.entries(chosen)) engine.setSetting(name, value);
+  engine.setFormula('x^2 + y^2 + 2z^2 = 1');
+  expect(keptOf(engine).map(({ text }) => text.replace(/,.*/, ''))).toEqual([
+    'Cut at x = 0',
+    'Thickness 0.1',
+    'Closed by the box',
+    'Opposite faces alike',
+    'Box set by hand',
+  ]);
+  // From the last on, since a cell is told only of a solid that the box closes.
+  for (const { act } of keptOf(engine).reverse()) act();
+  expect(keptOf(engine)).toEqual([]);
+  engine.stop();
+  expect(p.state).toMatchObject({ plane: null, bounds: null, settings: {} });
 });
 
 test('plane, box, parameters and the place on the timeline end with their surface; how it is drawn stays', async () => {

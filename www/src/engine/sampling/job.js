@@ -88,7 +88,7 @@ export const meshColumn = (core, id, mesh) => [{ ...bare(core, id), mesh }, [mes
  */
 export async function runJob(core, job, env, memory) {
   const run = new Execution(core, job, env);
-  if (!(await run.fit(memory)) || !run.start(memory)) return;
+  if (!(await run.fit(memory)) || run.isOver() || !run.start(memory)) return;
   const last = await run.sample();
   if (!last) {
     memory.held = 0;
@@ -190,6 +190,16 @@ class Execution {
     if (env.nowMs() - this.#beatMs <= BEAT_MS) return;
     env.post({ type: 'beat' });
     this.#beatMs = env.nowMs();
+  }
+
+  /**
+   * Whether the job ends before it starts. One that was stopped while it waited leaves the particles where they are: a
+   * few steps after its surface they would lie on none.
+   */
+  isOver() {
+    const why = this.env.interrupt();
+    if (why === 'stop') this.done('stopped');
+    return why !== null;
   }
 
   /**

@@ -80,9 +80,17 @@ export class Jobs {
     this.#waiting = { job, stopped: false };
   }
 
-  /** Stops all jobs added so far. */
+  /**
+   * Stops all jobs added so far. A waiting one whose particles would follow those of the running one is dropped: on its
+   * surface there are none yet, and the running one is to keep its field, to which its particles belong.
+   */
   stop() {
     this.#stopped = true;
+    const job = this.#waiting?.job;
+    if (this.running && job && job.kind !== 'relax' && job.following.length > 0) {
+      this.#post({ type: 'dropped', id: job.id });
+      this.#waiting = null;
+    }
     if (this.#waiting) this.#waiting.stopped = true;
     if (this.#accepted) this.#accepted.stopped = true;
   }

@@ -58,6 +58,8 @@ export function reduce(state, event) {
       return { ...state, current: state.current && { ...state.current, bounds: event.bounds } };
     case 'refused':
       return { ...state, asked: after(state.asked, event.id) };
+    case 'dropped':
+      return { ...state, asked: after(state.asked, event.id), astray: true };
     case 'particles':
       return firstParticles(state, event.description);
     case 'done':

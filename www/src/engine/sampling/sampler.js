@@ -193,6 +193,9 @@ export class Sampler {
         return this.#ready(message.description);
       case 'field':
         return this.#fieldAnswered(message.id, message.answer);
+      case 'dropped':
+        this.#happened(message);
+        return this.#dim();
       default:
     }
     const { current } = this.ledger;

@@ -109,6 +109,7 @@ export type FromWorker =
   | { type: 'beat' }
   | { type: 'number'; request: number; value: number | null }
   | { type: 'field'; id: number; answer: FieldAnswer }
+  | { type: 'dropped'; id: number }
   | { type: 'box'; id: number; answer: FieldOk }
   | { type: 'started'; id: number; radius: number; predicted: number; warnings: string[] }
   | { type: 'progress'; id: number; progress: CoreProgress }
@@ -178,6 +179,7 @@ export type LedgerEvent =
   | { type: 'accepted'; id: number; bounds: Bounds }
   | { type: 'boxed'; bounds: Bounds }
   | { type: 'refused'; id: number }
+  | { type: 'dropped'; id: number }
   | { type: 'particles'; description: Description | null }
   | { type: 'done'; outcome: Outcome; particles: number; reportFollows: boolean; nowMs: number }
   | { type: 'reported' }

@@ -93,11 +93,12 @@ function frontBall({ placed, radii, count }, isShown) {
  * @param {(particle: number) => boolean} [isShown]
  */
 function ballAround({ positions, radii, count }, centre, isShown = () => true) {
+  const [cx, cy, cz] = centre;
   // Above 0 without particles, and below the particles of the smallest box.
   let radius = 1e-30;
   for (let i = 0; i < count; i += 1) {
     if (!isShown(i)) continue;
-    const [x, y, z] = [0, 1, 2].map((k) => positions[3 * i + k] - centre[k]);
+    const [x, y, z] = [positions[3 * i] - cx, positions[3 * i + 1] - cy, positions[3 * i + 2] - cz];
     radius = Math.max(radius, Math.hypot(x, y, z) + radii[i]);
   }
   return { centre, radius };

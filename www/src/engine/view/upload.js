@@ -23,6 +23,9 @@ import { FADE_S, scaleOf } from './style.js';
 /** Largest invisible change of a ramp's end, as a share of the ramp: half of one of its 64 steps. */
 const RANGE_SLACK = 1 / 128;
 
+/** Most particles that one frame uploads, so that a press is answered between two frames. A glide moves fewer. */
+export const MOST_UPLOADED = 2 ** 18;
+
 /** A range of particles from `first`, inclusive, to `last`, exclusive. */
 class Span {
   first = Infinity;
@@ -36,6 +39,12 @@ class Span {
   include(first, last) {
     this.first = Math.min(this.first, first);
     this.last = Math.max(this.last, last);
+  }
+
+  /** Takes a range away that reaches over an end of this one. @param {number} first @param {number} last */
+  exclude(first, last) {
+    if (first <= this.first) this.first = Math.max(this.first, last);
+    if (last >= this.last) this.last = Math.min(this.last, first);
   }
 }
 
@@ -60,6 +69,8 @@ export class ParticleUpload {
     this.range = null;
     /** Number of uploads of particles. */
     this.writes = 0;
+    /** Number of particles on the device. */
+    this.held = 0;
   }
 
   /** Returns whether particles fade in at this time. @param {number} nowS */
@@ -93,11 +104,17 @@ export class ParticleUpload {
     this.meets = meets;
     this.metS = -Infinity;
     this.dirty = new Span();
+    this.held = 0;
     this.all();
   }
 
+  /** Whether the device has all that has changed. */
+  get isWhole() {
+    return this.dirty.empty;
+  }
+
   /**
-   * Uploads what has changed.
+   * Uploads what has changed, or the first part of it.
    * @param {Renderer} renderer
    * @param {Look} look
    * @param {{reveal: Reveal, calm: boolean, nowS: number}} present
@@ -113,7 +130,8 @@ export class ParticleUpload {
       this.meets = false;
       this.metS = nowS;
     }
-    const [first, last] = glide.active ? [0, count] : [dirty.first, Math.min(dirty.last, count)];
+    const [first, end] = glide.active ? [0, count] : [dirty.first, Math.min(dirty.last, count)];
+    const last = Math.min(end, first + MOST_UPLOADED);
     if (first < last) {
       const positions = glide.active ? glide.between(columns.shown, count, nowS) : columns.shown;
       const colours = this.#colours(look, first, last);
@@ -130,16 +148,21 @@ export class ParticleUpload {
         this.writes += 1;
       }
       glide.note(positions, first, last);
+      this.#recoloured.exclude(first, last);
+    }
+    this.held = Math.min(count, Math.max(this.held, last));
+    this.dirty = new Span();
+    if (last < end) {
+      this.dirty.include(last, end);
+      return this.held;
     }
     const recoloured = { first: this.#recoloured.first, last: Math.min(this.#recoloured.last, count) };
-    const isWritten = first <= recoloured.first && recoloured.last <= last;
-    if (recoloured.first < recoloured.last && !isWritten) {
+    if (recoloured.first < recoloured.last) {
       renderer.write_colours(recoloured.first, this.#colours(look, recoloured.first, recoloured.last));
       this.writes += 1;
     }
-    this.dirty = new Span();
     this.#recoloured = new Span();
-    return count;
+    return this.held;
   }
 
   /** @param {Look} look @param {number} first @param {number} last */

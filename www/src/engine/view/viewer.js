@@ -418,7 +418,9 @@ export class Viewer {
     const revealing = this.#tellReveal(nowS);
     const dimming = this.dimmer.moving(nowS);
     if (dimming) this.due.style = true;
-    if (moving || revealing || dimming || this.upload.glide.active || this.upload.fading(nowS)) this.frames.ask();
+    const { upload } = this;
+    if (moving || revealing || dimming || upload.glide.active || upload.fading(nowS) || !upload.isWhole)
+      this.frames.ask();
     if (outcome === 'drawn') {
       this.keeper.drew();
       this.#events.onFrame();
@@ -517,7 +519,8 @@ export class Viewer {
     const now = this.#now();
     // A saved picture shows the particles at their final positions, not during an animation.
     if (this.upload.glide.active) this.upload.restart();
-    this.#tell(device, now);
+    do this.#tell(device, now);
+    while (!this.upload.isWhole);
     const [width, height] = renderer.picture_size(widthPx, heightPx);
     const { cssWidth, cssHeight } = this.screen;
     const isParallel = this.look.projection === 'orthographic';

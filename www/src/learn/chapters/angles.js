@@ -11,7 +11,7 @@ import { fill, h, live } from '../../ui/dom.js';
 import { formatCount, formatFixed } from '../../ui/format.js';
 import { loadSheet } from '../../ui/sheet.js';
 import { createNumber, dragIn } from '../drag.js';
-import { createRange, facts } from '../parts.js';
+import { createRangeRow, facts } from '../parts.js';
 import sheet from '../plane.css?url';
 import { roomEvents, takenAngle } from '../room.js';
 
@@ -45,17 +45,16 @@ export async function angles() {
     });
   const at = signal(OPENS_AT);
   const last = () => events.value.length - 1;
-  // The number of events follows the radii, so that of the range does, too.
-  const range = createRange({
+  const range = createRangeRow({
     name: 'Step',
-    max: 1,
+    max: last,
     say: () => `${formatCount(Math.min(at.value, last()) + 1)} of ${formatCount(last() + 1)}`,
     change(to) {
       at.value = to;
     },
   });
+  // Fewer events may leave its place behind.
   live(range.input, () => {
-    range.input.max = String(last());
     range.place.value = Math.min(at.value, last());
   });
   const moment = computed(() => momentAt(events.value, Math.min(at.value, last())));

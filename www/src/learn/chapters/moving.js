@@ -4,7 +4,7 @@ import { fill, h, live, reducedMotion } from '../../ui/dom.js';
 import { formatFixed, plural } from '../../ui/format.js';
 import { reasonOf } from '../figure.js';
 import { FrontLane, MOTIONS, ownMotions, STEPS, SystemLane, scoreAt, valueAt } from '../flowing.js';
-import { createChart, createSelect } from '../parts.js';
+import { createChart, createSelectRow } from '../parts.js';
 import { byLevel, Orbit, sideBySide } from '../picture.js';
 import { createReplay } from '../replay.js';
 import { ROWS } from '../score.js';
@@ -244,7 +244,7 @@ export async function moving({ lab, stops }) {
   const pursuit = new Pursuit(own);
   const motions = [...MOTIONS, ...(await ownMotions(own))];
   const choices = [
-    createSelect({
+    createSelectRow({
       name: 'Surface',
       choices: motions,
       change: (value) => {
@@ -252,7 +252,7 @@ export async function moving({ lab, stops }) {
         void pursuit.lay();
       },
     }),
-    createSelect({
+    createSelectRow({
       name: 'Beside it',
       choices: RIVALS,
       change: (value) => {

@@ -17,7 +17,7 @@ import { readAddress } from '../address.js';
 import { createTolerance } from '../drag.js';
 import { reasonOf } from '../figure.js';
 import { latest } from '../latest.js';
-import { createChart, createRange, createSelect, facts } from '../parts.js';
+import { createChart, createRangeRow, createSelectRow, facts } from '../parts.js';
 import sheet from '../plane.css?url';
 
 /**
@@ -64,7 +64,7 @@ const GRAINS = [
 function viewsOf(opened, { at, grain, go }) {
   const { events, subject } = opened;
   const last = events.length - 1;
-  const range = createRange({
+  const range = createRangeRow({
     name: 'Event',
     max: Math.max(0, last),
     value: at < 0 ? last : at,
@@ -79,7 +79,7 @@ function viewsOf(opened, { at, grain, go }) {
   };
   const turn = (/** @type {1 | -1} */ by, /** @type {string} */ label, /** @type {'back' | 'forward'} */ icon) =>
     button({ class: 'square', icon, 'aria-label': label, press: () => step(by) });
-  const what = createSelect({
+  const what = createSelectRow({
     name: 'One step is',
     choices: GRAINS,
     value: grain.peek(),
@@ -268,7 +268,9 @@ export async function whoWasFirst({ lab, stops }) {
     void show(to);
   };
   for (const words of queryAll(document, '[data-number="tolerance"]'))
-    words.replaceWith(createTolerance(() => tolerance.value, turn));
+    words.replaceWith(
+      createTolerance({ value: () => tolerance.value, change: turn, stage: () => place.closest('.stage') }),
+    );
   return [
     place,
     h('p', { class: 'figure-count' }, () => `A run of ${plural(run.value.end.radii.length, 'particle')}.`),

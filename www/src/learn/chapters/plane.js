@@ -13,11 +13,14 @@ import { tell } from '../../figures/words.js';
 import { button } from '../../ui/button.js';
 import { fill, h, live, s } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
+import { createSelect } from '../../ui/select.js';
 import { loadSheet } from '../../ui/sheet.js';
 import { decisionsOf, lineAt, objection, PATCHES, runOn, treatedOf } from '../decisions.js';
 import sheet from '../plane.css?url';
 
 /**
+ * @import { Signal } from '../../engine/types.js'
+ * @import { Choice } from '../../ui/types.js'
  * @import { Moment, Opened, Point } from '../../figures/types.js'
  * @import { Context, Decision, LabRun, Patch, Stops, Verdict } from '../types.js'
  */
@@ -85,7 +88,9 @@ class Exercise {
   #question = h('p', { class: 'plane-question', 'aria-live': 'polite' });
   #told = h('p', { class: 'told', role: 'status' });
   #score = h('p', { class: 'figure-count' });
-  #which = h('select', { class: 'select', 'aria-label': 'The particle that is there' });
+  /** The particles around, of which one may be there. @type {Signal<readonly Choice<number>[]>} */
+  #near = signal([]);
+  #which = createSelect({ name: 'The particle that is there', choices: () => this.#near.value });
   #matched = button({ press: () => this.#meet() }, 'It is there already:');
   #answers;
   #next;
@@ -192,10 +197,7 @@ class Exercise {
     this.#question.textContent = `Particle ${formatCount(opened.subject.particle)}, slot ${slot}: what is here?`;
     const near = now.moment.gathered?.neighbours.map(({ particle }) => particle) ?? [];
     if (at === 0 || this.#which.options.length === 0)
-      fill(
-        this.#which,
-        near.map((particle) => h('option', { value: particle }, `particle ${formatCount(particle)}`)),
-      );
+      this.#near.value = near.map((particle) => ({ value: particle, label: `particle ${formatCount(particle)}` }));
     this.#matched.disabled = near.length === 0;
     this.#which.disabled = near.length === 0;
     this.#answers.hidden = false;

@@ -2,7 +2,7 @@
 import { h, live } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
 import { RING, ringsOf } from '../measure.js';
-import { createChart, createPlay, createRange } from '../parts.js';
+import { createChart, createPlay, createRangeRow } from '../parts.js';
 import { byLevel, Orbit, Picture } from '../picture.js';
 
 /**
@@ -41,7 +41,7 @@ export async function rings(context) {
   orbit.faceFront(placed);
   const counts = countsOf(placed);
   const picture = new Picture(orbit, { name: 'The rings of the front around the seed' });
-  const range = createRange({
+  const range = createRangeRow({
     name: 'Level',
     max: counts.length - 1,
     // The ring of the question.

@@ -4,9 +4,11 @@ import { triple } from '../../engine/vector.js';
 import { fill, h, live } from '../../ui/dom.js';
 import { formatCount, formatFixed, formatSignificant, plural } from '../../ui/format.js';
 import { reasonOf } from '../figure.js';
+import { latest } from '../latest.js';
 import { energiesOf, nearestDistances, widestHole } from '../measure.js';
-import { createChart, createPlay, createRange, createScale } from '../parts.js';
+import { createChart, createPlay, createRangeRow, createScale } from '../parts.js';
 import { byValue, Orbit, Picture } from '../picture.js';
+import { pushesOn } from '../pushes.js';
 import { scoreOf } from '../score.js';
 import { createScorecard } from '../scorecard.js';
 
@@ -99,13 +101,18 @@ export async function seams({ lab, stops }) {
   orbit.faceFront(placed);
   const picture = new Picture(orbit, {
     name: 'The front and its relaxation, coloured by the distance to the nearest particle',
-    onPick: (particle) => stops.pick('predict-hole', particle),
+    onPick(particle) {
+      stops.pick('predict-hole', particle);
+      if (isRelaxing()) followed.value = particle;
+    },
   });
+  /** Whose pushes are drawn: at first that beside the widest hole. */
+  const followed = signal(widest?.particle ?? 0);
   const isFree = () => stops.isOpen('predict-hole');
   const isRelaxing = () => isFree() && stops.isOpen('predict-rest');
   /** The slider goes on with every answer. */
   const limit = () => (isRelaxing() ? last : isFree() ? front : quarter);
-  const range = createRange({
+  const range = createRangeRow({
     name: 'Front and relaxation',
     max: limit,
     value: quarter,
@@ -121,7 +128,9 @@ export async function seams({ lab, stops }) {
   const coloursAt = painted(course);
   live(picture.element, () => {
     const place = Math.min(range.place.value, limit());
-    const marks = marksAt(course, place, { picked: stops.picked('predict-hole'), isRelaxing: isRelaxing() });
+    const isAfter = isRelaxing() && place >= front;
+    const picked = isAfter ? followed.value : place <= front ? stops.picked('predict-hole') : null;
+    const marks = marksAt(course, place, { picked, isRelaxing: isRelaxing() });
     picture.show({ particles: course.at(place), body: course.body, colours: coloursAt(place), marks });
     const hole = scores.value[step()]?.places.hole ?? (step() === 0 ? widest?.hole : null) ?? null;
     picture.ringed.value = place >= front && isFree() ? hole : null;
@@ -163,8 +172,30 @@ export async function seams({ lab, stops }) {
       at: () => (range.place.value >= front ? step() : null),
       press: (at) => range.set(front + at),
     }),
+    createPushes(course, { isOpen: isRelaxing, followed, step }),
     card,
   ];
+}
+
+/**
+ * The pushes on a particle in the step that comes next.
+ * @param {Course} course
+ * @param {{ isOpen: () => boolean, followed: Signal<number>, step: () => number }} about
+ */
+function createPushes({ run: { client }, states, steps }, { isOpen, followed, step }) {
+  const box = h('div', { class: 'pushes-box', hidden: () => !isOpen() });
+  const show = latest(async (/** @type {{ particle: number, at: number }} */ { particle, at }, isOld) => {
+    // Questions are answered in their order, so none comes between these two.
+    const sought = client.ask('seek', { event: steps[at].first_event });
+    const pushes = await client.ask('pushes', { particle });
+    await sought;
+    if (!isOld()) fill(box, pushesOn({ before: states[at], after: states[at + 1] }, particle, pushes));
+  });
+  live(box, () => {
+    const at = Math.min(step(), steps.length - 1);
+    if (isOpen() && steps.length > 0) void show({ particle: followed.value, at });
+  });
+  return box;
 }
 
 /** The colours at each place, worked out once. @param {Course} course */
@@ -184,7 +215,8 @@ function painted({ at }) {
  */
 function marksAt({ placed, found, front, states }, place, { picked, isRelaxing }) {
   const marks = place <= front ? found[place].map((particle) => markOf(placed, particle)) : [];
-  if (picked !== null && place <= front) marks.push({ ...markOf(placed, picked), radius: placed.radii[picked] });
+  const now = states[place - front] ?? placed;
+  if (picked !== null) marks.push({ ...markOf(now, picked), radius: now.radii[picked] });
   const next = states[place - front + 1];
   return place >= front && isRelaxing && next ? [...marks, ...arrowsOf(states[place - front], next)] : marks;
 }

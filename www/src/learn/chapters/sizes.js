@@ -4,7 +4,7 @@ import { fill, h, live } from '../../ui/dom.js';
 import { formatSignificant, plural } from '../../ui/format.js';
 import { adaptiveRun, LAWS } from '../adaptive.js';
 import { PARTICLES } from '../lab.js';
-import { createScale, createSelect } from '../parts.js';
+import { createScale, createSelectRow } from '../parts.js';
 import { byValue, Orbit, Picture } from '../picture.js';
 
 /** @import { Context, Law } from '../types.js' */
@@ -33,7 +33,7 @@ export async function sizes({ lab, stops }) {
     fill(legend, createScale('Radius', formatSignificant(low, 2), formatSignificant(high, 2)));
     words.textContent = `${plural(radii.length, 'particle')}; even sampling with as many has the radius ${formatSignificant(radius, 2)}.`;
   };
-  const law = createSelect({
+  const law = createSelectRow({
     name: 'The radius follows',
     choices: LAWS,
     value: 'max_curvature',

@@ -1,6 +1,6 @@
 /** The controls of the clip box, one row per axis, and the line about a surface that it cuts. */
 import { computed } from '@preact/signals-core';
-import { cutOf, enlarge } from '../box.js';
+import { cutOf, enlarge, wholePeriods } from '../box.js';
 import { button } from '../button.js';
 import { h, live } from '../dom.js';
 import { formatSignificant } from '../format.js';
@@ -11,6 +11,8 @@ import { numberBox, showNumber } from '../number.js';
 const AXES = /** @type {const} */ (['x', 'y', 'z']);
 /** Step of the number boxes, as a share of the box's side. It is rounded to a power of ten. */
 const STEP_SHARE = 0.02;
+/** The numbers of whole periods that are offered. */
+const TIMES = [1, 2, 3];
 
 /** @param {Engine} engine */
 export function createClipBox(engine) {
@@ -38,6 +40,7 @@ export function createClipBox(engine) {
         createNumber(engine, bounds, { i, end: 'max', name: `${axis} to` }),
       ]),
     ),
+    createPeriods(engine, bounds),
     h(
       'div',
       { class: 'section-head clip-foot' },
@@ -58,6 +61,30 @@ export function createClipBox(engine) {
     ),
   );
   return [createCut(engine), details];
+}
+
+/**
+ * Creates the choice of a box of whole periods, which a periodic surface has.
+ * @param {Engine} engine @param {ReadonlySignal<Bounds | null>} bounds
+ */
+function createPeriods(engine, bounds) {
+  const periods = computed(() => engine.field.value?.periods ?? []);
+  const boxOf = (/** @type {Bounds | null} */ now, /** @type {number} */ times) =>
+    now && wholePeriods(now, periods.value, times);
+  const isNow = (/** @type {number} */ times) =>
+    JSON.stringify(boxOf(bounds.value, times)) === JSON.stringify(bounds.value);
+  const press = (/** @type {number} */ times) => {
+    const next = boxOf(bounds.peek(), times);
+    if (next) engine.setBounds(next);
+  };
+  return h(
+    'div',
+    { class: 'clip-periods', role: 'group', 'aria-label': 'Whole periods', hidden: () => !periods.value.some(Boolean) },
+    h('span', null, 'Whole periods'),
+    TIMES.map((times) =>
+      button({ class: 'small', 'aria-pressed': () => String(isNow(times)), press: () => press(times) }, `${times} ×`),
+    ),
+  );
 }
 
 /**

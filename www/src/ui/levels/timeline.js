@@ -6,6 +6,7 @@ import { button } from '../button.js';
 import { fill, h, live, s } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, formatShare } from '../format.js';
+import { createRange } from '../range.js';
 import { createSelect } from '../select.js';
 import { isMeant, moveOf } from './keys.js';
 import { createLevels } from './levels.js';
@@ -87,19 +88,14 @@ function trackOf({ last, bars: all, at, whole }, range) {
 /** @param {Player} player */
 function rangeOf(player) {
   const { some, text, at, last } = player.levels;
-  const range = h('input', {
-    type: 'range',
-    class: 'levels-range',
-    min: 0,
-    step: 1,
+  const range = createRange({
+    look: 'levels-range',
+    max: () => last.value,
+    at: () => at.value,
+    say: () => (some.value ? text.value : 'Nothing to step through yet'),
+    change: (place) => player.seek(place),
     disabled: () => !some.value,
     'aria-label': 'Timeline, by levels',
-    'aria-valuetext': () => (some.value ? text.value : 'Nothing to step through yet'),
-  });
-  // The place is set after the number of places, which limits it.
-  live(range, () => {
-    range.max = String(last.value);
-    range.valueAsNumber = at.value;
   });
   /** @param {PointerEvent} event */
   const placeUnder = ({ clientX }) => {
@@ -120,7 +116,6 @@ function rangeOf(player) {
     event.preventDefault();
     range.focus({ preventScroll: true });
   });
-  range.addEventListener('input', () => player.seek(range.valueAsNumber));
   range.addEventListener('dblclick', () => player.seek(last.peek()));
   return range;
 }

@@ -19,7 +19,10 @@ const OFFSET_PX = 16;
  */
 export function mountHover(host, engine, { view, explainIt }) {
   const { hover } = engine;
+  // A link cannot hold a model from points.
+  const isTold = () => !engine.field.value?.model;
   const go = (/** @type {number} */ index) => {
+    if (!isTold()) return;
     engine.dismissHover();
     explainIt(index);
   };
@@ -29,10 +32,7 @@ export function mountHover(host, engine, { view, explainIt }) {
     () => {
       const { value: now } = hover;
       if (!now) return null;
-      const press = () => go(now.index);
-      // A link cannot hold a model from points.
-      const isTold = now.tapped && !engine.field.value?.model;
-      return [rowsOf(now), isTold && button({ class: 'small', press }, 'Explain this particle')];
+      return [rowsOf(now), now.tapped && isTold() && leadOf(engine.columns.adaptive, () => go(now.index))];
     },
   );
   host.append(card);
@@ -64,6 +64,15 @@ export function mountHover(host, engine, { view, explainIt }) {
     event.preventDefault();
     event.stopPropagation();
   }
+}
+
+/** Leads to the lesson. @param {boolean} isAdaptive @param {() => void} press */
+function leadOf(isAdaptive, press) {
+  if (!isAdaptive) return button({ class: 'small', press }, 'Explain this particle');
+  return [
+    h('p', { class: 'quiet' }, 'The lesson explains single particles only where all have one size.'),
+    button({ class: 'small', press }, 'How many sizes find room'),
+  ];
 }
 
 /** @param {HTMLElement} view @returns {Edges} the part of the view beside the toolbar */

@@ -32,7 +32,7 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
     // The next formula may have no surface for another reason.
     void engine.field.value;
     void engine.revision.value;
-    return emptyState(engine);
+    return [emptyState(engine), createKept(engine)];
   });
   const text = computed(() =>
     told.value

@@ -166,6 +166,31 @@ test('the match tolerance is dragged in its sentence, and the figure follows', a
   clean();
 });
 
+test('the picture of a figure stays in view while a number of the text is dragged far from it', async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: '#rings', width: 390, height: 844 });
+  const picture = (await live(page, 'rings')).locator('.picture');
+  const number = page.locator('#rings').getByRole('slider', { name: 'Ring', exact: true });
+  await number.evaluate((element) => {
+    const below = element.getBoundingClientRect().bottom - innerHeight + 60;
+    scrollBy({ top: below, behavior: 'instant' });
+  });
+  await expect(picture).not.toBeInViewport();
+  const box = await number.boundingBox();
+  if (!box) throw new Error('the number has no box');
+  await page.mouse.move(box.x + 2, box.y + 5);
+  await page.mouse.down();
+  await page.mouse.move(box.x - 40, box.y + 5, { steps: 5 });
+  const canvas = picture.locator('canvas');
+  await expect(canvas).toBeInViewport({ ratio: 1 });
+  await expect(number).toBeInViewport({ ratio: 1 });
+  const { y = 0, height = 0 } = (await canvas.boundingBox()) ?? {};
+  expect(y + height, 'the picture does not cover the number').toBeLessThan(box.y);
+  await page.mouse.up();
+  await number.press('Escape');
+  await expect(canvas).not.toBeInViewport();
+  clean();
+});
+
 test('a particle is followed by events, particles and levels, with its plane, its line and a slot from the side', async ({
   page,
 }) => {
@@ -245,6 +270,14 @@ test('what the text claims of the ellipsoid is what its runs say', async ({ page
   await skip('predict-rest');
   const hole = seams.getByRole('row', { name: /^Largest hole/ });
   await expect(hole).toBeVisible({ timeout: 60_000 });
+  // The pushes of the neighbours on a particle are drawn: first of that beside the hole, then of the one that is pressed.
+  const pushes = seams.locator('.pushes-box');
+  const pushed = () => pushes.locator('.number').textContent();
+  await expect(pushes).toContainText(/\d neighbours push particle \d+\. Their pushes add up to \d+ % of the strongest/);
+  const besideHole = await pushed();
+  await expect(pushes.locator('.push')).toHaveCount(await pushes.locator('.disc').count());
+  await seams.getByRole('application').press('Enter');
+  await expect.poll(pushed).not.toBe(besideHole);
   expect(await numberIn(hole, 2)).toBeLessThan((await numberIn(hole, 1)) - 0.15);
   await expect(slider).toHaveAttribute('aria-valuetext', /^level/);
   const placed = await fingerprint(seams.locator('.picture'));

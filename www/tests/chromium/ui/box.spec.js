@@ -22,6 +22,21 @@ test('the box around a formula', async ({ page }) => {
     await expect(cut(page)).toContainText('continues outside the box');
   });
 
+  await test.step('a periodic surface is sampled in a whole number of its periods by one press', async () => {
+    await page.locator('.clip > summary', { hasText: 'Clip box' }).click();
+    const periods = page.getByRole('group', { name: 'Whole periods' });
+    await expect(periods.getByRole('button')).toHaveText(['1 ×', '2 ×', '3 ×']);
+    await periods.getByRole('button', { name: '2 ×' }).click();
+    await settled(page);
+    const side = 2 * Math.PI;
+    expect((await state(page)).bounds).toEqual({ min: [-side, -side, -side], max: [side, side, side] });
+    await expect(periods.getByRole('button', { name: '2 ×' })).toHaveAttribute('aria-pressed', 'true');
+    await afresh(page);
+    await typeFormula(page, 'x^2+y^2+z^2=1');
+    await settled(page);
+    await expect(periods).toBeHidden();
+  });
+
   await test.step('a formula without a surface is told so, as far as it was searched', async () => {
     await afresh(page);
     await typeFormula(page, 'x^2+y^2+z^2=-1');

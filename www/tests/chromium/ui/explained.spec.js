@@ -25,3 +25,20 @@ test('a pressed particle is explained in the lesson, by its own number, and the 
   await page.getByRole('link', { name: 'Marching Particles', exact: true }).click();
   await page.waitForURL((url) => !url.pathname.includes('learn'));
 });
+
+test('of an adaptive picture the lesson explains no single particle, and the card says so', async ({ page }) => {
+  await page.setViewportSize({ width: 1280, height: 800 });
+  await page.goto('./?backend=canvas2d');
+  await page.waitForFunction(() => 'marchingParticles' in window);
+  await page.evaluate(() =>
+    /** @type {any} */ (window).marchingParticles.set({ settings: { sampling: 'adaptive', radius_min_share: 0.01 } }),
+  );
+  await page.locator('#canvas-host').focus();
+  await page.keyboard.press('Enter');
+  const card = page.locator('.hover-card');
+  await expect(card).toContainText('The lesson explains single particles only where all have one size.');
+  await expect(card.getByRole('button', { name: 'Explain this particle' })).toHaveCount(0);
+  await card.getByRole('button', { name: 'How many sizes find room' }).click();
+  await page.waitForURL(/learn\/#angles&surface=/);
+  await expect(page.locator('[data-figure="angles"]')).toHaveAttribute('data-state', 'live', { timeout: 60_000 });
+});

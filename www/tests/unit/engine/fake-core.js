@@ -23,6 +23,7 @@ const field = (formula, bounds) => ({
   auto: [],
   bounds,
   reach: 'bounded',
+  periods: [null, null, null],
   mathml: null,
   grip: null,
 });
@@ -121,6 +122,7 @@ export function fakeCore({
         auto: [],
         bounds: bounds ?? own,
         reach: null,
+        periods: [null, null, null],
         mathml: null,
         grip: null,
       };

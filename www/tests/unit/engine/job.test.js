@@ -240,6 +240,17 @@ describe('a job', () => {
     expect(core.calls.filter((call) => call === 'start')).toHaveLength(2);
   });
 
+  test('that is stopped before it starts moves no particle', async () => {
+    const core = fakeCore({ particles: 3000 });
+    await run(core, sampleJob());
+    const made = core.calls.length;
+    const job = sampleJob({ id: 8, kind: 'live', following: [sampleJob().settings] });
+    const { posted } = await run(core, job, { interrupt: () => 'stop' });
+    expect(of(posted, 'done')).toMatchObject([{ id: 8, outcome: 'stopped', reportFollows: false }]);
+    expect(core.calls.slice(made)).not.toContain('follow');
+    expect(core.calls.slice(made)).not.toContain('start');
+  });
+
   test('a live job that is stopped is the last of its drag, and is reported', async () => {
     const { posted } = await run(fakeCore({ particles: 1_000_000 }), sampleJob({ kind: 'live' }), {
       interrupt: () => 'stop',
@@ -495,6 +506,25 @@ describe('a job that comes while another is under way', () => {
       });
       expect(of(posted, 'done').map(({ id, outcome }) => [id, outcome])).toEqual([[job === faulty ? 7 : 8, 'stopped']]);
     }
+  });
+
+  test('of a drag is dropped by a stop, and leaves the one before it with its own field and figures', async () => {
+    let added = false;
+    const core = fakeCore({ particles: 20_000 });
+    const settings = sampleJob().settings;
+    const next = sampleJob({ id: 8, kind: 'live', field: { formula: 'y' }, following: [settings] });
+    const { posted, memory } = await work(core, sampleJob({ kind: 'live' }), (jobs) => {
+      if (added || core.count() < 100) return;
+      added = true;
+      jobs.add(next);
+      jobs.stop();
+    });
+    expect(of(posted, 'dropped')).toEqual([{ type: 'dropped', id: 8 }]);
+    expect(of(posted, 'field').map(({ id }) => id)).toEqual([7]);
+    expect(of(posted, 'done')).toMatchObject([{ id: 7, outcome: 'stopped', reportFollows: true }]);
+    expect(of(posted, 'report').map(({ id }) => id)).toEqual([7]);
+    expect(core.calls).not.toContain('follow');
+    expect(memory.held).toBe(7);
   });
 
   test('with a fault in its formula leaves the one before it stopped', async () => {

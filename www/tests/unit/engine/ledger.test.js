@@ -199,6 +199,13 @@ test('a stop holds for every job sent before it', () => {
   expect(stateAfter(sent(wish('x')), { type: 'stopped' }).stoppedUpTo).toBe(1);
 });
 
+test('a run that a stop has dropped is waited for no more, and the surface is not the one that was asked for', () => {
+  const state = stateAfter(sent(wish('x')), accepted(1), particles, sent(wish('y', { kind: 'live' })));
+  const next = reduce(state, { type: 'dropped', id: 2 });
+  expect(next).toMatchObject({ asked: [], astray: true, current: { id: 1 }, accepted: wish('x') });
+  expect(awaitsParticles(reduce(next, done('stopped', 5)))).toBe(false);
+});
+
 test('a worker started again by hand may be sent what the last failed on', () => {
   expect(stateAfter({ type: 'crashed', input: 'x', again: false }, { type: 'revived' }).crashedInput).toBe('');
 });

@@ -2,7 +2,7 @@ import { describe, expect, test } from 'vitest';
 import { Columns } from '../../../src/engine/columns.js';
 import { Reveal } from '../../../src/engine/view/reveal.js';
 import { firstLook } from '../../../src/engine/view/style.js';
-import { ParticleUpload } from '../../../src/engine/view/upload.js';
+import { MOST_UPLOADED, ParticleUpload } from '../../../src/engine/view/upload.js';
 
 /** @import { ColourMode } from '../../../src/engine/types.js' */
 
@@ -55,6 +55,24 @@ describe('a device', () => {
     expect(upload.writes).toBe(3);
   });
 
+  test('is told of more particles than a frame has time for in parts', () => {
+    const { renderer, told } = device();
+    const upload = new ParticleUpload(columnsOf(2 * MOST_UPLOADED + 3));
+    upload.restart();
+    const held = [];
+    do held.push(upload.write(renderer, look('level'), present()));
+    while (!upload.isWhole);
+    expect(held).toEqual([MOST_UPLOADED, 2 * MOST_UPLOADED, 2 * MOST_UPLOADED + 3]);
+    expect(told).toEqual([
+      `particles 0..${MOST_UPLOADED}`,
+      `particles ${MOST_UPLOADED}..${2 * MOST_UPLOADED}`,
+      `particles ${2 * MOST_UPLOADED}..${2 * MOST_UPLOADED + 3}`,
+    ]);
+    // What has moved is on the device already.
+    upload.changed(0, 2);
+    expect(upload.write(renderer, look('level'), present())).toBe(2 * MOST_UPLOADED + 3);
+  });
+
   test('is told every colour anew when the ends of the ramp move', () => {
     const { renderer, told } = device();
     const columns = columnsOf(6);
@@ -65,7 +83,7 @@ describe('a device', () => {
     columns.radii[5] = 100;
     upload.changed(5, 6);
     upload.write(renderer, look('radius'), present());
-    expect(told).toEqual(['particles 5..6', 'colours 0..6']);
+    expect(told).toEqual(['particles 5..6', 'colours 0..5']);
   });
 
   test('is told a surface that is revealed level by level', () => {

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { cutOf, doubled } from '../../../src/ui/box.js';
+import { cutOf, doubled, wholePeriods } from '../../../src/ui/box.js';
 
 describe('a surface that the box cuts', () => {
   it('is not spoken of where the box was chosen for the surface', () => {
@@ -24,5 +24,17 @@ describe('a surface that the box cuts', () => {
 
   it('has twice the room in a doubled box, around the same middle', () => {
     expect(doubled({ min: [-1, 0, 2], max: [1, 2, 3] })).toEqual({ min: [-2, -1, 1.5], max: [2, 3, 3.5] });
+  });
+});
+
+describe('a box of whole periods', () => {
+  it('has the same middle, and keeps the sides along which nothing repeats or changes', () => {
+    /** @type {import('../../../src/engine/types.js').Bounds} */
+    const bounds = { min: [-4, 0, -1], max: [4, 6, 1] };
+    expect(wholePeriods(bounds, [2, 0, null], 3)).toEqual({ min: [-3, 0, -1], max: [3, 6, 1] });
+    expect(wholePeriods(bounds, [null, 2 * Math.PI, 0.5], 1)).toEqual({
+      min: [-4, 3 - Math.PI, -0.25],
+      max: [4, 3 + Math.PI, 0.25],
+    });
   });
 });

@@ -1,0 +1,30 @@
+/** Creates a native range of whole places, which begin at 0. */
+import { h, live } from './dom.js';
+
+/** @import { RangeOptions } from './types.js' */
+
+/** @param {RangeOptions} options */
+export function createRange({ max, at, say, change, look = 'slider', ...props }) {
+  const range = h('input', {
+    type: 'range',
+    class: look,
+    min: 0,
+    step: 1,
+    'aria-valuetext': say,
+    style: { '--place': () => (max() > 0 ? Math.min(1, at() / max()).toFixed(4) : 0) },
+    on: {
+      input() {
+        change(range.valueAsNumber);
+        // What is not taken goes back.
+        range.valueAsNumber = at();
+      },
+    },
+    ...props,
+  });
+  // The limit comes before the place, which it cuts.
+  live(range, () => {
+    range.max = String(max());
+    range.valueAsNumber = at();
+  });
+  return range;
+}
