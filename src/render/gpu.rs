@@ -46,16 +46,18 @@ pub(super) struct Gpu {
 }
 
 impl Gpu {
-    /// Opens a device that can draw on `surface`. Returns it with the adapter that provides it.
+    /// Opens a device that can draw on `surface`, with `features` of its adapter. Returns it with
+    /// the adapter.
     pub(super) async fn open(
         instance: &wgpu::Instance,
-        surface: &wgpu::Surface<'_>,
+        surface: Option<&wgpu::Surface<'_>>,
+        features: impl FnOnce(&wgpu::Adapter) -> wgpu::Features,
         callbacks: Callbacks,
     ) -> Result<(Self, wgpu::Adapter), CreateError> {
         let adapter = instance
             .request_adapter(&wgpu::RequestAdapterOptions {
                 power_preference: wgpu::PowerPreference::HighPerformance,
-                compatible_surface: Some(surface),
+                compatible_surface: surface,
                 ..wgpu::RequestAdapterOptions::default()
             })
             .await?;
@@ -63,6 +65,7 @@ impl Gpu {
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
                 label: Some("particles"),
+                required_features: features(&adapter),
                 required_limits: wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits()),
                 ..wgpu::DeviceDescriptor::default()
             })

@@ -1,4 +1,4 @@
-//! Renderer of particles, as discs, as spheres or as the faces between them, on WebGPU and WebGL2 through wgpu.
+//! Renderer of particles, as discs, as spheres or as the faces between them, on WebGPU, WebGL2 and Vulkan through wgpu.
 //!
 //! The renderer takes columns of numbers and a camera matrix; it knows no field and no sampler.
 //!
@@ -66,7 +66,11 @@
 //!
 //! Colours are given in sRGB, lit and blended in linear light, and written through an sRGB view.
 //!
-//! The modules for chunks, layout, style and camera need no GPU. Everything that uses wgpu is behind the feature `render`.
+//! # What it draws on
+//!
+//! The modules for chunks, layout, style and camera need no GPU. The renderer, behind the feature
+//! `render`, needs a device and a texture to draw on. `Screen` opens a canvas of the page (features
+//! `webgpu` and `webgl`), `OffScreen` a texture, natively (feature `vulkan`).
 
 pub mod chunks;
 pub mod frame;
@@ -78,18 +82,24 @@ pub mod view;
 
 #[cfg(feature = "render")]
 mod gpu;
+#[cfg(feature = "vulkan")]
+mod off_screen;
 #[cfg(feature = "render")]
 mod painter;
 #[cfg(feature = "render")]
 mod pipelines;
 #[cfg(feature = "render")]
 mod renderer;
-#[cfg(feature = "render")]
+#[cfg(feature = "page-render")]
 mod screen;
 #[cfg(feature = "render")]
 mod store;
 
 #[cfg(feature = "render")]
 pub use gpu::{Callbacks, CreateError, OnError, OnLost};
+#[cfg(feature = "vulkan")]
+pub use off_screen::OffScreen;
 #[cfg(feature = "render")]
-pub use renderer::{Columns, DrawOutcome, Picture, Renderer};
+pub use renderer::{Columns, Picture, Renderer};
+#[cfg(feature = "page-render")]
+pub use screen::{DrawOutcome, Screen};

@@ -11,7 +11,7 @@ const FACE_SAMPLES: u32 = 4;
 
 /// Draws pictures into targets.
 pub(super) struct Painter {
-    format: wgpu::TextureFormat,
+    pub(super) format: wgpu::TextureFormat,
     frame: FrameBinding,
     pipelines: Pipelines,
     /// Buffers of the canvas, kept between pictures.
@@ -78,11 +78,6 @@ impl Painter {
         Self { format, frame, pipelines, buffers: None }
     }
 
-    /// Drops the buffers, since the size of the target has changed.
-    pub(super) fn forget_buffers(&mut self) {
-        self.buffers = None;
-    }
-
     /// Encodes and submits a picture.
     pub(super) fn paint(
         &mut self,
@@ -92,6 +87,10 @@ impl Painter {
         scene: &Scene<'_>,
     ) {
         queue.write_buffer(&self.frame.buffer, 0, bytemuck::bytes_of(&scene.frame));
+        if canvas.keep {
+            // The memory of the old ones is given back before that of the new ones is taken.
+            self.buffers.take_if(|buffers| !buffers.fit(canvas, scene));
+        }
         let buffers = match &self.buffers {
             Some(buffers) if buffers.fit(canvas, scene) => buffers.clone(),
             _ => self.buffers(device, canvas, scene),

@@ -1,26 +1,14 @@
-//! Renderer: a graphics device with a surface to draw on, and the particles and faces to draw.
+//! Renderer: a graphics device, and the particles and faces to draw with it.
 
 use super::chunks::MOST_RECORDS;
 use super::frame::Frame;
-use super::gpu::{Callbacks, CreateError, Gpu};
+use super::gpu::Gpu;
 use super::layout::{FACE, FaceRecord, FaceTint, PARTICLE, PIECE, Record};
 use super::painter::{Canvas, Content, Painter, Scene};
 use super::pixels::{padded_row, straight_rgba};
-use super::screen::Screen;
 use super::store::{Part, Store};
 use super::style::{PictureTarget, Style};
 use super::view::View;
-
-/// Outcome of [`Renderer::draw`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DrawOutcome {
-    /// The picture was submitted and will be shown.
-    Drawn,
-    /// The surface cannot be drawn on now, because it is empty, hidden or busy. Draw again when something changes.
-    Skipped,
-    /// The device is lost. A new renderer is needed.
-    Lost,
-}
 
 /// Columns of particles, or of the corners of faces: one entry each, or three for vectors.
 #[derive(Clone, Copy, Debug)]
@@ -72,33 +60,24 @@ impl Clock {
 
 /// Draws particles on a surface, as discs or as the faces between them. After the device is lost, its methods do nothing.
 pub struct Renderer {
-    gpu: Gpu,
-    screen: Screen,
+    pub(super) gpu: Gpu,
     painter: Painter,
     content: Content,
     /// Buffers in which records are packed before they are uploaded.
     scratch: Vec<Record>,
     face_scratch: Vec<FaceRecord>,
+    /// Size in pixels of what is drawn on, for which the camera is made.
+    pub(super) size: [u32; 2],
     view: View,
     style: Style,
     clock: Clock,
 }
 
 impl Renderer {
-    /// Opens a device that can draw on `surface_target`.
-    ///
-    /// # Errors
-    ///
-    /// [`CreateError`] if a surface, an adapter or a device is not available.
-    pub async fn new(
-        surface_target: impl Into<wgpu::SurfaceTarget<'static>>,
-        callbacks: Callbacks,
-    ) -> Result<Self, CreateError> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-        let surface = instance.create_surface(surface_target)?;
-        let (gpu, adapter) = Gpu::open(&instance, &surface, callbacks).await?;
-        let screen = Screen::new(surface, &adapter)?;
-        let painter = Painter::new(&gpu.device, screen.view_format);
+    /// A renderer into textures of `format`, which must be an sRGB format, so that blending is
+    /// linear.
+    pub(super) fn new(gpu: Gpu, format: wgpu::TextureFormat) -> Self {
+        let painter = Painter::new(&gpu.device, format);
         let content = Content {
             particles: Store::new(PARTICLE),
             body: 0,
@@ -106,17 +85,17 @@ impl Renderer {
             face_particles: 0,
             lines: Store::new(PIECE),
         };
-        Ok(Self {
+        Self {
             gpu,
-            screen,
             painter,
             content,
             scratch: Vec::new(),
             face_scratch: Vec::new(),
+            size: [0, 0],
             view: View::default(),
             style: Style::default(),
             clock: Clock::default(),
-        })
+        }
     }
 
     /// Name of the back end: "webgpu", "webgl2", or that of a native one.
@@ -142,14 +121,13 @@ impl Renderer {
         self.gpu.mark_lost(reason, message);
     }
 
-    /// Sets the size of the surface in pixels and returns the size in effect.
+    /// Sets the size in pixels of what is drawn on, and returns the size in effect.
     ///
     /// A size beyond the largest texture is scaled down in proportion. If a side is 0, nothing is drawn until the next
     /// resize.
     pub fn resize(&mut self, size: [u32; 2]) -> [u32; 2] {
-        let size = self.fit(size);
-        self.screen.resize(size);
-        size
+        self.size = self.fit(size);
+        self.size
     }
 
     /// Size of the picture that [`Renderer::picture`] makes for `size`: at least one pixel, and within the limits of
@@ -178,7 +156,7 @@ impl Renderer {
 
     /// Writes particles `first..first + columns.radii.len()`. The number of particles drawn increases to include them.
     ///
-    /// `birth_s` is the time at which the particles begin to appear, in seconds on the clock of [`Renderer::draw`]; −∞ shows them
+    /// `birth_s` is the time at which the particles begin to appear, in seconds on the clock of the pictures; −∞ shows them
     /// at once.
     ///
     /// # Panics
@@ -276,7 +254,7 @@ impl Renderer {
         lines.write(&gpu.queue, Part::Colours, 0, bytemuck::cast_slice(colours));
     }
 
-    /// Sets the camera, which must be made for the current size of the surface.
+    /// Sets the camera, which must be made for the current size of what is drawn on.
     pub fn set_view(&mut self, view: View) {
         self.view = view;
     }
@@ -286,34 +264,16 @@ impl Renderer {
         self.style = style;
     }
 
-    /// Draws on the surface. `time_s` is the current time on the caller's clock, in seconds.
-    pub fn draw(&mut self, time_s: f64) -> DrawOutcome {
-        if self.is_lost() {
-            return DrawOutcome::Lost;
-        }
-        if self.screen.size.contains(&0) {
-            return DrawOutcome::Skipped;
-        }
-        let (texture, is_new) = self.screen.next(&self.gpu.device);
-        if is_new {
-            self.painter.forget_buffers();
-        }
-        let Some(texture) = texture else {
-            return if self.is_lost() { DrawOutcome::Lost } else { DrawOutcome::Skipped };
-        };
-        let view = self.screen.view(&texture);
-        let size = self.screen.size;
-        let frame = self.frame(size, time_s);
-        let copied = self.screen.copied(&texture);
-        self.paint(&Canvas { view: &view, copied, size, keep: true }, frame, false);
-        self.gpu.queue.present(texture);
-        if self.is_lost() { DrawOutcome::Lost } else { DrawOutcome::Drawn }
+    /// Draws on `canvas`. `time_s` is the current time on the caller's clock, in seconds.
+    pub(super) fn draw_on(&mut self, canvas: &Canvas<'_>, time_s: f64) {
+        let frame = self.frame(canvas.size, time_s);
+        self.paint(canvas, frame, false);
     }
 
     /// Draws into a texture of [`Renderer::picture_size`] and begins to copy it to memory that [`Picture::map`] makes
     /// readable.
     ///
-    /// A picture with another aspect ratio than the surface shows more at the sides, or at top and bottom. Returns
+    /// A picture with another aspect ratio than what is drawn on shows more at the sides, or at top and bottom. Returns
     /// `None` if the device is lost.
     pub fn picture(&mut self, size: [u32; 2], transparent: bool, time_s: f64) -> Option<Picture> {
         if self.is_lost() {
@@ -327,7 +287,7 @@ impl Renderer {
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: self.screen.view_format,
+            format: self.painter.format,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
@@ -355,7 +315,7 @@ impl Renderer {
         );
         self.gpu.queue.submit([encoder.finish()]);
         let bgra = matches!(
-            self.screen.view_format,
+            self.painter.format,
             wgpu::TextureFormat::Bgra8UnormSrgb | wgpu::TextureFormat::Bgra8Unorm
         );
         Some(Picture { buffer, size, bgra, transparent })
@@ -375,7 +335,7 @@ impl Renderer {
 
     fn frame(&mut self, size: [u32; 2], time_s: f64) -> Frame {
         let time = self.clock.read(time_s);
-        self.style.frame(&self.view, PictureTarget { canvas: self.screen.size, size, time })
+        self.style.frame(&self.view, PictureTarget { canvas: self.size, size, time })
     }
 
     fn paint(&mut self, canvas: &Canvas<'_>, frame: Frame, transparent: bool) {

@@ -1,25 +1,50 @@
-//! The surface that pictures are shown on.
+//! A canvas of the page, on which pictures are shown.
 
-use super::gpu::CreateError;
+use super::gpu::{Callbacks, CreateError, Gpu};
+use super::painter::Canvas;
+use super::renderer::Renderer;
+
+/// Outcome of [`Screen::draw`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DrawOutcome {
+    /// The picture was submitted and will be shown.
+    Drawn,
+    /// The surface cannot be drawn on now, because it is empty, hidden or busy. Draw again when something changes.
+    Skipped,
+    /// The device is lost. A new renderer is needed.
+    Lost,
+}
 
 /// A surface with its configuration.
-pub(super) struct Screen {
+pub struct Screen {
     surface: wgpu::Surface<'static>,
     config: wgpu::SurfaceConfiguration,
     /// sRGB format through which the surface is drawn, so that blending is linear.
-    pub(super) view_format: wgpu::TextureFormat,
-    /// Size in pixels. Nothing is drawn while a side is zero.
-    pub(super) size: [u32; 2],
+    view_format: wgpu::TextureFormat,
     configured: bool,
 }
 
 impl Screen {
-    /// A surface that `adapter` draws on.
+    /// Opens a device that can draw on `surface_target`, and returns the two with a renderer on it.
     ///
     /// # Errors
     ///
-    /// If there is no sRGB format for it.
-    pub(super) fn new(surface: wgpu::Surface<'static>, adapter: &wgpu::Adapter) -> Result<Self, CreateError> {
+    /// [`CreateError`] if a surface, an adapter, a device or an sRGB format is not available.
+    pub async fn open(
+        surface_target: impl Into<wgpu::SurfaceTarget<'static>>,
+        callbacks: Callbacks,
+    ) -> Result<(Self, Renderer), CreateError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let surface = instance.create_surface(surface_target)?;
+        let (gpu, adapter) =
+            Gpu::open(&instance, Some(&surface), |_| wgpu::Features::empty(), callbacks).await?;
+        let screen = Self::new(surface, &adapter)?;
+        let renderer = Renderer::new(gpu, screen.view_format);
+        Ok((screen, renderer))
+    }
+
+    /// A surface that `adapter` draws on.
+    fn new(surface: wgpu::Surface<'static>, adapter: &wgpu::Adapter) -> Result<Self, CreateError> {
         let mut config = surface.get_default_config(adapter, 1, 1).ok_or(CreateError::Format)?;
         let capabilities = surface.get_capabilities(adapter);
         let downlevel = adapter.get_downlevel_capabilities();
@@ -42,44 +67,52 @@ impl Screen {
         if !view_format.is_srgb() {
             return Err(CreateError::Format);
         }
-        Ok(Self { surface, config, view_format, size: [0, 0], configured: false })
+        Ok(Self { surface, config, view_format, configured: false })
     }
 
-    /// Sets the size; takes effect with the next picture.
-    pub(super) fn resize(&mut self, size: [u32; 2]) {
-        if size != self.size {
-            self.size = size;
-            self.configured = false;
+    /// Draws a picture and shows it. `time_s` is the current time on the caller's clock, in
+    /// seconds.
+    pub fn draw(&mut self, renderer: &mut Renderer, time_s: f64) -> DrawOutcome {
+        let outcome = |renderer: &Renderer, or| if renderer.is_lost() { DrawOutcome::Lost } else { or };
+        let size = renderer.size;
+        if renderer.is_lost() || size.contains(&0) {
+            return outcome(renderer, DrawOutcome::Skipped);
         }
+        let Some(texture) = self.next(&renderer.gpu.device, size) else {
+            return outcome(renderer, DrawOutcome::Skipped);
+        };
+        let canvas = Canvas { view: &self.view(&texture), copied: self.copied(&texture), size, keep: true };
+        renderer.draw_on(&canvas, time_s);
+        renderer.gpu.queue.present(texture);
+        outcome(renderer, DrawOutcome::Drawn)
     }
 
-    /// The texture of the next picture, and whether the surface has been configured anew for it; `None` if it cannot be had now.
-    pub(super) fn next(&mut self, device: &wgpu::Device) -> (Option<wgpu::SurfaceTexture>, bool) {
-        let was_configured = self.configured;
-        if !was_configured {
-            self.configure(device);
+    /// The texture of the next picture; `None` if it cannot be had now.
+    fn next(&mut self, device: &wgpu::Device, size: [u32; 2]) -> Option<wgpu::SurfaceTexture> {
+        if !self.configured || size != [self.config.width, self.config.height] {
+            self.configure(device, size);
         }
         match self.surface.get_current_texture() {
-            wgpu::CurrentSurfaceTexture::Success(texture) => (Some(texture), !was_configured),
+            wgpu::CurrentSurfaceTexture::Success(texture) => Some(texture),
             wgpu::CurrentSurfaceTexture::Suboptimal(texture) => {
                 self.configured = false;
-                (Some(texture), !was_configured)
+                Some(texture)
             }
             wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Lost => {
                 // Try once more with a fresh configuration. After a second failure the next call tries again.
-                self.configure(device);
+                self.configure(device, size);
                 match self.surface.get_current_texture() {
                     wgpu::CurrentSurfaceTexture::Success(texture)
-                    | wgpu::CurrentSurfaceTexture::Suboptimal(texture) => (Some(texture), true),
-                    _ => (None, true),
+                    | wgpu::CurrentSurfaceTexture::Suboptimal(texture) => Some(texture),
+                    _ => None,
                 }
             }
-            _ => (None, !was_configured),
+            _ => None,
         }
     }
 
     /// The view through which a texture of this surface is drawn.
-    pub(super) fn view(&self, texture: &wgpu::SurfaceTexture) -> wgpu::TextureView {
+    fn view(&self, texture: &wgpu::SurfaceTexture) -> wgpu::TextureView {
         texture.texture.create_view(&wgpu::TextureViewDescriptor {
             format: Some(self.view_format),
             ..wgpu::TextureViewDescriptor::default()
@@ -88,13 +121,13 @@ impl Screen {
 
     /// The texture, if samples are not to be resolved to its view but copied to it: where the view has another format, a driver may
     /// resolve to the format of the texture, and the picture be too dark (seen in Chromium 156 with SwiftShader's WebGPU).
-    pub(super) fn copied<'a>(&self, texture: &'a wgpu::SurfaceTexture) -> Option<&'a wgpu::Texture> {
+    fn copied<'a>(&self, texture: &'a wgpu::SurfaceTexture) -> Option<&'a wgpu::Texture> {
         let can_copy = self.config.usage.contains(wgpu::TextureUsages::COPY_DST);
         (can_copy && self.view_format != self.config.format).then_some(&texture.texture)
     }
 
-    fn configure(&mut self, device: &wgpu::Device) {
-        [self.config.width, self.config.height] = self.size;
+    fn configure(&mut self, device: &wgpu::Device, size: [u32; 2]) {
+        [self.config.width, self.config.height] = size;
         self.surface.configure(device, &self.config);
         self.configured = true;
     }

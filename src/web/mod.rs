@@ -23,7 +23,7 @@ mod points;
 #[cfg(feature = "page-points")]
 pub use points::Points;
 
-#[cfg(feature = "render")]
+#[cfg(feature = "page-render")]
 mod render;
-#[cfg(feature = "render")]
+#[cfg(feature = "page-render")]
 pub use render::Renderer;

@@ -6,7 +6,7 @@
 use crate::render::chunks::MOST_RECORDS;
 use crate::render::style::{BodyStyle, ClipBoxStyle, CuttingPlane, Drawing, Style};
 use crate::render::view::View;
-use crate::render::{Callbacks, Columns, DrawOutcome, Renderer as Inner};
+use crate::render::{Callbacks, Columns, DrawOutcome, Renderer as Inner, Screen};
 use js_sys::{Array, Float32Array, Function, JSON, Promise, Reflect, Uint8Array, Uint32Array};
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -31,6 +31,7 @@ extern "C" {
 #[wasm_bindgen]
 pub struct Renderer {
     inner: Rc<RefCell<Inner>>,
+    screen: RefCell<Screen>,
     scratch: RefCell<Scratch>,
     canvas: HtmlCanvasElement,
     on_context_lost: Closure<dyn FnMut(web_sys::Event)>,
@@ -77,7 +78,8 @@ impl Renderer {
             on_error: Arc::new(move |message| call_later(&on_error, Array::of1(&message.into()))),
         };
         let target = wgpu::SurfaceTarget::Canvas(canvas.clone());
-        let inner = Rc::new(RefCell::new(Inner::new(target, callbacks).await?));
+        let (screen, inner) = Screen::open(target, callbacks).await?;
+        let (screen, inner) = (RefCell::new(screen), Rc::new(RefCell::new(inner)));
         // wgpu hears nothing of a lost WebGL context. The default action would forbid restoring it.
         let weak = Rc::downgrade(&inner);
         let on_context_lost = Closure::new(move |event: web_sys::Event| {
@@ -91,7 +93,7 @@ impl Renderer {
         canvas
             .add_event_listener_with_callback("webglcontextlost", on_context_lost.as_ref().unchecked_ref())
             .map_err(|_| JsError::new("the canvas takes no event listener"))?;
-        Ok(Self { inner, scratch: RefCell::default(), canvas, on_context_lost })
+        Ok(Self { inner, screen, scratch: RefCell::default(), canvas, on_context_lost })
     }
 
     /// "webgpu" or "webgl2".
@@ -283,7 +285,7 @@ impl Renderer {
 
     /// Draws one picture on the canvas: "drawn", "skipped" (nothing to draw on now) or "lost" (make a new renderer).
     pub fn draw(&self, time_s: f64) -> String {
-        match self.inner.borrow_mut().draw(time_s) {
+        match self.screen.borrow_mut().draw(&mut self.inner.borrow_mut(), time_s) {
             DrawOutcome::Drawn => "drawn",
             DrawOutcome::Skipped => "skipped",
             DrawOutcome::Lost => "lost",

@@ -15,6 +15,7 @@ use crate::chromium;
 use crate::deny;
 use crate::native;
 use crate::node;
+use crate::pictures;
 use crate::project::{Project, cargo};
 use crate::readers;
 use crate::site;
@@ -52,6 +53,8 @@ pub(crate) enum Part {
     /// Files of every format in the programs that people read them with; skipped, with the reason,
     /// without Python.
     Readers,
+    /// Pictures of the renderer, drawn natively by Vulkan, against those that are kept.
+    Pictures,
     /// A core of the browser tests in Firefox and WebKit; skipped, with the reason, where they cannot be had.
     Browsers,
     /// Hundreds of resamplings in Chromium, after which the page holds no more memory than before.
@@ -63,7 +66,7 @@ const USUAL: [Part; 7] =
     [Part::Format, Part::Lint, Part::Native, Part::LintWasm, Part::Parity, Part::Page, Part::Chromium];
 
 /// Everything.
-const ALL: [Part; 14] = [
+const ALL: [Part; 15] = [
     Part::Format,
     Part::Deny,
     Part::Lint,
@@ -72,6 +75,7 @@ const ALL: [Part; 14] = [
     Part::LintWasm,
     Part::Gltf,
     Part::Readers,
+    Part::Pictures,
     Part::Parity,
     Part::Release,
     Part::Page,
@@ -98,7 +102,7 @@ pub(crate) struct Options {
     fast: bool,
     /// Everything that the published site is held to: besides the usual parts the documentation,
     /// the bundles and the site as they are published, Firefox and WebKit, files in the programs
-    /// that read them, all random cases, and a soak. With parts: these, on the published bundles
+    /// that read them, pictures drawn natively, all random cases, and a soak. With parts: these, on the published bundles
     /// and with all random cases.
     #[arg(long)]
     all: bool,
@@ -196,6 +200,7 @@ impl Checks<'_> {
                 Part::Release => release(self.project),
                 Part::Gltf => gltf(self.project),
                 Part::Readers => readers::test(self.project),
+                Part::Pictures => pictures::test(self.project),
                 Part::Page => self.page(),
                 Part::Chromium if self.purpose == Purpose::Site => self.chromium(&[("ALL", "1")]),
                 Part::Chromium => self.chromium(&[]),
@@ -266,7 +271,8 @@ fn format(project: &Project) -> Result<()> {
 
 fn lint(project: &Project) -> Result<()> {
     let mut command = cargo_at_root(project, &["clippy", "--all-targets"]);
-    command.args(native::TESTED).args(["--package", "xtask"]).args(["--", "--deny", "warnings"]);
+    command.args(native::TESTED).args(["--features", "marching-particles/vulkan", "--package", "xtask"]);
+    command.args(["--", "--deny", "warnings"]);
     step::run("lint (native)", &mut command, "").map(drop)
 }
 

@@ -11,6 +11,7 @@ mod fingerprint;
 mod native;
 mod node;
 mod paper;
+mod pictures;
 mod project;
 mod readers;
 mod rust_source;
