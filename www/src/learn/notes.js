@@ -50,7 +50,11 @@ export function createNotes({ now, next, say }) {
         { class: 'speaker' },
         h('p', { class: 'speaker-clock' }, clock),
         h('h1', null, () => now()?.title ?? ''),
-        h('p', { class: 'quiet', hidden: () => !now()?.minutes }, () => `${now()?.minutes} minutes for this chapter.`),
+        h(
+          'p',
+          { class: 'quiet', hidden: () => !now()?.minutes },
+          () => `${now()?.minutes} minutes for a reader, half as many again with a class.`,
+        ),
         h('p', { hidden: () => !now()?.answer }, () => h('b', null, `Answer: ${now()?.answer}`)),
         h('p', null, () => now()?.notes ?? ''),
         h('p', { class: 'speaker-next' }, () => `Next: ${next()?.title ?? 'the end'}`),

@@ -74,7 +74,7 @@ function show(anchor, explanation, side) {
     document.activeElement !== null && anchor.contains(document.activeElement) ? document.activeElement : anchor;
   if (!described.hasAttribute('aria-describedby')) described.setAttribute('aria-describedby', 'explain');
   if (!element.matches(':popover-open')) element.showPopover();
-  place(element, anchor.getBoundingClientRect(), side);
+  placeExplanation(element, anchor, side);
 }
 
 /**
@@ -103,6 +103,31 @@ function clear(top, height) {
   const track = document.querySelector('.levels-track')?.getBoundingClientRect();
   const isOver = track && track.height > 0 && top < track.bottom && top + height > track.top;
   return isOver ? Math.max(MARGIN_PX, track.top - height - MARGIN_PX / 2) : top;
+}
+
+/**
+ * Places an explanation like a popover. Where it would cover charts it stays within the panel of its anchor, or else
+ * comes to lie above the charts.
+ * @param {HTMLElement} element @param {Element} anchor @param {Side} [side]
+ */
+function placeExplanation(element, anchor, side) {
+  place(element, anchor.getBoundingClientRect(), side);
+  const charts = document.querySelector('.levels-charts')?.getBoundingClientRect();
+  if (!charts) return;
+  const isOver = () => {
+    const own = element.getBoundingClientRect();
+    const isBeside = own.right <= charts.left || own.left >= charts.right;
+    return !isBeside && own.bottom > charts.top && own.top < charts.bottom;
+  };
+  if (!isOver()) return;
+  const { width, height } = element.getBoundingClientRect();
+  const panel = anchor.closest('.panel')?.getBoundingClientRect();
+  if (side !== 'left' && panel) {
+    element.style.left = `${Math.max(MARGIN_PX, panel.right - width)}px`;
+    if (!isOver()) return;
+    place(element, anchor.getBoundingClientRect(), side);
+  }
+  element.style.top = `${Math.max(MARGIN_PX, charts.top - height - MARGIN_PX / 2)}px`;
 }
 
 /**

@@ -246,7 +246,7 @@ class Execution {
 
   /**
    * Steps the core until it is done or the job is stopped.
-   * @returns the last progress; null if another job replaces this one
+   * @returns the last progress; null if another job replaces this one, or it has ended without particles
    */
   async sample() {
     const { core, job, env, sent } = this;
@@ -260,8 +260,15 @@ class Execution {
       const why = env.interrupt();
       if (why === 'replace') return null;
       if (why === 'stop') {
-        this.progress = core.cancel();
-        return this.progress;
+        const last = core.cancel();
+        // Particles that follow lie on no surface until they have come to the new one.
+        if (this.followed && sent.count === 0) {
+          this.progress = null;
+          this.done('stopped');
+          return null;
+        }
+        this.progress = last;
+        return last;
       }
       const budget = budgets[phase] ?? FIRST_BUDGET;
       const before = env.nowMs();

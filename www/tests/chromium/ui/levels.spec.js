@@ -193,6 +193,19 @@ test('the charts of the levels', async ({ page }) => {
     await page.mouse.up();
     expect((await state(page)).view).toMatchObject({ level: last, step: null });
     await expect(page.getByRole('img', { name: /^Largest move in each of 10 relaxation steps/ })).toBeVisible();
+    // No explanation lies on their words.
+    const charts = await page.getByRole('group', { name: 'Charts' }).boundingBox();
+    for (const anchor of ['.tile[data-surface="sphere"]', '.levels-track', '.setting[data-setting="size_mode"]']) {
+      await page.locator(anchor).hover();
+      const tip = page.locator('.explain');
+      await expect(tip).toBeVisible();
+      const own = await tip.boundingBox();
+      if (!own || !charts) throw new Error('there is no box');
+      const isBeside = own.x + own.width <= charts.x || own.y + own.height <= charts.y;
+      expect(isBeside, anchor).toBe(true);
+      await page.mouse.move(5, 5);
+      await expect(tip).toBeHidden();
+    }
     await page.getByText('As tables').click();
     await expect(page.getByRole('table', { name: 'Levels' }).getByRole('row')).toHaveCount(last + 2);
     await expect(page.getByRole('table', { name: 'Relaxation' }).getByRole('row')).toHaveCount(12);

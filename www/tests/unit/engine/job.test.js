@@ -251,6 +251,24 @@ describe('a job', () => {
     expect(core.calls.slice(made)).not.toContain('start');
   });
 
+  test('that is stopped before its particles have come to the new surface shows none of them', async () => {
+    const core = fakeCore({ particles: 3000 });
+    const memory = { held: 0, meshed: 0 };
+    await run(core, sampleJob(), { memory });
+    const settings = /** @type {any} */ ({ count: 3000 });
+    const job = sampleJob({ id: 8, kind: 'live', settings, following: [settings] });
+    let looks = 0;
+    const interrupt = () => {
+      looks += 1;
+      return looks > 1 ? 'stop' : null;
+    };
+    const { posted } = await run(core, job, { memory, interrupt });
+    expect(core.calls).toContain('follow');
+    expect(of(posted, 'columns')).toEqual([]);
+    expect(of(posted, 'done')).toMatchObject([{ id: 8, outcome: 'stopped', progress: null, reportFollows: false }]);
+    expect(memory.held).toBe(0);
+  });
+
   test('a live job that is stopped is the last of its drag, and is reported', async () => {
     const { posted } = await run(fakeCore({ particles: 1_000_000 }), sampleJob({ kind: 'live' }), {
       interrupt: () => 'stop',
