@@ -78,8 +78,8 @@ struct Row {
     seconds: f64,
 }
 
-/// Processor time of this thread in seconds, so that other work on the machine does not count, or wall time if the
-/// system does not report it.
+/// Processor time of this thread in seconds, so that other work on the machine does not count, or
+/// wall time if the system does not report it.
 fn processor_seconds(start: Instant) -> f64 {
     std::fs::read_to_string("/proc/thread-self/schedstat")
         .ok()

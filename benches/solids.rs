@@ -29,7 +29,8 @@ const HEAD: &str = "\
 Written by `cargo bench --bench solids --profile dev > docs/tables/solids.md`.
 [solids.md](../solids.md) explains the columns.";
 
-/// A solid: its name, its field, and its exact volume, Euler number and numbers of creases and corners, where they are known.
+/// A solid: its name, its field, and its exact volume, Euler number and numbers of creases and
+/// corners, where they are known.
 struct Solid {
     name: &'static str,
     field: Formula,

@@ -1,12 +1,14 @@
-//! Benchmark of whole runs and their phases on the ellipsoid with semi-axes 1, 0.7 and 0.5, beside a mesher.
+//! Benchmark of whole runs and their phases on the ellipsoid with semi-axes 1, 0.7 and 0.5, beside
+//! a mesher.
 //!
-//! `cargo bench --bench whole -- quick` runs the sizes of the paper's smaller tables, `-- full` runs a million
-//! particles, and without an argument both run. Each ends with three measurements:
+//! `cargo bench --bench whole -- quick` runs the sizes of the paper's smaller tables, `-- full`
+//! runs a million particles, and without an argument both run. Each ends with three measurements:
 //!
-//! * the ratio of the whole run to naive surface nets (`fast-surface-nets`) with as many vertices on the same field,
-//!   timed alternately so that a busy machine disturbs both alike;
+//! * the ratio of the whole run to naive surface nets (`fast-surface-nets`) with as many vertices
+//!   on the same field, timed alternately so that a busy machine disturbs both alike;
 //! * the share of the run that the search for all components takes;
-//! * the whole run on the bunny of 200 points, uniform and adaptive, alternating with the uniform one on the ellipsoid.
+//! * the whole run on the bunny of 200 points, uniform and adaptive, alternating with the uniform
+//!   one on the ellipsoid.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 #![allow(missing_docs, reason = "the macros' items have none")]
 
@@ -43,8 +45,8 @@ struct Job {
 }
 
 impl Job {
-    /// Job whose radius gives about `count` particles. A run that meets the count finds the radius, so that the timed
-    /// runs do the front once.
+    /// Job whose radius gives about `count` particles. A run that meets the count finds the radius,
+    /// so that the timed runs do the front once.
     fn new(count: u32) -> Self {
         let surface = gallery::find("ellipsoid").expect("the gallery has the ellipsoid");
         let by_count = settings!(size_mode: SizeMode::Count,
@@ -84,7 +86,8 @@ fn finish<F: Field>(run: &mut Run<F>) {
     assert_eq!(reason, StopReason::Complete);
 }
 
-/// A mesher, which samples the field on a grid with the same batched evaluation and extracts the surface.
+/// A mesher, which samples the field on a grid with the same batched evaluation and extracts the
+/// surface.
 struct Mesher {
     field: Formula,
     shape: RuntimeShape<u32, 3>,
@@ -189,8 +192,8 @@ fn full(criterion: &mut Criterion) {
     }
 }
 
-/// Processor time of this thread in seconds, so that other work on the machine does not count, or wall time if the
-/// system does not report it.
+/// Processor time of this thread in seconds, so that other work on the machine does not count, or
+/// wall time if the system does not report it.
 fn processor_seconds(start: Instant) -> f64 {
     std::fs::read_to_string("/proc/thread-self/schedstat")
         .ok()
@@ -198,10 +201,11 @@ fn processor_seconds(start: Instant) -> f64 {
         .map_or_else(|| start.elapsed().as_secs_f64(), |nanoseconds| nanoseconds * 1e-9)
 }
 
-/// Prints the medians over rounds of the processor time of the front, the whole job and the mesher, and of the ratio of
-/// the last two.
+/// Prints the medians over rounds of the processor time of the front, the whole job and the mesher,
+/// and of the ratio of the last two.
 fn ratio(count: u32, rounds: usize) {
-    /// Number of runs of the mesher in a round. The system counts time in ticks of a few milliseconds.
+    /// Number of runs of the mesher in a round. The system counts time in ticks of a few
+    /// milliseconds.
     const REPEAT: u32 = 8;
     let job = Job::new(count);
     let mut front = Job::new(count);
@@ -238,8 +242,8 @@ fn ratio(count: u32, rounds: usize) {
     );
 }
 
-/// Prints the share of a run of `count` particles that finding a first point on every component takes: the survey, the
-/// proof, and the check of every candidate.
+/// Prints the share of a run of `count` particles that finding a first point on every component
+/// takes: the survey, the proof, and the check of every candidate.
 fn search_share(id: &str, count: u32, rounds: usize) {
     let surface = gallery::find(id).expect("a gallery surface");
     let mut settings =
@@ -268,7 +272,8 @@ fn search_share(id: &str, count: u32, rounds: usize) {
         assert_eq!(reason, StopReason::Complete);
         let whole = start.elapsed().as_secs_f64();
         if round == 0 {
-            // A wanted count runs the front twice; from here on the radius is given, and it runs once.
+            // A wanted count runs the front twice; from here on the radius is given, and it runs
+            // once.
             let radius_share = radius(&run) / surface.bounds.diagonal();
             settings = Settings::with_radius(Radius::Share(radius_share)).in_box(surface.bounds);
         } else {
@@ -286,8 +291,9 @@ fn search_share(id: &str, count: u32, rounds: usize) {
     );
 }
 
-/// Prints the time per particle of a whole run on the bunny, for the first run, which makes the field's cells, and for
-/// later ones. They alternate with the uniform run on the ellipsoid, which shows how busy the machine is.
+/// Prints the time per particle of a whole run on the bunny, for the first run, which makes the
+/// field's cells, and for later ones. They alternate with the uniform run on the ellipsoid, which
+/// shows how busy the machine is.
 fn bunny(count: u32, rounds: usize) {
     let model = model::find("bunny").expect("the bunny is a model");
     let fit = fit_model(model);
@@ -302,7 +308,8 @@ fn bunny(count: u32, rounds: usize) {
             (processor_seconds(start) - before, radius(&run), run.count())
         };
         let settings = if sampling == Sampling::Uniform {
-            // A run that meets a count does the front twice, so the timed runs are given the radius.
+            // A run that meets a count does the front twice, so the timed runs are given the
+            // radius.
             let radius_share = run(&mut field, &by_count).1 / fit.bounds.diagonal();
             settings!(radius_share; ..Settings::default())
         } else {

@@ -1,4 +1,5 @@
-//! Samples a surface with particles whose size follows the curvature, a step at a time, and tells how far it is.
+//! Samples a surface with particles whose size follows the curvature, a step at a time, and tells
+//! how far it is.
 //!
 //! `cargo run --release --example adaptive`
 

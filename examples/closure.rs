@@ -9,7 +9,8 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::PathBuf;
 
-/// A torus around the z axis, whose tube becomes thinner on one side. Its derivatives are found by differences.
+/// A torus around the z axis, whose tube becomes thinner on one side. Its derivatives are found by
+/// differences.
 fn horn(p: DVec3) -> f64 {
     let ring = p.truncate().length() - 1.0;
     let tube = 0.3 + 0.15 * p.x;

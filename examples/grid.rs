@@ -7,7 +7,8 @@ use marching_particles::{Bounds, Field, Settings, sample};
 use std::error::Error;
 use std::path::PathBuf;
 
-/// Values at the nodes of a grid of so many nodes a side over a box, interpolated linearly along each axis.
+/// Values at the nodes of a grid of so many nodes a side over a box, interpolated linearly along
+/// each axis.
 struct Grid {
     bounds: Bounds,
     nodes: usize,

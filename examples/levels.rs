@@ -1,4 +1,5 @@
-//! Follows the front level by level: how many particles each generation places, and what became of their children.
+//! Follows the front level by level: how many particles each generation places, and what became of
+//! their children.
 //!
 //! `cargo run --release --example levels`
 

@@ -1,6 +1,8 @@
-//! What must hold of any formula, file and request. Each function takes any bytes and panics where something does not hold.
+//! What must hold of any formula, file and request. Each function takes any bytes and panics where
+//! something does not hold.
 //!
-//! libFuzzer calls them (`targets/`), and so does `tests/it/fuzz.rs`, with mutations of the files in `seeds/`.
+//! libFuzzer calls them (`targets/`), and so does `tests/it/fuzz.rs`, with mutations of the files
+//! in `seeds/`.
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::Frame;
@@ -33,8 +35,9 @@ impl Random {
     }
 }
 
-/// A formula: a mistake in it has a place and a message; without one, it means the same once it is printed, and all its readings
-/// agree: value, derivatives, bounds over boxes, and single points in batches.
+/// A formula: a mistake in it has a place and a message; without one, it means the same once it is
+/// printed, and all its readings agree: value, derivatives, bounds over boxes, and single points in
+/// batches.
 pub fn formula(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let mut random = Random::of(bytes);
@@ -90,15 +93,16 @@ pub fn check_value(field: &mut Formula, p: DVec3, below: DVec3, above: DVec3) {
     let value = field.jet(p).value;
     let context = || format!("{} at {p}, {below} {above}: {value}, {out:?}", field.text());
     assert!(!bounds.lo.is_nan() && !bounds.hi.is_nan(), "{}", context());
-    // An intermediate result beyond the numbers makes 0·∞ of what is 0 (`tests/it/formula_properties.rs` asks for more of tamer
-    // formulas), and at a pole the sign of a zero decides that of the infinity.
+    // An intermediate result beyond the numbers makes 0·∞ of what is 0
+    // (`tests/it/formula_properties.rs` asks for more of tamer formulas), and at a pole the sign of
+    // a zero decides that of the infinity.
     if !value.is_nan() && (value.is_finite() || defined) {
         assert!(bounds.holds(value), "{}", context());
     }
 }
 
-/// The bounds of the derivatives over a box hold those at a point of it, and its mean slopes between two points, given as shares of
-/// its size.
+/// The bounds of the derivatives over a box hold those at a point of it, and its mean slopes
+/// between two points, given as shares of its size.
 pub fn check_enclosure(field: &mut Formula, lo: DVec3, size: DVec3, places: [DVec3; 2]) {
     let mut out = [Enclosure::UNKNOWN];
     let around = Bounds::new(lo, lo + size);
@@ -130,7 +134,8 @@ pub fn check_enclosure(field: &mut Formula, lo: DVec3, size: DVec3, places: [DVe
         let is_within = !known.smooth || !exact.is_finite() || bounds.holds(exact);
         assert!(is_within, "{}: {h:?} at {p}, not in {second:?}", field.text());
     }
-    // By the mean value theorem f(q) − f(p) is a slope within the bounds times q − p, even across kinks.
+    // By the mean value theorem f(q) − f(p) is a slope within the bounds times q − p, even across
+    // kinks.
     let (from, to) = (field.jet(p).value, field.jet(q).value);
     let mut rise = Interval::new(0.0, 0.0);
     for axis in 0..3 {
@@ -146,7 +151,8 @@ pub fn check_enclosure(field: &mut Formula, lo: DVec3, size: DVec3, places: [DVe
     assert!(!is_outside, "{}: {from} at {p} and {to} at {q}, but {known:?}", field.text());
 }
 
-/// How far rounding may move the value at a point, by the bounds there: terms may be millions of times as large as their sum.
+/// How far rounding may move the value at a point, by the bounds there: terms may be millions of
+/// times as large as their sum.
 fn rounding(field: &mut Formula, p: DVec3) -> f64 {
     let mut out = [Enclosure::UNKNOWN];
     field.evaluator(Frame::default()).bounded().expect("a formula has bounds").enclose(
@@ -180,7 +186,8 @@ fn check_derivatives(field: &mut Formula, p: DVec3) {
     }
 }
 
-/// A point gives the same bits alone and in a batch, and the same value whatever is asked for with it.
+/// A point gives the same bits alone and in a batch, and the same value whatever is asked for with
+/// it.
 fn check_batch(field: &mut Formula, first: Vec3, length: usize) {
     let points: Vec<Vec3> = (0..length).map(|k| first * (k as f32 * 0.01 + 1.0)).collect();
     let (mut value, mut gradient) = (vec![0.0; length], vec![Vec3::ZERO; length]);
@@ -196,8 +203,8 @@ fn check_batch(field: &mut Formula, first: Vec3, length: usize) {
     assert!(is_same, "{} at {}: {} {}", field.text(), points[k], value[k], alone[0]);
 }
 
-/// A file of points: it is read or refused in words, what is read is finite, and a surface is fitted to
-/// it or refused. The first byte chooses the extension of its name.
+/// A file of points: it is read or refused in words, what is read is finite, and a surface is
+/// fitted to it or refused. The first byte chooses the extension of its name.
 pub fn file(bytes: &[u8]) {
     /// Steps that no job on so small a file needs.
     const MOST_STEPS: u32 = 1_000_000;
@@ -239,7 +246,8 @@ fn parsed(bytes: &[u8]) -> Option<(FieldRequest, Settings)> {
     Some((field, settings))
 }
 
-/// A request: its field and its settings are taken or refused in words, and one of [`SAMPLED`] is checked by [`whole_request`].
+/// A request: its field and its settings are taken or refused in words, and one of [`SAMPLED`] is
+/// checked by [`whole_request`].
 pub fn request(bytes: &[u8]) {
     if Random::of(bytes).0.next_u32().is_multiple_of(SAMPLED) {
         return whole_request(bytes);
@@ -253,8 +261,9 @@ pub fn request(bytes: &[u8]) {
     }
 }
 
-/// A request and its run, which ends within a bounded number of evaluations with finite particles. What is proven is whole, and the
-/// particles depend neither on the size of the steps nor on what the session did before.
+/// A request and its run, which ends within a bounded number of evaluations with finite particles.
+/// What is proven is whole, and the particles depend neither on the size of the steps nor on what
+/// the session did before.
 pub fn whole_request(bytes: &[u8]) {
     let Some((field, settings)) = parsed(bytes) else { return };
     // Small runs, so that there are many.

@@ -1,15 +1,17 @@
-//! Curvature of the surface f = const through a point: principal curvatures and directions from ∇f and ∇∇f (paper §5).
+//! Curvature of the surface f = const through a point: principal curvatures and directions from ∇f
+//! and ∇∇f (paper §5).
 //!
 //! With the unit normal n = ∇f/|∇f| and a tangent basis u, v, the shape operator is [a b; b c] =
-//! [uᵀHu uᵀHv; uᵀHv vᵀHv] / |∇f|, and κ = (a + c)/2 ± √(((a − c)/2)² + b²). One formula serves double precision (the
-//! oracle, figures) and lanes of single precision.
+//! [uᵀHu uᵀHv; uᵀHv vᵀHv] / |∇f|, and κ = (a + c)/2 ± √(((a − c)/2)² + b²). One formula serves
+//! double precision (the oracle, figures) and lanes of single precision.
 //!
 //! # Outcomes
 //!
-//! * *Umbilics* (κ₁ = κ₂: spheres, planes): every tangent direction is principal; the first one of the tangent basis is
-//!   given.
-//! * *Undefined*: where ∇f vanishes, where anything is not finite, and where |∇f|² leaves the range of the numbers (in
-//!   single precision |∇f| below 10⁻¹⁹ or above 10¹⁹), every entry is NaN; see [`Curvature::is_defined`].
+//! * *Umbilics* (κ₁ = κ₂: spheres, planes): every tangent direction is principal; the first one of
+//!   the tangent basis is given.
+//! * *Undefined*: where ∇f vanishes, where anything is not finite, and where |∇f|² leaves the range
+//!   of the numbers (in single precision |∇f| below 10⁻¹⁹ or above 10¹⁹), every entry is NaN; see
+//!   [`Curvature::is_defined`].
 
 use crate::field::{BATCH, Evaluator, Jet};
 use crate::math::{LANES, Lanes, Real, Sym3, frame_of};
@@ -17,15 +19,16 @@ use glam::{DVec3, Vec3};
 
 /// Principal curvatures at a point of a surface, in units of 1/length.
 ///
-/// The curvatures are positive where the surface bends away from its outward normal, as a sphere does: that of radius R has
-/// κ₁ = κ₂ = 1/R.
+/// The curvatures are positive where the surface bends away from its outward normal, as a sphere
+/// does: that of radius R has κ₁ = κ₂ = 1/R.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Curvature<T = f32, V = Vec3> {
     /// Principal curvature κ₁, the larger one.
     pub k1: T,
     /// Principal curvature κ₂, the smaller one.
     pub k2: T,
-    /// Unit principal direction of κ₁, of either sign. That of κ₂ is perpendicular to it and to the normal.
+    /// Unit principal direction of κ₁, of either sign. That of κ₂ is perpendicular to it and to the
+    /// normal.
     pub direction: V,
 }
 
@@ -121,7 +124,8 @@ fn principal<T: Real>(gradient: [T; 3], hessian: &Sym3<T>) -> [T; 5] {
     let half = T::of(0.5);
     let (mean, h) = (half * (a + c), half * (a - c));
     let root = (h * h + b * b).sqrt();
-    // There are two forms of the eigenvector of the larger eigenvalue in (u, v); this is the one without cancellation.
+    // There are two forms of the eigenvector of the larger eigenvalue in (u, v); this is the one
+    // without cancellation.
     let long = root + h.abs();
     let (s, t) = (h.positive(long, b), h.positive(b, long));
     let length = (s * s + t * t).sqrt();

@@ -1,9 +1,9 @@
 //! Evenly spaced particles on an implicit surface f(x, y, z) = 0.
 //!
 //! A [`Field`] is a [`Formula`], a surface of the [gallery], a closure, a model from points, or
-//! anything that implements one method of the trait. [`sample`] covers its zero set with
-//! particles: a front grows over the surface in hexagons, generation level by generation level, and a
-//! few relaxation steps even the spacing out. A [`Sample`] holds the particles, a report on them and
+//! anything that implements one method of the trait. [`sample`] covers its zero set with particles:
+//! a front grows over the surface in hexagons, generation level by generation level, and a few
+//! relaxation steps even the spacing out. A [`Sample`] holds the particles, a report on them and
 //! their mesh. A [`Run`] does the same in steps, for a caller that draws or cancels.
 //!
 //! ```
@@ -25,17 +25,18 @@
 //! # Conventions
 //!
 //! * f < 0 inside; the gradient and the normal point outward.
-//! * Lengths are in the units of the field's own coordinates. Every particle has a *repulsion radius*
-//!   `r`; neighbours sit `2r` apart.
-//! * Angles are in radians, and names say so (`angle_rad`); those of the quality figures are in degrees.
+//! * Lengths are in the units of the field's own coordinates. Every particle has a *repulsion
+//!   radius* `r`; neighbours sit `2r` apart.
+//! * Angles are in radians, and names say so (`angle_rad`); those of the quality figures are in
+//!   degrees.
 //! * The sampler computes in single precision and SIMD lanes, the oracles and the set-up in double
 //!   precision.
 //! * The same field, settings and seed give the same particles to the last bit, natively and in
 //!   WebAssembly: every sum has a fixed order, no clock or platform function is used, and
 //!   transcendental functions are [our own](math::functions).
 //! * A `Result` is for the user's data, a [`StopReason`] for what a run met, a [`Warning`] for what
-//!   its user should know, and a panic for a mistake in the calling code; routines that can panic say
-//!   when.
+//!   its user should know, and a panic for a mistake in the calling code; routines that can panic
+//!   say when.
 //!
 //! # Glossary
 //!

@@ -1,20 +1,24 @@
-//! The particles of a run as a structure of arrays: a column for each attribute. Rows are in the order in which the front placed the
-//! particles, so generation levels are contiguous; particles that fill gaps come last.
+//! The particles of a run as a structure of arrays: a column for each attribute. Rows are in the
+//! order in which the front placed the particles, so generation levels are contiguous; particles
+//! that fill gaps come last.
 
 use crate::math::{Bounds, FNV_START, NONE, fnv};
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 
-/// Particle columns. A particle has one row; one on a crease, or at the tip of a cone, has several, with one position and a normal each:
-/// see [`Particles::twins`]. On a surface that is smooth everywhere row `i` is particle `i`.
+/// Particle columns. A particle has one row; one on a crease, or at the tip of a cone, has several,
+/// with one position and a normal each: see [`Particles::twins`]. On a surface that is smooth
+/// everywhere row `i` is particle `i`.
 ///
-/// The columns up to `slots` have a value for each row. The others say themselves what theirs belong to.
+/// The columns up to `slots` have a value for each row. The others say themselves what theirs
+/// belong to.
 #[derive(Clone, Debug, Default)]
 pub struct Particles {
-    /// The point from which positions are counted, in the coordinates of the formula. See [`Bounds::local_origin`].
+    /// The point from which positions are counted, in the coordinates of the formula. See
+    /// [`Bounds::local_origin`].
     pub origin: DVec3,
-    /// Position on the surface, counted from `origin`: [`Particles::place`] has it in the coordinates
-    /// of the formula, [`Sample::positions`](crate::Sample::positions) those of all.
+    /// Position on the surface, counted from `origin`: [`Particles::place`] has it in the
+    /// coordinates of the formula, [`Sample::positions`](crate::Sample::positions) those of all.
     pub local: Vec<Vec3>,
     /// Unit normal along the gradient of f: outward where f is smaller inside, as by the convention
     /// of this crate.
@@ -32,22 +36,26 @@ pub struct Particles {
     ///
     /// [`Patches::branch_at`]: crate::field::Patches::branch_at
     pub patch: Vec<u32>,
-    /// For each of the first rows, the first row of the same particle. A particle on a crease has a row for each patch that meets
-    /// there: all with its position, each with the normal of its patch. One at the tip of a cone has a row for each of the sheets that end
-    /// there, with the mean normal of the sheet. These rows come before all others and do not move.
+    /// For each of the first rows, the first row of the same particle. A particle on a crease has a
+    /// row for each patch that meets there: all with its position, each with the normal of its
+    /// patch. One at the tip of a cone has a row for each of the sheets that end there, with the
+    /// mean normal of the sheet. These rows come before all others and do not move.
     pub twins: Vec<u32>,
     /// Pairs of particles that follow each other along a crease, each by its first row.
     pub segments: Vec<[u32; 2]>,
-    /// For each of the segments, pairs of a patch on its left and one on its right, seen from outside: one pair, or two where the factors of a
-    /// product cross.
+    /// For each of the segments, pairs of a patch on its left and one on its right, seen from
+    /// outside: one pair, or two where the factors of a product cross.
     pub sides: Vec<Vec<[u32; 2]>>,
-    /// Opposite faces of a cell on which the particles are the same, see [`UnitCell`](crate::field::UnitCell).
+    /// Opposite faces of a cell on which the particles are the same, see
+    /// [`UnitCell`](crate::field::UnitCell).
     pub opposite: Vec<OppositeFaces>,
-    /// For each row, the first row of the particle on the lowest faces of a cell of which its own is the image: of its own particle, but
-    /// on an upper face. Empty unless opposite faces are the same.
+    /// For each row, the first row of the particle on the lowest faces of a cell of which its own
+    /// is the image: of its own particle, but on an upper face. Empty unless opposite faces are the
+    /// same.
     pub periodic: Vec<u32>,
-    /// Number by which a particle that follows a moving surface is known as long as it lives, in ascending order; those of the run before it
-    /// moved are the first. Empty unless the surface has moved.
+    /// Number by which a particle that follows a moving surface is known as long as it lives, in
+    /// ascending order; those of the run before it moved are the first. Empty unless the surface
+    /// has moved.
     pub identity: Vec<u32>,
 }
 
@@ -76,19 +84,21 @@ impl<T> Rows for Vec<T> {
     }
 }
 
-/// Two opposite faces of a cell with the same particles: their coordinates are the same bit for bit but that across the faces.
+/// Two opposite faces of a cell with the same particles: their coordinates are the same bit for bit
+/// but that across the faces.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct OppositeFaces {
     /// The axis across the faces: 0, 1 or 2.
     pub axis: u8,
     /// The patches that the lower and the upper face are.
     pub patches: [u32; 2],
-    /// Pairs of rows: that of a particle on the lower face, of its patch, and that of the same particle on the upper face.
+    /// Pairs of rows: that of a particle on the lower face, of its patch, and that of the same
+    /// particle on the upper face.
     pub rows: Vec<[u32; 2]>,
 }
 
-/// Fate of a slot around a particle. Slots are in the order of their angles: six in a hexagon (paper §4.4), up to ten
-/// where radii vary (§5).
+/// Fate of a slot around a particle. Slots are in the order of their angles: six in a hexagon
+/// (paper §4.4), up to ten where radii vary (§5).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
@@ -132,12 +142,13 @@ impl SlotFate {
 pub struct Slots(pub u32);
 
 impl Slots {
-    /// Slots of a particle, at most: as many as there is room for below [`SINGULAR`](Self::SINGULAR).
+    /// Slots of a particle, at most: as many as there is room for below
+    /// [`SINGULAR`](Self::SINGULAR).
     pub const COUNT: usize = Self::SINGULAR.trailing_zeros() as usize / Self::BITS;
     /// Bits of a fate.
     pub const BITS: usize = 3;
-    /// Bit that is set if the surface has a singular point, where its gradient vanishes, within 2r. It is bit 30; the
-    /// slots take the bits below it.
+    /// Bit that is set if the surface has a singular point, where its gradient vanishes, within 2r.
+    /// It is bit 30; the slots take the bits below it.
     pub const SINGULAR: u32 = 1 << 30;
     /// The bits of slot 0.
     const FATE: u32 = (1 << Self::BITS) - 1;
@@ -165,7 +176,8 @@ impl Particles {
     /// Parent index of a seed.
     pub const NO_PARENT: u32 = NONE;
 
-    /// Returns the number of rows: of particles, on a surface that is smooth everywhere. [`Report::count`] is the number of particles on any.
+    /// Returns the number of rows: of particles, on a surface that is smooth everywhere.
+    /// [`Report::count`] is the number of particles on any.
     ///
     /// [`Report::count`]: crate::Report::count
     #[must_use]
@@ -222,21 +234,23 @@ impl Particles {
         [position, normal, radius, parent, level, slots, patch, twins, periodic, identity]
     }
 
-    /// The first row of the particle of row `i`: `i` itself, but for the further rows of a particle on a crease.
+    /// The first row of the particle of row `i`: `i` itself, but for the further rows of a particle
+    /// on a crease.
     #[must_use]
     pub fn first_row(&self, i: usize) -> usize {
         self.twins.get(i).map_or(i, |&first| first as usize)
     }
 
-    /// For each of the first rows, the first row of the same vertex: of the same particle, but for the rows of a [tip](Self::tips), each of
-    /// which is a vertex of its own.
+    /// For each of the first rows, the first row of the same vertex: of the same particle, but for
+    /// the rows of a [tip](Self::tips), each of which is a vertex of its own.
     pub(crate) fn joints(&self) -> Vec<u32> {
         let mut joints = self.twins.clone();
         self.tips().into_iter().for_each(|tip| joints[tip as usize] = tip);
         joints
     }
 
-    /// The rows of tips, in ascending order: particles with rows of their own through which no crease runs.
+    /// The rows of tips, in ascending order: particles with rows of their own through which no
+    /// crease runs.
     pub(crate) fn tips(&self) -> Vec<u32> {
         let Self { twins, segments, .. } = self;
         let mut is_tip = vec![true; twins.len()];
@@ -244,7 +258,8 @@ impl Particles {
         (0..twins.len() as u32).filter(|&i| is_tip[twins[i as usize] as usize]).collect()
     }
 
-    /// Gives all rows of a particle on a crease the least radius of them. Returns whether some had another one.
+    /// Gives all rows of a particle on a crease the least radius of them. Returns whether some had
+    /// another one.
     pub(crate) fn share_radii(&mut self) -> bool {
         let Self { radius, twins, .. } = self;
         let mut has_lowered = false;
@@ -270,7 +285,8 @@ impl Particles {
         self.opposite = opposite;
     }
 
-    /// Number of pairs of particles on opposite faces of a cell; none unless such faces are the same.
+    /// Number of pairs of particles on opposite faces of a cell; none unless such faces are the
+    /// same.
     #[must_use]
     pub fn pairs(&self) -> Option<usize> {
         let pairs = self.opposite.iter().map(|faces| faces.rows.len()).sum();
@@ -353,8 +369,8 @@ impl Particles {
         fronts
     }
 
-    /// Removes the particles outside a box. One whose parent is removed is a seed then, and levels are counted from it.
-    /// Returns the new row of each, as [`Self::keep`] does.
+    /// Removes the particles outside a box. One whose parent is removed is a seed then, and levels
+    /// are counted from it. Returns the new row of each, as [`Self::keep`] does.
     pub(crate) fn keep_within(&mut self, bounds: &Bounds) -> Vec<u32> {
         let is_inside: Vec<bool> = self.local.iter().map(|&p| bounds.contains(p)).collect();
         let place = self.keep(|i| is_inside[i]);
@@ -365,8 +381,8 @@ impl Particles {
         place
     }
 
-    /// Keeps some of the particles, in their order. One whose parent is removed has none then. Returns the new row of each particle,
-    /// [`Self::NO_PARENT`] for one that is removed.
+    /// Keeps some of the particles, in their order. One whose parent is removed has none then.
+    /// Returns the new row of each particle, [`Self::NO_PARENT`] for one that is removed.
     pub(crate) fn keep(&mut self, is_kept: impl Fn(usize) -> bool) -> Vec<u32> {
         let mut place = vec![Self::NO_PARENT; self.len()];
         let kept = (0..self.len()).filter(|&i| is_kept(i));
@@ -379,7 +395,8 @@ impl Particles {
         place
     }
 
-    /// Names the first row that is kept of every particle on a crease, where each row has got a new place.
+    /// Names the first row that is kept of every particle on a crease, where each row has got a new
+    /// place.
     fn name_twins(&mut self, place: &[u32]) {
         let mut first = vec![Self::NO_PARENT; self.twins.len()];
         for (twin, &place) in self.twins.iter_mut().zip(place) {
@@ -397,8 +414,8 @@ impl Particles {
         self.opposite.clear();
     }
 
-    /// Returns the FNV-1a hash of the bits of the origin, unless that is zero, and of all columns. Equal digests mean equal runs,
-    /// on any machine.
+    /// Returns the FNV-1a hash of the bits of the origin, unless that is zero, and of all columns.
+    /// Equal digests mean equal runs, on any machine.
     #[must_use]
     pub fn digest(&self) -> u64 {
         let mut hash = FNV_START;

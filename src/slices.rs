@@ -1,8 +1,9 @@
 //! Long computations in slices of bounded length.
 //!
-//! A computation is an `async` function that awaits [`pause`] wherever it may be interrupted, so the compiler makes its
-//! state machine. It never waits for anything, so it needs no waker. The owner does as many slices as there is time
-//! for, and cancels the computation by dropping it. The result does not depend on how slices were grouped.
+//! A computation is an `async` function that awaits [`pause`] wherever it may be interrupted, so
+//! the compiler makes its state machine. It never waits for anything, so it needs no waker. The
+//! owner does as many slices as there is time for, and cancels the computation by dropping it. The
+//! result does not depend on how slices were grouped.
 //!
 //! A method of the sampler is such a function, too. It works on what the sampler has, with a field
 //! that comes anew with every step: see its desk.
@@ -19,7 +20,8 @@ pub type Work<'a, T> = Pin<Box<dyn Future<Output = T> + Send + 'a>>;
 #[cfg(target_arch = "wasm32")]
 pub type Work<'a, T> = Pin<Box<dyn Future<Output = T> + 'a>>;
 
-/// Items in a slice of work, of 10 to 50 µs, of which each takes up to a microsecond or two: they search a tree, or evaluate a field.
+/// Items in a slice of work, of 10 to 50 µs, of which each takes up to a microsecond or two: they
+/// search a tree, or evaluate a field.
 pub const HEAVY: usize = 32;
 /// Items that take some 100 ns each: they ask their neighbours, or a field evaluates them in lanes.
 pub const MEDIUM: usize = 8 * HEAVY;
@@ -37,8 +39,8 @@ pub fn ranges(count: usize, size: usize) -> impl Iterator<Item = Range<usize>> +
     (0..count).step_by(size).map(move |first| first..(first + size).min(count))
 }
 
-/// Does up to `budget` slices and returns the result, if the last one is done. The computation must not be advanced
-/// after that.
+/// Does up to `budget` slices and returns the result, if the last one is done. The computation must
+/// not be advanced after that.
 pub fn advance<T>(mut work: Pin<&mut (impl Future<Output = T> + ?Sized)>, budget: u32) -> Option<T> {
     let mut context = Context::from_waker(Waker::noop());
     (0..budget).find_map(|_| match work.as_mut().poll(&mut context) {

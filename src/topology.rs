@@ -17,8 +17,8 @@ pub struct Component {
 }
 
 impl Component {
-    /// Euler number: vertices − edges + triangles. It is 2 − 2g for a closed oriented surface of genus g, and one less for each
-    /// border loop.
+    /// Euler number: vertices − edges + triangles. It is 2 − 2g for a closed oriented surface of
+    /// genus g, and one less for each border loop.
     #[must_use]
     pub fn euler(&self) -> i64 {
         i64::from(self.vertices) - i64::from(self.edges) + i64::from(self.triangles)
@@ -27,15 +27,18 @@ impl Component {
 
 /// The connectivity of a list of triangles.
 ///
-/// The triangles form an oriented manifold, closed or with border, if [`Topology::is_manifold`] says so.
+/// The triangles form an oriented manifold, closed or with border, if [`Topology::is_manifold`]
+/// says so.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Topology {
-    /// Connected components in the order of their first vertices. Vertices without a triangle belong to none.
+    /// Connected components in the order of their first vertices. Vertices without a triangle
+    /// belong to none.
     pub components: Vec<Component>,
-    /// Border loops: vertices in order, the mesh on the left. A loop that meets a vertex with several fans ends there.
+    /// Border loops: vertices in order, the mesh on the left. A loop that meets a vertex with
+    /// several fans ends there.
     pub borders: Vec<Vec<u32>>,
-    /// Directed edges that belong to more than one triangle: two triangles there have opposite orientations, or there are more
-    /// than two.
+    /// Directed edges that belong to more than one triangle: two triangles there have opposite
+    /// orientations, or there are more than two.
     pub crowded_edges: Vec<[u32; 2]>,
     /// Vertices whose triangles form more than one fan.
     pub pinched_vertices: Vec<u32>,
@@ -95,8 +98,8 @@ struct StarCounts {
 }
 
 impl Topology {
-    /// The connectivity of `triangles` over the vertices `0..vertex_count`. Linear in both, while no vertex has very many
-    /// triangles.
+    /// The connectivity of `triangles` over the vertices `0..vertex_count`. Linear in both, while
+    /// no vertex has very many triangles.
     ///
     /// # Panics
     ///
@@ -123,7 +126,8 @@ impl Topology {
         topology
     }
 
-    /// Whether every edge has one or two triangles of equal orientation and every vertex one fan of them.
+    /// Whether every edge has one or two triangles of equal orientation and every vertex one fan of
+    /// them.
     #[must_use]
     pub fn is_manifold(&self) -> bool {
         self.crowded_edges.is_empty() && self.pinched_vertices.is_empty()
@@ -244,8 +248,8 @@ impl Topology {
     }
 }
 
-/// Whether the corners, no two of which have the same vertex before or after them, form one fan; if so, they are put in
-/// its order, counter-clockwise.
+/// Whether the corners, no two of which have the same vertex before or after them, form one fan; if
+/// so, they are put in its order, counter-clockwise.
 fn is_one_fan(corners: &mut [[u32; 2]]) -> bool {
     let mut count = 1;
     while count < corners.len() {

@@ -1,14 +1,17 @@
-//! Holds the sources to the module graph of the crate's documentation, and to files of a readable length.
+//! Holds the sources to the module graph of the crate's documentation, and to files of a readable
+//! length.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The modules that each module of a room may use. A room is a folder of modules, the crate itself the outermost.
+/// The modules that each module of a room may use. A room is a folder of modules, the crate itself
+/// the outermost.
 type Room = (&'static str, &'static [(&'static str, &'static [&'static str])]);
 
-/// Who may use whom in the rooms whose order is a decision. A module of a listed room that is not listed has no place in it
-/// yet; what is not listed may not be used. Parents, which declare their modules, may be used by them.
+/// Who may use whom in the rooms whose order is a decision. A module of a listed room that is not
+/// listed has no place in it yet; what is not listed may not be used. Parents, which declare their
+/// modules, may be used by them.
 const ROOMS: [Room; 4] = [
     (
         "",
@@ -22,7 +25,8 @@ const ROOMS: [Room; 4] = [
             ("extent", &["math", "slices", "field"]),
             // From a file to a field. The core that samples is built without it.
             ("pointcloud", &["math", "field", "spatial", "topology", "slices"]),
-            // Particles, meshes of them and the search among them know no field: they hold whatever made them.
+            // Particles, meshes of them and the search among them know no field: they hold whatever
+            // made them.
             ("spatial", &["math", "slices"]),
             ("particles", &["math"]),
             ("topology", &["slices"]),
@@ -53,7 +57,8 @@ const ROOMS: [Room; 4] = [
                 ],
             ),
             ("session", &["math", "slices", "field", "extent", "sampler", "run", "export"]),
-            // The paper written for reading, and the oracle of the fast fronts: it knows nothing of them.
+            // The paper written for reading, and the oracle of the fast fronts: it knows nothing of
+            // them.
             ("paper", &["math", "field", "differential", "particles"]),
             // The lesson shares some words and numbers with the sampler, no algorithm.
             ("lesson", &["math", "field", "differential", "particles", "paper", "sampler"]),
@@ -292,7 +297,8 @@ fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Every module of the library with its source, comments and tests taken out. The command-line tool is a crate of its own.
+/// Every module of the library with its source, comments and tests taken out. The command-line tool
+/// is a crate of its own.
 fn sources() -> Vec<(Vec<String>, String)> {
     let src = root().join("src");
     let files = files_under(&src, &["rs"]).into_iter().filter(|file| !file.starts_with(src.join("bin")));
@@ -455,7 +461,8 @@ fn without_tests(code: &str) -> &str {
     code.split_once("#[cfg(test)]\nmod tests {").map_or(code, |(before, _)| before)
 }
 
-/// The paths that a file of the module `module` names from the crate's root, `super` or `self`, resolved to the root.
+/// The paths that a file of the module `module` names from the crate's root, `super` or `self`,
+/// resolved to the root.
 fn paths_used(code: &str, module: &[String]) -> Vec<Vec<String>> {
     let mut found = Vec::new();
     for root in ["crate::", "super::", "self::"] {

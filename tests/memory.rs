@@ -31,7 +31,8 @@ unsafe impl GlobalAlloc for Counting {
         unsafe { System.dealloc(memory, layout) }
     }
 
-    // The system grows a large block in place or moves its pages, so the old and the new block are not both in use.
+    // The system grows a large block in place or moves its pages, so the old and the new block are
+    // not both in use.
     unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         let used = USED.fetch_add(size, Ordering::Relaxed) + size - layout.size();
         USED.fetch_sub(layout.size(), Ordering::Relaxed);
@@ -44,17 +45,18 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Maximum number of bytes per particle beyond the output. The front takes them for the neighbour lists, the grid and
-/// the reserve for a denser packing; the relaxation takes them for the lists, the forces, the positions before the step
-/// and a smaller grid.
+/// Maximum number of bytes per particle beyond the output. The front takes them for the neighbour
+/// lists, the grid and the reserve for a denser packing; the relaxation takes them for the lists,
+/// the forces, the positions before the step and a smaller grid.
 const MOST: f64 = 60.0;
 
-/// The same for adaptive sampling, which also keeps the radii before the step and the displacements since their last
-/// update.
+/// The same for adaptive sampling, which also keeps the radii before the step and the displacements
+/// since their last update.
 const MOST_ADAPTIVE: f64 = 64.0;
 
-/// The same for refined runs. While the particles of the last level are handed on, there are also its mesh, with positions and
-/// normals of its own, the walk that orders them, and the level before; where sizes differ, also those that are wanted.
+/// The same for refined runs. While the particles of the last level are handed on, there are also
+/// its mesh, with positions and normals of its own, the walk that orders them, and the level
+/// before; where sizes differ, also those that are wanted.
 const MOST_REFINED: f64 = 110.0;
 
 /// How far what a run is expected to take may be off, in either direction.
@@ -98,8 +100,8 @@ fn assert_expected(settings: Settings, bytes: f64) {
     }
 }
 
-/// Bytes per particle beyond the output, in the worst of the runs. The memory of the survey, which does not grow with
-/// the number of particles, cancels against that of the `small` run.
+/// Bytes per particle beyond the output, in the worst of the runs. The memory of the survey, which
+/// does not grow with the number of particles, cancels against that of the `small` run.
 fn beyond(small: Settings, runs: &[Settings]) -> f64 {
     let (few, fixed) = peak_of(small);
     runs.iter().fold(0.0, |worst, &settings| {

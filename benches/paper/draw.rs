@@ -12,7 +12,8 @@ const SAMPLES: usize = 3;
 /// Radius of a disc as drawn, over that of its particle, so that neighbours stay apart.
 const SHOWN: f32 = 0.93;
 
-/// The ground: discs this much wider, and so far below, in radii. Together they leave no gap between neighbours.
+/// The ground: discs this much wider, and so far below, in radii. Together they leave no gap
+/// between neighbours.
 const GROUND: [f32; 2] = [1.6, 0.3];
 
 /// Contents and camera of a picture.
@@ -112,7 +113,8 @@ impl Canvas {
     }
 }
 
-/// Draws a set as a square of `side` pixels: red, green, blue and coverage of each, rows from the top.
+/// Draws a set as a square of `side` pixels: red, green, blue and coverage of each, rows from the
+/// top.
 pub(crate) fn draw(set: &Set, view: &View, colour: Colour, side: usize) -> Vec<u8> {
     let samples = side * SAMPLES;
     let mut canvas = Canvas {

@@ -93,7 +93,8 @@ impl Outcome {
     }
 }
 
-/// Processor time of this thread, so that other work on the machine does not count, or wall time if the system does not report it.
+/// Processor time of this thread, so that other work on the machine does not count, or wall time if
+/// the system does not report it.
 struct Stopwatch(Instant, f64);
 
 impl Stopwatch {
@@ -128,12 +129,13 @@ pub(crate) struct Job {
 const MOST_PARTICLES: u32 = 200_000;
 const MOST_ITERATIONS: u32 = 10_000;
 
-/// The largest and the smallest radius of adaptive particles, in radii of as many particles of one size. The paper has such limits
-/// and does not name them.
+/// The largest and the smallest radius of adaptive particles, in radii of as many particles of one
+/// size. The paper has such limits and does not name them.
 const RADII: [f64; 2] = [0.4, 2.0];
 
 impl Job {
-    /// The job of sampling this surface with about so many particles: the sizes with which the fast sampler places them.
+    /// The job of sampling this surface with about so many particles: the sizes with which the fast
+    /// sampler places them.
     pub(crate) fn new(id: &str, sampling: Sampling, count: u32) -> Self {
         let surface = Surface::of(id);
         let wanted = settings!(size_mode: SizeMode::Count, count; ..Settings::default());
@@ -233,7 +235,8 @@ impl Job {
             let Some(last) = run.chapters().last() else { continue };
             if matches!(last.kind, ChapterKind::Relaxation { .. } | ChapterKind::Iteration { .. }) {
                 relaxation += took;
-                // A chapter with a new number has begun within this step: what the step took is counted as its own.
+                // A chapter with a new number has begun within this step: what the step took is
+                // counted as its own.
                 last_step = if progress.chapters == chapter { last_step + took } else { took };
             } else {
                 generation += took;

@@ -1,4 +1,5 @@
-//! Figs 7 and 8: how adaptive children are placed, drawn from the events of the run in the tangent plane.
+//! Figs 7 and 8: how adaptive children are placed, drawn from the events of the run in the tangent
+//! plane.
 
 use glam::{DVec2, DVec3};
 use marching_particles::lesson::{Event, Vector};
@@ -59,7 +60,8 @@ pub(crate) struct Treated {
 }
 
 impl Treated {
-    /// Reads what was done around each particle from the events of a run without relaxation, whose particles at the end are given.
+    /// Reads what was done around each particle from the events of a run without relaxation, whose
+    /// particles at the end are given.
     pub(crate) fn all(events: &[Event], particles: &[Particle]) -> Vec<Self> {
         let mut all: Vec<Self> = Vec::new();
         for event in events {
@@ -106,7 +108,8 @@ impl Treated {
         }
     }
 
-    /// Whether the particle shows all that Fig. 8 shows: children with room and without, and neighbours that were there.
+    /// Whether the particle shows all that Fig. 8 shows: children with room and without, and
+    /// neighbours that were there.
     pub(crate) fn is_telling(&self) -> bool {
         let with_room = self.attempts.iter().filter(|attempt| attempt.fits()).count();
         with_room >= 1

@@ -72,7 +72,8 @@ impl<'a> File<'a> {
         self.content.normals.as_ref().unwrap_or(&self.content.vertices)
     }
 
-    /// Number of rows: a row takes up to a microsecond to write, but for GLB and 3MF, which are written as a whole.
+    /// Number of rows: a row takes up to a microsecond to write, but for GLB and 3MF, which are
+    /// written as a whole.
     pub(crate) fn rows(&self) -> usize {
         let Indexed { rows, triangles, .. } = &self.content.vertices;
         match self.wish.format {
@@ -88,7 +89,8 @@ impl<'a> File<'a> {
         self.write_rows(0..self.rows(), out)
     }
 
-    /// Writes some of the rows, those at the start with what comes before them. One part after the other they make the file.
+    /// Writes some of the rows, those at the start with what comes before them. One part after the
+    /// other they make the file.
     ///
     /// # Errors
     ///

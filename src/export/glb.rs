@@ -58,7 +58,8 @@ pub(super) fn write(
     columns.iter().try_for_each(|column| out.write_all(&column.bytes))
 }
 
-/// The contents of the buffer; each column is a multiple of four bytes long. The triangles come last.
+/// The contents of the buffer; each column is a multiple of four bytes long. The triangles come
+/// last.
 fn columns(particles: &Particles, Indexed { rows, normals, triangles }: &Indexed) -> Vec<BufferColumn> {
     if triangles.is_empty() {
         return Vec::new();
@@ -142,9 +143,9 @@ fn document(columns: &[BufferColumn], length: usize, origin: DVec3, record: &Rec
     format!("{{{}}}", members.join(","))
 }
 
-/// Colours of the generation levels up to `last`, linear, with opacity: those of the page on a light
-/// ground around a seed, from blue to sand with a light ring every eight levels. They are computed
-/// in OKLab (Björn Ottosson, "A perceptual color space for image processing", 2020).
+/// Colours of the generation levels up to `last`, linear, with opacity: those of the page on a
+/// light ground around a seed, from blue to sand with a light ring every eight levels. They are
+/// computed in OKLab (Björn Ottosson, "A perceptual color space for image processing", 2020).
 fn colours(last: u32) -> Vec<[u8; 4]> {
     /// Levels from one light ring to the next, and exponent of the way from blue to sand.
     const RING: f32 = 8.0;

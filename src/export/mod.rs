@@ -1,4 +1,5 @@
-//! Export of particles to PLY, CSV, XYZ and NPY, and of triangle meshes over them to GLB, OBJ, STL, PLY and 3MF.
+//! Export of particles to PLY, CSV, XYZ and NPY, and of triangle meshes over them to GLB, OBJ, STL,
+//! PLY and 3MF.
 
 mod file;
 mod glb;
@@ -35,7 +36,8 @@ pub enum Format {
     Csv,
     /// Text, one `x y z nx ny nz` per line.
     Xyz,
-    /// NumPy array of shape (N, 6), `<f4`, or `<f8` where the particles have an origin of their own: position and normal.
+    /// NumPy array of shape (N, 6), `<f4`, or `<f8` where the particles have an origin of their
+    /// own: position and normal.
     Npy,
 }
 
@@ -72,7 +74,8 @@ impl From<Format> for ParticleFile {
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum ColumnKind {
-    /// A coordinate: in double precision where the particles have an origin of their own, else in single precision.
+    /// A coordinate: in double precision where the particles have an origin of their own, else in
+    /// single precision.
     Coordinate,
     /// Number in single precision.
     Float,
@@ -210,7 +213,8 @@ pub const COLUMNS: &[Column] = &[
     // The first row of the particle: a particle on a crease has one for each patch.
     column("particle", ColumnKind::Uint, |particles, _, i| CellValue::Uint(particles.first_row(i) as u32))
         .only(Presence::Creased),
-    // The particle that it is on the lowest faces of a cell: itself, but for the images on the opposite ones.
+    // The particle that it is on the lowest faces of a cell: itself, but for the images on the
+    // opposite ones.
     column("periodic", ColumnKind::Uint, |particles, _, i| CellValue::Uint(particles.periodic[i]))
         .only(Presence::Periodic),
     column("identity", ColumnKind::Uint, |particles, _, i| CellValue::Uint(particles.identity[i]))
@@ -229,9 +233,10 @@ fn columns(particles: &Particles, measured: &quality::Measurements) -> Vec<&'sta
     COLUMNS.iter().filter(is_there).collect()
 }
 
-/// Writes `particles` to `out`, which should be buffered: a record for each of their rows. `measured` is the report on them:
-/// where it is empty, its columns are left out; particles beyond its end get a valence of 0 and NaN for the rest. Floats in
-/// text are the shortest that read back to the same bits. PLY carries the record, in comments.
+/// Writes `particles` to `out`, which should be buffered: a record for each of their rows.
+/// `measured` is the report on them: where it is empty, its columns are left out; particles beyond
+/// its end get a valence of 0 and NaN for the rest. Floats in text are the shortest that read back
+/// to the same bits. PLY carries the record, in comments.
 ///
 /// # Errors
 ///
@@ -363,7 +368,8 @@ fn npy(particles: &Particles, out: &mut dyn Write) -> io::Result<()> {
     let kind = if is_double(particles) { "<f8" } else { "<f4" };
     let mut header =
         format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}, 6), }}", particles.len());
-    // Magic, version and length take 10 bytes. A line feed ends the header, and the data starts at a multiple of 64.
+    // Magic, version and length take 10 bytes. A line feed ends the header, and the data starts at
+    // a multiple of 64.
     let padding = 64 - (10 + header.len() + 1) % 64;
     header.extend(core::iter::repeat_n(' ', padding % 64));
     header.push('\n');

@@ -11,7 +11,8 @@ const MARK: &str = "marching_particles";
 /// The longest comment line, in characters. MeshLab reads no PLY header line of more than 512.
 const LONGEST_LINE: usize = 200;
 
-/// A record as the formats carry it: its mark and the JSON, without the characters that end a comment or begin a tag.
+/// A record as the formats carry it: its mark and the JSON, without the characters that end a
+/// comment or begin a tag.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordText(Option<String>);
 
@@ -62,7 +63,8 @@ impl RecordText {
         self.0.as_ref().map(|json| format!("{MARK} {json}"))
     }
 
-    /// The record as a member of an object of JSON, with a comma before it; nothing without a record.
+    /// The record as a member of an object of JSON, with a comma before it; nothing without a
+    /// record.
     pub(super) fn member(&self) -> String {
         self.0.as_ref().map_or(String::new(), |json| format!(r#","extras":{{"{MARK}":{json}}}"#))
     }

@@ -1,8 +1,8 @@
 //! 3MF: a mesh for printers, with its unit.
 //!
-//! The specification is the 3MF Consortium's, "3D Manufacturing Format, Core Specification" 1.3. A file is a ZIP archive of a document of
-//! XML and two that lead to it. The entries are stored as they are, which every reader takes: packing would need code of several times
-//! this size.
+//! The specification is the 3MF Consortium's, "3D Manufacturing Format, Core Specification" 1.3. A
+//! file is a ZIP archive of a document of XML and two that lead to it. The entries are stored as
+//! they are, which every reader takes: packing would need code of several times this size.
 
 use super::placement::{Placement, Unit};
 use super::record::RecordText;
@@ -77,7 +77,8 @@ impl Archive<'_> {
     fn add(&mut self, name: &str, content: &[u8]) -> io::Result<()> {
         let size =
             u32::try_from(content.len()).map_err(|_| io::Error::other("a 3MF file holds up to 4 GiB"))?;
-        // Version 2.0, no flags, stored, and the first moment of the format's clock: the same mesh gives the same file.
+        // Version 2.0, no flags, stored, and the first moment of the format's clock: the same mesh
+        // gives the same file.
         let mut fields = [20_u16, 0, 0, 0, 0x21].map(u16::to_le_bytes).as_flattened().to_vec();
         fields.extend([crc(content), size, size].map(u32::to_le_bytes).as_flattened());
         fields.extend([name.len() as u16, 0].map(u16::to_le_bytes).as_flattened());

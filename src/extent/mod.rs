@@ -1,11 +1,14 @@
 //! The extent of a surface: the box that fits it.
 //!
-//! A scan of a cube by interval arithmetic finds the cells in which the surface may have an extreme along an axis, and whether it
-//! goes on through the faces of the cube. The first cube reaches to ±10⁴. Where the surface stays inside, its box is that of the
-//! extremes. Where it goes on for ever, smaller cubes follow, until it stays inside one (a sphere and a far plane), shows where
-//! its bends are, or is known to pass near the origin. What no interval decides is looked at on a grid.
+//! A scan of a cube by interval arithmetic finds the cells in which the surface may have an extreme
+//! along an axis, and whether it goes on through the faces of the cube. The first cube reaches to
+//! ±10⁴. Where the surface stays inside, its box is that of the extremes. Where it goes on for
+//! ever, smaller cubes follow, until it stays inside one (a sphere and a far plane), shows where
+//! its bends are, or is known to pass near the origin. What no interval decides is looked at on a
+//! grid.
 //!
-//! The work is counted in cells and can be left and gone on with; the result is the same to the last bit everywhere.
+//! The work is counted in cells and can be left and gone on with; the result is the same to the
+//! last bit everywhere.
 
 mod sampled;
 mod scan;
@@ -19,32 +22,41 @@ use glam::DVec3;
 use scan::{Effort, Scan};
 use serde::Serialize;
 
-/// Half-widths of the cubes that are searched, the largest first, each about a fifth of the one before. With half or twice all of them
-/// a third to a half of 68 random surfaces, most of which go on for ever, have another box: it is that of the cube.
+/// Half-widths of the cubes that are searched, the largest first, each about a fifth of the one
+/// before. With half or twice all of them a third to a half of 68 random surfaces, most of which go
+/// on for ever, have another box: it is that of the cube.
 pub(crate) const HALVES: [f64; 6] = [10_000.0, 2_000.0, 400.0, 80.0, 16.0, 4.0];
-/// Half-width of the box of a surface that goes on for ever and passes near the origin: that of the smallest cube that is searched. A gyroid
-/// has one and a quarter periods in it.
+/// Half-width of the box of a surface that goes on for ever and passes near the origin: that of the
+/// smallest cube that is searched. A gyroid has one and a quarter periods in it.
 const USUAL_HALF: f64 = HALVES[HALVES.len() - 1];
-/// Shortest period of a surface of which that box shows not too much: four of them. Of a shorter one the box shows two.
+/// Shortest period of a surface of which that box shows not too much: four of them. Of a shorter
+/// one the box shows two.
 const SHORT_PERIOD: f64 = 0.5 * USUAL_HALF;
-/// The box where there is no surface, or nothing is known of it: a unit sphere fills half of its width.
+/// The box where there is no surface, or nothing is known of it: a unit sphere fills half of its
+/// width.
 pub const FALLBACK: Bounds = Bounds::cube(2.0);
-/// Room around the bends of an endless surface, as a share of their box: how they go on is seen on all sides of them. So the bends fill two
-/// thirds of it. Half and double give 7 of 24 random endless surfaces another box, and the figures are the same within 1 %.
+/// Room around the bends of an endless surface, as a share of their box: how they go on is seen on
+/// all sides of them. So the bends fill two thirds of it. Half and double give 7 of 24 random
+/// endless surfaces another box, and the figures are the same within 1 %.
 const ROOM: f64 = 0.25;
-/// Room around a surface on every side, as a share of its box: three radii of a hundredth of the diagonal, so that the box is the same for
-/// all smaller particles. Half of it gives 9 of 21 random surfaces another box, and the figures are the same within 1 %; with double
-/// the share of particles with six neighbours is 2 points smaller.
+/// Room around a surface on every side, as a share of its box: three radii of a hundredth of the
+/// diagonal, so that the box is the same for all smaller particles. Half of it gives 9 of 21 random
+/// surfaces another box, and the figures are the same within 1 %; with double the share of
+/// particles with six neighbours is 2 points smaller.
 const MARGIN: f64 = 0.05;
-/// Room around a surface in radii of particles: children are proposed at two radii, and one more keeps them off the faces.
+/// Room around a surface in radii of particles: children are proposed at two radii, and one more
+/// keeps them off the faces.
 const MARGIN_RADII: f64 = 3.0;
-/// The room in radii is not more than this share of the longest side: the surface fills at least half of it.
+/// The room in radii is not more than this share of the longest side: the surface fills at least
+/// half of it.
 const MOST_MARGIN: f64 = 0.5;
-/// Cells visited at most for a short formula: 20 to 50 milliseconds. With half as many 19 of 68 random surfaces have another box, mostly a
-/// wider one, with twice as many 13, mostly a tighter one.
+/// Cells visited at most for a short formula: 20 to 50 milliseconds. With half as many 19 of 68
+/// random surfaces have another box, mostly a wider one, with twice as many 13, mostly a tighter
+/// one.
 const MOST_CELLS: usize = 32_768;
-/// Largest number of operations of a formula that may have [`MOST_CELLS`]. A longer one may have fewer cells, in inverse proportion. Of 16 random
-/// sums of as many waves half of it gives 12 another box, a wider one, and double 8, a tighter one.
+/// Largest number of operations of a formula that may have [`MOST_CELLS`]. A longer one may have
+/// fewer cells, in inverse proportion. Of 16 random sums of as many waves half of it gives 12
+/// another box, a wider one, and double 8, a tighter one.
 const SHORT: usize = 64;
 
 /// Whether a surface is bounded.
@@ -52,7 +64,8 @@ const SHORT: usize = 64;
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Reach {
-    /// The surface within ±10⁴ lies in the box: by proof, or by what grids show of it where no bounds decide.
+    /// The surface within ±10⁴ lies in the box: by proof, or by what grids show of it where no
+    /// bounds decide.
     Bounded,
     /// The surface continues outside the box.
     Endless,
@@ -73,14 +86,16 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// The box with room for particles whose radius is at most a share of its diagonal, which may depend on the box: 5 % on every side, and
-    /// three radii. A box that cuts the surface has room already.
+    /// The box with room for particles whose radius is at most a share of its diagonal, which may
+    /// depend on the box: 5 % on every side, and three radii. A box that cuts the surface has room
+    /// already.
     #[must_use]
     pub fn with_room(&self, share_in: impl Fn(&Bounds) -> f64) -> Bounds {
         if self.reach != Reach::Bounded {
             return self.bounds;
         }
-        /// Rounds in which room and diagonal follow each other; the room settles by a factor of ten in each for usual radii.
+        /// Rounds in which room and diagonal follow each other; the room settles by a factor of ten
+        /// in each for usual radii.
         const ROUNDS: u32 = 8;
         let size = self.bounds.size();
         let most = MOST_MARGIN * size.max_element();
@@ -183,15 +198,17 @@ fn of_periods(periods: [Option<f64>; 3]) -> Option<Bounds> {
     is_short.then(|| placeable(&Bounds::symmetric(half)))
 }
 
-/// A box of one period along every axis on which the surface of a field has one, and as wide as `bounds` along the others. Any such box
-/// holds all of the surface. This one has its corners away from the surface, where |f| is largest on a grid, and its faces away from
-/// planes of symmetry, which often touch the surface: creases are plain curves then.
+/// A box of one period along every axis on which the surface of a field has one, and as wide as
+/// `bounds` along the others. Any such box holds all of the surface. This one has its corners away
+/// from the surface, where |f| is largest on a grid, and its faces away from planes of symmetry,
+/// which often touch the surface: creases are plain curves then.
 #[must_use]
 pub fn unit_cell(field: &dyn Field, periods: [Option<f64>; 3], bounds: &Bounds) -> Bounds {
-    /// Places of the corner along each axis. On six random surfaces |f| at the corner is 97 % of the largest in the cell, with half as many
-    /// places 84 %, with twice as many 98 %.
+    /// Places of the corner along each axis. On six random surfaces |f| at the corner is 97 % of
+    /// the largest in the cell, with half as many places 84 %, with twice as many 98 %.
     const SIDE: u32 = 8;
-    /// Share of the way between two places at which the first one is, by the golden ratio: planes of symmetry are at simple fractions.
+    /// Share of the way between two places at which the first one is, by the golden ratio: planes
+    /// of symmetry are at simple fractions.
     const ASIDE: f64 = 0.382;
     let periods = DVec3::from_array(periods.map(Option::unwrap_or_default));
     let is_repeated = periods.cmpgt(DVec3::ZERO);

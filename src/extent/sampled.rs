@@ -8,12 +8,13 @@ use glam::{DVec3, Vec3};
 
 /// Cells along a side of a grid: as many as those of the survey.
 pub(crate) const CELLS: usize = 32;
-/// The grid is laid anew over what it found, with a cell around it, until that fills this share of it: further grids would hardly be
-/// smaller. Of 68 random surfaces the box of one is found by grids; with half of it the box is the same.
+/// The grid is laid anew over what it found, with a cell around it, until that fills this share of
+/// it: further grids would hardly be smaller. Of 68 random surfaces the box of one is found by
+/// grids; with half of it the box is the same.
 const FULL: f64 = 0.6;
 
-/// Finds the smallest cube through whose faces the surface does not pass, and its box in it. The surface goes on if the grid of a larger cube
-/// shows more.
+/// Finds the smallest cube through whose faces the surface does not pass, and its box in it. The
+/// surface goes on if the grid of a larger cube shows more.
 pub(super) async fn find(field: &dyn Field) -> Extent {
     // In single precision rounding decides the sign far from the origin, where terms nearly cancel.
     let mut evaluator = field.evaluator(Frame { double: Some(1.0), ..Frame::default() });
@@ -77,7 +78,8 @@ fn layer_of(over: &Bounds, k: usize) -> Vec<Vec3> {
     (0..NODES * NODES).map(|m| node(m).as_vec3()).collect()
 }
 
-/// The box of the cells at whose corners f changes its sign, with a cell of room, and whether one of them lies at the faces.
+/// The box of the cells at whose corners f changes its sign, with a cell of room, and whether one
+/// of them lies at the faces.
 async fn changes(field: &mut dyn Evaluator, over: &Bounds) -> Option<(Bounds, bool)> {
     let (lo, step) = (over.lo(), over.size() / CELLS as f64);
     let mut below = vec![f32::NAN; NODES * NODES];

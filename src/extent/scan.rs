@@ -19,26 +19,32 @@ use crate::math::{Bounds, sort_few};
 use crate::slices::{HEAVY, pause};
 use glam::DVec3;
 
-/// The cubes are not centred on the origin, where many surfaces have planes of symmetry that would run along the faces of cells.
+/// The cubes are not centred on the origin, where many surfaces have planes of symmetry that would
+/// run along the faces of cells.
 const OFF_CENTRE: DVec3 = DVec3::new(0.013, 0.007, 0.019);
-/// Factor by which the cube is enlarged, so that it reaches its half-width on every side although its centre is moved: 1 plus the largest
-/// component of [`OFF_CENTRE`], rounded up.
+/// Factor by which the cube is enlarged, so that it reaches its half-width on every side although
+/// its centre is moved: 1 plus the largest component of [`OFF_CENTRE`], rounded up.
 const LARGER: f64 = 1.02;
-/// The extremes are known to this share of the longest side of their box: a third of the room that is left around it.
+/// The extremes are known to this share of the longest side of their box: a third of the room that
+/// is left around it.
 const FINE: f64 = 1.0 / 64.0;
-/// Where no cells are left to visit, this share will do. With [`FINE`] in its place 2 of 68 random surfaces have a box that is a tenth
-/// larger.
+/// Where no cells are left to visit, this share will do. With [`FINE`] in its place 2 of 68 random
+/// surfaces have a box that is a tenth larger.
 const COARSE: f64 = 1.0 / 16.0;
-/// Halvings after which what is still in the cells at the faces, a 128th of the cube wide, counts as passing through them: a test holds a
-/// scan to a fiftieth of its half-width. With 6, 11 of 68 random surfaces have another box, with 8, 2.
+/// Halvings after which what is still in the cells at the faces, a 128th of the cube wide, counts
+/// as passing through them: a test holds a scan to a fiftieth of its half-width. With 6, 11 of 68
+/// random surfaces have another box, with 8, 2.
 const FACE_LEVEL: u32 = 7;
-/// Halvings at most, for an isolated point: places are counted in 32 bits. With 15, 24 of 68 random surfaces have another box.
+/// Halvings at most, for an isolated point: places are counted in 32 bits. With 15, 24 of 68 random
+/// surfaces have another box.
 const DEPTH: u32 = 30;
-/// Cells of a level that are many while some lie at the faces: eighths of them are a third of the cells that a scan may visit. Half of it
-/// gives 7 of 68 random surfaces another box, twice as much none, for 1.06 times the cells.
+/// Cells of a level that are many while some lie at the faces: eighths of them are a third of the
+/// cells that a scan may visit. Half of it gives 7 of 68 random surfaces another box, twice as much
+/// none, for 1.06 times the cells.
 const MANY_AT_FACES: usize = 1_500;
-/// Where a level of this depth, which has 512 cells, drops less than a tenth of them, the bounds say nothing. Without this rule 136 random
-/// surfaces take 1.1 times the cells, and surfaces of short periods eight times.
+/// Where a level of this depth, which has 512 cells, drops less than a tenth of them, the bounds
+/// say nothing. Without this rule 136 random surfaces take 1.1 times the cells, and surfaces of
+/// short periods eight times.
 const IDLE_LEVEL: u32 = 3;
 const IDLE_SHARE: f64 = 0.9;
 /// Parts of a cell that are looked into at a time: two for each of the eight corners of a cell that
@@ -65,7 +71,8 @@ pub(super) enum Scan {
     Inside(Bounds),
     /// As [`Scan::Inside`], but at a side of the box no part of the surface is seen.
     TooLarge(Bounds),
-    /// The surface passes through the faces of the cube: f changes its sign there. The box is that of its bends, if these are few.
+    /// The surface passes through the faces of the cube: f changes its sign there. The box is that
+    /// of its bends, if these are few.
     Crossing(Option<Bounds>),
     /// The bounds do not decide it.
     Undecided,
@@ -186,7 +193,8 @@ fn hull(level: &ScanLevel, kept: &[OpenCell]) -> Bounds {
     Bounds { min, max }
 }
 
-/// The box of the bends of a surface that goes on: of the cells with an extreme, where these are few and none lies at the faces.
+/// The box of the bends of a surface that goes on: of the cells with an extreme, where these are
+/// few and none lies at the faces.
 async fn bends(
     field: &mut dyn Bounded,
     mut level: ScanLevel,

@@ -1,15 +1,20 @@
-//! Newton's method along the gradient, in single precision: from points near a surface to points on it, a batch at a time.
+//! Newton's method along the gradient, in single precision: from points near a surface to points on
+//! it, a batch at a time.
 //!
-//! Seeds, the relaxation and the figures move their points here, each with limits of its own. The others move one point:
+//! Seeds, the relaxation and the figures move their points here, each with limits of its own. The
+//! others move one point:
 //!
 //! * [`newton`](crate::math::newton) moves it in double precision.
 //! * `sampler::discovery::nearness` does, too, and looks at the second derivative at each step.
-//! * `sampler::constraint::tips` moves a direction along a sphere, and `sampler::projection` an angle along a circle.
-//! * `sampler::refine` moves a particle along planes of the box, and `sampler::sheet` asks after each step whether there is one sheet;
-//!   both take the [`step`] of this file.
-//! * `quality::sheets` takes one step at a time on its way along a surface, `sampler::discovery::sheets` takes turns with a box, and
-//!   `sampler::discovery::audit` stays in a plane on its way.
-//! * `sampler::discovery::singular` looks for a zero of the gradient, and `field::formula::creases` for one of two functions at once.
+//! * `sampler::constraint::tips` moves a direction along a sphere, and `sampler::projection` an
+//!   angle along a circle.
+//! * `sampler::refine` moves a particle along planes of the box, and `sampler::sheet` asks after
+//!   each step whether there is one sheet; both take the [`step`] of this file.
+//! * `quality::sheets` takes one step at a time on its way along a surface,
+//!   `sampler::discovery::sheets` takes turns with a box, and `sampler::discovery::audit` stays in
+//!   a plane on its way.
+//! * `sampler::discovery::singular` looks for a zero of the gradient, and `field::formula::creases`
+//!   for one of two functions at once.
 
 use super::{BATCH, Evaluator};
 use glam::Vec3;
@@ -35,8 +40,9 @@ pub(crate) struct Descent {
     pub(crate) residual: f32,
     /// Largest distance from the starting point; a point that moves farther is given up.
     pub(crate) reach: f32,
-    /// Length of a correction below which the point is not evaluated again. Newton's method converges quadratically, so
-    /// the residual is then below the order of the tolerance. The normal is that of the point before the correction.
+    /// Length of a correction below which the point is not evaluated again. Newton's method
+    /// converges quadratically, so the residual is then below the order of the tolerance. The
+    /// normal is that of the point before the correction.
     pub(crate) trust: f32,
 }
 
@@ -79,11 +85,13 @@ impl Descents for [Descent; BATCH] {
     }
 }
 
-/// Moves each of at most [`BATCH`] points onto the surface along the gradient. Returns the number of evaluations.
+/// Moves each of at most [`BATCH`] points onto the surface along the gradient. Returns the number
+/// of evaluations.
 ///
-/// `normal[i]` becomes the unit normal, and `ok[i]` whether the point is on the surface within the limits of
-/// `descents`. A point is given up after `max_steps` evaluations, when it has moved too far, and where the field is
-/// undefined or its gradient is not above `min_gradient`; it stays where its last step has led.
+/// `normal[i]` becomes the unit normal, and `ok[i]` whether the point is on the surface within the
+/// limits of `descents`. A point is given up after `max_steps` evaluations, when it has moved too
+/// far, and where the field is undefined or its gradient is not above `min_gradient`; it stays
+/// where its last step has led.
 pub(crate) fn descend(
     field: &mut dyn Evaluator,
     points: &mut [Vec3],

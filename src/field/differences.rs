@@ -282,12 +282,14 @@ impl Evaluator for Differences<'_> {
     }
 }
 
-/// Number of values that a gradient takes and a second-order jet, and of gradients that a jet takes.
+/// Number of values that a gradient takes and a second-order jet, and of gradients that a jet
+/// takes.
 const SLOPE: usize = 4;
 const JET: usize = 19;
 const AROUND: usize = 7;
 
-/// Place `k` of the four whose values give a gradient: the point itself, then one ahead along each axis.
+/// Place `k` of the four whose values give a gradient: the point itself, then one ahead along each
+/// axis.
 fn at_slope(p: DVec3, k: usize, h: f64) -> DVec3 {
     if k == 0 { p } else { p + DVec3::AXES[k - 1] * h }
 }

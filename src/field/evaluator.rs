@@ -13,7 +13,8 @@ const COMFORTABLE: f64 = (1_u64 << 40) as f64;
 /// How an [`Evaluator`] counts places and brings values within reach of the numbers that they are
 /// computed with.
 ///
-/// The default counts from zero and takes f as it is. A survey of the surface chooses one for a whole run.
+/// The default counts from zero and takes f as it is. A survey of the surface chooses one for a
+/// whole run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// The point from which places and boxes are counted, in the coordinates of the field: single
@@ -231,7 +232,8 @@ pub trait Evaluator: super::MaybeSend {
 ///
 /// Box `boxes[i]` belongs to `out[i]`.
 pub trait Bounded: Evaluator {
-    /// Number of operations that an evaluation takes, by which work is shared out; 0 if it is not known.
+    /// Number of operations that an evaluation takes, by which work is shared out; 0 if it is not
+    /// known.
     fn operations(&self) -> usize {
         0
     }

@@ -16,16 +16,17 @@ use glam::DVec3;
 /// [`Formula`](crate::Formula) with `min`, `max` and `abs` has its edges.
 ///
 /// Give the box of the surface where it is known ([`Settings::in_box`](crate::Settings::in_box)).
-/// Without one, grids of 32 cells a side look for changes of sign over cubes around the origin, from
-/// ±4 to ±10,000, each four or five times as wide as the one before. The box is fitted to what lies
-/// in the smallest cube through whose faces the surface does not pass. What is smaller than the cells
-/// of its grid is not seen, and a small part far away is missed without a word. Where a larger grid
-/// shows more, a warning says so ([`Warning::Beyond`](crate::Warning::Beyond)); where none shows
-/// anything, [`Error::NoBox`](crate::Error::NoBox) does.
+/// Without one, grids of 32 cells a side look for changes of sign over cubes around the origin,
+/// from ±4 to ±10,000, each four or five times as wide as the one before. The box is fitted to what
+/// lies in the smallest cube through whose faces the surface does not pass. What is smaller than
+/// the cells of its grid is not seen, and a small part far away is missed without a word. Where a
+/// larger grid shows more, a warning says so ([`Warning::Beyond`](crate::Warning::Beyond)); where
+/// none shows anything, [`Error::NoBox`](crate::Error::NoBox) does.
 ///
 /// A function that takes long is asked less often in a box that is given, with its gradient, by a
 /// coarser survey ([`Settings::survey_cells`](crate::Settings::survey_cells)) and without measuring
-/// ([`Run::finish_unmeasured`](crate::Run::finish_unmeasured)); [`FnField::limit_calls`] sets an end.
+/// ([`Run::finish_unmeasured`](crate::Run::finish_unmeasured)); [`FnField::limit_calls`] sets an
+/// end.
 ///
 /// ```
 /// use glam::DVec3;
@@ -122,8 +123,8 @@ where
 /// A field given by a function of a batch of points, with its gradients or without.
 ///
 /// The function writes f at each point, of which there are 512 at most. It may fail: the run ends
-/// then, and gives the error. A function that has failed once is not asked again, by no run. What is
-/// said of [`FnField`] holds here, too.
+/// then, and gives the error. A function that has failed once is not asked again, by no run. What
+/// is said of [`FnField`] holds here, too.
 pub struct BatchField<F, E = FieldError, G = fn(&[DVec3], &mut [DVec3]) -> Result<(), E>> {
     values: F,
     gradients: Option<G>,

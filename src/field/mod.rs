@@ -27,9 +27,10 @@ use core::ops::Deref;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Largest number of points in a call of a field: large enough to hide the cost of a call, and of decoding a formula,
-/// small enough for the first-level cache. Where a formula is decoded for half as many, six runs on random surfaces take 0.4 to 1.7 % more
-/// instructions, for a quarter 1.4 to 5.2 %. The result for a point does not depend on it.
+/// Largest number of points in a call of a field: large enough to hide the cost of a call, and of
+/// decoding a formula, small enough for the first-level cache. Where a formula is decoded for half
+/// as many, six runs on random surfaces take 0.4 to 1.7 % more instructions, for a quarter 1.4 to
+/// 5.2 %. The result for a point does not depend on it.
 pub(crate) const BATCH: usize = 128;
 
 /// Second-order jet of a field at a point, in double precision.
@@ -55,9 +56,11 @@ pub struct Enclosure {
     pub defined: bool,
     /// Whether f is certainly continuous where it is defined.
     pub continuous: bool,
-    /// Whether the gradient is certainly continuous. Where it jumps, bounds of the second derivatives are meaningless.
+    /// Whether the gradient is certainly continuous. Where it jumps, bounds of the second
+    /// derivatives are meaningless.
     pub smooth: bool,
-    /// Whether f may vanish in the box. Zeros can be excluded even if the bounds have both signs, as those of 1/x.
+    /// Whether f may vanish in the box. Zeros can be excluded even if the bounds have both signs,
+    /// as those of 1/x.
     pub may_vanish: bool,
 }
 
@@ -141,7 +144,8 @@ pub trait Field: MaybeSend + MaybeSync {
         self.value_and_gradient(p).0
     }
 
-    /// f, ∇f and ∇∇f at `p`. By default the second derivatives are central differences of the gradient.
+    /// f, ∇f and ∇∇f at `p`. By default the second derivatives are central differences of the
+    /// gradient.
     fn jet(&self, p: DVec3) -> Jet {
         jet_by_differences(self, p)
     }
@@ -169,7 +173,8 @@ pub trait Field: MaybeSend + MaybeSync {
         None
     }
 
-    /// This field as one whose surface may have creases. By default there is none: the field is smooth.
+    /// This field as one whose surface may have creases. By default there is none: the field is
+    /// smooth.
     #[doc(hidden)]
     fn creased(&self) -> Option<&dyn Creased> {
         None
@@ -180,7 +185,8 @@ pub trait Field: MaybeSend + MaybeSync {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Facts {
-    /// The period of f along each axis: 0 if f does not change along it, none if f is not known to be periodic.
+    /// The period of f along each axis: 0 if f does not change along it, none if f is not known to
+    /// be periodic.
     pub periods: [Option<f64>; 3],
     /// The box that closes the solid f ≤ 0 as a cell. What its opposite faces cut is the same along
     /// every axis that it repeats.
@@ -228,9 +234,9 @@ impl UnitCell {
 /// ∛ε of double precision, rounded to a power of two so that p ± h loses no digit of h.
 const STEP: f64 = 1.0 / 131_072.0;
 
-/// Length of the steps of central differences at `p`: ∛ε of its largest coordinate, or of 1 if that is smaller. It is the best
-/// compromise between the error of the formula, of order h², and that of rounding, of order ε/h (Press et al., "Numerical Recipes",
-/// §5.7).
+/// Length of the steps of central differences at `p`: ∛ε of its largest coordinate, or of 1 if that
+/// is smaller. It is the best compromise between the error of the formula, of order h², and that of
+/// rounding, of order ε/h (Press et al., "Numerical Recipes", §5.7).
 pub(crate) fn difference_step(p: DVec3) -> f64 {
     STEP * p.abs().max_element().max(1.0)
 }
@@ -246,7 +252,8 @@ fn jet_by_differences<F: Field + ?Sized>(field: &F, p: DVec3) -> Jet {
     jet_of_slopes(value, gradient, [x, y, z])
 }
 
-/// The jet with these derivatives of the gradient along the axes, which rounding leaves a little asymmetric.
+/// The jet with these derivatives of the gradient along the axes, which rounding leaves a little
+/// asymmetric.
 fn jet_of_slopes(value: f64, gradient: DVec3, [x, y, z]: [DVec3; 3]) -> Jet {
     let (xy, xz, yz) = (0.5 * (x.y + y.x), 0.5 * (x.z + z.x), 0.5 * (y.z + z.y));
     Jet { value, gradient, hessian: Sym3 { xx: x.x, xy, xz, yy: y.y, yz, zz: z.z } }
@@ -287,6 +294,6 @@ impl<P: Deref<Target: Field> + MaybeSend + MaybeSync> Field for P {
     }
 }
 
-/// Sine of the angle between two branches from which on they make a crease: one degree, less than light and shadow show. Half and double
-/// give the same particles on 24 random solids.
+/// Sine of the angle between two branches from which on they make a crease: one degree, less than
+/// light and shadow show. Half and double give the same particles on 24 random solids.
 pub(crate) const SHARP: f64 = 0.0175;

@@ -1,6 +1,7 @@
 //! Descriptions of models from points: the built-in ones, and reports of fits.
 //!
-//! The points themselves and the fitting are in the module `pointcloud`, which the core of the page is built without.
+//! The points themselves and the fitting are in the module `pointcloud`, which the core of the page
+//! is built without.
 
 use crate::math::Bounds;
 use core::ops::RangeInclusive;
@@ -8,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 /// Numbers of centres that can be asked for, of [`fit_points`](crate::fit_points) for example.
 pub const CENTRES: RangeInclusive<u32> = 100..=800;
-/// Maximum size of a file of points in bytes. Fifty million bytes hold some millions of points, thousands of times more than an
-/// interpolant can have centres.
+/// Maximum size of a file of points in bytes. Fifty million bytes hold some millions of points,
+/// thousands of times more than an interpolant can have centres.
 pub const MAX_FILE_BYTES: u32 = 50_000_000;
 /// Default number of centres, which is that of the paper's models (§6).
 pub const DEFAULT_CENTRES: u32 = 200;
@@ -38,13 +39,14 @@ pub struct ModelInfo {
     pub credit: String,
     /// Number of points read.
     pub points: u32,
-    /// Number of centres of the function. If every point is one, the surface goes through all of them.
+    /// Number of centres of the function. If every point is one, the surface goes through all of
+    /// them.
     pub centres: u32,
     /// Estimated condition number of the system.
     pub condition: f64,
-    /// Mean residual |f|/|∇f| of all distinct points read, as a share of the diagonal of their box: their distance from the surface
-    /// to first order (G. Taubin, "Estimation of Planar Curves, Surfaces, and Nonplanar Space Curves Defined by Implicit
-    /// Equations", 1991).
+    /// Mean residual |f|/|∇f| of all distinct points read, as a share of the diagonal of their box:
+    /// their distance from the surface to first order (G. Taubin, "Estimation of Planar Curves,
+    /// Surfaces, and Nonplanar Space Curves Defined by Implicit Equations", 1991).
     pub residual_mean: f64,
     /// Residual that 95 % of them do not exceed, as a share of that diagonal.
     pub residual_95: f64,
@@ -56,7 +58,8 @@ pub struct ModelInfo {
     pub mesh: Option<GivenMesh>,
     /// Origin of the normals.
     pub normals: NormalSource,
-    /// Warnings for the user, as sentences: they go from the bundle that fits a model to the one that samples it.
+    /// Warnings for the user, as sentences: they go from the bundle that fits a model to the one
+    /// that samples it.
     pub warnings: Vec<String>,
 }
 
@@ -66,8 +69,8 @@ pub struct ModelInfo {
 pub struct GivenMesh {
     /// Area of all faces, in the units of the file.
     pub area: f64,
-    /// Components, Euler number and border loops, if every edge has one or two faces of equal orientation. Corners that coincide in single
-    /// precision are one.
+    /// Components, Euler number and border loops, if every edge has one or two faces of equal
+    /// orientation. Corners that coincide in single precision are one.
     pub topology: Option<GivenTopology>,
 }
 

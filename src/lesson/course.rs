@@ -1,7 +1,7 @@
 //! The course of a run: which chapter comes next, and the units of work in it.
 //!
-//! A chapter is what a snapshot is taken before: a generation level, the filling of gaps, a relaxation step, or an iteration of a
-//! particle system.
+//! A chapter is what a snapshot is taken before: a generation level, the filling of gaps, a
+//! relaxation step, or an iteration of a particle system.
 
 use super::dynamics::{Dynamics, largest_move};
 use super::event::Event;
@@ -18,8 +18,8 @@ use serde::Serialize;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-/// Distance at which the size of f tells a zero from a pole, in radii: ten times the residual, where f beside a pole has a tenth of its
-/// size and f beside a zero ten times as much.
+/// Distance at which the size of f tells a zero from a pole, in radii: ten times the residual,
+/// where f beside a pole has a tenth of its size and f beside a zero ten times as much.
 const POLE_PROBE: f64 = 1e-3;
 
 /// Kind of a chapter.
@@ -134,8 +134,8 @@ impl Course {
         }
     }
 
-    /// Goes on with another surface in the same box. The particles go there by Newton's method; one that does not arrive within its
-    /// radius, or comes to another side of the surface, is gone.
+    /// Goes on with another surface in the same box. The particles go there by Newton's method; one
+    /// that does not arrive within its radius, or comes to another side of the surface, is gone.
     pub(super) fn follow(&mut self, field: Box<dyn Field>) {
         let mut surface = ImplicitSurface::new(field, &self.run.surface.bounds);
         surface.evaluations = self.run.surface.evaluations;

@@ -1,7 +1,7 @@
 //! The events of a run: plain data, in the order in which they happen.
 //!
-//! Events of a child name its `parent` and its `slot`, since the children of a level may be placed together. Lengths are in the
-//! field's coordinates, angles in radians.
+//! Events of a child name its `parent` and its `slot`, since the children of a level may be placed
+//! together. Lengths are in the field's coordinates, angles in radians.
 
 use crate::paper::{Nearby, Particle};
 use crate::particles::SlotFate;
@@ -10,8 +10,8 @@ use serde::Serialize;
 /// A point or a direction.
 pub type Vector = [f64; 3];
 
-/// An event. [`Event::Seed`], [`Event::Added`], [`Event::Fate`], [`Event::Done`], [`Event::Moved`], [`Event::Divided`] and
-/// [`Event::Died`] change the particles; the others tell why.
+/// An event. [`Event::Seed`], [`Event::Added`], [`Event::Fate`], [`Event::Done`], [`Event::Moved`],
+/// [`Event::Divided`] and [`Event::Died`] change the particles; the others tell why.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonEvent"))]
 #[serde(tag = "type", rename_all = "snake_case")]
@@ -30,7 +30,8 @@ pub enum Event {
         /// Number of particles that wait.
         waiting: u32,
     },
-    /// A particle that is not done is taken from the queue ("while it exists one particle marked as not done").
+    /// A particle that is not done is taken from the queue ("while it exists one particle marked as
+    /// not done").
     Taken {
         /// The particle.
         particle: u32,
@@ -98,7 +99,8 @@ pub enum Event {
         /// The particles of any sheet that were found, by index.
         neighbours: Vec<Nearby>,
     },
-    /// A child is compared with the nearest particle of its sheet ("if an existing particle correspond").
+    /// A child is compared with the nearest particle of its sheet ("if an existing particle
+    /// correspond").
     Compared {
         /// The particle that places the child.
         parent: u32,
@@ -106,7 +108,8 @@ pub enum Event {
         slot: u32,
         /// Position at which the child was compared: the predicted one, or that of the landing.
         position: Vector,
-        /// The nearest particle; none if none is near, or if it is a child that still has to be projected.
+        /// The nearest particle; none if none is near, or if it is a child that still has to be
+        /// projected.
         against: Option<u32>,
         /// Distance to the nearest; none if nothing is near.
         distance: Option<f64>,
@@ -115,7 +118,8 @@ pub enum Event {
         /// Whether the distance is within the match radius.
         corresponds: bool,
     },
-    /// The child met a particle out of step: the front meets itself or another one, and a seam begins.
+    /// The child met a particle out of step: the front meets itself or another one, and a seam
+    /// begins.
     FrontsMeet {
         /// The particle that places the child.
         parent: u32,
@@ -151,7 +155,8 @@ pub enum Event {
         /// Evaluations of the field so far.
         evaluations: u64,
     },
-    /// A free space on the circle around an adaptive particle, between two particles that touch it (§5.3, Fig. 8a).
+    /// A free space on the circle around an adaptive particle, between two particles that touch it
+    /// (§5.3, Fig. 8a).
     Arc {
         /// The particle.
         parent: u32,
@@ -168,14 +173,16 @@ pub enum Event {
         parent: u32,
         /// Number of the slot.
         slot: u32,
-        /// The point I of Fig. 7c, on the circle of the child before it; none for the first child of a seed.
+        /// The point I of Fig. 7c, on the circle of the child before it; none for the first child
+        /// of a seed.
         tangent: Option<Vector>,
         /// The point s, in the tangent plane.
         position: Vector,
         /// Repulsion radius at `position`.
         radius: f64,
     },
-    /// An adaptive child is pushed away from its parent, until the two do not overlap (Figs 7b and 7e).
+    /// An adaptive child is pushed away from its parent, until the two do not overlap (Figs 7b and
+    /// 7e).
     Push {
         /// The particle that places the child.
         parent: u32,
@@ -196,10 +203,12 @@ pub enum Event {
         position: Vector,
         /// Repulsion radius at `position`.
         radius: f64,
-        /// Largest overlap with another particle, as a share of r_i + r_j; negative if there is none.
+        /// Largest overlap with another particle, as a share of r_i + r_j; negative if there is
+        /// none.
         overlap: f64,
     },
-    /// The angle φ that an adaptive child takes on the circle is compared with the free angle τ (Figs 7g, 8c and 8e).
+    /// The angle φ that an adaptive child takes on the circle is compared with the free angle τ
+    /// (Figs 7g, 8c and 8e).
     Room {
         /// The particle that places the child.
         parent: u32,
@@ -234,7 +243,8 @@ pub enum Event {
         particle: u32,
         /// Sum of the repulsion, in the tangent plane; the step size times it is the move.
         force: Vector,
-        /// Target of the move, in the tangent plane; in Witkin and Heckbert's system with the way back to the surface.
+        /// Target of the move, in the tangent plane; in Witkin and Heckbert's system with the way
+        /// back to the surface.
         target: Vector,
         /// The place on the surface.
         position: Vector,
@@ -242,7 +252,8 @@ pub enum Event {
         normal: Vector,
         /// Repulsion radius at `position`.
         radius: f64,
-        /// Whether the particle stayed where it was, because the move leads out of the box, off the surface or around a fold.
+        /// Whether the particle stayed where it was, because the move leads out of the box, off the
+        /// surface or around a fold.
         is_kept: bool,
     },
     /// A relaxation step is over.
@@ -289,7 +300,8 @@ pub enum Event {
         particles: u32,
         /// Longest move, in radii.
         largest_move: f64,
-        /// Mean move, in radii: the system has settled once this is small and nothing divides or dies for a while.
+        /// Mean move, in radii: the system has settled once this is small and nothing divides or
+        /// dies for a while.
         mean_move: f64,
     },
 }

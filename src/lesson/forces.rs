@@ -1,15 +1,19 @@
-//! Particles of many sizes: the "scheme based on forces" that the paper compares its non-uniform sampling with (§6, Table 1).
+//! Particles of many sizes: the "scheme based on forces" that the paper compares its non-uniform
+//! sampling with (§6, Table 1).
 //!
-//! Discs whose radii follow the curvature push each other apart where they overlap, and "we split a particle when no force is
-//! applied on it". "We used the same code for the relaxations of our methods and for the comparative techniques (with the exception
-//! of the split criterion)": forces, step and landing are those of `paper::relaxation`.
+//! Discs whose radii follow the curvature push each other apart where they overlap, and "we split a
+//! particle when no force is applied on it". "We used the same code for the relaxations of our
+//! methods and for the comparative techniques (with the exception of the split criterion)": forces,
+//! step and landing are those of `paper::relaxation`.
 //!
 //! # Differs from the paper
 //!
-//! * The paper mentions no death and does not say how its counts settle. Here a particle that is compressed at least as much as in
-//!   a lattice with 0.7 of the wanted spacing dies with the same probability as in Witkin and Heckbert's system, so that one
-//!   squeezed into the last gap is removed again.
-//! * "No force" has a tolerance, [`FREE`]: discs that push each other apart never separate completely.
+//! * The paper mentions no death and does not say how its counts settle. Here a particle that is
+//!   compressed at least as much as in a lattice with 0.7 of the wanted spacing dies with the same
+//!   probability as in Witkin and Heckbert's system, so that one squeezed into the last gap is
+//!   removed again.
+//! * "No force" has a tolerance, [`FREE`]: discs that push each other apart never separate
+//!   completely.
 //! * Only particles that have come to rest divide or die, as in Witkin and Heckbert's system.
 
 use super::dynamics::Dynamics;
@@ -21,17 +25,20 @@ use glam::DVec3;
 /// A particle that has moved by less than this, in radii, is at rest: γΔt of Witkin and Heckbert.
 pub(super) const AT_REST: f64 = GAMMA * TIME_STEP;
 
-/// Σ (overlap / mean radius)² below which a particle counts as free and divides: one overlap of a twentieth of the spacing. On
-/// 24 random surfaces half of it leaves 3 % fewer particles, of which 55 % have six neighbours in place of 61 %, and double 3 % more, with 66 %.
+/// Σ (overlap / mean radius)² below which a particle counts as free and divides: one overlap of a
+/// twentieth of the spacing. On 24 random surfaces half of it leaves 3 % fewer particles, of which
+/// 55 % have six neighbours in place of 61 %, and double 3 % more, with 66 %.
 const FREE: f64 = 0.01;
 
-/// Σ (overlap / mean radius)² above which a particle may die: six neighbours at 0.7 of the spacing 2r.
+/// Σ (overlap / mean radius)² above which a particle may die: six neighbours at 0.7 of the spacing
+/// 2r.
 const CROWDED: f64 = {
     let overlap = 2.0 * (OVERLAP_REACH - 0.7);
     6.0 * overlap * overlap
 };
 
-/// "Compute the energy", "compute the velocity": the overlap of two discs pushes both. A pair is met from the larger one.
+/// "Compute the energy", "compute the velocity": the overlap of two discs pushes both. A pair is
+/// met from the larger one.
 pub(super) fn interact(
     dynamics: &mut [Dynamics],
     (i, own): (usize, &Particle),
@@ -49,7 +56,8 @@ pub(super) fn interact(
     dynamics[j].energy += energy;
 }
 
-/// "Update the position": a step of the relaxation. Returns the force in the tangent plane, and the move.
+/// "Update the position": a step of the relaxation. Returns the force in the tangent plane, and the
+/// move.
 pub(super) fn step(run: &mut PaperRun<Log>, i: usize, dynamics: &Dynamics) -> (DVec3, Move) {
     let normal = run.particles[i].n();
     let force = dynamics.force - normal * normal.dot(dynamics.force);

@@ -1,4 +1,5 @@
-//! Filling of the gaps that fronts leave where they meet. The paper leaves them to the relaxation (§4.5).
+//! Filling of the gaps that fronts leave where they meet. The paper leaves them to the relaxation
+//! (§4.5).
 
 use super::course::Course;
 use super::event::Event;
@@ -7,15 +8,17 @@ use crate::paper::{ChildSlot, Circle};
 use crate::particles::SlotFate;
 use glam::{DVec2, DVec3};
 
-/// A gap is filled if its centre is at least this far from every particle, in 2r. The triangles of a lattice have 0.577. On 16 random surfaces
-/// nine tenths of it add 6 % more particles, and 1.1 times as much leaves holes 2 % wider than now.
+/// A gap is filled if its centre is at least this far from every particle, in 2r. The triangles of
+/// a lattice have 0.577. On 16 random surfaces nine tenths of it add 6 % more particles, and 1.1
+/// times as much leaves holes 2 % wider than now.
 const NARROWEST: f64 = 0.8;
 
-/// A wider circle, in 2r, lies at the border of the surface. Twice the bound changes nothing on closed random surfaces.
+/// A wider circle, in 2r, lies at the border of the surface. Twice the bound changes nothing on
+/// closed random surfaces.
 const WIDEST: f64 = 1.25;
 
-/// Neighbours within this many radii border a gap: those of the lattice's first ring, at 2, and at the ends of the narrowest circle's
-/// diameter, at 3.2.
+/// Neighbours within this many radii border a gap: those of the lattice's first ring, at 2, and at
+/// the ends of the narrowest circle's diameter, at 3.2.
 const REACH: f64 = 3.4;
 
 impl Course {
@@ -26,7 +29,8 @@ impl Course {
         let (p, n, r) = (own.p(), own.n(), self.setup.settings.radius);
         let (u, w) = frame_of(own.normal);
         let (u, w): (DVec3, DVec3) = (u.into(), w.into());
-        // Neighbours keep their direction in the tangent plane and their distance in space. The unit is 2r.
+        // Neighbours keep their direction in the tangent plane and their distance in space. The
+        // unit is 2r.
         let plane: Vec<DVec2> = run
             .buckets
             .near(&run.particles, p, REACH * r)

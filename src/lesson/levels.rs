@@ -1,8 +1,8 @@
-//! Uniform sampling level by level, as the fast front does it: the children of a generation level are predicted and compared, then
-//! those that are free are projected together and compared again.
+//! Uniform sampling level by level, as the fast front does it: the children of a generation level
+//! are predicted and compared, then those that are free are projected together and compared again.
 //!
-//! A child's place depends on its parent alone, so the children of a level can be projected in any order. The fates are still decided
-//! in the order of the queue.
+//! A child's place depends on its parent alone, so the children of a level can be projected in any
+//! order. The fates are still decided in the order of the queue.
 
 use super::course::{Course, Predicted};
 use super::prediction::{predicted_angle, second_form};
@@ -10,15 +10,17 @@ use crate::paper::{ChildSlot, DIRECTIONS, Moment, Nearby, REACH, TangentFrame};
 use crate::particles::SlotFate;
 use glam::DVec3;
 
-/// Particles within this many radii tell the curvature around a parent: the six ideal neighbours are at 2, the next ring at 3.46.
+/// Particles within this many radii tell the curvature around a parent: the six ideal neighbours
+/// are at 2, the next ring at 3.46.
 const RING: f64 = 2.6;
 
-/// Weight of "equal curvature in all directions" in that fit. It decides where the neighbours determine no curvature; half and double
-/// change the evaluations of random surfaces by 0.01 %.
+/// Weight of "equal curvature in all directions" in that fit. It decides where the neighbours
+/// determine no curvature; half and double change the evaluations of random surfaces by 0.01 %.
 const ISOTROPY: f64 = 0.005;
 
 impl Course {
-    /// First stage: predicts the children of a particle and compares them there. Those that are free wait to be projected.
+    /// First stage: predicts the children of a particle and compares them there. Those that are
+    /// free wait to be projected.
     pub(super) fn predict(&mut self, particle: u32) {
         let radius = self.setup.settings.radius;
         let neighbours = self.run.gather(particle, REACH * radius);
@@ -88,7 +90,8 @@ impl Course {
             (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
             (xa, ya, xb, yb) = (xa + x * a, ya + y * a, xb + x * b, yb + y * b);
         }
-        // Normal equations of a x + b y, b x + c y, with the prior (a − c)² + b²; solved by Cramer's rule.
+        // Normal equations of a x + b y, b x + c y, with the prior (a − c)² + b²; solved by
+        // Cramer's rule.
         let pull = ISOTROPY * (xx + yy);
         let matrix = [
             DVec3::new(xx + pull, xy, -pull),

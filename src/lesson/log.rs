@@ -1,4 +1,5 @@
-//! The log of the chapter under way, in which the moments of the paper's run are events, and the seams of the fronts.
+//! The log of the chapter under way, in which the moments of the paper's run are events, and the
+//! seams of the fronts.
 
 use super::event::Event;
 use super::settings::LessonSettings;
@@ -6,15 +7,17 @@ use crate::paper::{ChildSlot, Moment, Observer, Particle, Trial};
 use crate::particles::SlotFate;
 use crate::sampler::Sampling;
 
-/// A child that meets a particle farther away than this share of 2r is out of step with it. Half and 1.5 times as much fill the same gaps on 16
-/// random surfaces; double is the match radius, beyond which nothing is met.
+/// A child that meets a particle farther away than this share of 2r is out of step with it. Half
+/// and 1.5 times as much fill the same gaps on 16 random surfaces; double is the match radius,
+/// beyond which nothing is met.
 const SEAM: f64 = 0.35;
 
 /// The events of the chapter under way, as the run tells them.
 #[derive(Clone, Debug)]
 pub(super) struct Log {
     pub(super) events: Vec<Event>,
-    /// A child that meets a particle farther away than this is on a seam of the fronts; adaptive sampling knows no step to be out of.
+    /// A child that meets a particle farther away than this is on a seam of the fronts; adaptive
+    /// sampling knows no step to be out of.
     seam: f64,
     /// Particles with a child on a seam, in the order in which they were treated.
     pub(super) seams: Vec<u32>,

@@ -1,14 +1,17 @@
-//! The lesson's engine: runs of the paper's algorithms, and of those that it compares them with, with a log of every event.
+//! The lesson's engine: runs of the paper's algorithms, and of those that it compares them with,
+//! with a log of every event.
 //!
-//! The engine drives the parts of [`paper`](crate::paper), and adds to them what seeds have to be and the order of treatment (`course`),
-//! the same front level by level (`levels`), the filling of the gaps that fronts leave (`gaps`), and the two particle systems of the
-//! paper's Table 1: the general scheme of §3 in `system`, what each makes of it in `witkin_heckbert` and `forces`. [`LessonSettings`]
-//! chooses among them.
+//! The engine drives the parts of [`paper`](crate::paper), and adds to them what seeds have to be
+//! and the order of treatment (`course`), the same front level by level (`levels`), the filling of
+//! the gaps that fronts leave (`gaps`), and the two particle systems of the paper's Table 1: the
+//! general scheme of §3 in `system`, what each makes of it in `witkin_heckbert` and `forces`.
+//! [`LessonSettings`] chooses among them.
 //!
-//! A run is a list of [chapters](Chapter): generation levels, the filling of gaps, relaxation steps, iterations of a particle
-//! system. Before each chapter a snapshot is taken, or in long runs before some of them. The events of a chapter are not kept: they
-//! are made again from a snapshot, which gives the same events to the last bit. So [`Lesson::seek`] goes to any event,
-//! forwards or backwards.
+//! A run is a list of [chapters](Chapter): generation levels, the filling of gaps, relaxation
+//! steps, iterations of a particle system. Before each chapter a snapshot is taken, or in long runs
+//! before some of them. The events of a chapter are not kept: they are made again from a snapshot,
+//! which gives the same events to the last bit. So [`Lesson::seek`] goes to any event, forwards or
+//! backwards.
 //!
 //! ```
 //! use marching_particles::field::gallery;
@@ -30,8 +33,8 @@
 //! # Ok::<(), marching_particles::lesson::LessonError>(())
 //! ```
 //!
-//! Fronts begin at the seeds that are given, or where a grid of the box shows the surface and no particle covers it. Components
-//! smaller than a cell of the grid may stay without particles.
+//! Fronts begin at the seeds that are given, or where a grid of the box shows the surface and no
+//! particle covers it. Components smaller than a cell of the grid may stay without particles.
 
 mod course;
 mod dynamics;
@@ -84,7 +87,8 @@ pub struct Chapter {
     pub after: u32,
     /// Number of proposed children by fate.
     pub fates: FateCounts,
-    /// Energy per particle when a relaxation step ends, or when an iteration of a particle system begins.
+    /// Energy per particle when a relaxation step ends, or when an iteration of a particle system
+    /// begins.
     pub energy: Option<f64>,
     /// Longest move, in radii, of relaxation steps and iterations.
     pub largest_move: Option<f64>,
@@ -144,7 +148,8 @@ struct OpenChapter {
     events: Vec<Event>,
 }
 
-/// A run of the paper's algorithms, or of one that it compares them with, and the place in it that is looked at.
+/// A run of the paper's algorithms, or of one that it compares them with, and the place in it that
+/// is looked at.
 pub struct Lesson {
     /// The end of the run so far, with the events of the chapter under way.
     course: Course,
@@ -159,12 +164,13 @@ pub struct Lesson {
 }
 
 impl Lesson {
-    /// Prepares a run on the surface of `field` in a box, at which it takes a first look: some 36,000 evaluations.
+    /// Prepares a run on the surface of `field` in a box, at which it takes a first look: some
+    /// 36,000 evaluations.
     ///
     /// # Errors
     ///
-    /// If a setting or the box is invalid, or if more particles are to be expected than [`MAX_PARTICLES`] and
-    /// [`LessonSettings::max_particles`].
+    /// If a setting or the box is invalid, or if more particles are to be expected than
+    /// [`MAX_PARTICLES`] and [`LessonSettings::max_particles`].
     pub fn new(
         field: Box<dyn Field>,
         bounds: &Bounds,
@@ -195,13 +201,15 @@ impl Lesson {
         })
     }
 
-    /// Has the particles of a particle system follow its surface to that of `field`, in the same box, and goes on with the system there. The
-    /// run begins anew with them: what happened before is looked at no longer.
+    /// Has the particles of a particle system follow its surface to that of `field`, in the same
+    /// box, and goes on with the system there. The run begins anew with them: what happened before
+    /// is looked at no longer.
     ///
     /// # Differs from Witkin and Heckbert 1994
     ///
-    /// Their velocities have a term for the motion of the surface, which is integrated with the others (§4.1). Here a particle is brought
-    /// to the surface at once, since a slider moves by steps. Where it does not arrive within its radius, it dies: they say nothing of it.
+    /// Their velocities have a term for the motion of the surface, which is integrated with the
+    /// others (§4.1). Here a particle is brought to the surface at once, since a slider moves by
+    /// steps. Where it does not arrive within its radius, it dies: they say nothing of it.
     pub fn follow(&mut self, field: Box<dyn Field>) {
         self.course.follow(field);
         self.chapters = Vec::new();
@@ -211,8 +219,8 @@ impl Lesson {
         (self.open, self.shown) = (None, Vec::new());
     }
 
-    /// Goes on with the run by up to `budget` units of work: a particle that is treated, or moved. How a run is divided into
-    /// steps does not change it.
+    /// Goes on with the run by up to `budget` units of work: a particle that is treated, or moved.
+    /// How a run is divided into steps does not change it.
     pub fn step(&mut self, budget: u32) -> LessonProgress {
         let mut left = budget;
         while left > 0 && !self.is_done {
@@ -259,13 +267,15 @@ impl Lesson {
         &self.chapters
     }
 
-    /// The events at which a particle was added, treated and done, as far as the run has come; `None` if there is no particle of this number.
+    /// The events at which a particle was added, treated and done, as far as the run has come;
+    /// `None` if there is no particle of this number.
     #[must_use]
     pub fn life(&self, particle: u32) -> Option<Life> {
         self.lives.get(particle as usize).copied()
     }
 
-    /// Up to `count` events from number `first` on. Those of an earlier chapter are made again from its snapshot.
+    /// Up to `count` events from number `first` on. Those of an earlier chapter are made again from
+    /// its snapshot.
     pub fn events(&mut self, first: u32, count: u32) -> Vec<Event> {
         let end = first.saturating_add(count).min(self.events_so_far());
         let mut found = Vec::new();
@@ -281,8 +291,8 @@ impl Lesson {
         found
     }
 
-    /// Goes to the moment before event number `event`, or to the end of the run so far, and returns the number of events that
-    /// have happened then.
+    /// Goes to the moment before event number `event`, or to the end of the run so far, and returns
+    /// the number of events that have happened then.
     pub fn seek(&mut self, event: u32) -> u32 {
         let event = event.min(self.events_so_far());
         if event == self.events_so_far() {
@@ -308,8 +318,9 @@ impl Lesson {
         &self.shown
     }
 
-    /// Returns the repulsion of a particle by each of its neighbours at the moment that was sought; none if there is no such
-    /// particle. The tangential part of the sum is the force of [`Event::Moved`].
+    /// Returns the repulsion of a particle by each of its neighbours at the moment that was sought;
+    /// none if there is no such particle. The tangential part of the sum is the force of
+    /// [`Event::Moved`].
     #[must_use]
     pub fn pushes(&self, particle: u32) -> Vec<Push> {
         if particle as usize >= self.shown.len() {
@@ -477,7 +488,8 @@ mod tests {
     use crate::sampler::{GapPolicy, Settings};
     use glam::DVec3;
 
-    /// Goes on from particles, of which those from number `first` on wait to be treated, in their order.
+    /// Goes on from particles, of which those from number `first` on wait to be treated, in their
+    /// order.
     fn go_on(run: &mut Lesson, particles: &[Particle], first: u32) {
         for &particle in particles {
             run.course.run.enter(particle);
@@ -536,9 +548,10 @@ mod tests {
         assert!(events.iter().any(|event| matches!(event, Event::Divided { .. })));
     }
 
-    /// The reference makes each level from the particles of the fast front's level before it, so that roundings do not add up: every particle
-    /// is compared, also those after the first close call. With larger particles, at whose size the surface folds, the fast search gives
-    /// children up that the reference's search finds.
+    /// The reference makes each level from the particles of the fast front's level before it, so
+    /// that roundings do not add up: every particle is compared, also those after the first close
+    /// call. With larger particles, at whose size the surface folds, the fast search gives children
+    /// up that the reference's search finds.
     #[test]
     fn every_level_of_the_front_is_what_the_reference_makes_of_the_one_before() {
         for (id, share) in
@@ -594,7 +607,8 @@ mod tests {
                     }
                 }
             }
-            // Children end where f is small enough: within 10⁻⁴ r of the surface, and as much along it.
+            // Children end where f is small enough: within 10⁻⁴ r of the surface, and as much along
+            // it.
             assert!(farthest < 2e-4, "{id}, {share}: a child is {farthest} r apart");
         }
     }

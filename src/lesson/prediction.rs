@@ -2,8 +2,9 @@
 
 use crate::paper::{DIRECTIONS, ImplicitSurface, TangentFrame};
 
-/// Largest |sin θ₀|: at 1 the surface would curve with the radius r, which particles of this size do not resolve. On 16 random surfaces half of
-/// it changes no count of small particles, and that of large ones by 0.5 %; with 1 a tenth more searches find no surface.
+/// Largest |sin θ₀|: at 1 the surface would curve with the radius r, which particles of this size
+/// do not resolve. On 16 random surfaces half of it changes no count of small particles, and that
+/// of large ones by 0.5 %; with 1 a tenth more searches find no surface.
 const STEEPEST: f64 = 0.9;
 
 /// Angles θ₀ at which the curvature of the surface predicts the children of a particle.
@@ -12,7 +13,8 @@ pub(super) fn predicted_angles(surface: &mut ImplicitSurface, frame: &TangentFra
     DIRECTIONS.map(|direction| predicted_angle(form, direction, radius))
 }
 
-/// Second fundamental form [a, b, c] of the surface in a tangent frame (u, w): the normal turns by `[a b; b c]`.
+/// Second fundamental form [a, b, c] of the surface in a tangent frame (u, w): the normal turns by
+/// `[a b; b c]`.
 pub(super) fn second_form(
     surface: &mut ImplicitSurface,
     &TangentFrame { p, u, w, .. }: &TangentFrame,
@@ -21,8 +23,9 @@ pub(super) fn second_form(
     [(u, u), (u, w), (w, w)].map(|(a, b)| a.dot(jet.hessian.apply(b)) / jet.gradient.length())
 }
 
-/// Angle θ₀ at which the surface leaves the tangent plane in the direction (cos, sin) of a frame in which its second form is [a, b, c]:
-/// it falls away by κ l²/2 in a distance l, hence sin θ = −κ_V r at l = 2r.
+/// Angle θ₀ at which the surface leaves the tangent plane in the direction (cos, sin) of a frame in
+/// which its second form is [a, b, c]: it falls away by κ l²/2 in a distance l, hence sin θ = −κ_V
+/// r at l = 2r.
 pub(super) fn predicted_angle([a, b, c]: [f64; 3], [cos, sin]: [f64; 2], radius: f64) -> f64 {
     let curvature = (a * cos + b * sin) * cos + (b * cos + c * sin) * sin;
     libm::asin((-curvature * radius).clamp(-STEEPEST, STEEPEST))

@@ -1,5 +1,5 @@
-//! Answers about the field that no event holds and that a drawing needs: the curve in which a plane cuts the surface, and the
-//! iterates of Newton's method in space from a given point.
+//! Answers about the field that no event holds and that a drawing needs: the curve in which a plane
+//! cuts the surface, and the iterates of Newton's method in space from a given point.
 
 use super::Lesson;
 use super::event::Vector;
@@ -20,8 +20,9 @@ pub struct Iterate {
 }
 
 impl Lesson {
-    /// The curve f = 0 in the plane of a point and two perpendicular unit vectors, in the square of half side `half` around the
-    /// point: line segments as x₀, y₀, x₁, y₁, x along `right` and y along `up`, from a grid of `cells`² cells, at least one.
+    /// The curve f = 0 in the plane of a point and two perpendicular unit vectors, in the square of
+    /// half side `half` around the point: line segments as x₀, y₀, x₁, y₁, x along `right` and y
+    /// along `up`, from a grid of `cells`² cells, at least one.
     pub fn section(&self, centre: Vector, right: Vector, up: Vector, half: f64, cells: u32) -> Vec<[f64; 4]> {
         let cells = cells.max(1) as usize;
         let mut surface = self.course.run.surface.clone();
@@ -51,7 +52,8 @@ impl Lesson {
         segments
     }
 
-    /// The steps of Newton's method from a point, until it has come to the surface or left the neighbourhood of `reach`.
+    /// The steps of Newton's method from a point, until it has come to the surface or left the
+    /// neighbourhood of `reach`.
     pub fn newton(&self, start: Vector, reach: f64) -> Vec<Iterate> {
         let rules = &self.course.run.rules;
         let residual = rules.residual * rules.sizes.largest();

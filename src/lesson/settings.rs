@@ -1,4 +1,5 @@
-//! Settings of a run of the lesson: the method, the rules of the paper, and choices that go beyond it.
+//! Settings of a run of the lesson: the method, the rules of the paper, and choices that go beyond
+//! it.
 
 use super::prediction::predicted_angles;
 use crate::differential::Curvature;
@@ -9,10 +10,12 @@ use crate::sampler::{GapPolicy, LawKind, Sampling};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A run that is not asked for more follows no more particles than this: a log of more is not read event by event.
+/// A run that is not asked for more follows no more particles than this: a log of more is not read
+/// event by event.
 pub const MAX_PARTICLES: u32 = 20_000;
 
-/// No run may be asked for more particles than this, which take hundreds of megabytes with their snapshots.
+/// No run may be asked for more particles than this, which take hundreds of megabytes with their
+/// snapshots.
 const MOST_PARTICLES: u32 = 1_000_000;
 
 /// A surface given by a formula, as the page knows it.
@@ -32,11 +35,14 @@ pub struct LessonField {
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonMethod"))]
 #[serde(rename_all = "snake_case")]
 pub enum LessonMethod {
-    /// The paper's own: a front of particles, each of which places its neighbours, and a few relaxation steps.
+    /// The paper's own: a front of particles, each of which places its neighbours, and a few
+    /// relaxation steps.
     Front,
-    /// The particle system that the paper compares its uniform sampling with (Table 1): that of Witkin and Heckbert 1994.
+    /// The particle system that the paper compares its uniform sampling with (Table 1): that of
+    /// Witkin and Heckbert 1994.
     WitkinHeckbert,
-    /// The particle system that the paper compares its non-uniform sampling with (Table 1): forces between discs.
+    /// The particle system that the paper compares its non-uniform sampling with (Table 1): forces
+    /// between discs.
     Forces,
 }
 
@@ -56,9 +62,11 @@ pub enum QueueOrder {
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonProjection"))]
 #[serde(rename_all = "snake_case")]
 pub enum Projection {
-    /// The child moves along the circle C(p, 2r), which keeps the distance to the parent: the paper's way.
+    /// The child moves along the circle C(p, 2r), which keeps the distance to the parent: the
+    /// paper's way.
     Circle,
-    /// The child moves by Newton's method in space, "the most common technique", which does not keep the distance to the parent.
+    /// The child moves by Newton's method in space, "the most common technique", which does not
+    /// keep the distance to the parent.
     Newton,
 }
 
@@ -73,14 +81,17 @@ pub enum SearchStart {
     Curvature,
 }
 
-/// Whether a particle with which a child was identified stays among the neighbours of the parent (§4.4).
+/// Whether a particle with which a child was identified stays among the neighbours of the parent
+/// (§4.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonMatched"))]
 #[serde(rename_all = "snake_case")]
 pub enum Matched {
-    /// The particle leaves the neighbours, so that no second child of the same parent is identified with it: the paper's way.
+    /// The particle leaves the neighbours, so that no second child of the same parent is identified
+    /// with it: the paper's way.
     Leave,
-    /// The particle stays, and so do the new children. No two particles are then closer than the match radius.
+    /// The particle stays, and so do the new children. No two particles are then closer than the
+    /// match radius.
     Stay,
 }
 
@@ -89,42 +100,48 @@ pub enum Matched {
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum LessonPlacing {
-    /// Particle by particle: the children of a particle are projected, then compared, as in Algorithm 2.
+    /// Particle by particle: the children of a particle are projected, then compared, as in
+    /// Algorithm 2.
     OneByOne,
-    /// A whole generation level together, as in the fast front. A child is compared where the curvature around its parent
-    /// predicts it; only free ones are projected, and then compared again.
+    /// A whole generation level together, as in the fast front. A child is compared where the
+    /// curvature around its parent predicts it; only free ones are projected, and then compared
+    /// again.
     LevelByLevel,
 }
 
-/// The choices of a run. `Default` gives those of the paper; where it names no value, those of the fast sampler.
+/// The choices of a run. `Default` gives those of the paper; where it names no value, those of the
+/// fast sampler.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonSettings"))]
 #[serde(default)]
 pub struct LessonSettings {
-    /// Method that covers the surface. Of the settings below, the two particle systems use those of the sizes, the seeds,
-    /// `residual`, `max_iterations` and `max_particles`.
+    /// Method that covers the surface. Of the settings below, the two particle systems use those of
+    /// the sizes, the seeds, `residual`, `max_iterations` and `max_particles`.
     pub method: LessonMethod,
     /// Whether all particles have one radius (§4), or one that follows the curvature (§5).
     #[cfg_attr(test, ts(type = "'uniform' | 'adaptive'"))]
     pub sampling: Sampling,
-    /// Repulsion radius r of every particle of uniform sampling, a length in the field's coordinates.
+    /// Repulsion radius r of every particle of uniform sampling, a length in the field's
+    /// coordinates.
     pub radius: f64,
     /// Law for the radius of an adaptive particle, given the curvature.
     #[cfg_attr(test, ts(type = "'chord_error' | 'max_curvature' | 'sum_of_curvatures'"))]
     pub law: LawKind,
-    /// The number that the law scales: for `chord_error` the gap between the surface and a triangle of neighbours, a length; for
-    /// the other two the radius over the radius of curvature.
+    /// The number that the law scales: for `chord_error` the gap between the surface and a triangle
+    /// of neighbours, a length; for the other two the radius over the radius of curvature.
     pub law_scale: f64,
     /// Smallest radius of an adaptive particle, a length.
     pub radius_min: f64,
-    /// Largest radius of an adaptive particle, a length. In Witkin and Heckbert's system half of the surface's diameter, a radius
-    /// at which a particle divides whatever its energy; 0 has it measured.
+    /// Largest radius of an adaptive particle, a length. In Witkin and Heckbert's system half of
+    /// the surface's diameter, a radius at which a particle divides whatever its energy; 0 has it
+    /// measured.
     pub radius_max: f64,
-    /// An adaptive child is added if the free angle τ is at least this share of φ, the angle that it takes. The paper compares
-    /// them as they are, which is 1: on a lattice, where the two are equal, rounding then decides.
+    /// An adaptive child is added if the free angle τ is at least this share of φ, the angle that
+    /// it takes. The paper compares them as they are, which is 1: on a lattice, where the two are
+    /// equal, rounding then decides.
     pub fit: f64,
-    /// Points near the surface at which fronts begin, in this order, each when the one before it has closed. Other seeds are looked for only
-    /// if none are given.
+    /// Points near the surface at which fronts begin, in this order, each when the one before it
+    /// has closed. Other seeds are looked for only if none are given.
     pub seeds: Vec<[f64; 3]>,
     /// Seed of the random choice of the first seed point, where no seed points are given.
     pub seed: u32,
@@ -147,7 +164,8 @@ pub struct LessonSettings {
     pub residual: f64,
     /// Relaxation steps.
     pub relax_steps: u32,
-    /// Size of a relaxation step. If it is not given: 0.6 σ² with σ = r in uniform sampling, 0.33 of the overlap in adaptive.
+    /// Size of a relaxation step. If it is not given: 0.6 σ² with σ = r in uniform sampling, 0.33
+    /// of the overlap in adaptive.
     pub step_size: Option<f64>,
     /// A particle system that has not come to rest after so many iterations ends all the same.
     pub max_iterations: u32,
@@ -282,7 +300,8 @@ fn law(kind: LawKind) -> fn(&Curvature<f64, DVec3>, f64) -> f64 {
     match kind {
         LawKind::SumOfCurvatures => sum_of_curvatures,
         LawKind::MaxCurvature => |curvature, scale| scale / curvature.max_abs(),
-        // The middle of an equilateral triangle of side 2r, inscribed in a sphere, is this far from the sphere.
+        // The middle of an equilateral triangle of side 2r, inscribed in a sphere, is this far from
+        // the sphere.
         LawKind::ChordError => {
             |curvature, error| 0.5 * (3.0 * error * (2.0 / curvature.max_abs() - error)).max(0.0).sqrt()
         }

@@ -2,10 +2,12 @@
 
 use super::course::Course;
 
-/// The snapshots hold no more particles than this together, or twice as many for a moment: about 50 MB.
+/// The snapshots hold no more particles than this together, or twice as many for a moment: about 50
+/// MB.
 const MOST: usize = 250_000;
 
-/// The run at the beginning of every chapter whose number is a multiple of the stride. The way back begins at one of them.
+/// The run at the beginning of every chapter whose number is a multiple of the stride. The way back
+/// begins at one of them.
 pub(super) struct Snapshots {
     kept: Vec<Course>,
     stride: usize,
@@ -19,7 +21,8 @@ impl Snapshots {
         Self { kept: Vec::new(), stride: 1, held: 0, most: MOST }
     }
 
-    /// Takes a snapshot before a chapter, unless it is not at the stride. The stride grows until few enough particles are held.
+    /// Takes a snapshot before a chapter, unless it is not at the stride. The stride grows until
+    /// few enough particles are held.
     pub(super) fn add(&mut self, chapter: usize, course: &Course) {
         if !chapter.is_multiple_of(self.stride) {
             return;

@@ -1,11 +1,13 @@
-//! A first look at the box: points of the surface at which fronts may begin, and the area that each stands for.
+//! A first look at the box: points of the surface at which fronts may begin, and the area that each
+//! stands for.
 
 use crate::paper::ImplicitSurface;
 use glam::DVec3;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
-/// Cells of the grid along the longest side of the box, as many as in the survey of the sampler. A component smaller than a cell may be missed.
+/// Cells of the grid along the longest side of the box, as many as in the survey of the sampler. A
+/// component smaller than a cell may be missed.
 const CELLS: f64 = 32.0;
 
 /// A point near the surface, and the part of the surface around it.
@@ -15,10 +17,12 @@ pub(super) struct SurfacePatch {
     pub(super) area: f64,
 }
 
-/// Points spread over the surface, in the order of a grid. Every edge of the grid at whose ends f differs in sign gives one.
+/// Points spread over the surface, in the order of a grid. Every edge of the grid at whose ends f
+/// differs in sign gives one.
 ///
-/// The area follows from the edges by Cauchy's formula: an edge along an axis crosses the surface once in s² of projected area,
-/// where s is the spacing, so each crossing stands for s²/(|n_x| + |n_y| + |n_z|) of true area.
+/// The area follows from the edges by Cauchy's formula: an edge along an axis crosses the surface
+/// once in s² of projected area, where s is the spacing, so each crossing stands for s²/(|n_x| +
+/// |n_y| + |n_z|) of true area.
 pub(super) fn survey(surface: &mut ImplicitSurface) -> Vec<SurfacePatch> {
     let (lo, size) = (surface.bounds.lo(), surface.bounds.hi() - surface.bounds.lo());
     let cells = (size * (CELLS / size.max_element())).ceil();

@@ -1,4 +1,5 @@
-//! The two particle systems that the paper compares its methods with: the general scheme of §3, line by line.
+//! The two particle systems that the paper compares its methods with: the general scheme of §3,
+//! line by line.
 //!
 //! ```text
 //! Create a set of particles lying on the surface             add_seeds: one particle
@@ -11,12 +12,14 @@
 //! end while
 //! ```
 //!
-//! `witkin_heckbert` and `forces` have the rules of the two systems for moves, divisions and deaths. An iteration is a chapter.
+//! `witkin_heckbert` and `forces` have the rules of the two systems for moves, divisions and
+//! deaths. An iteration is a chapter.
 //!
 //! # Differs from the paper
 //!
-//! * The paper detects convergence by the number of particles and their residual motion and gives no numbers (§3). Here a run has
-//!   settled after [`QUIET`] consecutive iterations without fission and death and with a mean motion of at most [`REST`].
+//! * The paper detects convergence by the number of particles and their residual motion and gives
+//!   no numbers (§3). Here a run has settled after [`QUIET`] consecutive iterations without fission
+//!   and death and with a mean motion of at most [`REST`].
 //! * The first particle does not die, so that there always is one.
 
 use super::course::{ChapterKind, Course};
@@ -31,12 +34,14 @@ use glam::DVec3;
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 
-/// Consecutive iterations of rest after which a run has settled: in as many a particle at rest has moved by a tenth of its radius at most.
-/// On 24 random surfaces Witkin and Heckbert's system ends after 94 iterations with half of it and 139 with double, in place of 120.
+/// Consecutive iterations of rest after which a run has settled: in as many a particle at rest has
+/// moved by a tenth of its radius at most. On 24 random surfaces Witkin and Heckbert's system ends
+/// after 94 iterations with half of it and 139 with double, in place of 120.
 pub(super) const QUIET: u32 = 20;
 
-/// Mean move in an iteration, in radii, up to which particles count as not moving. On 16 random surfaces Witkin and Heckbert's system ends
-/// after 99 iterations; with double of it after 74, where 56 % of the particles have six neighbours in place of 59 %.
+/// Mean move in an iteration, in radii, up to which particles count as not moving. On 16 random
+/// surfaces Witkin and Heckbert's system ends after 99 iterations; with double of it after 74,
+/// where 56 % of the particles have six neighbours in place of 59 %.
 const REST: f64 = 0.005;
 
 /// A random number in [0, 1).
@@ -44,7 +49,8 @@ fn uniform(random: &mut Pcg32) -> f64 {
     f64::from(random.next_u32() >> 8) / 16_777_216.0
 }
 
-/// A random unit vector in the tangent plane: that of a point of the square that is in the unit disc.
+/// A random unit vector in the tangent plane: that of a point of the square that is in the unit
+/// disc.
 fn tangent(normal: [f64; 3], random: &mut Pcg32) -> DVec3 {
     let (u, v) = frame_of(normal);
     loop {
@@ -85,7 +91,8 @@ impl Course {
         Some(ChapterKind::Iteration { iteration })
     }
 
-    /// "Compute the energy", "compute the velocity": sums over all pairs within reach. `mean` is the mean radius.
+    /// "Compute the energy", "compute the velocity": sums over all pairs within reach. `mean` is
+    /// the mean radius.
     fn interact(&mut self, mean: f64) {
         let is_gaussian = self.setup.settings.method == LessonMethod::WitkinHeckbert;
         // A disc meets those that are not larger.
@@ -176,9 +183,10 @@ impl Course {
         }
     }
 
-    /// The two children of a particle, half a radius to either side of it: half as far where one of them does not come to the surface, as
-    /// beside a lone particle that has grown larger than the surface bends, and so on down to half the wanted radius. `None` if one does not
-    /// come from there either.
+    /// The two children of a particle, half a radius to either side of it: half as far where one of
+    /// them does not come to the surface, as beside a lone particle that has grown larger than the
+    /// surface bends, and so on down to half the wanted radius. `None` if one does not come from
+    /// there either.
     ///
     /// The sources do not say where they are put.
     fn children(&mut self, parent: &Particle, direction: DVec3) -> Option<[Particle; 2]> {

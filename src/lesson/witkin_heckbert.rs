@@ -1,18 +1,22 @@
-//! Particles of one size: A. P. Witkin and P. S. Heckbert, *Using Particles to Sample and Control Implicit Surfaces* (SIGGRAPH
-//! 1994), §4. The paper compares its uniform sampling with it (Table 1).
+//! Particles of one size: A. P. Witkin and P. S. Heckbert, *Using Particles to Sample and Control
+//! Implicit Surfaces* (SIGGRAPH 1994), §4. The paper compares its uniform sampling with it (Table
+//! 1).
 //!
-//! The symbols are those of the source: σ is the radius of a particle, σ̂ the wanted one, r_ij = p_i − p_j.
+//! The symbols are those of the source: σ is the radius of a particle, σ̂ the wanted one, r_ij =
+//! p_i − p_j.
 //!
 //! # Differs from the source
 //!
 //! * Energies are cut off at 3σ, where they are 1.1 % of α.
-//! * β has the unit of an inverse length. The unit here is d/2, and σ_max = d/2, where d is the diagonal of the box around the
-//!   surface, and no less than 2σ̂.
-//! * No particle moves farther than 0.35 σ in an iteration, and no radius changes by more than a factor of 2: with a time step that
-//!   is not small, a pair that has just divided could leave the surface, or get negative radii.
-//! * The source samples closed surfaces. A particle that would leave the box stays and counts as near equilibrium. On the border it has
-//!   neighbours on one side only, so that it divides more often there: the gyroid gets 1.4 times as many particles as a front places, closed
-//!   surfaces 1.1 times.
+//! * β has the unit of an inverse length. The unit here is d/2, and σ_max = d/2, where d is the
+//!   diagonal of the box around the surface, and no less than 2σ̂.
+//! * No particle moves farther than 0.35 σ in an iteration, and no radius changes by more than a
+//!   factor of 2: with a time step that is not small, a pair that has just divided could leave the
+//!   surface, or get negative radii.
+//! * The source samples closed surfaces. A particle that would leave the box stays and counts as
+//!   near equilibrium. On the border it has neighbours on one side only, so that it divides more
+//!   often there: the gyroid gets 1.4 times as many particles as a front places, closed surfaces
+//!   1.1 times.
 
 use super::course::Setup;
 use super::dynamics::Dynamics;
@@ -58,11 +62,12 @@ fn largest(setup: &Setup) -> f64 {
     }
 }
 
-/// "Compute the energy of the set of particles": E_ij = α exp(−|r_ij|²/2σ_i²), the energy of particle i due to j, and its part of
-/// the velocities of both.
+/// "Compute the energy of the set of particles": E_ij = α exp(−|r_ij|²/2σ_i²), the energy of
+/// particle i due to j, and its part of the velocities of both.
 ///
-/// D_i = Σⱼ E_ij, and P_i = σ_i² Σⱼ r_ij (E_ij/σ_i² + E_ji/σ_j²). Equation 9 of the source subtracts the two terms as printed; its
-/// erratum adds them. Every pair is met from both sides, each with its own σ.
+/// D_i = Σⱼ E_ij, and P_i = σ_i² Σⱼ r_ij (E_ij/σ_i² + E_ji/σ_j²). Equation 9 of the source
+/// subtracts the two terms as printed; its erratum adds them. Every pair is met from both sides,
+/// each with its own σ.
 pub(super) fn interact(
     dynamics: &mut [Dynamics],
     (i, own): (usize, &Particle),
@@ -79,8 +84,8 @@ pub(super) fn interact(
 
 /// "Compute the repulsion radius", "update the position": one time step.
 ///
-/// σ̇ = −ρ (D − Ê) / (σ⁻³ Σⱼ |r_ij|² E_ij + β) brings D to Ê. ṗ is the part of P along the surface, less φ f ∇f/|∇f|², which leads
-/// back to the surface. Returns P, and the move.
+/// σ̇ = −ρ (D − Ê) / (σ⁻³ Σⱼ |r_ij|² E_ij + β) brings D to Ê. ṗ is the part of P along the surface,
+/// less φ f ∇f/|∇f|², which leads back to the surface. Returns P, and the move.
 pub(super) fn step(
     surface: &mut ImplicitSurface,
     setup: &Setup,

@@ -13,7 +13,8 @@ impl Forest {
         Self::with_links((0..count as u32).collect())
     }
 
-    /// The forest in which every number is in the set of the number that it is linked to, which must not be larger.
+    /// The forest in which every number is in the set of the number that it is linked to, which
+    /// must not be larger.
     pub(crate) fn with_links(up: Vec<u32>) -> Self {
         debug_assert!((0..).zip(&up).all(|(i, &up)| up <= i), "a link leads to a smaller number");
         Self { up }

@@ -1,21 +1,22 @@
 //! Elementary functions in single precision, with the same bits on every platform.
 //!
-//! Each function is straight-line code over additions, products, quotients, square roots, comparisons and shifts,
-//! so that [`Lanes::map`](super::Lanes::map) of it becomes SIMD code; no platform library and no fused multiply-add is
-//! involved. Errors are given in units in the last place (ulp) of the exact result, and are held to double-precision
-//! references in `tests/it/formula_functions.rs`.
+//! Each function is straight-line code over additions, products, quotients, square roots,
+//! comparisons and shifts, so that [`Lanes::map`](super::Lanes::map) of it becomes SIMD code; no
+//! platform library and no fused multiply-add is involved. Errors are given in units in the last
+//! place (ulp) of the exact result, and are held to double-precision references in
+//! `tests/it/formula_functions.rs`.
 //!
 //! Conventions: NaN in, NaN out, always; NaN where a function is undefined; ±∞ at poles.
 //!
-//! The minimax coefficients of exp, ln, sin, cos, asin, atan, sinh and tanh are those of Moshier, *Methods and
-//! Programs for Mathematical Functions* (1989), single precision.
+//! The minimax coefficients of exp, ln, sin, cos, asin, atan, sinh and tanh are those of Moshier,
+//! *Methods and Programs for Mathematical Functions* (1989), single precision.
 
 #![expect(clippy::excessive_precision, reason = "a coefficient's digits are those of its source, or exact")]
 
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
-/// 1.5 · 2²³: adding it to a number below 2²² in size rounds that number to an integer, which then stands in the
-/// low bits of the sum.
+/// 1.5 · 2²³: adding it to a number below 2²² in size rounds that number to an integer, which then
+/// stands in the low bits of the sum.
 pub(crate) const ROUNDER: f32 = 12_582_912.0;
 
 /// 1.5 · 2⁵²: [`ROUNDER`] in double precision.
@@ -158,8 +159,8 @@ fn exponent_and_mantissa(a: f32) -> (f32, f32) {
     (if subnormal { e - 23.0 } else { e }, m)
 }
 
-/// The quadrant of an angle and what is left of it: a = k π/2 + r, |r| ≤ π/4; the reduction runs in double
-/// precision, so that r keeps its relative accuracy up to |a| of about 10⁶.
+/// The quadrant of an angle and what is left of it: a = k π/2 + r, |r| ≤ π/4; the reduction runs in
+/// double precision, so that r keeps its relative accuracy up to |a| of about 10⁶.
 #[inline]
 fn quadrant(a: f32) -> (u32, f32) {
     let a = f64::from(a);
@@ -191,7 +192,8 @@ fn turned(k: u32, sine: f32, cosine: f32) -> f32 {
     f32::from_bits(value.to_bits() ^ ((k & 2) << 30))
 }
 
-/// Sine of an angle in radians; NaN at ±∞. Accurate to 2 ulp up to |a| = 10⁶, and to 10⁻⁶ in the value up to 10⁹.
+/// Sine of an angle in radians; NaN at ±∞. Accurate to 2 ulp up to |a| = 10⁶, and to 10⁻⁶ in the
+/// value up to 10⁹.
 #[inline]
 #[must_use]
 pub fn sin(a: f32) -> f32 {
@@ -280,7 +282,8 @@ pub fn atan(a: f32) -> f32 {
     (base + atan_polynomial(above / below)).copysign(a)
 }
 
-/// The angle of the point (`across`, `up`) in radians, −π to π; 0 or ±π at the origin, by the signs of the zeros.
+/// The angle of the point (`across`, `up`) in radians, −π to π; 0 or ±π at the origin, by the signs
+/// of the zeros.
 #[inline]
 #[must_use]
 pub fn atan2(up: f32, across: f32) -> f32 {
@@ -362,8 +365,9 @@ pub fn cbrt(a: f32) -> f32 {
     if a == 0.0 || size == f32::INFINITY { a } else { root }
 }
 
-/// a^b: for negative `a`, a number if `b` is an integer and NaN otherwise; a^0 = 1; NaN if either is NaN. The
-/// logarithm and the exponential run in double precision, for 1 ulp at any size of the result.
+/// a^b: for negative `a`, a number if `b` is an integer and NaN otherwise; a^0 = 1; NaN if either
+/// is NaN. The logarithm and the exponential run in double precision, for 1 ulp at any size of the
+/// result.
 #[inline]
 #[must_use]
 pub fn pow(a: f32, b: f32) -> f32 {

@@ -5,8 +5,8 @@ use core::ops::{Add, Mul, Neg};
 
 /// A closed interval of numbers. It is empty where the lower end is the larger one.
 ///
-/// The operators take ends that are not NaN. They do not round outward: a proof by them [adds a slack](Interval::widened) for what
-/// rounding may have moved.
+/// The operators take ends that are not NaN. They do not round outward: a proof by them
+/// [adds a slack](Interval::widened) for what rounding may have moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// Lower end, which may be −∞.
@@ -75,8 +75,9 @@ impl Interval {
         Self::new(self.lo - slack, self.hi + slack)
     }
 
-    /// The interval widened by `swing`, and by what the few operations that lead here may have been rounded by: the mean value form
-    /// (Moore 1966), where this bounds a function in the middle of a box and the function changes by at most `swing` from there.
+    /// The interval widened by `swing`, and by what the few operations that lead here may have been
+    /// rounded by: the mean value form (Moore 1966), where this bounds a function in the middle of
+    /// a box and the function changes by at most `swing` from there.
     #[must_use]
     pub fn mean_value(self, swing: f64) -> Self {
         let slack = ROUNDING * (swing + self.lo.abs() + self.hi.abs());

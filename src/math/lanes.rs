@@ -1,7 +1,8 @@
 //! A fixed-width vector of `f32` that LLVM turns into SIMD instructions.
 //!
-//! Every operation is the IEEE operation on each lane, written as a loop over an array: the result has the same
-//! bits on SSE2, AVX and wasm `simd128`, and nothing is contracted into fused multiply-adds.
+//! Every operation is the IEEE operation on each lane, written as a loop over an array: the result
+//! has the same bits on SSE2, AVX and wasm `simd128`, and nothing is contracted into fused
+//! multiply-adds.
 
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 

@@ -1,5 +1,5 @@
-//! Small numeric building blocks that every other module may use: SIMD lanes, intervals, symmetric matrices, tangent
-//! frames, boxes and the tolerances shared across the crate.
+//! Small numeric building blocks that every other module may use: SIMD lanes, intervals, symmetric
+//! matrices, tangent frames, boxes and the tolerances shared across the crate.
 
 mod forest;
 pub mod functions;
@@ -22,7 +22,8 @@ use core::ops::RangeInclusive;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// The shortest text that reads back as `value`; with an exponent if it is very large or very small.
+/// The shortest text that reads back as `value`; with an exponent if it is very large or very
+/// small.
 #[must_use]
 pub fn shortest_text(value: f64) -> String {
     let size = value.abs();
@@ -70,7 +71,8 @@ pub fn counted(count: usize, one: &str, many: &str) -> String {
 /// The index of nothing: no particle, triangle, block or component.
 pub const NONE: u32 = u32::MAX;
 
-/// Largest relative error of a result in double precision after as many operations as the longest formula has: each rounds once.
+/// Largest relative error of a result in double precision after as many operations as the longest
+/// formula has: each rounds once.
 pub(crate) const ROUNDING: f64 = 4096.0 * f64::EPSILON;
 
 /// Largest relative error of a result in single precision after a few operations.
@@ -101,7 +103,8 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Points of a grid with `side` points on every axis, off the faces of the box and its planes of symmetry.
+    /// Points of a grid with `side` points on every axis, off the faces of the box and its planes
+    /// of symmetry.
     pub(crate) fn spread(&self, side: usize) -> impl ExactSizeIterator<Item = DVec3> {
         let (lo, size) = (self.lo(), self.size());
         (0..side * side * side).map(move |i| {
@@ -188,14 +191,17 @@ impl Bounds {
         self.lo().abs().max(self.hi().abs()).max_element()
     }
 
-    /// Largest coordinate of a corner, relative to the diagonal, of a box that needs no origin of its own. There, rounding to
-    /// single precision moves a particle of the default radius by a twenty-five-thousandth of it.
+    /// Largest coordinate of a corner, relative to the diagonal, of a box that needs no origin of
+    /// its own. There, rounding to single precision moves a particle of the default radius by a
+    /// twenty-five-thousandth of it.
     const NEAR: f64 = 4.0;
 
-    /// The point from which the particles in this box are best counted: the origin of the coordinates, unless the box is so far
-    /// from it that single precision would round the places of particles noticeably; then a point near the middle of the box.
+    /// The point from which the particles in this box are best counted: the origin of the
+    /// coordinates, unless the box is so far from it that single precision would round the places
+    /// of particles noticeably; then a point near the middle of the box.
     ///
-    /// Its coordinates have few digits, so that adding it to a particle's place in double precision is all but exact.
+    /// Its coordinates have few digits, so that adding it to a particle's place in double precision
+    /// is all but exact.
     #[must_use]
     pub fn local_origin(&self) -> DVec3 {
         let diagonal = self.diagonal();
@@ -245,8 +251,8 @@ impl Bounds {
     /// Diagonals of a box with which the squares of radii are normal numbers in single precision.
     pub const DIAGONALS: RangeInclusive<f64> = 1e-12..=1e12;
 
-    /// Largest coordinate of a corner relative to the diagonal. There, the single precision in which a picture is drawn moves a
-    /// particle of the default radius by a hundredth of it.
+    /// Largest coordinate of a corner relative to the diagonal. There, the single precision in
+    /// which a picture is drawn moves a particle of the default radius by a hundredth of it.
     pub const FARTHEST_CORNER: f64 = 1e3;
 
     /// Whether [`Bounds::check`] finds no fault.
@@ -255,8 +261,9 @@ impl Bounds {
         self.check().is_ok()
     }
 
-    /// Checks that particles can be put in the box and drawn there: every side has positive length, the diagonal is one of
-    /// [`Bounds::DIAGONALS`], and no coordinate is larger than [`Bounds::FARTHEST_CORNER`] diagonals.
+    /// Checks that particles can be put in the box and drawn there: every side has positive length,
+    /// the diagonal is one of [`Bounds::DIAGONALS`], and no coordinate is larger than
+    /// [`Bounds::FARTHEST_CORNER`] diagonals.
     ///
     /// # Errors
     ///
@@ -385,7 +392,8 @@ pub(crate) fn refill<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
     column.resize(len, value);
 }
 
-/// Resizes a column, where it has to grow with room for a 32nd more: one that grows by few items does not take up twice as much.
+/// Resizes a column, where it has to grow with room for a 32nd more: one that grows by few items
+/// does not take up twice as much.
 pub(crate) fn grow<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
     if len > column.capacity() {
         column.reserve_exact(len - column.len() + column.len() / 32);
@@ -393,7 +401,8 @@ pub(crate) fn grow<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
     column.resize(len, value);
 }
 
-/// Returns the larger of two numbers, neither of which is NaN. `f32::max`, which handles NaN, takes five instructions.
+/// Returns the larger of two numbers, neither of which is NaN. `f32::max`, which handles NaN, takes
+/// five instructions.
 pub(crate) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
@@ -406,10 +415,11 @@ pub(crate) fn push_gently<T>(items: &mut Vec<T>, item: T) {
     items.push(item);
 }
 
-/// Two unit vectors that span the plane perpendicular to the unit vector `n`; `(u, v, n)` is right-handed.
+/// Two unit vectors that span the plane perpendicular to the unit vector `n`; `(u, v, n)` is
+/// right-handed.
 ///
-/// Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017: no branch, no division by a small
-/// number. A non-finite `n` gives non-finite vectors.
+/// Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017: no branch, no division
+/// by a small number. A non-finite `n` gives non-finite vectors.
 #[must_use]
 pub fn tangent_frame(n: Vec3) -> (Vec3, Vec3) {
     let (u, v) = frame_of(n.to_array());
@@ -427,7 +437,8 @@ pub fn frame_of<T: Real>([x, y, z]: [T; 3]) -> ([T; 3], [T; 3]) {
     ([one + sign * x * x * a, sign * b, -sign * x], [b, sign + y * y * a, -y])
 }
 
-/// Largest power of two not above `x`, which must be positive, and at least the smallest normal number.
+/// Largest power of two not above `x`, which must be positive, and at least the smallest normal
+/// number.
 pub(crate) fn power_of_two(x: f64) -> f64 {
     /// Bits of the sign and the exponent.
     const HEAD: u64 = 0xfff << 52;

@@ -1,7 +1,8 @@
-//! Newton's method for one point in double precision: to a surface, to the curve in which two meet, or to the point in which three do.
+//! Newton's method for one point in double precision: to a surface, to the curve in which two meet,
+//! or to the point in which three do.
 //!
-//! Each step is the shortest after which the functions are zero to first order. `field::descent` moves batches of points in single
-//! precision.
+//! Each step is the shortest after which the functions are zero to first order. `field::descent`
+//! moves batches of points in single precision.
 
 use glam::{DMat3, DVec3};
 
@@ -13,15 +14,15 @@ pub(crate) fn step_to_surface((f, u): Slope) -> DVec3 {
     u * (f / u.length_squared())
 }
 
-/// The step to the common zeros of two functions, to be subtracted from the point, and the cross product of their gradients, which is
-/// tangent to the curve.
+/// The step to the common zeros of two functions, to be subtracted from the point, and the cross
+/// product of their gradients, which is tangent to the curve.
 pub(crate) fn step_to_curve([(f, u), (g, v)]: [Slope; 2]) -> (DVec3, DVec3) {
     let tangent = u.cross(v);
     ((v.cross(tangent) * f + tangent.cross(u) * g) / tangent.length_squared(), tangent)
 }
 
-/// The step to the common zero of three functions, to be subtracted from the point, and the volume that the unit vectors along their
-/// gradients span.
+/// The step to the common zero of three functions, to be subtracted from the point, and the volume
+/// that the unit vectors along their gradients span.
 pub(crate) fn step_to_corner(slopes: [Slope; 3]) -> (DVec3, f64) {
     let [(f, u), (g, v), (h, w)] = slopes.map(|(value, gradient)| {
         let slope = gradient.length();
@@ -31,9 +32,10 @@ pub(crate) fn step_to_corner(slopes: [Slope; 3]) -> (DVec3, f64) {
     (rows.inverse() * DVec3::new(f, g, h), rows.determinant().abs())
 }
 
-/// Largest number of evaluations of Newton's method from a good guess, which takes two to five: each step doubles the digits. With half
-/// of them 5 of 33 random surfaces get other particles, and one another number of components; twice as many change the particles of 3,
-/// and no figure beyond scatter.
+/// Largest number of evaluations of Newton's method from a good guess, which takes two to five:
+/// each step doubles the digits. With half of them 5 of 33 random surfaces get other particles, and
+/// one another number of components; twice as many change the particles of 3, and no figure beyond
+/// scatter.
 pub(crate) const STEPS: u32 = 12;
 
 /// Limits of the way of a point.
@@ -45,7 +47,8 @@ pub(crate) struct StepLimits {
     pub(crate) reach: f64,
     /// Length of a step after which the point is at rest.
     pub(crate) at_rest: f64,
-    /// Length of a step after which the point is at rest, over the point's distance from the origin. The larger of both lengths counts.
+    /// Length of a step after which the point is at rest, over the point's distance from the
+    /// origin. The larger of both lengths counts.
     pub(crate) share_at_rest: f64,
 }
 
@@ -56,8 +59,9 @@ impl StepLimits {
     }
 }
 
-/// The point at which the steps from `start` come to rest within these limits, and what `step_at` has returned beside the last step. None
-/// also where `step_at` has no step, or one that is no number.
+/// The point at which the steps from `start` come to rest within these limits, and what `step_at`
+/// has returned beside the last step. None also where `step_at` has no step, or one that is no
+/// number.
 pub(crate) fn land<T>(
     start: DVec3,
     limits: StepLimits,

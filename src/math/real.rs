@@ -3,7 +3,8 @@
 use super::Lanes;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number type that closed formulas are evaluated with. Every operation is the IEEE one, on each lane.
+/// A number type that closed formulas are evaluated with. Every operation is the IEEE one, on each
+/// lane.
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {

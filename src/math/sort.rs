@@ -1,9 +1,11 @@
 //! Sorting by keys that are whole numbers.
 //!
-//! The standard library compiles its sorting algorithm anew for each type and each comparison, some 10 kB of WebAssembly a copy. So
-//! items are sorted as `u64` keys or, with the place of each item below its key, as `u128`. Lists of indices are sorted as they are.
+//! The standard library compiles its sorting algorithm anew for each type and each comparison, some
+//! 10 kB of WebAssembly a copy. So items are sorted as `u64` keys or, with the place of each item
+//! below its key, as `u128`. Lists of indices are sorted as they are.
 
-/// Packs a number that is not negative and an index into a key, which is ordered by the number, and at equal numbers by index.
+/// Packs a number that is not negative and an index into a key, which is ordered by the number, and
+/// at equal numbers by index.
 #[inline]
 pub(crate) fn key(number: f32, index: u32) -> u64 {
     // Non-negative floats are ordered like their bits.
@@ -53,7 +55,8 @@ pub(crate) fn median<T: Copy + Into<f64>>(mut numbers: Vec<T>) -> Option<T> {
     numbers.get(numbers.len() / 2).copied()
 }
 
-/// Sorts a few items: by insertion, which keeps the order of those of which neither comes before the other.
+/// Sorts a few items: by insertion, which keeps the order of those of which neither comes before
+/// the other.
 pub fn sort_few<T>(items: &mut [T], before: impl Fn(&T, &T) -> bool) {
     for end in 1..items.len() {
         for at in (1..=end).rev() {

@@ -1,23 +1,27 @@
-//! A hash table of indices into a column of items, which may be points, sides or whatever can be compared.
+//! A hash table of indices into a column of items, which may be points, sides or whatever can be
+//! compared.
 
-/// Golden ratio times 2⁶⁴. Multiplication by it spreads keys that differ in a few bits over the top bits (Fibonacci hashing).
+/// Golden ratio times 2⁶⁴. Multiplication by it spreads keys that differ in a few bits over the top
+/// bits (Fibonacci hashing).
 pub(crate) const GOLDEN_RATIO: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// Hash of words, the same on every machine.
 pub(crate) fn hash(words: impl IntoIterator<Item = u64>) -> u32 {
     let hash =
         words.into_iter().fold(0, |hash: u64, word| (hash.rotate_left(29) ^ word).wrapping_mul(GOLDEN_RATIO));
-    // The low bits of a round number are 0, and the low bits of a product depend on no higher ones: mix in the top bits.
+    // The low bits of a round number are 0, and the low bits of a product depend on no higher ones:
+    // mix in the top bits.
     ((hash ^ (hash >> 32)).wrapping_mul(GOLDEN_RATIO) >> 32) as u32
 }
 
-/// Open-addressing hash table, at most half full. The items stay in a column of the caller's: a table of the standard library would
-/// hold each a second time, and files have millions of points.
+/// Open-addressing hash table, at most half full. The items stay in a column of the caller's: a
+/// table of the standard library would hold each a second time, and files have millions of points.
 ///
 /// It is never iterated over, so results do not depend on the order of its buckets.
 #[derive(Debug, Default)]
 pub(crate) struct IndexTable {
-    /// Hash of an item in the upper half, its index plus one in the lower; 0 for an empty bucket. The length is a power of two.
+    /// Hash of an item in the upper half, its index plus one in the lower; 0 for an empty bucket.
+    /// The length is a power of two.
     buckets: Vec<u64>,
     used: usize,
 }
@@ -31,8 +35,9 @@ impl IndexTable {
         index_in(self.buckets[self.bucket(hash, is_it)])
     }
 
-    /// The index of the item with this hash for which `is_it` holds. If there is none, the item at `fresh` is noted and `fresh`
-    /// returned; it must then be stored there. None if there is not enough memory.
+    /// The index of the item with this hash for which `is_it` holds. If there is none, the item at
+    /// `fresh` is noted and `fresh` returned; it must then be stored there. None if there is not
+    /// enough memory.
     pub(crate) fn find_or_add(
         &mut self,
         hash: u32,

@@ -1,12 +1,13 @@
-//! Triangle meshes whose vertices are particles. Positions and normals are enough: this module knows no field and no
-//! sampler.
+//! Triangle meshes whose vertices are particles. Positions and normals are enough: this module
+//! knows no field and no sampler.
 //!
-//! A mesh crosses between modules as plain data, a list of triangles: triples of particle indices, counter-clockwise seen
-//! from outside.
+//! A mesh crosses between modules as plain data, a list of triangles: triples of particle indices,
+//! counter-clockwise seen from outside.
 //!
 //! * [`build`]: from points with normals to triangles.
 //! * [`facing`]: which side of a closed mesh is its inside.
-//! * [`half_edge`]: a surface that can be changed: flips, splits, collapses, insertions, undone by a journal; subdivision.
+//! * [`half_edge`]: a surface that can be changed: flips, splits, collapses, insertions, undone by
+//!   a journal; subdivision.
 //!
 //! [`topology`](crate::topology) counts the components, borders and Euler number of such a list.
 

@@ -1,5 +1,5 @@
-//! Writes the types of what crosses to the page as TypeScript and the numbers by which it reads columns as JavaScript, and holds
-//! the page's files to them.
+//! Writes the types of what crosses to the page as TypeScript and the numbers by which it reads
+//! columns as JavaScript, and holds the page's files to them.
 
 use crate::field::model::SolvedModel;
 use crate::lesson::{self, LessonField};
@@ -15,8 +15,8 @@ use std::path::Path;
 use ts_rs::{Config, TS, TypeVisitor};
 
 const HEAD: &str = "\
-// The types of what the core, the solver for points and the lesson say and are told. Written from the Rust types by a test:
-// UPDATE_GOLDEN=1 cargo test --lib page_types
+// The types of what the core, the solver for points and the lesson say and are told. Written from
+// the Rust types by a test: UPDATE_GOLDEN=1 cargo test --lib page_types
 
 /** What a command is answered: the fields of the value, or the error. */
 export type Answer<T, E> = ({ ok: true } & T) | { ok: false; error: E };
@@ -107,8 +107,8 @@ fn numbers_of_the_page_are_those_of_the_core() {
     });
     let text = format!(
         "\
-// The numbers by which the page reads the columns of the core. Written from the Rust constants by a test:
-// UPDATE_GOLDEN=1 cargo test --lib page_types
+// The numbers by which the page reads the columns of the core. Written from the Rust constants by a
+// test: UPDATE_GOLDEN=1 cargo test --lib page_types
 
 /** Parent index of a seed. */
 export const NO_PARENT = {};

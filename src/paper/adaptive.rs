@@ -1,27 +1,33 @@
-//! Non-uniform sampling, paper §5: children of different sizes, pushed until they touch their parent (Figs 7 and 8).
+//! Non-uniform sampling, paper §5: children of different sizes, pushed until they touch their
+//! parent (Figs 7 and 8).
 //!
 //! # Differs from the paper
 //!
 //! * The paper names no step lengths.
-//! * A child is added if the free angle τ is at least a share of φ ([`Rules::fit`](super::Rules::fit)).
-//! * The radius of a child is evaluated once more where it lands. A child nearer to a particle than the match tolerance
-//!   allows is not added.
+//! * A child is added if the free angle τ is at least a share of φ
+//!   ([`Rules::fit`](super::Rules::fit)).
+//! * The radius of a child is evaluated once more where it lands. A child nearer to a particle than
+//!   the match tolerance allows is not added.
 
 use super::{ChildSlot, Circle, Moment, Observer, PaperRun, TangentFrame};
 use crate::particles::{SlotFate, Slots};
 use core::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
-/// Neighbours are gathered within this many radii of the parent: a disc that touches it from farther away is twice as large.
+/// Neighbours are gathered within this many radii of the parent: a disc that touches it from
+/// farther away is twice as large.
 const REACH: f64 = 3.7;
 
-/// A neighbour within this share of r_i + r_j lies on the circle around the parent. In a lattice the first ring is at 1, the next at 1.73.
+/// A neighbour within this share of r_i + r_j lies on the circle around the parent. In a lattice
+/// the first ring is at 1, the next at 1.73.
 const TOUCHING: f64 = 1.25;
 
-/// Length of a push away from the parent, as a share of the parent's radius: a child ends within 3 % of the distance at which it touches.
+/// Length of a push away from the parent, as a share of the parent's radius: a child ends within 3
+/// % of the distance at which it touches.
 const PUSH: f64 = 1.0 / 16.0;
 
-/// Angle of a push along the circle, in radians: 1.8°, or 3 % of the 60° that a child of the parent's size takes.
+/// Angle of a push along the circle, in radians: 1.8°, or 3 % of the 60° that a child of the
+/// parent's size takes.
 const TURN_RAD: f64 = 1.0 / 32.0;
 
 /// Largest number of pushes in each direction: as many turns go around the circle once.
@@ -62,7 +68,8 @@ impl Circumference {
         Disc { centre: flat.normalize_or_zero() * offset.length(), radius }
     }
 
-    /// Largest overlap of a disc with a particle around, as a share of r_i + r_j; negative if there is none.
+    /// Largest overlap of a disc with a particle around, as a share of r_i + r_j; negative if there
+    /// is none.
     fn overlap(&self, child: Disc) -> f64 {
         let shares = self
             .around
@@ -126,7 +133,8 @@ impl<O: Observer> PaperRun<O> {
         }
     }
 
-    /// Places children in a free space, from its beginning on, until the next one has no room (Fig. 8).
+    /// Places children in a free space, from its beginning on, until the next one has no room (Fig.
+    /// 8).
     fn fill_space(&mut self, ring: &mut Circumference, ends: Option<[(u32, Disc); 2]>) {
         let angles_rad = ends.map_or([0.0, TAU], |ends| ends.map(|(_, end)| end.angle()));
         let particles = ends.map(|ends| ends.map(|(particle, _)| particle));
@@ -135,7 +143,8 @@ impl<O: Observer> PaperRun<O> {
         let mut behind = ends.map(|[_, (_, behind)]| behind);
         while (ring.child.slot as usize) < Slots::COUNT {
             let child = self.pushed(ring, last);
-            // "The projection of its diameter", φ, and "the actual free circumference", τ (Fig. 7g).
+            // "The projection of its diameter", φ, and "the actual free circumference", τ (Fig.
+            // 7g).
             let phi_rad = ring.taken(child);
             let tau_rad = match (last, behind) {
                 (Some(last), Some(behind)) => ring.free(child, last, behind),
@@ -155,9 +164,11 @@ impl<O: Observer> PaperRun<O> {
         }
     }
 
-    /// A child beside `last`, pushed until it touches its parent and overlaps the others least (§5.1, Fig. 7).
+    /// A child beside `last`, pushed until it touches its parent and overlaps the others least
+    /// (§5.1, Fig. 7).
     fn pushed(&mut self, ring: &Circumference, last: Option<Disc>) -> Disc {
-        // I lies on the circle of the last child, perpendicular to the way there; s on the circle of the parent (Fig. 7c).
+        // I lies on the circle of the last child, perpendicular to the way there; s on the circle
+        // of the parent (Fig. 7c).
         let tangent = last.map(|last| last.centre + last.centre.perp().normalize_or_zero() * last.radius);
         let way = tangent.map_or(DVec2::X, |tangent| tangent.normalize_or(DVec2::X));
         let mut child = self.sized(ring, way * ring.radius);
@@ -194,14 +205,16 @@ impl<O: Observer> PaperRun<O> {
         child
     }
 
-    /// A child in the tangent plane, with the radius there: "at each step we evaluate the curvature".
+    /// A child in the tangent plane, with the radius there: "at each step we evaluate the
+    /// curvature".
     fn sized(&mut self, ring: &Circumference, centre: DVec2) -> Disc {
         // Where the curvature has no value, the smallest radius is that of its limit.
         let radius = self.radius_at(ring.place(centre)).unwrap_or(self.rules.sizes.smallest());
         Disc { centre, radius }
     }
 
-    /// "Finally we re-project the children of P on the surface" (§5.1), and adds the child unless a particle is in its way.
+    /// "Finally we re-project the children of P on the surface" (§5.1), and adds the child unless a
+    /// particle is in its way.
     fn project(&mut self, ring: &mut Circumference, child: Disc) {
         let of = ring.child;
         let distance = child.centre.length();

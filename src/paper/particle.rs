@@ -1,12 +1,13 @@
-//! A particle, and the space partitioning by which the particles near a point are found (§4.4, "any other hierarchical partitioning should
-//! work fine"): cubes of one size in an ordered map.
+//! A particle, and the space partitioning by which the particles near a point are found (§4.4, "any
+//! other hierarchical partitioning should work fine"): cubes of one size in an ordered map.
 
 use crate::particles::Slots;
 use glam::DVec3;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// A particle: position p, normal N̂ and repulsion radius r (§4.2), with its parent, level, front and slots.
+/// A particle: position p, normal N̂ and repulsion radius r (§4.2), with its parent, level, front
+/// and slots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonParticle"))]
 pub struct Particle {
@@ -16,7 +17,8 @@ pub struct Particle {
     pub normal: [f64; 3],
     /// Repulsion radius.
     pub radius: f64,
-    /// The particle that placed this one; none for a seed and in particle systems, where no index lasts.
+    /// The particle that placed this one; none for a seed and in particle systems, where no index
+    /// lasts.
     pub parent: Option<u32>,
     /// Generation level; in a particle system the number of fissions since the first particle.
     pub level: u32,
@@ -28,7 +30,8 @@ pub struct Particle {
     /// Whether the particle has placed its children.
     #[serde(skip)]
     pub is_done: bool,
-    /// Signed distance f/|∇f| from the surface, to first order. Only Witkin and Heckbert's particles are beside it for long.
+    /// Signed distance f/|∇f| from the surface, to first order. Only Witkin and Heckbert's
+    /// particles are beside it for long.
     #[serde(skip)]
     pub(crate) height: f64,
 }

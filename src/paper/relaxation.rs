@@ -1,5 +1,6 @@
-//! Relaxation: in uniform sampling (§4.5) the repulsion of Witkin and Heckbert 1994, §4, without fission, death and adaptive
-//! radii; in non-uniform sampling (§5.4) forces between discs that overlap.
+//! Relaxation: in uniform sampling (§4.5) the repulsion of Witkin and Heckbert 1994, §4, without
+//! fission, death and adaptive radii; in non-uniform sampling (§5.4) forces between discs that
+//! overlap.
 
 use super::{Buckets, Nearby, Observer, PaperRun, Particle, RadiusRule};
 use glam::DVec3;
@@ -22,36 +23,41 @@ pub struct Push {
 pub(crate) struct Move {
     /// Target of the move.
     pub(crate) target: DVec3,
-    /// Whether the particle stayed where it was, because the move leads out of the box, off the surface or around a fold.
+    /// Whether the particle stayed where it was, because the move leads out of the box, off the
+    /// surface or around a fold.
     pub(crate) is_kept: bool,
 }
 
-/// Particles of one size repel each other up to this distance, in σ, where the energy exp(−d²/2σ²) is 1 % of that at 0.
+/// Particles of one size repel each other up to this distance, in σ, where the energy exp(−d²/2σ²)
+/// is 1 % of that at 0.
 pub(crate) const GAUSSIAN_REACH: f64 = 3.0;
 
-/// Discs of many sizes push each other up to this distance, in r_i + r_j: discs that barely touch would not push into gaps. On 16 random
-/// surfaces half and twice the excess over 1 leave holes 6 % wider after ten steps.
+/// Discs of many sizes push each other up to this distance, in r_i + r_j: discs that barely touch
+/// would not push into gaps. On 16 random surfaces half and twice the excess over 1 leave holes 6 %
+/// wider after ten steps.
 pub(crate) const OVERLAP_REACH: f64 = 1.15;
 
-/// A particle moves by no more than this in a step, in radii: it stays far from the next one, at 2. On 16 random surfaces half and twice
-/// of it change no figure after ten steps by more than 0.5 %.
+/// A particle moves by no more than this in a step, in radii: it stays far from the next one, at 2.
+/// On 16 random surfaces half and twice of it change no figure after ten steps by more than 0.5 %.
 pub(crate) const MAX_MOVE: f64 = 0.35;
 
-/// Weight of a pair by the cosine between its normals: 1 on one sheet, 0 on two that face away from each other.
+/// Weight of a pair by the cosine between its normals: 1 on one sheet, 0 on two that face away from
+/// each other.
 fn same_sheet_weight(cosine: f64) -> f64 {
     (0.5 + cosine).clamp(0.0, 1.0)
 }
 
-/// Force over offset, and energy, of a pair of particles of one size: E = exp(−d²/2σ²) with σ = r, and each of the two moves
-/// along the offset between them times E. The energy is cut off at 3σ and shifted to zero there.
+/// Force over offset, and energy, of a pair of particles of one size: E = exp(−d²/2σ²) with σ = r,
+/// and each of the two moves along the offset between them times E. The energy is cut off at 3σ and
+/// shifted to zero there.
 fn gaussian(distance: f64, sigma: f64) -> (f64, f64) {
     let share = distance / sigma;
     let energy = libm::exp(-0.5 * share * share);
     (energy, energy - libm::exp(-0.5 * GAUSSIAN_REACH * GAUSSIAN_REACH))
 }
 
-/// Force over offset, and energy, of two discs whose radii add up to `both`: they push each other apart by their overlap. The paper
-/// gives no formula.
+/// Force over offset, and energy, of two discs whose radii add up to `both`: they push each other
+/// apart by their overlap. The paper gives no formula.
 pub(crate) fn overlap(distance: f64, both: f64) -> (f64, f64) {
     let overlap = (OVERLAP_REACH * both - distance).max(0.0);
     let share = 2.0 * overlap / both;

@@ -10,11 +10,13 @@ use glam::DVec3;
 pub enum RadiusRule {
     /// The radius is this one everywhere (§4).
     Same(f64),
-    /// The radius follows the curvature (§5.2), between two limits, "in order to avoid very small or very large particles".
+    /// The radius follows the curvature (§5.2), between two limits, "in order to avoid very small
+    /// or very large particles".
     ByCurvature {
         /// The radius, from the principal curvatures of the level set and `scale`.
         law: fn(&Curvature<f64, DVec3>, f64) -> f64,
-        /// Factor of the law, which scales the curvature "in order to be used as a distance measurement".
+        /// Factor of the law, which scales the curvature "in order to be used as a distance
+        /// measurement".
         scale: f64,
         /// The smallest radius.
         least: f64,
@@ -58,12 +60,13 @@ pub fn sum_of_curvatures(curvature: &Curvature<f64, DVec3>, scale: f64) -> f64 {
     scale / (2.0 * curvature.mean().abs())
 }
 
-/// Size of a relaxation step in uniform sampling, in σ². The stiffest mode of the hexagonal lattice at the spacing 2σ has the eigenvalue
-/// 2.2 / σ², so steps below 0.9 are stable, and below 0.7 where rows are squeezed to 1.7 σ; with 0.2 ten steps leave seams.
+/// Size of a relaxation step in uniform sampling, in σ². The stiffest mode of the hexagonal lattice
+/// at the spacing 2σ has the eigenvalue 2.2 / σ², so steps below 0.9 are stable, and below 0.7
+/// where rows are squeezed to 1.7 σ; with 0.2 ten steps leave seams.
 const STEP: f64 = 0.6;
 
-/// Size of a relaxation step in non-uniform sampling. The stiffest mode of the hexagonal lattice has an eigenvalue below 6, so steps below
-/// a third are stable.
+/// Size of a relaxation step in non-uniform sampling. The stiffest mode of the hexagonal lattice
+/// has an eigenvalue below 6, so steps below a third are stable.
 pub(crate) const OVERLAP_STEP: f64 = 0.33;
 
 /// The choices of a run.
@@ -73,16 +76,17 @@ pub struct Rules {
     pub sizes: RadiusRule,
     /// The method that moves a child onto the surface, within a residual (§4.3): along its circle.
     pub(crate) projection: fn(&mut ImplicitSurface, &Circle, f64, Note) -> Landing,
-    /// The angles at which the searches of a particle's children start, by its frame and radius: in the tangent plane, θ₀ = 0, as in
-    /// Fig. 4 (left).
+    /// The angles at which the searches of a particle's children start, by its frame and radius: in
+    /// the tangent plane, θ₀ = 0, as in Fig. 4 (left).
     pub(crate) start_angles: fn(&mut ImplicitSurface, &TangentFrame, f64) -> [f64; 6],
-    /// Whether a particle to which a child corresponds leaves the neighbours of the parent (§4.4), so that no second child is identified
-    /// with it. If not, it stays, and so do the new children.
+    /// Whether a particle to which a child corresponds leaves the neighbours of the parent (§4.4),
+    /// so that no second child is identified with it. If not, it stays, and so do the new children.
     pub(crate) removes_matched: bool,
-    /// A child is identified with a particle within this distance, in r_i + r_j. The paper names no value; 0.7 gives the most particles
-    /// with six neighbours on smooth surfaces.
+    /// A child is identified with a particle within this distance, in r_i + r_j. The paper names no
+    /// value; 0.7 gives the most particles with six neighbours on smooth surfaces.
     pub match_tolerance: f64,
-    /// An adaptive child is added if the free angle τ is at least this share of φ, the angle that it takes.
+    /// An adaptive child is added if the free angle τ is at least this share of φ, the angle that
+    /// it takes.
     pub fit: f64,
     /// A point is on the surface if |f|/|∇f| is at most this, in r. The paper names no value.
     pub residual: f64,
@@ -112,8 +116,9 @@ impl Rules {
         }
     }
 
-    /// Whether another particle is of the sheet of one: it faces the same way, and rises by no more than 45° from the tangent plane.
-    /// Nearer than half of the distance at which the two correspond, the direction between them tells nothing.
+    /// Whether another particle is of the sheet of one: it faces the same way, and rises by no more
+    /// than 45° from the tangent plane. Nearer than half of the distance at which the two
+    /// correspond, the direction between them tells nothing.
     pub(crate) fn is_same_sheet(&self, one: &Particle, other: &Particle) -> bool {
         let offset = other.p() - one.p();
         let rise = offset.dot(one.n());

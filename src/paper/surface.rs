@@ -1,4 +1,5 @@
-//! The surface f = 0, and the projection of a child onto it, paper §4.3: along a circle around its parent.
+//! The surface f = 0, and the projection of a child onto it, paper §4.3: along a circle around its
+//! parent.
 
 use super::{ChildSlot, Moment, Observer, PaperRun, Particle};
 use crate::field::{Field, Jet};
@@ -8,19 +9,22 @@ use core::f64::consts::PI;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Largest number of evaluations in Newton's method. From a good guess it takes two. With six of them three of 24 random
-/// surfaces get other particles, with 24 none, or one where particles are large.
+/// Largest number of evaluations in Newton's method. From a good guess it takes two. With six of
+/// them three of 24 random surfaces get other particles, with 24 none, or one where particles are
+/// large.
 const MAX_NEWTON: u32 = 12;
 
-/// Largest turn of a step on the circle, as the tangent of half the angle: about 23°. On 16 random surfaces half of it takes 2 % more
-/// evaluations for large particles. Twice as much changes counts and evaluations by less than 0.1 %.
+/// Largest turn of a step on the circle, as the tangent of half the angle: about 23°. On 16 random
+/// surfaces half of it takes 2 % more evaluations for large particles. Twice as much changes counts
+/// and evaluations by less than 0.1 %.
 const MAX_TURN: f64 = 0.2;
 
-/// Angle from the tangent plane at which a child is given up, 100°: past 90° it lies beneath its parent, behind a rim. On 16 random surfaces
-/// 75° and 130° change nothing.
+/// Angle from the tangent plane at which a child is given up, 100°: past 90° it lies beneath its
+/// parent, behind a rim. On 16 random surfaces 75° and 130° change nothing.
 const MAX_THETA_RAD: f64 = PI * 5.0 / 9.0;
 
-/// "Require: an implicit surface": f = 0 in a box. Clones share the field, and count their evaluations apart.
+/// "Require: an implicit surface": f = 0 in a box. Clones share the field, and count their
+/// evaluations apart.
 #[derive(Clone)]
 pub struct ImplicitSurface {
     field: Arc<dyn Field>,
@@ -47,12 +51,14 @@ pub struct Trial {
 /// A callback receives each evaluation of a search for the surface, in their order.
 pub(crate) type Note<'a> = &'a mut dyn FnMut(Trial);
 
-/// Result of a search for the surface: a point of it with the unit normal there, or the fate of a child that finds none.
+/// Result of a search for the surface: a point of it with the unit normal there, or the fate of a
+/// child that finds none.
 pub(crate) type Landing = Result<(DVec3, DVec3), SlotFate>;
 
 /// The circle C(p, 2r) in the plane (p, N̂, V̂).
 ///
-/// The circle has the points p + 2r (cos θ V̂ + sin θ N̂): the paper's formula leaves the centre out and takes |N| = |V| = 2r.
+/// The circle has the points p + 2r (cos θ V̂ + sin θ N̂): the paper's formula leaves the centre
+/// out and takes |N| = |V| = 2r.
 #[derive(Clone, Copy, Debug)]
 pub struct Circle {
     /// The parent's place, p.
@@ -98,8 +104,8 @@ impl ImplicitSurface {
     ///
     /// # Differs from the paper
     ///
-    /// The paper turns by α_j π, where α_j is f "scaled between −1 and 1". Here the turn is that of Newton's method in θ,
-    /// −f / (df/dθ) to first order, limited to 23°.
+    /// The paper turns by α_j π, where α_j is f "scaled between −1 and 1". Here the turn is that of
+    /// Newton's method in θ, −f / (df/dθ) to first order, limited to 23°.
     pub(crate) fn land_on_circle(&mut self, circle: &Circle, residual: f64, note: Note) -> Landing {
         let mut theta_rad = circle.start_rad;
         for step in 0..MAX_NEWTON {
@@ -122,8 +128,9 @@ impl ImplicitSurface {
         Err(SlotFate::NotConverged)
     }
 
-    /// "The most common technique", the Newton–Raphson method: x ← x − f ∇f / |∇f|², until the point is on the surface or has
-    /// moved by more than `reach`. Seeds come to the surface by it, and particles that were moved.
+    /// "The most common technique", the Newton–Raphson method: x ← x − f ∇f / |∇f|², until the
+    /// point is on the surface or has moved by more than `reach`. Seeds come to the surface by it,
+    /// and particles that were moved.
     pub(crate) fn land_by_newton(&mut self, start: DVec3, reach: f64, residual: f64, note: Note) -> Landing {
         let mut position = start;
         for step in 0..MAX_NEWTON {
@@ -163,7 +170,8 @@ impl<O: Observer> PaperRun<O> {
         landing
     }
 
-    /// The position and normal of a child that has landed, if it may be a particle there; otherwise its fate is decided.
+    /// The position and normal of a child that has landed, if it may be a particle there; otherwise
+    /// its fate is decided.
     pub(crate) fn usable(&mut self, child: ChildSlot, landing: Landing) -> Option<(DVec3, DVec3)> {
         let fate = match landing {
             Err(fate) => fate,
@@ -178,8 +186,8 @@ impl<O: Observer> PaperRun<O> {
         None
     }
 
-    /// The position and normal of a particle that is moved to `target` and brought back to the surface; `None` at the border of the box,
-    /// where the field ends, or around a fold.
+    /// The position and normal of a particle that is moved to `target` and brought back to the
+    /// surface; `None` at the border of the box, where the field ends, or around a fold.
     pub(crate) fn come_back(&mut self, own: &Particle, target: DVec3, reach: f64) -> Option<(DVec3, DVec3)> {
         let residual = self.rules.residual * own.radius;
         let landing = self.surface.land_by_newton(target, reach, residual, &mut |_| {}).ok();

@@ -3,15 +3,16 @@
 use crate::math::Sym3;
 use glam::DVec3;
 
-/// Maximum number of sweeps of Jacobi's method. It converges quadratically; for a 3×3 matrix five sweeps give every
-/// digit.
+/// Maximum number of sweeps of Jacobi's method. It converges quadratically; for a 3×3 matrix five
+/// sweeps give every digit.
 const SWEEPS: usize = 12;
 
-/// Eigenvalues in ascending order and their unit eigenvectors, by Jacobi rotations (Golub & Van Loan, "Matrix
-/// Computations", §8.5).
+/// Eigenvalues in ascending order and their unit eigenvectors, by Jacobi rotations (Golub & Van
+/// Loan, "Matrix Computations", §8.5).
 ///
-/// The method is accurate for eigenvalues of any ratio and uses only +, −, ×, ÷ and √, so its results have the same
-/// bits everywhere. A matrix with an entry that is not finite gives eigenvalues that are not finite.
+/// The method is accurate for eigenvalues of any ratio and uses only +, −, ×, ÷ and √, so its
+/// results have the same bits everywhere. A matrix with an entry that is not finite gives
+/// eigenvalues that are not finite.
 pub(super) fn symmetric(m: &Sym3<f64>) -> ([f64; 3], [DVec3; 3]) {
     let mut a = [[m.xx, m.xy, m.xz], [m.xy, m.yy, m.yz], [m.xz, m.yz, m.zz]];
     let mut v = [DVec3::X, DVec3::Y, DVec3::Z];

@@ -1,13 +1,17 @@
-//! A smooth function near points with normals: Hermite radial basis functions at centres, smoothed as the points tell.
+//! A smooth function near points with normals: Hermite radial basis functions at centres, smoothed
+//! as the points tell.
 //!
-//! The function is f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³ (I. Macêdo, J. P. Gois & L. Velho, "Hermite Radial
-//! Basis Functions Implicits", 2011). A few of the points are its N centres, and every point is in the cell of the nearest one. The
-//! conditions are that the means of f and of ∇f − n over each cell vanish: 4 N linear equations for the 4 N coefficients. Where every point
-//! is a centre, the function goes through all of them. In each equation the unknown of its own centre, αⱼ or −βⱼ, is added with the
-//! factor λ/nⱼ for a cell of nⱼ points, as in a smoothing spline (G. Wahba, "Spline Models for Observational Data", 1990, §1.3).
+//! The function is f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³ (I. Macêdo, J. P. Gois
+//! & L. Velho, "Hermite Radial Basis Functions Implicits", 2011). A few of the points are its N
+//! centres, and every point is in the cell of the nearest one. The conditions are that the means of
+//! f and of ∇f − n over each cell vanish: 4 N linear equations for the 4 N coefficients. Where
+//! every point is a centre, the function goes through all of them. In each equation the unknown of
+//! its own centre, αⱼ or −βⱼ, is added with the factor λ/nⱼ for a cell of nⱼ points, as in a
+//! smoothing spline (G. Wahba, "Spline Models for Observational Data", 1990, §1.3).
 //! Cross-validation chooses λ: the function of one half of the points is to be near the other half.
 //!
-//! The system is set up in local coordinates, in which the centres fill a box of about one unit, and solved in double precision.
+//! The system is set up in local coordinates, in which the centres fill a box of about one unit,
+//! and solved in double precision.
 
 use super::solve::{Decomposition, SingularMatrix};
 use super::thin::check_spread;
@@ -22,26 +26,29 @@ use std::sync::Arc;
 
 /// Minimum number of centres: fewer bound no volume.
 const MIN_CENTRES: usize = 4;
-/// Condition number from which a solution is refused: fewer than three digits are left in double precision.
+/// Condition number from which a solution is refused: fewer than three digits are left in double
+/// precision.
 const MAX_CONDITION: f64 = 1e13;
-/// Condition number above which the user is warned: fewer than six digits are left, as many as single precision shows.
+/// Condition number above which the user is warned: fewer than six digits are left, as many as
+/// single precision shows.
 const WARN_CONDITION: f64 = 1e10;
-/// Margin around the points for the surface, which bulges between them, as a share of the diagonal of their box. Half and twice
-/// as much hold the same surfaces of twelve random clouds.
+/// Margin around the points for the surface, which bulges between them, as a share of the diagonal
+/// of their box. Half and twice as much hold the same surfaces of twelve random clouds.
 const MARGIN: f64 = 0.06;
-/// Largest smoothing term λ that is tried. The largest that was chosen for spheres, tori and bunnies of 5,000 points, with and without
-/// noise, is a fourth of it.
+/// Largest smoothing term λ that is tried. The largest that was chosen for spheres, tori and
+/// bunnies of 5,000 points, with and without noise, is a fourth of it.
 const LARGEST_SMOOTHING: f64 = 4.0;
-/// Ratio of two terms that are tried one after the other. The distances of those surfaces from the true ones change by less than a tenth
-/// from one term to the next.
+/// Ratio of two terms that are tried one after the other. The distances of those surfaces from the
+/// true ones change by less than a tenth from one term to the next.
 const SMOOTHING_STEP: f64 = 0.25;
 /// Maximum number of terms that are tried: the last one is 10⁻⁵, below any that was chosen.
 const SMOOTHING_TRIALS: u32 = 10;
-/// Maximum number of centres with which the terms are tried. λ weighs points and not centres, so it holds for more centres too, whose
-/// systems take up to 64 times as long.
+/// Maximum number of centres with which the terms are tried. λ weighs points and not centres, so it
+/// holds for more centres too, whose systems take up to 64 times as long.
 const TRIAL_CENTRES: usize = 200;
-/// Fractions of the work at which the trials end, and at which the elimination begins and ends, for the display of progress: the means of
-/// twelve random clouds of 1,000 to 20,000 points with 100 to 800 centres are 0.43, 0.53 and 0.93.
+/// Fractions of the work at which the trials end, and at which the elimination begins and ends, for
+/// the display of progress: the means of twelve random clouds of 1,000 to 20,000 points with 100 to
+/// 800 centres are 0.43, 0.53 and 0.93.
 const TRIALS_END: f64 = 0.4;
 const ELIMINATION_SPAN: [f64; 2] = [0.5, 0.9];
 
@@ -98,12 +105,14 @@ impl From<SingularMatrix> for FitError {
     }
 }
 
-/// Fits a function to the points of `cloud`, of which those with the indices `chosen` are the centres. The residual is taken at all points
-/// `given`. The fit's report has the name, credit and warnings of `info`. `tell` gets the fraction of the work done.
+/// Fits a function to the points of `cloud`, of which those with the indices `chosen` are the
+/// centres. The residual is taken at all points `given`. The fit's report has the name, credit and
+/// warnings of `info`. `tell` gets the fraction of the work done.
 ///
 /// # Errors
 ///
-/// If there are too few centres, if they lie in one plane, if the system cannot be solved, or if memory runs out.
+/// If there are too few centres, if they lie in one plane, if the system cannot be solved, or if
+/// memory runs out.
 ///
 /// # Panics
 ///
@@ -161,7 +170,8 @@ struct CellPoint {
     cell: u32,
 }
 
-/// The points, each in the cell of its nearest centre, and the mean of their squared distances from these. Ties go to the smaller index.
+/// The points, each in the cell of its nearest centre, and the mean of their squared distances from
+/// these. Ties go to the smaller index.
 async fn in_cells(mut points: Vec<CellPoint>, centres: &[DVec3]) -> (Vec<CellPoint>, f64) {
     let (mut sum, count) = (0.0, points.len() as f64);
     for range in ranges(points.len(), LIGHT.div_ceil(centres.len())) {
@@ -180,10 +190,12 @@ async fn in_cells(mut points: Vec<CellPoint>, centres: &[DVec3]) -> (Vec<CellPoi
     (points, sum / count)
 }
 
-/// The smoothing term with which the function of one half of the points is nearest to the other half; 0 if nearly every point is a centre.
+/// The smoothing term with which the function of one half of the points is nearest to the other
+/// half; 0 if nearly every point is a centre.
 ///
-/// The points of each cell go to the halves in turn. What is compared is the mean of f² and (d |∇f − n|)², where d is the distance of the
-/// points from their centres. Terms are tried from the largest one down, until the mean grows.
+/// The points of each cell go to the halves in turn. What is compared is the mean of f² and (d |∇f
+/// − n|)², where d is the distance of the points from their centres. Terms are tried from the
+/// largest one down, until the mean grows.
 async fn smoothing(points: &[CellPoint], centres: &[DVec3], tell: impl Fn(f64)) -> Result<f64, FitError> {
     if 2 * (points.len() - centres.len()) < centres.len() {
         return Ok(0.0);
@@ -233,8 +245,8 @@ fn field_of(x: &DVector<f64>, centres: &[DVec3], frame: &CentredFrame) -> Result
     let mut data = RbfData::default();
     let scale = frame.scale();
     for (i, &centre) in centres.iter().enumerate() {
-        // With g the function in local coordinates, f(x) = g(s (x − o))/s has the same gradients; its coefficients
-        // are α s² and β s.
+        // With g the function in local coordinates, f(x) = g(s (x − o))/s has the same gradients;
+        // its coefficients are α s² and β s.
         data.centres.push(frame.world(centre).to_array());
         data.alpha.push(x[4 * i] * scale * scale);
         data.beta.push([1, 2, 3].map(|k| -x[4 * i + k] * scale));
@@ -274,7 +286,8 @@ fn reported(field: &RbfField, given: &[DVec3], mut residuals: Vec<f32>, mut info
     Fit { data: field.data().clone(), bounds, info }
 }
 
-/// The equations for the unknowns α and −β of each centre: the means of f and ∇f over the cell of every centre.
+/// The equations for the unknowns α and −β of each centre: the means of f and ∇f over the cell of
+/// every centre.
 #[derive(Clone)]
 struct System {
     matrix: DMatrix<f64>,
@@ -284,8 +297,8 @@ struct System {
     count: Vec<f64>,
 }
 
-/// The smoothing term λ of f. That of ∇f is larger by the square of the distance of the points from their centres: over that distance an
-/// error of the slope is one of the height.
+/// The smoothing term λ of f. That of ∇f is larger by the square of the distance of the points from
+/// their centres: over that distance an error of the slope is one of the height.
 struct Smoothing {
     value: f64,
     /// Mean of the squared distances.
@@ -346,7 +359,8 @@ impl System {
         }
     }
 
-    /// Solves for the unknowns, and estimates the condition number. `tell` gets the fraction of the work done.
+    /// Solves for the unknowns, and estimates the condition number. `tell` gets the fraction of the
+    /// work done.
     async fn solve(
         mut self,
         smoothing: Smoothing,
@@ -366,7 +380,8 @@ impl System {
     }
 }
 
-/// Residuals |f|/|∇f| of the points, and the point with the largest one. There is none where ∇f vanishes.
+/// Residuals |f|/|∇f| of the points, and the point with the largest one. There is none where ∇f
+/// vanishes.
 async fn residuals(field: &RbfField, points: &[DVec3], tell: impl Fn(f64)) -> (Vec<f32>, DVec3) {
     let mut field = field.evaluator(Frame::default());
     let mut residuals = Vec::with_capacity(points.len());

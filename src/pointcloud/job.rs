@@ -16,8 +16,9 @@ use glam::DVec3;
 use serde::Serialize;
 use std::rc::Rc;
 
-/// Distance from the origin, in diagonals of the points' box, beyond which the points are moved to the origin. Within
-/// it, single precision, in which the surface is sampled, resolves a millionth of the diagonal.
+/// Distance from the origin, in diagonals of the points' box, beyond which the points are moved to
+/// the origin. Within it, single precision, in which the surface is sampled, resolves a millionth
+/// of the diagonal.
 const FAR: f64 = 10.0;
 
 /// Progress of a job.
@@ -65,8 +66,9 @@ fn names() -> String {
     names.join(", ")
 }
 
-/// A stage of a job in words, with its begin and length as shares of the whole time. Of 32 random files of 2 to 6 MB reading takes 7 % of it,
-/// normals 4 %, the surface 82 %, and all else together 4 %.
+/// A stage of a job in words, with its begin and length as shares of the whole time. Of 32 random
+/// files of 2 to 6 MB reading takes 7 % of it, normals 4 %, the surface 82 %, and all else together
+/// 4 %.
 struct JobPart {
     label: &'static str,
     begins: f64,
@@ -99,7 +101,8 @@ impl JobStatus {
         Rc::new(Self { progress: Cell::new(first.at(0.0)), centres: OnceCell::new() })
     }
 
-    /// Begins a part of the job. Returns a function that takes the fraction of the part that is done.
+    /// Begins a part of the job. Returns a function that takes the fraction of the part that is
+    /// done.
     fn begin(&self, part: &'static JobPart) -> impl Fn(f64) {
         self.progress.set(part.at(0.0));
         |share| self.progress.set(part.at(share))
@@ -126,8 +129,8 @@ enum JobState {
 }
 
 impl Job {
-    /// Job for a file. A function with as many `centres` (see [`CENTRES`]) is fitted to all of its points; `name` is for
-    /// reports.
+    /// Job for a file. A function with as many `centres` (see [`CENTRES`]) is fitted to all of its
+    /// points; `name` is for reports.
     ///
     /// # Errors
     ///
@@ -141,8 +144,8 @@ impl Job {
         Ok(Self { state: JobState::Working(work), status })
     }
 
-    /// Job for a built-in model. A function with as many `centres` (see [`CENTRES`]), or as many as there are points, is fitted to
-    /// them.
+    /// Job for a built-in model. A function with as many `centres` (see [`CENTRES`]), or as many as
+    /// there are points, is fitted to them.
     ///
     /// # Errors
     ///
@@ -166,8 +169,8 @@ impl Job {
 
     /// Does up to `budget` slices of the work and returns the progress.
     ///
-    /// A slice takes about a tenth of a millisecond natively, one of solving about a millisecond; between two stages of a file with
-    /// millions of points it may take some tens of milliseconds.
+    /// A slice takes about a tenth of a millisecond natively, one of solving about a millisecond;
+    /// between two stages of a file with millions of points it may take some tens of milliseconds.
     ///
     /// # Errors
     ///
@@ -260,7 +263,8 @@ async fn of_file(
     of_cloud(cloud, given, wanted, info, status).await
 }
 
-/// The work from points with normals to a field. The distances from the surface are measured at the points `given`.
+/// The work from points with normals to a field. The distances from the surface are measured at the
+/// points `given`.
 async fn of_cloud(
     cloud: Cloud,
     given: Vec<DVec3>,
@@ -283,7 +287,8 @@ async fn of_cloud(
     Ok(fit)
 }
 
-/// Moves points far from the origin, relative to their size, by round numbers to the origin, and warns of it.
+/// Moves points far from the origin, relative to their size, by round numbers to the origin, and
+/// warns of it.
 fn bring_near(points: &mut [DVec3]) -> Option<String> {
     let bounds = Bounds::around(points.iter().copied());
     let (middle, diagonal) = (bounds.middle(), bounds.diagonal());
@@ -310,6 +315,7 @@ fn round_to(x: f64, unit: f64) -> f64 {
     while power / inverse > unit {
         inverse *= 10.0;
     }
-    // Division by integers gives the double nearest to the decimal. Adding 0 avoids a negative zero.
+    // Division by integers gives the double nearest to the decimal. Adding 0 avoids a negative
+    // zero.
     (x / power * inverse).round() / inverse * power + 0.0
 }

@@ -1,9 +1,9 @@
 //! Models from points: a function for a file of points or for a built-in model.
 //!
-//! A file is read to a [`Cloud`] of points with normals. A few hundred of them, far from each other, become the centres
-//! of a radial basis function, which is fitted to all of them by a linear system. The result is an
-//! [`RbfData`](crate::field::rbf::RbfData), which is all that the sampler's core takes: the page solves in a module and
-//! a worker of their own.
+//! A file is read to a [`Cloud`] of points with normals. A few hundred of them, far from each
+//! other, become the centres of a radial basis function, which is fitted to all of them by a linear
+//! system. The result is an [`RbfData`](crate::field::rbf::RbfData), which is all that the
+//! sampler's core takes: the page solves in a module and a worker of their own.
 
 mod eigen;
 pub mod fit;

@@ -1,8 +1,9 @@
 //! Built-in models of 200 points each, like those of the paper (§6).
 //!
-//! A file in `data` holds the smallest corner and the side of a cube as four little-endian floats. Five 16-bit integers
-//! follow for each point: its position in the cube, and its normal in the octahedral encoding (Q. Meyer et al., "On
-//! Floating-Point Normal Vectors", 2010). `tests/it/models.rs` makes the files and states where the points come from.
+//! A file in `data` holds the smallest corner and the side of a cube as four little-endian floats.
+//! Five 16-bit integers follow for each point: its position in the cube, and its normal in the
+//! octahedral encoding (Q. Meyer et al., "On Floating-Point Normal Vectors", 2010).
+//! `tests/it/models.rs` makes the files and states where the points come from.
 
 use super::{Cloud, ModelInfo, NormalSource};
 use crate::field::model::Model;
@@ -49,8 +50,8 @@ fn decode(bytes: &[u8]) -> Cloud {
 
 /// Direction with an octahedral encoding on the square from −1 to 1.
 ///
-/// The upper half of the octahedron |x| + |y| + |z| = 1 is projected along z. The lower half is unfolded over its edges: the inner diamond
-/// of the square is exchanged with its four corners.
+/// The upper half of the octahedron |x| + |y| + |z| = 1 is projected along z. The lower half is
+/// unfolded over its edges: the inner diamond of the square is exchanged with its four corners.
 fn octahedral_decode(flat: DVec2) -> DVec3 {
     let z = 1.0 - flat.x.abs() - flat.y.abs();
     if z < 0.0 {

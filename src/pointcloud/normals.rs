@@ -1,18 +1,19 @@
-//! Normals, signs of normals and outliers, as the neighbours of each point tell them. A normal is estimated where none is given; one
-//! that is given may have the wrong sign.
+//! Normals, signs of normals and outliers, as the neighbours of each point tell them. A normal is
+//! estimated where none is given; one that is given may have the wrong sign.
 //!
-//! The normal of a point is that of the plane through its neighbours, and its sign is propagated from point to point
-//! (H. Hoppe, T. DeRose, T. Duchamp, J. McDonald & W. Stuetzle, "Surface Reconstruction from Unorganized Points",
-//! SIGGRAPH 1992, §3.2 and 3.3).
+//! The normal of a point is that of the plane through its neighbours, and its sign is propagated
+//! from point to point (H. Hoppe, T. DeRose, T. Duchamp, J. McDonald & W. Stuetzle, "Surface
+//! Reconstruction from Unorganized Points", SIGGRAPH 1992, §3.2 and 3.3).
 //!
 //! # Differences from the paper
 //!
-//! * A normal that is propagated along an edge is reflected in the plane that bisects the edge, and the weight of the
-//!   edge is the difference of the two normals after that. Of 1,839 vertices of the bunny 7 get a normal of the wrong
-//!   sign; without the reflection 51 do.
-//! * The graph has an edge from every point to its nearest neighbours, without the edges of a Euclidean minimum
-//!   spanning tree. Each connected component of the graph is oriented by itself.
-//! * Outward is decided by the outermost points in six directions together, not by the highest point alone.
+//! * A normal that is propagated along an edge is reflected in the plane that bisects the edge, and
+//!   the weight of the edge is the difference of the two normals after that. Of 1,839 vertices of
+//!   the bunny 7 get a normal of the wrong sign; without the reflection 51 do.
+//! * The graph has an edge from every point to its nearest neighbours, without the edges of a
+//!   Euclidean minimum spanning tree. Each connected component of the graph is oriented by itself.
+//! * Outward is decided by the outermost points in six directions together, not by the highest
+//!   point alone.
 
 use super::thin::covariance;
 use super::{Cloud, NormalSource, eigen};
@@ -23,39 +24,47 @@ use core::cmp::Reverse;
 use glam::DVec3;
 use std::collections::BinaryHeap;
 
-/// Number of neighbours that a plane is fitted to. Fewer follow the noise, more reach the far side of thin parts.
+/// Number of neighbours that a plane is fitted to. Fewer follow the noise, more reach the far side
+/// of thin parts.
 ///
-/// With 8, 12 and 16 neighbours, the mean errors on spheres and tori of 200 to 20,000 points with noise of a tenth of
-/// the spacing are as 3 : 2 : 1.5, and of the bunny's 1,839 normals 3, 7 and 23 point inward.
+/// With 8, 12 and 16 neighbours, the mean errors on spheres and tori of 200 to 20,000 points with
+/// noise of a tenth of the spacing are as 3 : 2 : 1.5, and of the bunny's 1,839 normals 3, 7 and 23
+/// point inward.
 const NEIGHBOURS: usize = 12;
 
-/// Number of times that the neighbours of a plane are doubled, where points are noisy: 192 of 5,000 points whose noise has a deviation of
-/// 2 % of the size of a sphere or torus.
+/// Number of times that the neighbours of a plane are doubled, where points are noisy: 192 of 5,000
+/// points whose noise has a deviation of 2 % of the size of a sphere or torus.
 const WIDENINGS: u32 = 4;
-/// Number of planes whose flatness is compared. With twice as many, the same width is chosen for spheres, tori and bunnies of 5,000 points.
+/// Number of planes whose flatness is compared. With twice as many, the same width is chosen for
+/// spheres, tori and bunnies of 5,000 points.
 const COMPARED: usize = 500;
-/// Least kurtosis of the distances from planes that are thick by noise: that of a normal distribution is 3. In a cap of even curvature,
-/// where the distances are spread evenly, it is 1.8, and where points lie on two sheets beside the plane 1.
+/// Least kurtosis of the distances from planes that are thick by noise: that of a normal
+/// distribution is 3. In a cap of even curvature, where the distances are spread evenly, it is 1.8,
+/// and where points lie on two sheets beside the plane 1.
 const NOISE_KURTOSIS: f64 = 2.0;
 
-/// Cosine of 120°. Neighbours whose normals make a larger angle are on different sheets, or one has the wrong sign: the repulsion
-/// of particles tells sheets apart by the same angle.
+/// Cosine of 120°. Neighbours whose normals make a larger angle are on different sheets, or one has
+/// the wrong sign: the repulsion of particles tells sheets apart by the same angle.
 const OPPOSITE_COS: f64 = -0.5;
 
-/// A point is an outlier if the median distance of its neighbours is more than this times that of their own, and of all points. On
-/// 200 to 20,000 random points of spheres, tori and plates the largest ratio is 1.7. Of 40 clouds with up to 10 % of random points about
-/// them, a sparse part far away or a density that falls by the factor 30, 1.4 % at most are outliers.
+/// A point is an outlier if the median distance of its neighbours is more than this times that of
+/// their own, and of all points. On 200 to 20,000 random points of spheres, tori and plates the
+/// largest ratio is 1.7. Of 40 clouds with up to 10 % of random points about them, a sparse part
+/// far away or a density that falls by the factor 30, 1.4 % at most are outliers.
 const FAR: f64 = 5.0;
-/// A given normal is turned round if those of the neighbours disagree with it by more than this share of their weight: two thirds of
-/// them. Where 10 % or 20 % of the normals of tori and plates are flipped at random, 0.1 to 0.3 find all of them and 0.5 nearly all. On
-/// 2,000 random points of a plate that is thinner than they are apart, 0.1 turns 9 right normals round, 0.3 one.
+/// A given normal is turned round if those of the neighbours disagree with it by more than this
+/// share of their weight: two thirds of them. Where 10 % or 20 % of the normals of tori and plates
+/// are flipped at random, 0.1 to 0.3 find all of them and 0.5 nearly all. On 2,000 random points of
+/// a plate that is thinner than they are apart, 0.1 turns 9 right normals round, 0.3 one.
 const DISAGREEING: f64 = 0.3;
-/// Largest number of times that all given normals are compared with their neighbours: each time those beside turned ones are clearer. Of
-/// 128 clouds of 1,500 random points of tori, plates and noisy spheres, 5 to 30 % of whose normals were flipped, each settles within 7;
-/// the limit is for clouds that never do, since a point need not be a neighbour of its neighbours.
+/// Largest number of times that all given normals are compared with their neighbours: each time
+/// those beside turned ones are clearer. Of 128 clouds of 1,500 random points of tori, plates and
+/// noisy spheres, 5 to 30 % of whose normals were flipped, each settles within 7; the limit is for
+/// clouds that never do, since a point need not be a neighbour of its neighbours.
 const MOST_ROUNDS: u32 = 16;
 
-/// Share of such pairs above which the user is warned. Half and double warn of the same ones of twelve random clouds.
+/// Share of such pairs above which the user is warned. Half and double warn of the same ones of
+/// twelve random clouds.
 const WARN_SHARE: f64 = 0.01;
 
 /// The changes that were made to a cloud of points, for the user.
@@ -67,8 +76,9 @@ pub struct Changes {
     pub warnings: Vec<String>,
 }
 
-/// Leaves the outliers of a cloud out, and estimates its normals, outward, or turns the given ones round that disagree with those of
-/// their neighbours. The points must be distinct and not in one plane. `tell` gets the fraction of the points that are done.
+/// Leaves the outliers of a cloud out, and estimates its normals, outward, or turns the given ones
+/// round that disagree with those of their neighbours. The points must be distinct and not in one
+/// plane. `tell` gets the fraction of the points that are done.
 pub async fn settle(cloud: &mut Cloud, tell: impl Fn(f64)) -> Changes {
     let mut settled = Changes::default();
     let mut graph = NeighbourGraph::new(&cloud.position, tell).await;
@@ -92,7 +102,8 @@ pub async fn settle(cloud: &mut Cloud, tell: impl Fn(f64)) -> Changes {
     settled
 }
 
-/// Turns the given normals round that disagree with those of their neighbours, and returns warnings for the user.
+/// Turns the given normals round that disagree with those of their neighbours, and returns warnings
+/// for the user.
 async fn turn(cloud: &mut Cloud, mut graph: NeighbourGraph) -> Vec<String> {
     let mut warnings = Vec::new();
     graph.normal.clone_from(&cloud.normal);
@@ -116,7 +127,8 @@ async fn turn(cloud: &mut Cloud, mut graph: NeighbourGraph) -> Vec<String> {
     warnings
 }
 
-/// Takes the normals of the planes through the neighbours, outward, and returns warnings for the user.
+/// Takes the normals of the planes through the neighbours, outward, and returns warnings for the
+/// user.
 fn estimate(cloud: &mut Cloud, mut graph: NeighbourGraph) -> Vec<String> {
     let components = graph.orient();
     let mut warnings = vec![
@@ -171,7 +183,8 @@ impl Plane {
         let mut keys = Vec::new();
         tree.nearest_many(p.as_vec3(), count + 1, |_| true, &mut keys);
         nearest.clear();
-        // If points coincide in single precision, the point itself may be missing among its nearest ones.
+        // If points coincide in single precision, the point itself may be missing among its nearest
+        // ones.
         let others = keys.iter().map(|&key| tree.origin[unkey(key).1 as usize]).filter(|&j| j as usize != i);
         nearest.extend(others.take(count));
         let near = || core::iter::once(p).chain(nearest.iter().map(|&j| local[j as usize]));
@@ -182,9 +195,10 @@ impl Plane {
     }
 }
 
-/// Number of neighbours with which planes are flattest, against their width: noise makes narrow ones thick, curvature wide ones
-/// (M. Pauly, R. Keiser & M. Gross, "Multi-scale Feature Extraction on Point-Sampled Surfaces", 2003, §3). Without noise it is
-/// [`NEIGHBOURS`]. Planes between two sheets are not taken for noisy ones.
+/// Number of neighbours with which planes are flattest, against their width: noise makes narrow
+/// ones thick, curvature wide ones (M. Pauly, R. Keiser & M. Gross, "Multi-scale Feature Extraction
+/// on Point-Sampled Surfaces", 2003, §3). Without noise it is [`NEIGHBOURS`]. Planes between two
+/// sheets are not taken for noisy ones.
 async fn flattest(local: &[DVec3], tree: &Tree) -> usize {
     let (mut best, mut least, mut nearest) = (0, f64::INFINITY, Vec::new());
     let step = local.len().div_ceil(COMPARED).max(1);
@@ -250,7 +264,8 @@ impl NeighbourGraph {
         all.map(is_far).collect()
     }
 
-    /// Turns the normals round with which those of the neighbours disagree, until there are none, and returns their number.
+    /// Turns the normals round with which those of the neighbours disagree, until there are none,
+    /// and returns their number.
     async fn turn_minority(&mut self) -> usize {
         let mut is_turned = vec![false; self.local.len()];
         for _ in 0..MOST_ROUNDS {
@@ -286,8 +301,9 @@ impl NeighbourGraph {
 
     /// Orients the normals and returns the number of connected components of the graph.
     ///
-    /// The sign is propagated along the minimum spanning tree with weights 1 − |agreement| (Prim's algorithm), so that
-    /// it follows the edges on which it is most certain. Each component is then turned outward.
+    /// The sign is propagated along the minimum spanning tree with weights 1 − |agreement| (Prim's
+    /// algorithm), so that it follows the edges on which it is most certain. Each component is then
+    /// turned outward.
     fn orient(&mut self) -> usize {
         let mut joined = vec![Vec::new(); self.local.len()];
         for (i, j) in self.pairs() {
@@ -304,7 +320,8 @@ impl NeighbourGraph {
             }
             components += 1;
             component.clear();
-            // The bits of weights, which are not negative, have the order of the weights. Ties go to the smaller index.
+            // The bits of weights, which are not negative, have the order of the weights. Ties go
+            // to the smaller index.
             queue.push(Reverse((0_u64, start, start)));
             while let Some(Reverse((_, i, from))) = queue.pop() {
                 if reached[i] {
@@ -331,19 +348,19 @@ impl NeighbourGraph {
         components
     }
 
-    /// Cosine of the angle between the normal of point `j` and that of point `i`, reflected in the plane that bisects
-    /// the two points.
+    /// Cosine of the angle between the normal of point `j` and that of point `i`, reflected in the
+    /// plane that bisects the two points.
     ///
-    /// On a circle the reflection gives the normal of `j` exactly, and on the far side of a thin part it gives the
-    /// opposite one, which is right there.
+    /// On a circle the reflection gives the normal of `j` exactly, and on the far side of a thin
+    /// part it gives the opposite one, which is right there.
     fn agreement(&self, i: usize, j: usize) -> f64 {
         let along = (self.local[j] - self.local[i]).normalize_or_zero();
         let carried = self.normal[i] - 2.0 * self.normal[i].dot(along) * along;
         carried.dot(self.normal[j])
     }
 
-    /// Whether the normals of the outermost points of a component, in the six axis directions, point inward on the
-    /// whole.
+    /// Whether the normals of the outermost points of a component, in the six axis directions,
+    /// point inward on the whole.
     fn points_inward(&self, component: &[usize]) -> bool {
         let mut sum = 0.0;
         for axis in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z] {

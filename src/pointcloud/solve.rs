@@ -1,26 +1,29 @@
 //! Solver of a large system: blocked LU decomposition with partial pivoting, in slices.
 //!
-//! nalgebra factorises the panels and solves the triangular systems. The update of the columns to the right of a panel,
-//! which takes nearly all of the time, is written out here. Neither uses a fused multiply-add, so the solution has the
-//! same bits natively and in WebAssembly.
+//! nalgebra factorises the panels and solves the triangular systems. The update of the columns to
+//! the right of a panel, which takes nearly all of the time, is written out here. Neither uses a
+//! fused multiply-add, so the solution has the same bits natively and in WebAssembly.
 
 use crate::slices::{pause, ranges};
 use core::ops::Range;
 use nalgebra::{DMatrix, DVector};
 
-/// Columns per panel: enough to read a panel seldom, few enough to keep its rows in the cache. With half as many a fit of 800
-/// centres takes 1.15 times as long, with twice as many 0.94 times, in longer slices.
+/// Columns per panel: enough to read a panel seldom, few enough to keep its rows in the cache. With
+/// half as many a fit of 800 centres takes 1.15 times as long, with twice as many 0.94 times, in
+/// longer slices.
 const PANEL: usize = 32;
-/// Rows updated together: 64 kB of a panel, which stay in a second-level cache for all the columns they update. Half and twice as
-/// many take the same time within 3 %.
+/// Rows updated together: 64 kB of a panel, which stay in a second-level cache for all the columns
+/// they update. Half and twice as many take the same time within 3 %.
 const ROWS: usize = 256;
-/// Maximum number of steps of Hager's estimator, which nearly always ends after two or three. LAPACK's DLACN2 has the same limit.
+/// Maximum number of steps of Hager's estimator, which nearly always ends after two or three.
+/// LAPACK's DLACN2 has the same limit.
 const ESTIMATOR_STEPS: usize = 5;
 
 /// LU decomposition of a matrix.
 #[derive(Clone, Debug)]
 pub(super) struct Decomposition {
-    /// The factors L and U, once they are complete; before that they replace the eliminated part of the matrix.
+    /// The factors L and U, once they are complete; before that they replace the eliminated part of
+    /// the matrix.
     matrix: DMatrix<f64>,
     /// Rows exchanged in each step.
     exchanges: Vec<(usize, usize)>,
@@ -33,8 +36,8 @@ pub(super) struct Decomposition {
 pub(super) struct SingularMatrix;
 
 impl Decomposition {
-    /// Decomposes a matrix. A slice factorises a panel or updates [`PANEL`] columns by it; either takes at most 32²
-    /// multiplications per row. `tell` gets the fraction of the work done.
+    /// Decomposes a matrix. A slice factorises a panel or updates [`PANEL`] columns by it; either
+    /// takes at most 32² multiplications per row. `tell` gets the fraction of the work done.
     pub(super) async fn new(matrix: DMatrix<f64>, tell: impl Fn(f64)) -> Result<Self, SingularMatrix> {
         let norm = matrix.column_iter().map(|column| column.lp_norm(1)).fold(0.0, f64::max);
         let n = matrix.nrows();
@@ -76,7 +79,8 @@ impl Decomposition {
         Ok(())
     }
 
-    /// Updates the columns from `next` on by the panel from `first` on: to L⁻¹ A in its rows, to A − L U below.
+    /// Updates the columns from `next` on by the panel from `first` on: to L⁻¹ A in its rows, to A
+    /// − L U below.
     fn update(&mut self, first: usize, next: usize) {
         let n = self.matrix.nrows();
         let (below, width) = (first + PANEL, PANEL.min(n - next));
@@ -107,11 +111,13 @@ impl Decomposition {
         if lower && upper && right.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(SingularMatrix) }
     }
 
-    /// Lower estimate of the condition number ‖A‖₁ ‖A⁻¹‖₁, seldom too small by more than a factor of three (Hager 1984;
-    /// Higham, "Accuracy and Stability of Numerical Algorithms", algorithm 15.1).
+    /// Lower estimate of the condition number ‖A‖₁ ‖A⁻¹‖₁, seldom too small by more than a factor
+    /// of three (Hager 1984; Higham, "Accuracy and Stability of Numerical Algorithms", algorithm
+    /// 15.1).
     ///
-    /// The method solves systems with the transposed matrix too. Those of a fit are symmetric, or nearly so where cells have several points,
-    /// and the matrix itself stands in: the estimate is a lower one all the same.
+    /// The method solves systems with the transposed matrix too. Those of a fit are symmetric, or
+    /// nearly so where cells have several points, and the matrix itself stands in: the estimate is
+    /// a lower one all the same.
     pub(super) fn condition(&self) -> Result<f64, SingularMatrix> {
         let n = self.matrix.nrows();
         let mut x = DVector::from_element(n, 1.0 / n as f64);

@@ -1,39 +1,41 @@
-//! Reduction of millions of points to a few hundred that are far from each other: merging, thinning on a grid, and
-//! farthest-point sampling.
+//! Reduction of millions of points to a few hundred that are far from each other: merging, thinning
+//! on a grid, and farthest-point sampling.
 
 use super::{Cloud, CloudError};
 use crate::math::{Bounds, IndexTable, Sym3, hash};
 use crate::slices::{MEDIUM, pause, ranges};
 use glam::DVec3;
 
-/// Maximum number of points that thinning keeps. Normals are estimated for these points, and the centres are chosen among them.
-/// The spacing of twenty thousand is about a hundredth of the model's size, a tenth of that of 200 centres. With half and twice
-/// as many the mean residual of three clouds of 20,000 to 43,000 points changes by 5 % at most.
+/// Maximum number of points that thinning keeps. Normals are estimated for these points, and the
+/// centres are chosen among them. The spacing of twenty thousand is about a hundredth of the
+/// model's size, a tenth of that of 200 centres. With half and twice as many the mean residual of
+/// three clouds of 20,000 to 43,000 points changes by 5 % at most.
 pub const KEPT: usize = 20_000;
 
-/// Minimum distance of two centres, as a share of the diagonal of the points' box. The system for a few hundred centres loses a
-/// digit each time that the distance between two of them is halved. Half and double choose the same centres of twelve random
-/// clouds.
+/// Minimum distance of two centres, as a share of the diagonal of the points' box. The system for a
+/// few hundred centres loses a digit each time that the distance between two of them is halved.
+/// Half and double choose the same centres of twelve random clouds.
 const MIN_DISTANCE_SHARE: f64 = 1e-4;
 
-/// Largest standard deviation across a line or plane, as a share of that along it, at which points count as lying in it. It is
-/// above the rounding of coordinates in single precision, 6·10⁻⁸ of the largest. Half and double take the same ones of twelve
-/// random clouds.
+/// Largest standard deviation across a line or plane, as a share of that along it, at which points
+/// count as lying in it. It is above the rounding of coordinates in single precision, 6·10⁻⁸ of the
+/// largest. Half and double take the same ones of twelve random clouds.
 const FLAT_SHARE: f64 = 1e-5;
 
 /// Index in `points` of the point equal to `p`, or `fresh` if there is none.
 ///
-/// In the latter case `p` must be stored at `fresh` before the next call. `points` must be the same column in every call. Returns
-/// `None` if there is not enough memory.
+/// In the latter case `p` must be stored at `fresh` before the next call. `points` must be the same
+/// column in every call. Returns `None` if there is not enough memory.
 fn index_of(table: &mut IndexTable, p: DVec3, fresh: usize, points: &[DVec3]) -> Option<u32> {
     // Adding 0 maps −0 to +0, which it is equal to.
     table.find_or_add(hash(p.to_array().map(|c| (c + 0.0).to_bits())), fresh, |k| points[k] == p)
 }
 
-/// Appends to a column, whose capacity grows by half; `None` if there is not enough memory, where [`Vec::push`] would abort.
+/// Appends to a column, whose capacity grows by half; `None` if there is not enough memory, where
+/// [`Vec::push`] would abort.
 pub(super) fn push<T>(column: &mut Vec<T>, item: T) -> Option<()> {
-    /// Initial capacity: 24 kB of positions, from which growth by half reaches the points of a file of 50 MB in some twenty
-    /// steps.
+    /// Initial capacity: 24 kB of positions, from which growth by half reaches the points of a file
+    /// of 50 MB in some twenty steps.
     const FIRST: usize = 1024;
     if column.len() == column.capacity() {
         column.try_reserve_exact((column.len() / 2).max(FIRST)).ok()?;
@@ -42,7 +44,8 @@ pub(super) fn push<T>(column: &mut Vec<T>, item: T) -> Option<()> {
     Some(())
 }
 
-/// Index in `points` of the point equal to `p`, which is appended if there is none; see [`index_of`].
+/// Index in `points` of the point equal to `p`, which is appended if there is none; see
+/// [`index_of`].
 pub(super) fn find_or_add(table: &mut IndexTable, p: DVec3, points: &mut Vec<DVec3>) -> Option<u32> {
     let index = index_of(table, p, points.len(), points)?;
     if index as usize == points.len() {
@@ -51,8 +54,9 @@ pub(super) fn find_or_add(table: &mut IndexTable, p: DVec3, points: &mut Vec<DVe
     Some(index)
 }
 
-/// Merges coincident points and adds their normals. A file has a point several times where faces with different
-/// attributes meet. Points whose normals cancel are left out. `tell` gets the fraction of the points that are done.
+/// Merges coincident points and adds their normals. A file has a point several times where faces
+/// with different attributes meet. Points whose normals cancel are left out. `tell` gets the
+/// fraction of the points that are done.
 ///
 /// # Errors
 ///
@@ -90,24 +94,27 @@ pub async fn merge(mut cloud: Cloud, tell: impl Fn(f64)) -> Result<Cloud, CloudE
     Ok(cloud)
 }
 
-/// Ratio of the cell sizes of a grid and the previous one, if that was too coarse: a surface then meets four times as many cells.
+/// Ratio of the cell sizes of a grid and the previous one, if that was too coarse: a surface then
+/// meets four times as many cells.
 const FINER: f64 = 0.5;
-/// Ratio of the cell sizes of a grid and the previous one, if that was too fine: a surface then meets 1.44 times fewer cells.
+/// Ratio of the cell sizes of a grid and the previous one, if that was too fine: a surface then
+/// meets 1.44 times fewer cells.
 const COARSER: f64 = 1.2;
-/// Share of [`KEPT`] below which a finer grid is tried: a quarter and some room, since the finer one has four times as many
-/// cells.
+/// Share of [`KEPT`] below which a finer grid is tried: a quarter and some room, since the finer
+/// one has four times as many cells.
 const ENOUGH: f64 = 0.3;
-/// Maximum number of grids. After so many halvings, a cell is smaller than the resolution of single precision.
+/// Maximum number of grids. After so many halvings, a cell is smaller than the resolution of single
+/// precision.
 const MAX_PASSES: u32 = 24;
-/// Estimated number of cells that a surface meets, times the ratio of a cell's face to the squared diagonal of the box.
-/// It serves for the first guess of the cell size only.
+/// Estimated number of cells that a surface meets, times the ratio of a cell's face to the squared
+/// diagonal of the box. It serves for the first guess of the cell size only.
 ///
-/// It is the product of 1.5, the mean number of cells that a plane meets per face area, and 0.9, a typical ratio of the
-/// area of a surface to the squared diagonal of its box (1.05 for a sphere).
+/// It is the product of 1.5, the mean number of cells that a plane meets per face area, and 0.9, a
+/// typical ratio of the area of a surface to the squared diagonal of its box (1.05 for a sphere).
 const CELLS_PER_SQUARE: f64 = 1.35;
 
-/// Keeps at most [`KEPT`] points, in the order of the file: the first one in each cell of a grid. The grid is the finest one, up to
-/// a factor, that keeps no more.
+/// Keeps at most [`KEPT`] points, in the order of the file: the first one in each cell of a grid.
+/// The grid is the finest one, up to a factor, that keeps no more.
 ///
 /// # Errors
 ///
@@ -138,7 +145,8 @@ pub async fn thin(cloud: Cloud) -> Result<Cloud, CloudError> {
     Ok(cloud.only(&best))
 }
 
-/// Indices of the first point in each cell of a grid of cubes with a corner at `lo`. It ends at more than [`KEPT`] of them.
+/// Indices of the first point in each cell of a grid of cubes with a corner at `lo`. It ends at
+/// more than [`KEPT`] of them.
 async fn first_in_cells(points: &[DVec3], lo: DVec3, side: f64) -> Result<Vec<u32>, CloudError> {
     let (mut table, mut cells, mut first) = (IndexTable::default(), Vec::new(), Vec::new());
     for range in ranges(points.len(), MEDIUM) {
@@ -198,12 +206,14 @@ pub(super) fn covariance(points: impl Iterator<Item = DVec3>, mean: DVec3) -> Sy
     sum.map(|entry| entry * share)
 }
 
-/// Farthest-point sampling: the indices of up to `wanted` of `points`, each the one farthest from all those chosen before
-/// (T. F. Gonzalez, "Clustering to Minimize the Maximum Intercluster Distance", 1985).
+/// Farthest-point sampling: the indices of up to `wanted` of `points`, each the one farthest from
+/// all those chosen before (T. F. Gonzalez, "Clustering to Minimize the Maximum Intercluster
+/// Distance", 1985).
 ///
-/// The largest distance of a point from the chosen ones is at most twice that of any other choice of as many. The first
-/// choice is the point farthest from the mean. Ties go to the smaller index. There are fewer than wanted where no other point is at
-/// a sufficient distance. `tell` gets the fraction of the points that are chosen.
+/// The largest distance of a point from the chosen ones is at most twice that of any other choice
+/// of as many. The first choice is the point farthest from the mean. Ties go to the smaller index.
+/// There are fewer than wanted where no other point is at a sufficient distance. `tell` gets the
+/// fraction of the points that are chosen.
 pub async fn spread(points: &[DVec3], wanted: usize, tell: impl Fn(f64)) -> Vec<u32> {
     let bounds = Bounds::around(points.iter().copied());
     let lo = bounds.lo();

@@ -1,4 +1,5 @@
-//! Figures of accuracy: how far the points are from the surface, and how far their normals are from its normals.
+//! Figures of accuracy: how far the points are from the surface, and how far their normals are from
+//! its normals.
 
 use super::figures::Accuracy;
 use super::moments::Moments;
@@ -10,8 +11,8 @@ pub(super) fn first_order_height(value: f64, slope: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / slope }
 }
 
-/// Returns the height f/slope of a place where f has this value and no gradient, as at the tip of a cone: with the slope to the steeper
-/// side along the unit normal.
+/// Returns the height f/slope of a place where f has this value and no gradient, as at the tip of a
+/// cone: with the slope to the steeper side along the unit normal.
 pub(super) fn height_along(field: &mut dyn Evaluator, place: DVec3, normal: Vec3, value: f64) -> f64 {
     let h = difference_step(field.frame().place(place));
     let mut slope =
@@ -20,7 +21,8 @@ pub(super) fn height_along(field: &mut dyn Evaluator, place: DVec3, normal: Vec3
     first_order_height(value, slope)
 }
 
-/// Accuracy of points with these first-order distances and of their normals, whose angles are `normals`.
+/// Accuracy of points with these first-order distances and of their normals, whose angles are
+/// `normals`.
 pub(super) fn measure(residual: &[f64], normals: &NormalAngles, d_hex: f64) -> Accuracy {
     let mut err = Moments::default();
     let (mut largest, mut undefined) = (f64::NAN, 0);

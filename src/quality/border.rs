@@ -6,18 +6,19 @@ use crate::slices::pause;
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
-/// Points nearer to the border than this many d_hex are left out of the figures per point: their neighbourhood is cut. With half
-/// of it `cover` of 7 of 13 random cut surfaces is larger, by up to 0.12; with twice as much that of 11 is smaller, by 0.06 in
-/// the mean, over far fewer points.
+/// Points nearer to the border than this many d_hex are left out of the figures per point: their
+/// neighbourhood is cut. With half of it `cover` of 7 of 13 random cut surfaces is larger, by up to
+/// 0.12; with twice as much that of 11 is smaller, by 0.06 in the mean, over far fewer points.
 const MARGIN: f64 = 4.0;
-/// Step of the grid on a face, in d_hex. A border that is sampled this densely seems at most 0.05 % farther away than
-/// it is, at the distance of the margin.
+/// Step of the grid on a face, in d_hex. A border that is sampled this densely seems at most 0.05 %
+/// farther away than it is, at the distance of the margin.
 const STEP: f64 = 0.25;
-/// Largest number of cells of that grid along a side, which limits the evaluations to two million for each face.
+/// Largest number of cells of that grid along a side, which limits the evaluations to two million
+/// for each face.
 const MOST_CELLS: f64 = 1500.0;
-/// Distance that the surface must reach beyond a face to count as cut, in d_hex: a surface that touches its box from inside is
-/// whole. Half of it gives the same figures on 13 random cut surfaces; with twice as much one of them has 3 % fewer particles at
-/// its border.
+/// Distance that the surface must reach beyond a face to count as cut, in d_hex: a surface that
+/// touches its box from inside is whole. Half of it gives the same figures on 13 random cut
+/// surfaces; with twice as much one of them has 3 % fewer particles at its border.
 const BEYOND: f64 = 0.05;
 
 /// The curves along which the surface leaves a box, as points on them.
@@ -29,8 +30,8 @@ pub(super) struct Border {
 }
 
 impl Border {
-    /// Finds the border on those faces of `bounds` that are near a point of `tree`; the points have a spacing of about
-    /// `d_hex`.
+    /// Finds the border on those faces of `bounds` that are near a point of `tree`; the points have
+    /// a spacing of about `d_hex`.
     pub(super) async fn new(field: &mut dyn Evaluator, bounds: &Bounds, tree: &Tree, d_hex: f64) -> Self {
         let margin = MARGIN * d_hex;
         let mut curve = Vec::new();
@@ -51,7 +52,8 @@ impl Border {
         Self { bounds: *bounds, margin, curve: Tree::new(&curve) }
     }
 
-    /// Returns whether `p`, a point of the surface, is within the margin of the border or beyond the border.
+    /// Returns whether `p`, a point of the surface, is within the margin of the border or beyond
+    /// the border.
     pub(super) fn is_near(&self, p: Vec3) -> bool {
         let q = p.as_dvec3();
         let inside = (q - self.bounds.lo()).min(self.bounds.hi() - q).min_element();
@@ -111,7 +113,8 @@ impl Face {
         p
     }
 
-    /// Appends the points where the sign changes on the edges of a row of the grid and on those from the row before.
+    /// Appends the points where the sign changes on the edges of a row of the grid and on those
+    /// from the row before.
     fn cross(&mut self, field: &mut dyn Evaluator, row: usize, curve: &mut Vec<Vec3>) {
         for column in 0..=self.columns {
             self.points[column] = self.node(column, row).as_vec3();
@@ -140,11 +143,12 @@ impl Face {
     }
 }
 
-/// Returns whether the surface passes `p` within a cell of length `step` and continues beyond the face there.
+/// Returns whether the surface passes `p` within a cell of length `step` and continues beyond the
+/// face there.
 ///
-/// The surface is approximated to second order. From `p` along the unit tangent t that rises fastest beyond the face,
-/// whose outward normal is e, the height over the face is s (t·e) − s² κ (n·e)/2, where κ is the normal curvature along
-/// t.
+/// The surface is approximated to second order. From `p` along the unit tangent t that rises
+/// fastest beyond the face, whose outward normal is e, the height over the face is s (t·e) − s² κ
+/// (n·e)/2, where κ is the normal curvature along t.
 fn is_cut(field: &mut dyn Evaluator, p: DVec3, step: f64, axis: usize, sign: f64, d_hex: f64) -> bool {
     let jet = field.jet(p);
     let slope = jet.gradient.length();

@@ -2,24 +2,28 @@
 
 use glam::DVec2;
 
-/// Largest number of points by which a cell is clipped. With half of it 6 of 36 runs on random surfaces have more open cells, with double
-/// none; to try a few points first takes as many instructions within 0.2 % on smooth surfaces, and 2 % more where there are creases.
+/// Largest number of points by which a cell is clipped. With half of it 6 of 36 runs on random
+/// surfaces have more open cells, with double none; to try a few points first takes as many
+/// instructions within 0.2 % on smooth surfaces, and 2 % more where there are creases.
 pub(super) const MOST_POINTS: usize = 200;
-/// Largest number of corners of a cell: each of the points can add one, and the starting square has four.
+/// Largest number of corners of a cell: each of the points can add one, and the starting square has
+/// four.
 const CORNERS: usize = MOST_POINTS + 8;
 /// Label of an edge of the starting square.
 const SQUARE: u32 = u32::MAX;
-/// A bisector that cuts off less than this share of |q| counts as not touching the cell. The share is far above the
-/// rounding of the corners in double precision (they are cut from a square many times larger) and far below that of
-/// positions in single precision. So four exactly cocircular points share one corner and no edge.
+/// A bisector that cuts off less than this share of |q| counts as not touching the cell. The share
+/// is far above the rounding of the corners in double precision (they are cut from a square many
+/// times larger) and far below that of positions in single precision. So four exactly cocircular
+/// points share one corner and no edge.
 const TOUCH: f64 = 1e-10;
 
-/// The Voronoi cell of the origin, which is clipped by one bisector after another. Its corners are in counter-clockwise
-/// order.
+/// The Voronoi cell of the origin, which is clipped by one bisector after another. Its corners are
+/// in counter-clockwise order.
 #[derive(Debug)]
 pub(super) struct VoronoiCell {
     corner: [DVec2; CORNERS],
-    /// `label[k]` names the point whose bisector carries the edge from corner `k` to corner `k + 1`.
+    /// `label[k]` names the point whose bisector carries the edge from corner `k` to corner
+    /// `k + 1`.
     label: [u32; CORNERS],
     /// Signed distance of each corner from the bisector of the clip under way, times |q|.
     side: [f64; CORNERS],
@@ -49,15 +53,15 @@ impl VoronoiCell {
         self.reach_sq = 2.0 * half * half;
     }
 
-    /// Returns the squared distance of the farthest corner. A point farther away than twice that distance cannot change
-    /// the cell.
+    /// Returns the squared distance of the farthest corner. A point farther away than twice that
+    /// distance cannot change the cell.
     #[inline]
     pub(super) fn reach_sq(&self) -> f64 {
         self.reach_sq
     }
 
-    /// Cuts off the part that is nearer to `q` than to the origin, and labels the new edge `label`. Where there is such a part,
-    /// `is_neighbour` is asked before.
+    /// Cuts off the part that is nearer to `q` than to the origin, and labels the new edge `label`.
+    /// Where there is such a part, `is_neighbour` is asked before.
     #[inline]
     pub(super) fn clip(&mut self, q: DVec2, label: u32, is_neighbour: impl FnOnce() -> bool) {
         let n = self.count;
@@ -73,7 +77,8 @@ impl VoronoiCell {
         if self.side[worst] <= TOUCH * q.length_squared() || n + 1 >= CORNERS || !is_neighbour() {
             return;
         }
-        // The corners that are cut off are consecutive, from `first` to `last`, because the cell is convex.
+        // The corners that are cut off are consecutive, from `first` to `last`, because the cell is
+        // convex.
         let before = |k: usize| if k == 0 { n - 1 } else { k - 1 };
         let after = |k: usize| if k + 1 == n { 0 } else { k + 1 };
         let mut first = worst;
@@ -113,9 +118,10 @@ impl VoronoiCell {
             self.corner[..self.count].iter().fold(0.0, |reach: f64, v| reach.max(v.length_squared()));
     }
 
-    /// Returns every edge in counter-clockwise order: its label, and whether the corner at its end is certain. A corner
-    /// is certain if it belongs to the cell among all points, provided that the cell was clipped by every point nearer
-    /// than √`known_sq`. Edges of the starting square are left out, and corners on them are not certain.
+    /// Returns every edge in counter-clockwise order: its label, and whether the corner at its end
+    /// is certain. A corner is certain if it belongs to the cell among all points, provided that
+    /// the cell was clipped by every point nearer than √`known_sq`. Edges of the starting square
+    /// are left out, and corners on them are not certain.
     pub(super) fn edges(&self, known_sq: f64) -> impl Iterator<Item = (u32, bool)> {
         (0..self.count).filter(|&k| self.label[k] != SQUARE).map(move |k| {
             let next = if k + 1 == self.count { 0 } else { k + 1 };
@@ -159,8 +165,9 @@ mod tests {
 
     #[test]
     fn neighbours_are_those_of_the_hull_of_the_inverted_points() {
-        // The points are random with a fixed seed. The hull of q/|q|² is found by brute force: a and b are consecutive
-        // vertices of it if every other inverted point lies to the left of the line through them.
+        // The points are random with a fixed seed. The hull of q/|q|² is found by brute force: a
+        // and b are consecutive vertices of it if every other inverted point lies to the left of
+        // the line through them.
         let mut state = 1_u64;
         let mut next = || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);

@@ -5,11 +5,11 @@ use super::points::MeasuredPoints;
 use crate::math::{Forest, NONE};
 use crate::slices::{MEDIUM, pause};
 
-/// Returns the component of every point, in tree order, and the number of components. Component 0 has the most points;
-/// ties are in the order of the points as given.
+/// Returns the component of every point, in tree order, and the number of components. Component 0
+/// has the most points; ties are in the order of the points as given.
 ///
-/// Two points are on one component if a triangle joins them, or if they are natural neighbours and one is in no triangle, and if
-/// their distance is not [`LONG`] at either.
+/// Two points are on one component if a triangle joins them, or if they are natural neighbours and
+/// one is in no triangle, and if their distance is not [`LONG`] at either.
 pub(super) async fn label(points: &MeasuredPoints, spacing: &[f32], mesh: &[[u32; 3]]) -> (Vec<u32>, usize) {
     let n = points.tree.len();
     let distance = |i: usize, j: usize| points.tree.position[i].distance(points.tree.position[j]);
@@ -37,7 +37,8 @@ pub(super) async fn label(points: &MeasuredPoints, spacing: &[f32], mesh: &[[u32
     (0..n).for_each(|i| forest.join(i as u32, points.creases.first(i) as u32));
     let root: Vec<u32> = (0..n as u32).map(|i| forest.find(i)).collect();
 
-    // At the root of each component: the number of points, and the first of them in the order given.
+    // At the root of each component: the number of points, and the first of them in the order
+    // given.
     let mut count = vec![0_u32; n];
     let mut first = vec![NONE; n];
     for (i, (&r, &origin)) in root.iter().zip(&points.tree.origin).enumerate() {

@@ -14,7 +14,8 @@ pub(super) struct CreaseRows {
     patch: Vec<u32>,
     /// The first row of the particle of each point, as given.
     particle: Vec<u32>,
-    /// The point that is the first row of each point's vertex, which is its particle but at a tip; itself where that was left out.
+    /// The point that is the first row of each point's vertex, which is its particle but at a tip;
+    /// itself where that was left out.
     first: Vec<u32>,
     /// Whether each point is at a tip.
     is_tip: Vec<bool>,
@@ -81,8 +82,8 @@ impl CreaseRows {
         !self.is_empty() && self.particle[i] == self.particle[j]
     }
 
-    /// Squared distance of the nearest point that is of another particle than point `i`, and that point or another row of its
-    /// particle; infinite and [`NONE`] if there is none.
+    /// Squared distance of the nearest point that is of another particle than point `i`, and that
+    /// point or another row of its particle; infinite and [`NONE`] if there is none.
     pub(super) fn nearest(&self, tree: &Tree, i: usize) -> (f32, u32) {
         if self.is_empty() {
             return tree.nearest(tree.position[i], i as u32, f32::INFINITY);
@@ -125,13 +126,14 @@ impl CreaseRows {
         self.edges = edges;
     }
 
-    /// Whether natural neighbours i < j are neighbours on the surface. Points on creases may have a hole of their patch between them.
+    /// Whether natural neighbours i < j are neighbours on the surface. Points on creases may have a
+    /// hole of their patch between them.
     pub(super) fn are_joined(&self, i: usize, j: usize) -> bool {
         !(self.holds(i) && self.holds(j)) || self.edges.binary_search(&[i as u32, j as u32]).is_ok()
     }
 
-    /// Whether two points of one patch are the first rows of their particles that are: particles that follow each other along a
-    /// crease are neighbours on each of its patches.
+    /// Whether two points of one patch are the first rows of their particles that are: particles
+    /// that follow each other along a crease are neighbours on each of its patches.
     pub(super) fn is_first_pair(&self, i: usize, j: usize) -> bool {
         if self.is_empty() {
             return true;

@@ -9,10 +9,12 @@ use core::f64::consts::E;
 /// Energy of six neighbours at the ideal distance: 6 exp(−2).
 const SIX: f32 = (6.0 / (E * E)) as f32;
 
-/// Returns the energy of each point, Σ exp(−2 s²) over its natural neighbours, over that of six at the ideal distance, where s = 1.
+/// Returns the energy of each point, Σ exp(−2 s²) over its natural neighbours, over that of six at
+/// the ideal distance, where s = 1.
 ///
-/// s is the distance over that of a hexagonal lattice of as many points, or over the sum of both radii where sizes are wanted. With
-/// s = d/2r it is the Gaussian energy exp(−d²/2σ²) of the relaxation, whose σ is r; neighbours farther away add less than 2 %.
+/// s is the distance over that of a hexagonal lattice of as many points, or over the sum of both
+/// radii where sizes are wanted. With s = d/2r it is the Gaussian energy exp(−d²/2σ²) of the
+/// relaxation, whose σ is r; neighbours farther away add less than 2 %.
 pub(super) async fn of_points(points: &MeasuredPoints, wanted: Option<&WantedRadii>, d_hex: f64) -> Vec<f32> {
     let n = points.tree.len();
     let mut energy = Vec::with_capacity(n);

@@ -6,16 +6,18 @@ use serde::Serialize;
 /// A figure that is not defined, or not yet measured.
 const NONE: f64 = f64::NAN;
 
-/// The figures of a set of particles, one number per property; NaN (null in JSON) where undefined. Lengths are over d_hex
-/// unless said otherwise. JSON has all figures side by side.
+/// The figures of a set of particles, one number per property; NaN (null in JSON) where undefined.
+/// Lengths are over d_hex unless said otherwise. JSON has all figures side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Figures {
-    /// Spacing of a perfect hexagonal lattice of as many points on the same area, √(2A/(√3 N)), in the field's units.
+    /// Spacing of a perfect hexagonal lattice of as many points on the same area, √(2A/(√3 N)), in
+    /// the field's units.
     pub d_hex: f64,
     /// Area, as given or of the triangles found, in the field's units.
     pub area: f64,
-    /// Points that differ from an earlier one by no more than rounding; dropped before the triangulation.
+    /// Points that differ from an earlier one by no more than rounding; dropped before the
+    /// triangulation.
     pub dup: usize,
     /// Points with a non-finite coordinate; left out of everything.
     pub not_finite: usize,
@@ -116,9 +118,9 @@ pub struct Spacing {
     pub rho: f64,
     /// First percentile of the nearest-neighbour distance.
     pub rho_1: f64,
-    /// Pairs of points nearer than 0.75: over d_hex, as `nn_min`, or of natural neighbours over the sum of
-    /// their wanted radii, as `overlap_min`, where those are known. A duplicate is a pair with the point that it equals. None where
-    /// there are no distances.
+    /// Pairs of points nearer than 0.75: over d_hex, as `nn_min`, or of natural neighbours over the
+    /// sum of their wanted radii, as `overlap_min`, where those are known. A duplicate is a pair
+    /// with the point that it equals. None where there are no distances.
     pub crowded: Option<usize>,
 }
 
@@ -128,17 +130,19 @@ pub struct Spacing {
 pub struct Coverage {
     /// Radius of the largest hole over d_hex/√3, that of the perfect lattice: 1 is ideal.
     pub cover: f64,
-    /// Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius there, which is the mean of the
-    /// wanted radii of the points around the hole. One factor scales all wanted radii so that their cells have the surface's area.
-    /// 1 is ideal. With equal radii this is `cover`.
+    /// Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius
+    /// there, which is the mean of the wanted radii of the points around the hole. One factor
+    /// scales all wanted radii so that their cells have the surface's area. 1 is ideal. With equal
+    /// radii this is `cover`.
     pub cover_local: f64,
-    /// Mean squared distance from the surface to the nearest point over that of the perfect lattice: 1 is ideal.
+    /// Mean squared distance from the surface to the nearest point over that of the perfect
+    /// lattice: 1 is ideal.
     pub quant: f64,
-    /// Share of the surface that no disc of a point around it covers, where the discs are known: 1 - π/(2√3) = 0.093 in a lattice
-    /// whose discs touch.
+    /// Share of the surface that no disc of a point around it covers, where the discs are known:
+    /// 1 - π/(2√3) = 0.093 in a lattice whose discs touch.
     pub uncovered: f64,
-    /// Holes wider than 1.4, as `cover`, or as `cover_local` where wanted radii are known: empty discs of which
-    /// none has its middle in a wider one. None where `cover` is undefined.
+    /// Holes wider than 1.4, as `cover`, or as `cover_local` where wanted radii are known: empty
+    /// discs of which none has its middle in a wider one. None where `cover` is undefined.
     pub wide_holes: Option<usize>,
 }
 
@@ -166,8 +170,8 @@ pub struct Edges {
     pub edge_cv: f64,
     /// Standard deviation over mean of edge length over the sum of the wanted radii.
     pub size_cv: f64,
-    /// Smallest distance of natural neighbours over the sum of their wanted radii: 1 where particles just touch, 0 for
-    /// duplicates.
+    /// Smallest distance of natural neighbours over the sum of their wanted radii: 1 where
+    /// particles just touch, 0 for duplicates.
     pub overlap_min: f64,
 }
 
@@ -175,15 +179,17 @@ pub struct Edges {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Connectivity {
-    /// Kept triangles over 2N − 2χ: 1 for a closed manifold. On a clipped surface, the share of the sectors around
-    /// points away from the border that a kept triangle fills.
+    /// Kept triangles over 2N − 2χ: 1 for a closed manifold. On a clipped surface, the share of the
+    /// sectors around points away from the border that a kept triangle fills.
     pub tri_ok: f64,
-    /// Fraction of the triangles (away from the border) that belong to the natural-neighbour stars of all three corners.
+    /// Fraction of the triangles (away from the border) that belong to the natural-neighbour stars
+    /// of all three corners.
     pub agree: f64,
-    /// Euler number of the kept triangles: those on which at least two of their three corners agree.
+    /// Euler number of the kept triangles: those on which at least two of their three corners
+    /// agree.
     pub euler: i64,
-    /// Number of components of the surface, by natural neighbours: components of the kept triangles, and groups of points far from
-    /// all of them.
+    /// Number of components of the surface, by natural neighbours: components of the kept
+    /// triangles, and groups of points far from all of them.
     pub components: usize,
 }
 
@@ -205,7 +211,8 @@ pub struct Angles {
     pub a_gt90: f64,
 }
 
-/// Returns d_hex, the spacing of a perfect hexagonal lattice of `count` points on this `area`: √(2A/(√3 N)).
+/// Returns d_hex, the spacing of a perfect hexagonal lattice of `count` points on this `area`:
+/// √(2A/(√3 N)).
 pub(super) fn hexagonal_spacing(area: f64, count: usize) -> f64 {
     (2.0 * area / (SQRT_3 * count as f64)).sqrt()
 }

@@ -1,4 +1,5 @@
-//! Figures of the holes: distances from random points of the surface and from Voronoi corners to the nearest point.
+//! Figures of the holes: distances from random points of the surface and from Voronoi corners to
+//! the nearest point.
 
 use super::border::Border;
 use super::creases::CreaseRows;
@@ -31,7 +32,8 @@ fn circumcentre(position: &[Vec3], triangle: [u32; 3]) -> Option<(DVec3, f64)> {
     offset.is_finite().then(|| (a + offset, offset.length()))
 }
 
-/// The points whose holes are measured, and the triangles from which samples of the surface are drawn.
+/// The points whose holes are measured, and the triangles from which samples of the surface are
+/// drawn.
 pub(super) struct Cover<'a> {
     pub(super) tree: &'a Tree,
     pub(super) creases: &'a CreaseRows,
@@ -56,7 +58,8 @@ impl Cover<'_> {
         self.border.is_none_or(|border| !border.is_near(p))
     }
 
-    /// Returns the radius of an ideal hole between some points: that of the perfect lattice, if there are no wanted radii.
+    /// Returns the radius of an ideal hole between some points: that of the perfect lattice, if
+    /// there are no wanted radii.
     fn ideal(&self, points: &[u32]) -> f32 {
         self.wanted.map_or(self.lattice, |wanted| wanted.hole_between(points))
     }
@@ -78,8 +81,8 @@ impl Cover<'_> {
     }
 }
 
-/// The holes between the points of a surface, and statistics of the distances from its samples to their nearest points. The radius of
-/// a hole is the distance of a sample to its nearest point.
+/// The holes between the points of a surface, and statistics of the distances from its samples to
+/// their nearest points. The radius of a hole is the distance of a sample to its nearest point.
 pub(super) struct Holes {
     /// Radius of the largest hole.
     pub(super) widest: f64,
@@ -93,8 +96,8 @@ pub(super) struct Holes {
     pub(super) found: Vec<Hole>,
 }
 
-/// Measures the holes by about `count` random samples on the triangles, by their Voronoi corners and at `crossings`, random samples of the
-/// surface.
+/// Measures the holes by about `count` random samples on the triangles, by their Voronoi corners
+/// and at `crossings`, random samples of the surface.
 pub(super) async fn measure(
     field: &mut dyn Evaluator,
     cover: &Cover<'_>,
@@ -117,8 +120,9 @@ pub(super) async fn measure(
 }
 
 impl Holes {
-    /// Takes in what the triangles cannot show: components without a point, and regions where the points end. The part of the surface
-    /// that is farther from every point than any sample on the triangles counts by its share of the area.
+    /// Takes in what the triangles cannot show: components without a point, and regions where the
+    /// points end. The part of the surface that is farther from every point than any sample on the
+    /// triangles counts by its share of the area.
     async fn add_missed(&mut self, cover: &Cover<'_>, crossings: &[Vec3]) {
         // The hundredth allows for the rounding of the samples.
         let (widest, relative) = (1.01 * self.widest, 1.01 * self.relative);
@@ -152,8 +156,8 @@ impl Holes {
     }
 }
 
-/// The points in a box around the last sample. Samples that follow each other lie near one another, so that most of them need no search in
-/// the tree, which takes ten times as long.
+/// The points in a box around the last sample. Samples that follow each other lie near one another,
+/// so that most of them need no search in the tree, which takes ten times as long.
 #[derive(Default)]
 struct Surroundings {
     lo: Vec3,
@@ -162,13 +166,14 @@ struct Surroundings {
 }
 
 impl Surroundings {
-    /// Whether a point of `tree` may lie within the squared distance `bound_sq` of `p`. The box is gathered anew if it does not hold all
-    /// of those; within `width` there are a few points.
+    /// Whether a point of `tree` may lie within the squared distance `bound_sq` of `p`. The box is
+    /// gathered anew if it does not hold all of those; within `width` there are a few points.
     fn may_be_nearer(&mut self, tree: &Tree, p: Vec3, bound_sq: f32, width: f32) -> bool {
-        /// Room around a sample for those that follow, in units of `width`. Half and double take 1.01 and 1.02 times the instructions of two
-        /// runs with their reports.
+        /// Room around a sample for those that follow, in units of `width`. Half and double take
+        /// 1.01 and 1.02 times the instructions of two runs with their reports.
         const REACH: f32 = 2.0;
-        /// Points above which a search in the tree takes less: a triangle across a gap may be as wide as the surface.
+        /// Points above which a search in the tree takes less: a triangle across a gap may be as
+        /// wide as the surface.
         const MANY: usize = 256;
         let bound = bound_sq.sqrt();
         if !((p - bound).cmpge(self.lo).all() && (p + bound).cmple(self.hi).all()) {
@@ -199,7 +204,8 @@ struct HoleSearch {
 }
 
 impl HoleSearch {
-    /// Returns whether a distance is that of a wide hole, or larger than those so far, in itself or relative to the ideal one.
+    /// Returns whether a distance is that of a wide hole, or larger than those so far, in itself or
+    /// relative to the ideal one.
     fn matters(&self, gap_sq: f32, ideal_sq: f32) -> bool {
         gap_sq > self.widest_sq || gap_sq > self.relative_sq * ideal_sq || gap_sq > WIDE_SQ * ideal_sq
     }
@@ -214,7 +220,8 @@ impl HoleSearch {
         self.relative_sq = self.relative_sq.max(relative_sq);
     }
 
-    /// Takes in a batch of samples once they are projected, of which the statistics are made if they are `random`.
+    /// Takes in a batch of samples once they are projected, of which the statistics are made if
+    /// they are `random`.
     fn add(&mut self, field: &mut dyn Evaluator, cover: &Cover, batch: &mut Batch, random: bool) {
         project(field, &mut batch.position, &batch.leash, LAST_STEP);
         for ((&p, &leash), triangle) in batch.position.iter().zip(&batch.leash).zip(&batch.triangle) {
@@ -231,14 +238,15 @@ impl HoleSearch {
             } else {
                 (corner_sq, NONE)
             };
-            // The circumcentre of a long triangle may come to a far place, where other points are larger.
+            // The circumcentre of a long triangle may come to a far place, where other points are
+            // larger.
             if nearer != NONE {
                 ideal = ideal.max(cover.ideal(&[nearer]));
             }
             let ideal_sq = ideal * ideal;
             let matters = self.matters(gap_sq, ideal_sq);
-            // On a triangle across a gap in the surface a sample may find no surface. The leash of an almost flat triangle is far longer
-            // than the gap.
+            // On a triangle across a gap in the surface a sample may find no surface. The leash of
+            // an almost flat triangle is far longer than the gap.
             if matters && !is_reached(field, p, leash.min(gap_sq.sqrt())) {
                 continue;
             }
@@ -271,8 +279,8 @@ impl HoleSearch {
         }
     }
 
-    /// Takes in about `count` random samples: uniform on the triangles, one in each of `count` equal shares of their
-    /// area, and projected onto the surface.
+    /// Takes in about `count` random samples: uniform on the triangles, one in each of `count`
+    /// equal shares of their area, and projected onto the surface.
     async fn add_samples(&mut self, field: &mut dyn Evaluator, cover: &Cover<'_>, count: usize) {
         let position = &cover.tree.position;
         let total: f64 = cover.mesh.iter().map(|&t| area_vector(position, t).length()).sum();
@@ -289,11 +297,12 @@ impl HoleSearch {
                 passed += area_vector(position, triangle).length();
                 while next < passed && stratum <= count as f64 {
                     let [a, b, c] = triangle.map(|i| position[i as usize].as_dvec3());
-                    // The sample is uniform in the triangle: the square root undoes the crowding towards `a`.
+                    // The sample is uniform in the triangle: the square root undoes the crowding
+                    // towards `a`.
                     let (s, t) = (unit().sqrt(), unit());
                     let p = a + ((b - a) * (1.0 - t) + (c - a) * t) * s;
-                    // The nearest point is no farther than the nearest corner, and the projection moves the sample by less
-                    // than that.
+                    // The nearest point is no farther than the nearest corner, and the projection
+                    // moves the sample by less than that.
                     let corner = (p - a).length().min((p - b).length()).min((p - c).length());
                     batch.push(p.as_vec3(), corner.max((b - c).length() * 0.5) as f32, triangle);
                     if batch.position.len() == BATCH {
@@ -348,7 +357,8 @@ mod tests {
         let field = Formula::as_written("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
         let field = &mut *field.evaluator(Frame::default());
         let at = |y: f32, z: f32| Vec3::new(1.0, y, z).normalize_or_zero();
-        // These are almost on a great circle: their circumcentre is near that of the sphere, far from the surface.
+        // These are almost on a great circle: their circumcentre is near that of the sphere, far
+        // from the surface.
         let flat = [at(-0.1, 0.001), at(0.0, 0.0), at(0.1, 0.001)];
         let wide = [at(-0.1, 0.0), at(0.1, 0.0), at(0.0, 0.2)];
         for (points, holes) in [(flat, 0.0..=0.0), (wide, 0.1..=0.15)] {

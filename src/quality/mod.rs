@@ -1,22 +1,26 @@
-//! Quality of a set of particles: residual, spacing, holes, order and triangles, with one definition for each figure.
+//! Quality of a set of particles: residual, spacing, holes, order and triangles, with one
+//! definition for each figure.
 //!
-//! The figures depend on the points and the field alone, not on the sampler that made the points, so that any two
-//! samplers can be compared. Lengths are in units of d_hex = √(2A / (√3 N)), the spacing of a perfect hexagonal lattice
-//! of N points on the area A, unless stated otherwise.
+//! The figures depend on the points and the field alone, not on the sampler that made the points,
+//! so that any two samplers can be compared. Lengths are in units of d_hex = √(2A / (√3 N)), the
+//! spacing of a perfect hexagonal lattice of N points on the area A, unless stated otherwise.
 //!
-//! *Natural neighbours* are defined in the tangent plane. The points of the same sheet are rotated into the tangent
-//! plane of a point, at their true distances, and its natural neighbours are those whose Voronoi cells share an edge
-//! with its own. Two points are on the same sheet if their normals are within 90° and the line between them leaves one
-//! tangent plane about as it arrives at the other, which separates sheets that face the same way; where those are near,
-//! the field between the points decides. The cell is clipped by the nearest points until no farther one can matter. The
-//! result is the same as from the convex hull of the inverted points q/|q|², without a hull.
+//! *Natural neighbours* are defined in the tangent plane. The points of the same sheet are rotated
+//! into the tangent plane of a point, at their true distances, and its natural neighbours are those
+//! whose Voronoi cells share an edge with its own. Two points are on the same sheet if their
+//! normals are within 90° and the line between them leaves one tangent plane about as it arrives at
+//! the other, which separates sheets that face the same way; where those are near, the field
+//! between the points decides. The cell is clipped by the nearest points until no farther one can
+//! matter. The result is the same as from the convex hull of the inverted points q/|q|², without a
+//! hull.
 //!
-//! On a surface with creases the neighbours of a particle are those of its own patch, evaluated on the branch of that patch. The
-//! triangles are then those of [`mesh::build`](crate::mesh::build), which end at the creases. A particle on a crease has no full ring
-//! of neighbours, and the figures of order leave it out; in distances, holes, angles and the topology it counts, once.
+//! On a surface with creases the neighbours of a particle are those of its own patch, evaluated on
+//! the branch of that patch. The triangles are then those of [`mesh::build`](crate::mesh::build),
+//! which end at the creases. A particle on a crease has no full ring of neighbours, and the figures
+//! of order leave it out; in distances, holes, angles and the topology it counts, once.
 //!
-//! The whole report costs a few microseconds for each particle. It is deterministic, with the same bits natively and in
-//! WebAssembly if the field has the same bits.
+//! The whole report costs a few microseconds for each particle. It is deterministic, with the same
+//! bits natively and in WebAssembly if the field has the same bits.
 
 mod accuracy;
 mod border;
@@ -64,40 +68,44 @@ use prepared::Prepared;
 use sizes::WantedRadii;
 use triangles::TriangleAngles;
 
-/// Smallest number of random samples for `quant`, of which there is at least one for each particle: stratified, so many give it to about
-/// 0.1 %.
+/// Smallest number of random samples for `quant`, of which there is at least one for each particle:
+/// stratified, so many give it to about 0.1 %.
 const LEAST_SAMPLES: usize = 65_536;
-/// Largest number of random samples for `quant`. Over a disc the squared distance scatters by 0.58 of its mean, so that the error
-/// of so many samples is 0.1 %.
+/// Largest number of random samples for `quant`. Over a disc the squared distance scatters by 0.58
+/// of its mean, so that the error of so many samples is 0.1 %.
 const MOST_SAMPLES: usize = 262_144;
-/// Mean squared distance to the nearest point of a hexagonal lattice, over its area per point: 5 / (18 √3).
+/// Mean squared distance to the nearest point of a hexagonal lattice, over its area per point: 5 /
+/// (18 √3).
 const HEXAGONAL_QUANT: f64 = 5.0 / (18.0 * SQRT_3);
 
-/// The figures of a set of particles, and columns with values for each particle, in the order given.
+/// The figures of a set of particles, and columns with values for each particle, in the order
+/// given.
 #[derive(Clone, Debug, Default)]
 pub struct Measurements {
     /// The figures.
     pub figures: Figures,
-    /// Number of natural neighbours; 0 for a duplicate or a non-finite position. At the border of a clipped surface the
-    /// Voronoi cell is open, and the neighbours that were found are counted.
+    /// Number of natural neighbours; 0 for a duplicate or a non-finite position. At the border of a
+    /// clipped surface the Voronoi cell is open, and the neighbours that were found are counted.
     pub valence: Vec<u8>,
-    /// Distance to the nearest other particle, of any sheet, in the field's units; infinite for a lone one, NaN for a
-    /// non-finite position.
+    /// Distance to the nearest other particle, of any sheet, in the field's units; infinite for a
+    /// lone one, NaN for a non-finite position.
     pub nearest: Vec<f32>,
-    /// First-order distance to the surface |f|/|∇f|, in the field's units; where f has no gradient, |f| over its slope to the steeper side
-    /// along the normal. NaN where that is undefined, too.
+    /// First-order distance to the surface |f|/|∇f|, in the field's units; where f has no gradient,
+    /// |f| over its slope to the steeper side along the normal. NaN where that is undefined, too.
     pub residual: Vec<f32>,
-    /// Energy of the particle among its natural neighbours, over that of six at the ideal distance; NaN for a duplicate or a
-    /// non-finite position.
+    /// Energy of the particle among its natural neighbours, over that of six at the ideal distance;
+    /// NaN for a duplicate or a non-finite position.
     pub energy: Vec<f32>,
-    /// Connected component of the surface, by the natural neighbours: 0 is the one with most particles. A duplicate is
-    /// on the component of the particle that it equals; a non-finite position has [`Self::NO_COMPONENT`].
+    /// Connected component of the surface, by the natural neighbours: 0 is the one with most
+    /// particles. A duplicate is on the component of the particle that it equals; a non-finite
+    /// position has [`Self::NO_COMPONENT`].
     pub component: Vec<u32>,
     /// Histogram of `nearest` over the ideal distances.
     pub histogram: Histogram,
     /// The crowded pairs and the wide holes.
     pub places: Places,
-    /// The opening that the triangles of natural neighbours leave in the surface; none if they close it.
+    /// The opening that the triangles of natural neighbours leave in the surface; none if they
+    /// close it.
     pub(crate) opening: Option<Opening>,
     /// Sign of f inside of the parts of the surface that the triangles of natural neighbours close;
     /// none if they close no part.
@@ -109,7 +117,8 @@ impl Measurements {
     pub const NO_COMPONENT: u32 = NONE;
 }
 
-/// Places away from the border of a clipped surface where the triangles of natural neighbours do not close it.
+/// Places away from the border of a clipped surface where the triangles of natural neighbours do
+/// not close it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Opening {
     /// Number of edges that belong to one triangle alone.
@@ -120,16 +129,19 @@ pub(crate) struct Opening {
     pub(crate) position: Vec3,
 }
 
-/// Measures the particles at `position` with outward unit normals `normal` on the surface of `field`.
+/// Measures the particles at `position` with outward unit normals `normal` on the surface of
+/// `field`.
 ///
-/// `bounds` is the box that was sampled. Particles within 4 d_hex of the border, where the surface continues beyond the
-/// box, are left out of every figure but the residual, the normals, the area and the topology. Random lines through the
-/// box find what the particles have missed, for `cover` and `quant`. Without `bounds` only the triangles are sampled.
-/// The given normals are used where the gradient is undefined, and are themselves measured against it; the slice may be
-/// shorter than `position`.
+/// `bounds` is the box that was sampled. Particles within 4 d_hex of the border, where the surface
+/// continues beyond the box, are left out of every figure but the residual, the normals, the area
+/// and the topology. Random lines through the box find what the particles have missed, for `cover`
+/// and `quant`. Without `bounds` only the triangles are sampled. The given normals are used where
+/// the gradient is undefined, and are themselves measured against it; the slice may be shorter than
+/// `position`.
 ///
-/// The cost is linear, about 2 µs for each particle natively on a formula. No input causes a panic: what is undefined
-/// (the spacing of one particle, angles without triangles) is NaN, and non-finite positions are counted and left out.
+/// The cost is linear, about 2 µs for each particle natively on a formula. No input causes a panic:
+/// what is undefined (the spacing of one particle, angles without triangles) is NaN, and non-finite
+/// positions are counted and left out.
 #[must_use]
 pub fn measure(
     position: &[Vec3],
@@ -143,8 +155,9 @@ pub fn measure(
     slices::complete(in_slices(position, normal, field, bounds, options, &mut None))
 }
 
-/// [`measure`] in slices of work. A few of them look at all particles, for some 20 ns each. `crossings` are random samples of the surface in
-/// the box, which are found if there are none yet: all measurements of one surface share them.
+/// [`measure`] in slices of work. A few of them look at all particles, for some 20 ns each.
+/// `crossings` are random samples of the surface in the box, which are found if there are none yet:
+/// all measurements of one surface share them.
 pub(crate) async fn in_slices(
     position: &[Vec3],
     normal: &[Vec3],
@@ -288,7 +301,8 @@ async fn points_away_from(border: Option<&Border>, points: &MeasuredPoints) -> V
     inner
 }
 
-/// Measures valences, bond order and edges of the points that are `inner`, and returns the pairs of them.
+/// Measures valences, bond order and edges of the points that are `inner`, and returns the pairs of
+/// them.
 async fn measure_neighbourhoods(
     points: &MeasuredPoints,
     inner: &[bool],
@@ -363,7 +377,8 @@ async fn measure_triangles(
     figures.connectivity.tri_ok = if figures.boundary_excluded == 0 {
         triangles.kept().count() as f64 / (2 * points.count() as i64 - 2 * figures.connectivity.euler) as f64
     } else {
-        // This is the share of the sectors between consecutive neighbours of inner points that a triangle fills.
+        // This is the share of the sectors between consecutive neighbours of inner points that a
+        // triangle fills.
         share(corners, (0..n).filter(|&i| is_whole(i)).map(|i| points.rings.valence(i)).sum())
     };
 }

@@ -8,12 +8,14 @@ use crate::slices::pause;
 use crate::spatial::tree::{Leaf, PointsInBox, Tree};
 use glam::{DVec2, DVec3, Vec3};
 
-/// Largest height of one point over the other's tangent plane, as the mean of both heights over the distance, if the two are on
-/// one sheet. On a smooth surface the two heights cancel to second order in the distance over the radius of curvature: the mean
-/// is 1/12 where the curvature changes by its own size between the points. Half of it leaves more open edges on 5 of 12 random
-/// surfaces with edges, cone points or near sheets, twice as much fewer on 4.
+/// Largest height of one point over the other's tangent plane, as the mean of both heights over the
+/// distance, if the two are on one sheet. On a smooth surface the two heights cancel to second
+/// order in the distance over the radius of curvature: the mean is 1/12 where the curvature changes
+/// by its own size between the points. Half of it leaves more open edges on 5 of 12 random surfaces
+/// with edges, cone points or near sheets, twice as much fewer on 4.
 const MAX_LIFT: f32 = 0.2;
-/// Marks, in [`OneRings::neighbour`], that the Voronoi corner between this neighbour and the next one is proven.
+/// Marks, in [`OneRings::neighbour`], that the Voronoi corner between this neighbour and the next
+/// one is proven.
 const PROVEN: u32 = 1 << 31;
 
 /// The one-rings of all points in tree order, one after the other.
@@ -33,7 +35,8 @@ struct RingBuffers {
     cell: VoronoiCell,
     nearby: PointsInBox,
     keys: Vec<u64>,
-    /// The points that were asked for their sheet, and whether it is another one: each try asks for those of the one before.
+    /// The points that were asked for their sheet, and whether it is another one: each try asks for
+    /// those of the one before.
     asked: Vec<(usize, bool)>,
 }
 
@@ -160,8 +163,8 @@ impl OneRings {
         self.entries(i).iter().map(|&entry| (entry & !PROVEN) as usize)
     }
 
-    /// Returns the pairs of consecutive natural neighbours of `i` whose common corner is proven: `i` and each pair form
-    /// a triangle.
+    /// Returns the pairs of consecutive natural neighbours of `i` whose common corner is proven:
+    /// `i` and each pair form a triangle.
     pub(super) fn pairs(&self, i: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         let entries = self.entries(i);
         (0..entries.len()).filter(|&k| entries[k] & PROVEN != 0).map(move |k| {
@@ -170,8 +173,8 @@ impl OneRings {
         })
     }
 
-    /// Returns whether `i` sees the triangle of itself, `a` and `b`. The orientation does not matter: points of two
-    /// sheets may see the triangle from opposite sides.
+    /// Returns whether `i` sees the triangle of itself, `a` and `b`. The orientation does not
+    /// matter: points of two sheets may see the triangle from opposite sides.
     pub(super) fn sees(&self, i: usize, a: usize, b: usize) -> bool {
         self.pairs(i).any(|pair| pair == (a, b) || pair == (b, a))
     }
@@ -182,8 +185,9 @@ impl OneRings {
     }
 }
 
-/// Returns whether two points at this distance count as being on one sheet: their normals are within 90°, and the line
-/// between them rises from one tangent plane about as much as it falls below the other, or leads to a tip.
+/// Returns whether two points at this distance count as being on one sheet: their normals are
+/// within 90°, and the line between them rises from one tangent plane about as much as it falls
+/// below the other, or leads to a tip.
 #[inline]
 fn is_one_sheet(sheets: &Sheets, i: usize, j: usize, distance_sq: f32) -> bool {
     let Sheets { tree, normal, creases, .. } = *sheets;
@@ -192,8 +196,8 @@ fn is_one_sheet(sheets: &Sheets, i: usize, j: usize, distance_sq: f32) -> bool {
     normal[i].dot(normal[j]) > 0.0 && (is_level || creases.is_tip(i) || creases.is_tip(j))
 }
 
-/// Rotates an offset into the plane spanned by `u` and `v`, which keeps its length; `None` for one perpendicular to the
-/// plane.
+/// Rotates an offset into the plane spanned by `u` and `v`, which keeps its length; `None` for one
+/// perpendicular to the plane.
 #[inline]
 pub(super) fn unroll(offset: DVec3, u: DVec3, v: DVec3) -> Option<DVec2> {
     let flat = DVec2::new(offset.dot(u), offset.dot(v));
@@ -201,8 +205,9 @@ pub(super) fn unroll(offset: DVec3, u: DVec3, v: DVec3) -> Option<DVec2> {
     (flat_sq > 0.0).then(|| flat * (offset.length_squared() / flat_sq).sqrt())
 }
 
-/// Clips the cell of point `i` by the points of the sorted `keys` that are on no other sheet, until no farther one can matter.
-/// Returns whether the cell is closed and proven complete, if every point nearer than √`known_sq` is among them.
+/// Clips the cell of point `i` by the points of the sorted `keys` that are on no other sheet, until
+/// no farther one can matter. Returns whether the cell is closed and proven complete, if every
+/// point nearer than √`known_sq` is among them.
 fn fill(
     cell: &mut VoronoiCell,
     tree: &Tree,

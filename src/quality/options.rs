@@ -8,11 +8,14 @@ pub struct MeasureOptions<'a> {
     /// Exact area of the surface (inside the box); by default the area of the triangles found.
     pub area: Option<f64>,
     /// The wanted radius of each particle, for [`Edges::size_cv`](super::figures::Edges::size_cv),
-    /// [`Coverage::cover_local`](super::figures::Coverage::cover_local) and [`Edges::overlap_min`](super::figures::Edges::overlap_min);
-    /// without them these are NaN. If the slice is too short, particles without a radius are left out.
+    /// [`Coverage::cover_local`](super::figures::Coverage::cover_local) and
+    /// [`Edges::overlap_min`](super::figures::Edges::overlap_min); without them these are NaN. If
+    /// the slice is too short, particles without a radius are left out.
     pub radii: Option<&'a [f32]>,
-    /// The particles of which the radii are used, as those of discs, for [`Coverage::uncovered`](super::figures::Coverage::uncovered), which
-    /// is NaN without them; and where the surface has creases patch, twins, segments and sides. Neighbours of a particle are then looked
-    /// for on its own patch, and the patches are one surface by the particles on creases. Each column is then one of rows.
+    /// The particles of which the radii are used, as those of discs, for
+    /// [`Coverage::uncovered`](super::figures::Coverage::uncovered), which is NaN without them; and
+    /// where the surface has creases patch, twins, segments and sides. Neighbours of a particle are
+    /// then looked for on its own patch, and the patches are one surface by the particles on
+    /// creases. Each column is then one of rows.
     pub rows: Option<&'a Particles>,
 }

@@ -5,13 +5,15 @@ use crate::slices::{HEAVY, pause};
 use glam::Vec3;
 use serde::Serialize;
 
-/// Distance, over the ideal one, below which two particles are a crowded pair. The front places children that are 0.7 of the ideal
-/// distance from a particle, and relaxation moves such pairs apart.
+/// Distance, over the ideal one, below which two particles are a crowded pair. The front places
+/// children that are 0.7 of the ideal distance from a particle, and relaxation moves such pairs
+/// apart.
 pub const CROWDED: f64 = 0.75;
-/// Radius, over the ideal one, above which a hole is wide. A lattice with one particle missing has a hole of √3, and one of half
-/// that excess is 1.37.
+/// Radius, over the ideal one, above which a hole is wide. A lattice with one particle missing has
+/// a hole of √3, and one of half that excess is 1.37.
 pub const WIDE: f64 = 1.4;
-/// Largest number of places of each kind that are told: enough to look at one by one. The figures count all of them.
+/// Largest number of places of each kind that are told: enough to look at one by one. The figures
+/// count all of them.
 const MOST: usize = 64;
 
 /// Two particles and their distance.
@@ -32,12 +34,13 @@ pub struct Hole {
     pub position: [f32; 3],
     /// Distance to the nearest particle, in the field's units.
     pub radius: f64,
-    /// Radius over that of the perfect lattice or, where there are wanted radii, of the lattice with those around it.
+    /// Radius over that of the perfect lattice or, where there are wanted radii, of the lattice
+    /// with those around it.
     pub ratio: f64,
 }
 
-/// The worst places, the worst first, at most 64 of each kind: the crowded pairs and the wide holes or, if there are none, the
-/// closest pair and the largest hole.
+/// The worst places, the worst first, at most 64 of each kind: the crowded pairs and the wide holes
+/// or, if there are none, the closest pair and the largest hole.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Places {
@@ -55,7 +58,8 @@ pub(super) struct Pairs {
 }
 
 impl Pairs {
-    /// Returns whether a pair at this distance would be counted or kept, so that it has to be added.
+    /// Returns whether a pair at this distance would be counted or kept, so that it has to be
+    /// added.
     pub(super) fn matters(&self, ratio: f64) -> bool {
         ratio < CROWDED || self.kept.first().is_none_or(|closest| ratio < closest.ratio)
     }
@@ -92,10 +96,11 @@ impl Pairs {
     }
 }
 
-/// Returns the number of wide holes, and the holes to be reported, from the empty discs that were found.
+/// Returns the number of wide holes, and the holes to be reported, from the empty discs that were
+/// found.
 ///
-/// Several empty discs may show one hole: where the middle of one disc lies in another, only the one with the larger ratio of its
-/// radius to the ideal one counts.
+/// Several empty discs may show one hole: where the middle of one disc lies in another, only the
+/// one with the larger ratio of its radius to the ideal one counts.
 pub(super) async fn distinct(mut found: Vec<Hole>) -> (usize, Vec<Hole>) {
     let bits = |hole: &Hole| hole.position.map(|c| u64::from(c.to_bits()));
     sort_by_key(&mut found, |hole| bits(hole)[2]);

@@ -10,18 +10,21 @@ use crate::slices::{HEAVY, pause, ranges};
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
-/// The points to be measured, with their normals, residuals and one-rings. All columns are in tree order.
+/// The points to be measured, with their normals, residuals and one-rings. All columns are in tree
+/// order.
 pub(super) struct MeasuredPoints {
     pub(super) tree: Tree,
     /// Unit normals: ∇f/|∇f|, or the given normal where that is undefined.
     pub(super) normal: Vec<Vec3>,
-    /// First-order distances from the surface, see [`Measurements::residual`](super::Measurements::residual).
+    /// First-order distances from the surface, see
+    /// [`Measurements::residual`](super::Measurements::residual).
     pub(super) residual: Vec<f64>,
     /// Angles between the given normals and ∇f.
     pub(super) normal_angles: NormalAngles,
     pub(super) rings: OneRings,
     pub(super) creases: CreaseRows,
-    /// Whether a duplicate of the point was dropped, so that the distance to the nearest point is 0.
+    /// Whether a duplicate of the point was dropped, so that the distance to the nearest point
+    /// is 0.
     has_duplicate: Vec<bool>,
 }
 
@@ -86,7 +89,8 @@ impl MeasuredPoints {
         (self.tree.position[i].as_dvec3() - self.tree.position[j].as_dvec3()).length()
     }
 
-    /// Returns the points `j` > `i` of which each is a natural neighbour of the other on the surface, if both are `inner`.
+    /// Returns the points `j` > `i` of which each is a natural neighbour of the other on the
+    /// surface, if both are `inner`.
     pub(super) fn mutual<'a>(&'a self, inner: &'a [bool], i: usize) -> impl Iterator<Item = usize> + 'a {
         self.rings.of(i).filter(move |&j| {
             j > i && inner[i] && inner[j] && self.rings.adjacent(j, i) && self.creases.are_joined(i, j)

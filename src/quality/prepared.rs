@@ -73,8 +73,8 @@ impl Prepared {
     }
 }
 
-/// Marks every finite point that equals an earlier one in `drop`, and the earlier one in `has_duplicate`; further rows of a particle
-/// are no duplicates of it.
+/// Marks every finite point that equals an earlier one in `drop`, and the earlier one in
+/// `has_duplicate`; further rows of a particle are no duplicates of it.
 fn drop_equal(
     position: &[Vec3],
     is_further: impl Fn(usize) -> bool,
@@ -97,7 +97,8 @@ fn drop_equal(
     }
 }
 
-/// Marks every point closer than `limit` to an earlier one in `drop`. Returns whether there was any.
+/// Marks every point closer than `limit` to an earlier one in `drop`. Returns whether there was
+/// any.
 fn drop_close(points: &MeasuredPoints, limit: f32, drop: &mut [bool]) -> bool {
     let tree = &points.tree;
     let mut near = Vec::new();

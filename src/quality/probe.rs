@@ -1,9 +1,9 @@
 //! Samples of the surface that do not depend on the particles: its crossings with random lines.
 //!
-//! The triangles do not show what the particles have missed: a component without a seed, or a region where the front
-//! stopped. A line that is uniform among those that meet a convex box crosses a surface in the box with a mean number
-//! of crossings in proportion to its area (Cauchy–Crofton formula), so the crossings are uniform random samples of the
-//! whole surface.
+//! The triangles do not show what the particles have missed: a component without a seed, or a
+//! region where the front stopped. A line that is uniform among those that meet a convex box
+//! crosses a surface in the box with a mean number of crossings in proportion to its area
+//! (Cauchy–Crofton formula), so the crossings are uniform random samples of the whole surface.
 
 use super::projection::project;
 use crate::field::{BATCH, Evaluator};
@@ -13,21 +13,23 @@ use glam::{DVec3, Vec3};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
-/// Number of lines. A closed surface that fills its box is crossed about as often, so a component with 0.1 % of the
-/// area is missed with a probability of 2 %.
+/// Number of lines. A closed surface that fills its box is crossed about as often, so a component
+/// with 0.1 % of the area is missed with a probability of 2 %.
 const LINES: usize = 4096;
-/// Points along a line at which the field is evaluated. Two crossings between consecutive points are not seen: a part thinner
-/// than a 64th of the box may be missed.
+/// Points along a line at which the field is evaluated. Two crossings between consecutive points
+/// are not seen: a part thinner than a 64th of the box may be missed.
 const STATIONS: usize = 64;
 /// Lines that are evaluated together, in one slice of work.
 const LINES_AT_ONCE: usize = MEDIUM / STATIONS;
-/// A crossing counts if its first-order distance from the surface after projection is below this share of the step along the
-/// line: at poles and jumps the sign changes too. Half and double give the same figures on 34 random surfaces.
+/// A crossing counts if its first-order distance from the surface after projection is below this
+/// share of the step along the line: at poles and jumps the sign changes too. Half and double give
+/// the same figures on 34 random surfaces.
 const RESIDUAL: f32 = 1e-2;
 /// Seed of the lines, other than that of the samples on triangles: the letters of `lines`.
 const STREAM: u64 = 0x6c69_6e65_7300_0000;
 
-/// Returns random samples of the surface in `bounds`, uniform over its area; at most a few for each line.
+/// Returns random samples of the surface in `bounds`, uniform over its area; at most a few for each
+/// line.
 pub(super) async fn crossings(field: &mut dyn Evaluator, bounds: &Bounds) -> Vec<Vec3> {
     let mut found = Vec::new();
     if bounds.is_valid() {
@@ -91,7 +93,8 @@ impl SignChanges {
         let mut gradient = vec![Vec3::ZERO; self.position.len()];
         field.gradients(&self.position, &mut value, &mut gradient);
         for (k, &p) in self.position.iter().enumerate() {
-            // Towards a pole |f| grows beyond its values at the ends of the step, even where |f|/|∇f| becomes small.
+            // Towards a pole |f| grows beyond its values at the ends of the step, even where
+            // |f|/|∇f| becomes small.
             let on_surface = value[k].abs() <= RESIDUAL * self.leash[k] * gradient[k].length()
                 && value[k].abs() <= self.ends[k];
             if on_surface && bounds.contains(p) {
@@ -102,8 +105,9 @@ impl SignChanges {
     }
 }
 
-/// Returns the ends of a random chord of the box, uniform in the measure of lines: it starts at a uniform point of the
-/// boundary, in an inward direction with a density proportional to the cosine of the angle with the normal of the face.
+/// Returns the ends of a random chord of the box, uniform in the measure of lines: it starts at a
+/// uniform point of the boundary, in an inward direction with a density proportional to the cosine
+/// of the angle with the normal of the face.
 fn chord(random: &mut Pcg32, bounds: &Bounds) -> (DVec3, DVec3) {
     let mut unit = move || f64::from(random.next_u32()) * (1.0 / 4_294_967_296.0);
     let (lo, size) = (bounds.lo(), bounds.hi() - bounds.lo());

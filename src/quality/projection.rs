@@ -4,18 +4,19 @@ use crate::field::descent::{Descent, descend};
 use crate::field::{BATCH, Evaluator};
 use glam::Vec3;
 
-/// Largest number of Newton steps of a projection. With two the figures of 4 of 34 random surfaces change in the sixth digit,
-/// with four that of one.
+/// Largest number of Newton steps of a projection. With two the figures of 4 of 34 random surfaces
+/// change in the sixth digit, with four that of one.
 pub(super) const STEPS: u32 = 3;
 /// A step shorter than this share of the leash is the last one.
 ///
-/// A step of length s is about the sagitta κℓ²/2 of a chord of the length ℓ of the leash. The error that it leaves is
-/// about κs² = 2 s³/ℓ², which changes the distance to a point ℓ away by the share 2 (s/ℓ)⁶: 3·10⁻⁸.
+/// A step of length s is about the sagitta κℓ²/2 of a chord of the length ℓ of the leash. The error
+/// that it leaves is about κs² = 2 s³/ℓ², which changes the distance to a point ℓ away by the share
+/// 2 (s/ℓ)⁶: 3·10⁻⁸.
 pub(super) const LAST_STEP: f32 = 0.05;
 
-/// Moves each sample onto the surface along the gradient, by at most [`STEPS`] Newton steps. A step shorter than the
-/// share `last` of the sample's `leash` is its last one. A sample that would move farther than its leash stays where it
-/// is.
+/// Moves each sample onto the surface along the gradient, by at most [`STEPS`] Newton steps. A step
+/// shorter than the share `last` of the sample's `leash` is its last one. A sample that would move
+/// farther than its leash stays where it is.
 pub(super) fn project(field: &mut dyn Evaluator, sample: &mut [Vec3], leash: &[f32], last: f32) {
     for (sample, leash) in sample.chunks_mut(BATCH).zip(leash.chunks(BATCH)) {
         let mut moved = [Vec3::ZERO; BATCH];
@@ -36,8 +37,9 @@ pub(super) fn project(field: &mut dyn Evaluator, sample: &mut [Vec3], leash: &[f
     }
 }
 
-/// Returns whether a projected sample is on the surface, up to another last step. The circumcentre of an almost flat
-/// triangle, as there are some along the border of a box, is far from the surface, and its projection may fail.
+/// Returns whether a projected sample is on the surface, up to another last step. The circumcentre
+/// of an almost flat triangle, as there are some along the border of a box, is far from the
+/// surface, and its projection may fail.
 pub(super) fn is_reached(field: &mut dyn Evaluator, sample: Vec3, leash: f32) -> bool {
     let (mut value, mut gradient) = ([0.0], [Vec3::ZERO]);
     field.gradients(&[sample], &mut value, &mut gradient);

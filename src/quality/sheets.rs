@@ -1,11 +1,13 @@
 //! Tells sheets apart that face the same way and lie near each other, by the field between them.
 //!
-//! Two sheets that face the same way always have a third sheet between them, which faces the other way. A pair of points is
-//! therefore doubtful only if such a third sheet is near, and if the *lift* of the pair is comparable with the distance to it. The
-//! lift is the mean height of each point above the tangent plane at the other. On one sheet it is of third order in the distance of
+//! Two sheets that face the same way always have a third sheet between them, which faces the other
+//! way. A pair of points is therefore doubtful only if such a third sheet is near, and if the
+//! *lift* of the pair is comparable with the distance to it. The lift is the mean height of each
+//! point above the tangent plane at the other. On one sheet it is of third order in the distance of
 //! the points.
 //!
-//! The points are taken to lie where their residuals say, so that the lift does not suffer from their distances from the surface.
+//! The points are taken to lie where their residuals say, so that the lift does not suffer from
+//! their distances from the surface.
 
 use super::creases::CreaseRows;
 use crate::field::Evaluator;
@@ -13,12 +15,13 @@ use crate::math::SINGLE_ROUNDING;
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
-/// A pair is doubtful from this share of the distance of the sheet that faces the other way: those on either side of it are
-/// farther apart than that. Half of it changes `edge_cv` of 3 of 34 random surfaces by up to 0.012; with twice as much one of
-/// them has another number of components.
+/// A pair is doubtful from this share of the distance of the sheet that faces the other way: those
+/// on either side of it are farther apart than that. Half of it changes `edge_cv` of 3 of 34 random
+/// surfaces by up to 0.012; with twice as much one of them has another number of components.
 const SHARE: f64 = 0.5;
-/// Steps of the way along the surface from one point to another. At an eighth of the distance d a step leaves the surface by
-/// d³/3000 times the change of the curvature, which must be less than the distance to another sheet.
+/// Steps of the way along the surface from one point to another. At an eighth of the distance d a
+/// step leaves the surface by d³/3000 times the change of the curvature, which must be less than
+/// the distance to another sheet.
 const STEPS: u32 = 8;
 
 /// The points, in tree order, with the normals and heights that tell sheets apart.
@@ -40,8 +43,8 @@ impl Sheets<'_> {
         (self.tree.position[i].as_dvec3() - normal * height, normal)
     }
 
-    /// The distance along the normal of point `i` of the nearest sheet that faces the other way, by those of the points `near`;
-    /// infinite if there is none.
+    /// The distance along the normal of point `i` of the nearest sheet that faces the other way, by
+    /// those of the points `near`; infinite if there is none.
     pub(super) fn facing_away(&self, i: usize, near: impl Iterator<Item = usize>) -> f64 {
         let (p, n) = self.on_surface(i);
         let distances = near.filter(|&j| self.normal[i].dot(self.normal[j]) < 0.0).map(|j| {
@@ -51,8 +54,9 @@ impl Sheets<'_> {
         distances.fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether two points that face the same way are on two sheets, where one that faces the other way is `facing_away` from the
-    /// first: if doubtful, whether the way along the surface from one leads past the other.
+    /// Whether two points that face the same way are on two sheets, where one that faces the other
+    /// way is `facing_away` from the first: if doubtful, whether the way along the surface from one
+    /// leads past the other.
     pub(super) fn are_two(&self, field: &mut dyn Evaluator, i: usize, j: usize, facing_away: f64) -> bool {
         if facing_away == f64::INFINITY {
             return false;

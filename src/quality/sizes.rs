@@ -11,8 +11,8 @@ const HOLE: f64 = 2.0 / SQRT_3;
 /// The wanted radii, in tree order; NaN for a point without one.
 pub(super) struct WantedRadii {
     pub(super) radius: Vec<f64>,
-    /// Radius of an ideal hole over the wanted radius, if all radii are scaled so that their hexagonal cells have the
-    /// area of the surface.
+    /// Radius of an ideal hole over the wanted radius, if all radii are scaled so that their
+    /// hexagonal cells have the area of the surface.
     pub(super) hole: f64,
 }
 
@@ -36,8 +36,8 @@ impl WantedRadii {
         let sum: f64 = points.iter().map(|&i| self.radius[i as usize]).sum();
         (self.hole * sum / points.len() as f64) as f32
     }
-    /// Adds the pairs of natural neighbours, of which at least one is `inner`, by their ratios. Returns the smallest ratio; NaN if there
-    /// is none.
+    /// Adds the pairs of natural neighbours, of which at least one is `inner`, by their ratios.
+    /// Returns the smallest ratio; NaN if there is none.
     pub(super) async fn add_pairs(&self, points: &MeasuredPoints, inner: &[bool], pairs: &mut Pairs) -> f64 {
         let MeasuredPoints { tree, rings, creases, .. } = points;
         let mut least = f64::NAN;
@@ -46,7 +46,8 @@ impl WantedRadii {
                 for j in rings.of(i) {
                     let ratio = self.ratio(points, i, j);
                     least = least.min(ratio);
-                    // A pair of inner points that are neighbours of each other is seen from both; it is added at the earlier one.
+                    // A pair of inner points that are neighbours of each other is seen from both;
+                    // it is added at the earlier one.
                     let is_seen_again = j < i && inner[j] && rings.adjacent(j, i);
                     if ratio.is_finite() && !is_seen_again && creases.is_first_pair(i, j) {
                         pairs.add(ratio, creases.particle(tree, i), creases.particle(tree, j));

@@ -8,8 +8,8 @@ use crate::math::{key, unkey};
 use crate::slices::{MEDIUM, pause, ranges};
 use serde::Serialize;
 
-/// Histogram of the nearest-neighbour distances over the ideal ones: d_hex, or twice the particle's wanted radius where one is given.
-/// Bins are equal, and values outside fall into the outermost.
+/// Histogram of the nearest-neighbour distances over the ideal ones: d_hex, or twice the particle's
+/// wanted radius where one is given. Bins are equal, and values outside fall into the outermost.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Histogram {
@@ -22,13 +22,14 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// The range is fixed, so that two runs can be compared; the perfect lattice has 1. On 24 random surfaces no more than one particle in 20,000
-    /// has a larger distance.
+    /// The range is fixed, so that two runs can be compared; the perfect lattice has 1. On 24
+    /// random surfaces no more than one particle in 20,000 has a larger distance.
     const RANGE: (f64, f64) = (0.0, 1.2);
     /// A bin is 0.01 wide: a fifth of the standard deviation of the distances on a relaxed surface.
     const BINS: usize = 120;
 
-    /// Counts the distances `nearest` of particles over the ideal one of each. Those that are NaN are left out.
+    /// Counts the distances `nearest` of particles over the ideal one of each. Those that are NaN
+    /// are left out.
     pub(super) fn new(nearest: impl IntoIterator<Item = (usize, f32)>, ideal: impl Fn(usize) -> f64) -> Self {
         let (min, max) = Self::RANGE;
         let mut bins = vec![0; Self::BINS];
@@ -72,9 +73,11 @@ pub(super) async fn add_pairs(points: &MeasuredPoints, inner: &[bool], d_hex: f6
     }
 }
 
-/// Nearest-neighbour distances of the points that are `inner`, without those that are too near, and of `duplicates`.
+/// Nearest-neighbour distances of the points that are `inner`, without those that are too near, and
+/// of `duplicates`.
 pub(super) fn measure(points: &MeasuredPoints, inner: &[bool], duplicates: usize, d_hex: f64) -> Spacing {
-    // Distances are sorted as keys. A dropped duplicate is a point too, at distance 0 from the one it equals.
+    // Distances are sorted as keys. A dropped duplicate is a point too, at distance 0 from the one
+    // it equals.
     let mut sorted: Vec<u64> = (0..inner.len())
         .filter(|&i| inner[i])
         .map(|i| points.nearest(i))

@@ -1,8 +1,9 @@
 //! Triangles of natural neighbours that their corners agree on, and the figures of their angles.
 //!
-//! Triangles that are in doubt are left out. [`crate::mesh::build`] is another triangulator, which fills such places in to make one
-//! manifold. The sampler refines on that manifold, and what measures particles must not depend on what made them: therefore this room
-//! has a triangulator of its own.
+//! Triangles that are in doubt are left out. [`crate::mesh::build`] is another triangulator, which
+//! fills such places in to make one manifold. The sampler refines on that manifold, and what
+//! measures particles must not depend on what made them: therefore this room has a triangulator of
+//! its own.
 
 use super::figures::Angles;
 use super::moments::{Moments, share};
@@ -11,7 +12,8 @@ use crate::math::{IndexTable, SQRT_3, hash, key, unkey};
 use crate::slices::{MEDIUM, pause, ranges};
 use glam::{DVec3, Vec3};
 
-/// The triangles of a set of points, as indices in tree order, counter-clockwise around the normal of the first corner.
+/// The triangles of a set of points, as indices in tree order, counter-clockwise around the normal
+/// of the first corner.
 #[derive(Debug, Default)]
 pub(super) struct Triangles {
     /// Triangles that all three corners see.
@@ -33,7 +35,8 @@ impl Triangles {
         triangles
     }
 
-    /// The triangles of a mesh: those that all corners see are unanimous, and the others count as well.
+    /// The triangles of a mesh: those that all corners see are unanimous, and the others count as
+    /// well.
     pub(super) fn seen(rings: &OneRings, mesh: &[[u32; 3]]) -> Self {
         let is_seen = |&[a, b, c]: &[u32; 3]| {
             let [a, b, c] = [a, b, c].map(|i| i as usize);
@@ -43,7 +46,8 @@ impl Triangles {
         Self { unanimous, majority, single: Vec::new() }
     }
 
-    /// Adds the triangles of which `i` is the smallest corner that sees them, so that each is added once.
+    /// Adds the triangles of which `i` is the smallest corner that sees them, so that each is added
+    /// once.
     fn add(&mut self, rings: &OneRings, i: usize) {
         for (a, b) in rings.pairs(i) {
             let (by_a, by_b) = (rings.sees(a, b, i), rings.sees(b, i, a));
@@ -66,10 +70,11 @@ impl Triangles {
 
     /// Returns triangles without conflicts: no directed edge belongs to two of them.
     ///
-    /// Four nearly cocircular points may disagree about the diagonal, because each sees the others in its own tangent
-    /// plane. Where two of them disagree with the other two, the triangles that count overlap or leave a gap. Here the
-    /// unanimous triangles stay. Those of a majority follow, in the order of their longest edge, if their directed
-    /// edges are free; then those that only one corner sees, if at least two of their sides are still open.
+    /// Four nearly cocircular points may disagree about the diagonal, because each sees the others
+    /// in its own tangent plane. Where two of them disagree with the other two, the triangles that
+    /// count overlap or leave a gap. Here the unanimous triangles stay. Those of a majority follow,
+    /// in the order of their longest edge, if their directed edges are free; then those that only
+    /// one corner sees, if at least two of their sides are still open.
     pub(super) fn settled(&self, position: &[Vec3]) -> Vec<[u32; 3]> {
         let mut mesh = self.unanimous.clone();
         if self.majority.is_empty() && self.single.is_empty() {
@@ -169,8 +174,8 @@ impl TriangleAngles {
         // At each corner the product of the sides is |a||b| cos; |a||b| sin is twice the area.
         let cosines: [f64; 3] =
             core::array::from_fn(|k| (corner[(k + 1) % 3] - corner[k]).dot(corner[(k + 2) % 3] - corner[k]));
-        // The sine term is the same at all corners, so the smallest angle has the largest cosine. It is below 30° if
-        // tan < 1/√3.
+        // The sine term is the same at all corners, so the smallest angle has the largest cosine.
+        // It is below 30° if tan < 1/√3.
         let sharp = cosines.iter().filter(|&&c| twice_area * SQRT_3 < c).count();
         let blunt = cosines.iter().filter(|&&c| c < 0.0).count();
         self.count += 1;

@@ -2,10 +2,11 @@
 
 use core::ops::Range;
 
-/// Records per chunk: for particles 7 MiB of records and 1 MiB of colours. That is far below the buffer limit of any device and
-/// takes only 4 draw calls per pass for a million of them.
+/// Records per chunk: for particles 7 MiB of records and 1 MiB of colours. That is far below the
+/// buffer limit of any device and takes only 4 draw calls per pass for a million of them.
 pub const CHUNK: u32 = 1 << 18;
-/// Largest number of records of each kind, more than the particles that a run may place: particles take 144 MiB on the GPU, faces 396 MiB.
+/// Largest number of records of each kind, more than the particles that a run may place: particles
+/// take 144 MiB on the GPU, faces 396 MiB.
 pub const MOST_RECORDS: u32 = 18 * CHUNK;
 
 /// Consecutive records within one chunk.

@@ -1,7 +1,7 @@
 //! The uniform block `Frame` of all shaders.
 //!
-//! The offsets follow the layout rules of WGSL for uniforms, which agree with std140 for these types. A test compares them
-//! with the shaders.
+//! The offsets follow the layout rules of WGSL for uniforms, which agree with std140 for these
+//! types. A test compares them with the shaders.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -21,7 +21,8 @@ pub struct Frame {
     pub body: Body,
     /// The clip box, drawn where a picture has one.
     pub clip_box: ClipBox,
-    /// Cutting plane: its normal and its offset. What has normal · p > offset is hidden; without a plane the normal is zero.
+    /// Cutting plane: its normal and its offset. What has normal · p > offset is hidden; without a
+    /// plane the normal is zero.
     pub plane: [f32; 4],
 }
 

@@ -4,7 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use thiserror::Error;
 
-/// Called when the device is lost, with the reason ("unknown" or "destroyed") and the driver's message.
+/// Called when the device is lost, with the reason ("unknown" or "destroyed") and the driver's
+/// message.
 pub type OnLost = Arc<dyn Fn(&str, &str) + Send + Sync>;
 /// Called with the device's message when it rejects a call.
 pub type OnError = Arc<dyn Fn(&str) + Send + Sync>;
@@ -22,7 +23,8 @@ pub struct Callbacks {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CreateError {
-    /// The canvas gives no graphics context: none is supported, or the canvas already has one of another kind.
+    /// The canvas gives no graphics context: none is supported, or the canvas already has one of
+    /// another kind.
     #[error("the canvas gives no graphics context: {0}")]
     Surface(#[from] wgpu::CreateSurfaceError),
     /// There is no graphics adapter.

@@ -1,4 +1,5 @@
-//! Layout of the instance records, one per particle, one per face of a mesh and one per piece of a crease.
+//! Layout of the instance records, one per particle, one per face of a mesh and one per piece of a
+//! crease.
 //!
 //! The pipelines are built from the lists of formats, and a test compares the lists with the WGSL.
 
@@ -7,29 +8,32 @@ use bytemuck::{Pod, Zeroable};
 
 /// Instance record of a particle without its colour: 28 bytes.
 ///
-/// Colours have a buffer of their own, of 4 bytes each: sRGB red, green, blue and opacity of 8 bits each. A change of colours then
-/// uploads 4 bytes per particle instead of 32, and no copy of the records has to be kept.
+/// Colours have a buffer of their own, of 4 bytes each: sRGB red, green, blue and opacity of 8 bits
+/// each. A change of colours then uploads 4 bytes per particle instead of 32, and no copy of the
+/// records has to be kept.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Record {
     /// World position.
     pub position: [f32; 3],
-    /// Repulsion radius in world units. A particle with radius 0 is not drawn. A negative radius is that of a particle on a crease,
-    /// which is drawn as a dot that faces the eye.
+    /// Repulsion radius in world units. A particle with radius 0 is not drawn. A negative radius is
+    /// that of a particle on a crease, which is drawn as a dot that faces the eye.
     pub radius: f32,
-    /// Unit normal in the octahedral encoding, as two signed normalised 16-bit integers. The largest error is 0.004°.
+    /// Unit normal in the octahedral encoding, as two signed normalised 16-bit integers. The
+    /// largest error is 0.004°.
     pub normal: [i16; 2],
     /// Time at which the particle begins to appear, in seconds on the renderer's clock.
     pub birth: f32,
-    /// Generation level, or −1 for a particle without one, which is always drawn. Single precision is exact up to 2²⁴.
+    /// Generation level, or −1 for a particle without one, which is always drawn. Single precision
+    /// is exact up to 2²⁴.
     pub level: f32,
 }
 
 impl Record {
     /// Packs a particle. `level` is `u32::MAX` for a particle without a level.
     ///
-    /// `normal` need not have unit length; a zero or non-finite one counts as +z. A non-finite position or radius gives a record that is
-    /// not drawn.
+    /// `normal` need not have unit length; a zero or non-finite one counts as +z. A non-finite
+    /// position or radius gives a record that is not drawn.
     #[must_use]
     pub fn new(position: [f32; 3], normal: [f32; 3], radius: f32, birth: f32, level: u32) -> Self {
         let drawable = radius.is_finite() && position.iter().all(|c| c.is_finite());
@@ -43,13 +47,14 @@ impl Record {
     }
 }
 
-/// Instance record of a triangle without its colours: 64 bytes. It repeats what it needs of its corners, because WebGL2 cannot
-/// look particles up by index, and a shader that has all three knows where in the triangle it is.
+/// Instance record of a triangle without its colours: 64 bytes. It repeats what it needs of its
+/// corners, because WebGL2 cannot look particles up by index, and a shader that has all three knows
+/// where in the triangle it is.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct FaceRecord {
-    /// World position and repulsion radius of each corner, counter-clockwise seen from outside. A face with a radius 0 is not
-    /// drawn.
+    /// World position and repulsion radius of each corner, counter-clockwise seen from outside. A
+    /// face with a radius 0 is not drawn.
     pub corners: [[f32; 4]; 3],
     /// Normals of the corners, as in [`Record`].
     pub normals: [[i16; 2]; 3],
@@ -57,7 +62,8 @@ pub struct FaceRecord {
     pub level: f32,
 }
 
-/// Colours of a triangle's corners, and of the marks on them, which are opaque where there is one: 24 bytes.
+/// Colours of a triangle's corners, and of the marks on them, which are opaque where there is one:
+/// 24 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct FaceTint {
@@ -79,9 +85,9 @@ impl FaceRecord {
     }
 }
 
-/// Octahedral encoding of a direction, as two signed normalised 16-bit integers (Q. Meyer et al., "On Floating-Point
-/// Normal Vectors", 2010; Z. H. Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors",
-/// JCGT 3(2), 2014).
+/// Octahedral encoding of a direction, as two signed normalised 16-bit integers (Q. Meyer et al.,
+/// "On Floating-Point Normal Vectors", 2010; Z. H. Cigolle et al., "A Survey of Efficient
+/// Representations for Independent Unit Vectors", JCGT 3(2), 2014).
 ///
 /// `n` need not have unit length. A zero or non-finite `n` gives the encoding of +z.
 #[must_use]
@@ -127,8 +133,9 @@ impl AttributeFormat {
     }
 }
 
-/// Formats of the vertex attributes of the two buffers of an instance: those of the fields of its record in order, and those of its
-/// colours. They have the `@location`s from 0 on, without a gap from the one buffer to the other.
+/// Formats of the vertex attributes of the two buffers of an instance: those of the fields of its
+/// record in order, and those of its colours. They have the `@location`s from 0 on, without a gap
+/// from the one buffer to the other.
 pub type InstanceFormats = [&'static [AttributeFormat]; 2];
 
 /// Formats of a particle: a [`Record`] and its colour.
@@ -138,7 +145,8 @@ pub const PARTICLE: InstanceFormats = [&[Float32x3, Float32, Snorm16x2, Float32,
 pub const FACE: InstanceFormats =
     [&[Float32x4, Float32x4, Float32x4, Snorm16x2, Snorm16x2, Snorm16x2, Float32], &[Unorm8x4; 6]];
 
-/// Formats of a piece of a crease: the world position of each end with the repulsion radius of the particle there, and its colour.
+/// Formats of a piece of a crease: the world position of each end with the repulsion radius of the
+/// particle there, and its colour.
 pub const PIECE: InstanceFormats = [&[Float32x4; 2], &[Unorm8x4]];
 
 /// Bytes of a record of fields with these formats.
@@ -157,7 +165,8 @@ mod tests {
     use super::*;
     use core::mem::offset_of;
 
-    /// Unit vector with the octahedral encoding `e`, as the vertex shader computes it; the inverse of [`oct_encode`].
+    /// Unit vector with the octahedral encoding `e`, as the vertex shader computes it; the inverse
+    /// of [`oct_encode`].
     fn oct_decode(e: [i16; 2]) -> [f32; 3] {
         let [x, y] = e.map(|c| (f32::from(c) / f32::from(i16::MAX)).max(-1.0));
         let z = 1.0 - x.abs() - y.abs();

@@ -5,8 +5,9 @@ use super::pipelines::{DEPTH_FORMAT, FrameBinding, Kind, NEAREST_FORMAT, Pipelin
 use super::store::Store;
 use super::style::{Drawing, Style};
 
-/// Samples per pixel of a picture with faces. The silhouette of a mesh has no rim that a shader could antialias. All devices of
-/// WebGPU and WebGL2 have targets with four samples, and not all with another number.
+/// Samples per pixel of a picture with faces. The silhouette of a mesh has no rim that a shader
+/// could antialias. All devices of WebGPU and WebGL2 have targets with four samples, and not all
+/// with another number.
 const FACE_SAMPLES: u32 = 4;
 
 /// Draws pictures into targets.
@@ -35,7 +36,8 @@ struct Buffers {
 struct Occlusion {
     is_drawn: bool,
     depth: wgpu::TextureView,
-    /// Depths of what is nearest with normals, then with openness: each is read, by its group, to draw on the other.
+    /// Depths of what is nearest with normals, then with openness: each is read, by its group, to
+    /// draw on the other.
     nearest: [(wgpu::TextureView, wgpu::BindGroup); 2],
 }
 
@@ -63,7 +65,8 @@ pub(super) struct Scene<'a> {
 /// Texture view that a picture is drawn on.
 pub(super) struct Canvas<'a> {
     pub(super) view: &'a wgpu::TextureView,
-    /// The texture to which samples are copied once they are resolved; without one they are resolved to the view.
+    /// The texture to which samples are copied once they are resolved; without one they are
+    /// resolved to the view.
     pub(super) copied: Option<&'a wgpu::Texture>,
     pub(super) size: [u32; 2],
     /// Whether the buffers are kept for the next target of the same size.
@@ -307,8 +310,8 @@ impl Scene<'_> {
     }
 }
 
-/// Draws a strip of so many vertices per record. The buffer slices begin at the first record drawn, because WebGL2 has no base
-/// instance.
+/// Draws a strip of so many vertices per record. The buffer slices begin at the first record drawn,
+/// because WebGL2 has no base instance.
 fn draw_instances(
     pass: &mut wgpu::RenderPass<'_>,
     store: &Store,

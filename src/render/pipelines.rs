@@ -6,7 +6,8 @@ use super::shaders::{DISCS, FACES, LINES, OCCLUSION, Shader};
 
 /// Format of the depth buffers.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// Format of what is nearest to the eye: the bits of a depth, and those of a normal or of the openness. All devices draw on it.
+/// Format of what is nearest to the eye: the bits of a depth, and those of a normal or of the
+/// openness. All devices draw on it.
 pub(super) const NEAREST_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 
 /// The uniform buffer for a [`Frame`], which all pipelines of a device share.
@@ -39,13 +40,16 @@ pub(super) enum Kind {
     BallCore,
     /// Partly covered pixels of spheres.
     BallRim,
-    /// Spheres into the nearest-surface texture: depth and normal of the sphere that is nearest at each pixel.
+    /// Spheres into the nearest-surface texture: depth and normal of the sphere that is nearest at
+    /// each pixel.
     BallNearest,
     /// Faces, with depth writes.
     Face,
-    /// Faces that a plane may cut, with depth writes. The samples of a pixel antialias the edge at the plane.
+    /// Faces that a plane may cut, with depth writes. The samples of a pixel antialias the edge at
+    /// the plane.
     CutFace,
-    /// Faces into the nearest-surface texture: depth and normal of the face that is nearest at each pixel.
+    /// Faces into the nearest-surface texture: depth and normal of the face that is nearest at each
+    /// pixel.
     FaceNearest,
     /// Ambient occlusion: the openness of the nearest surface at each pixel.
     Occlusion,
@@ -64,7 +68,8 @@ pub(super) enum Kind {
 enum Way {
     /// Blends and writes depths.
     Solid,
-    /// Writes depths. The opacity says how many samples of a pixel are covered, instead of being blended.
+    /// Writes depths. The opacity says how many samples of a pixel are covered, instead of being
+    /// blended.
     Covering,
     /// Blends with depth test, without depth writes.
     Blended,

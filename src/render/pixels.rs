@@ -1,6 +1,7 @@
 //! Conversion of a read-back texture to the rows of a picture.
 
-/// Bytes of a row in a read-back buffer. Rows start at multiples of 256 bytes (WebGPU, `bytesPerRow`).
+/// Bytes of a row in a read-back buffer. Rows start at multiples of 256 bytes (WebGPU,
+/// `bytesPerRow`).
 #[must_use]
 pub const fn padded_row(width_px: u32) -> u32 {
     (4 * width_px).next_multiple_of(256)
@@ -8,8 +9,9 @@ pub const fn padded_row(width_px: u32) -> u32 {
 
 /// Rows of RGBA pixels with straight (not premultiplied) opacity, from top to bottom.
 ///
-/// `padded` holds sRGB pixels, premultiplied in linear light, in rows of [`padded_row`] bytes; if `bgra` is set, blue
-/// comes first. Colours are divided by the opacity in linear light. If `opaque` is set, every opacity is 255 instead.
+/// `padded` holds sRGB pixels, premultiplied in linear light, in rows of [`padded_row`] bytes; if
+/// `bgra` is set, blue comes first. Colours are divided by the opacity in linear light. If `opaque`
+/// is set, every opacity is 255 instead.
 ///
 /// # Panics
 ///

@@ -38,13 +38,15 @@ impl Columns<'_> {
     }
 }
 
-/// The caller's clock, in single precision: time is counted from the first finite one that is asked for.
+/// The caller's clock, in single precision: time is counted from the first finite one that is asked
+/// for.
 #[derive(Default)]
 struct Clock {
     epoch_s: Option<f64>,
 }
 
-/// Time from the epoch that stands for ±∞, in seconds. It is more than a day and has a resolution of 8 ms.
+/// Time from the epoch that stands for ±∞, in seconds. It is more than a day and has a resolution
+/// of 8 ms.
 const INFINITE_TIME_S: f64 = 1e5;
 
 impl Clock {
@@ -58,7 +60,8 @@ impl Clock {
     }
 }
 
-/// Draws particles on a surface, as discs or as the faces between them. After the device is lost, its methods do nothing.
+/// Draws particles on a surface, as discs or as the faces between them. After the device is lost,
+/// its methods do nothing.
 pub struct Renderer {
     pub(super) gpu: Gpu,
     painter: Painter,
@@ -123,15 +126,15 @@ impl Renderer {
 
     /// Sets the size in pixels of what is drawn on, and returns the size in effect.
     ///
-    /// A size beyond the largest texture is scaled down in proportion. If a side is 0, nothing is drawn until the next
-    /// resize.
+    /// A size beyond the largest texture is scaled down in proportion. If a side is 0, nothing is
+    /// drawn until the next resize.
     pub fn resize(&mut self, size: [u32; 2]) -> [u32; 2] {
         self.size = self.fit(size);
         self.size
     }
 
-    /// Size of the picture that [`Renderer::picture`] makes for `size`: at least one pixel, and within the limits of
-    /// textures and buffers.
+    /// Size of the picture that [`Renderer::picture`] makes for `size`: at least one pixel, and
+    /// within the limits of textures and buffers.
     #[must_use]
     pub fn picture_size(&self, size: [u32; 2]) -> [u32; 2] {
         let mut size = self.fit(size.map(|side| side.max(1)));
@@ -154,10 +157,11 @@ impl Renderer {
         })
     }
 
-    /// Writes particles `first..first + columns.radii.len()`. The number of particles drawn increases to include them.
+    /// Writes particles `first..first + columns.radii.len()`. The number of particles drawn
+    /// increases to include them.
     ///
-    /// `birth_s` is the time at which the particles begin to appear, in seconds on the clock of the pictures; −∞ shows them
-    /// at once.
+    /// `birth_s` is the time at which the particles begin to appear, in seconds on the clock of the
+    /// pictures; −∞ shows them at once.
     ///
     /// # Panics
     ///
@@ -177,7 +181,8 @@ impl Renderer {
         self.write_colours(first, columns.colours);
     }
 
-    /// Writes the colours of particles from `first` on. Particles beyond the capacity of the buffers are skipped.
+    /// Writes the colours of particles from `first` on. Particles beyond the capacity of the
+    /// buffers are skipped.
     pub fn write_colours(&mut self, first: u32, colours: &[u32]) {
         if !self.is_lost() && (first as usize + colours.len()) <= MOST_RECORDS as usize {
             let bytes = bytemuck::cast_slice(colours);
@@ -192,8 +197,8 @@ impl Renderer {
         self.content.body = body.min(MOST_RECORDS);
     }
 
-    /// Writes faces from `first` on: three entries of the columns each, counter-clockwise seen from outside. `marks` has the
-    /// colour of the mark on each corner, 0 for none.
+    /// Writes faces from `first` on: three entries of the columns each, counter-clockwise seen from
+    /// outside. `marks` has the colour of the mark on each corner, 0 for none.
     ///
     /// # Panics
     ///
@@ -213,8 +218,8 @@ impl Renderer {
         self.tint_faces(first, corners.colours, marks);
     }
 
-    /// Writes the colours of faces from `first` on, and those of their marks, three each. Faces beyond the capacity of the buffers
-    /// are skipped.
+    /// Writes the colours of faces from `first` on, and those of their marks, three each. Faces
+    /// beyond the capacity of the buffers are skipped.
     pub fn tint_faces(&mut self, first: u32, colours: &[u32], marks: &[u32]) {
         if self.is_lost() || (first as usize + colours.len() / 3) > MOST_RECORDS as usize {
             return;
@@ -225,8 +230,8 @@ impl Renderer {
         self.content.faces.write(&self.gpu.queue, Part::Colours, first, bytemuck::cast_slice(&tints));
     }
 
-    /// Sets the number of faces, and of the particles that are not drawn as discs where faces are drawn. Without faces their
-    /// buffers are given back.
+    /// Sets the number of faces, and of the particles that are not drawn as discs where faces are
+    /// drawn. Without faces their buffers are given back.
     pub fn set_faces(&mut self, count: u32, particles: u32) {
         let Content { faces, face_particles, .. } = &mut self.content;
         (faces.count, *face_particles) = (count.min(MOST_RECORDS), particles);
@@ -236,8 +241,8 @@ impl Renderer {
         }
     }
 
-    /// Draws these pieces of creases from now on: eight numbers each, the position of either end and the radius of the particle
-    /// there, and a colour, sRGB as 0xAABBGGRR.
+    /// Draws these pieces of creases from now on: eight numbers each, the position of either end
+    /// and the radius of the particle there, and a colour, sRGB as 0xAABBGGRR.
     ///
     /// # Panics
     ///
@@ -270,11 +275,11 @@ impl Renderer {
         self.paint(canvas, frame, false);
     }
 
-    /// Draws into a texture of [`Renderer::picture_size`] and begins to copy it to memory that [`Picture::map`] makes
-    /// readable.
+    /// Draws into a texture of [`Renderer::picture_size`] and begins to copy it to memory that
+    /// [`Picture::map`] makes readable.
     ///
-    /// A picture with another aspect ratio than what is drawn on shows more at the sides, or at top and bottom. Returns
-    /// `None` if the device is lost.
+    /// A picture with another aspect ratio than what is drawn on shows more at the sides, or at top
+    /// and bottom. Returns `None` if the device is lost.
     pub fn picture(&mut self, size: [u32; 2], transparent: bool, time_s: f64) -> Option<Picture> {
         if self.is_lost() {
             return None;
@@ -354,14 +359,14 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Requests the pixels. `done` is called with `true` when [`Picture::pixels`] can be called, or with `false` if it
-    /// failed.
+    /// Requests the pixels. `done` is called with `true` when [`Picture::pixels`] can be called, or
+    /// with `false` if it failed.
     pub fn map(&self, done: impl FnOnce(bool) + Send + 'static) {
         self.buffer.map_async(wgpu::MapMode::Read, .., move |result| done(result.is_ok()));
     }
 
-    /// Pixels in rows from top to bottom, four bytes each: sRGB red, green, blue and straight opacity. `None` before
-    /// [`Picture::map`] has succeeded.
+    /// Pixels in rows from top to bottom, four bytes each: sRGB red, green, blue and straight
+    /// opacity. `None` before [`Picture::map`] has succeeded.
     #[must_use]
     pub fn pixels(&self) -> Option<Vec<u8>> {
         let [width, height] = self.size;

@@ -9,7 +9,8 @@ use super::renderer::Renderer;
 pub enum DrawOutcome {
     /// The picture was submitted and will be shown.
     Drawn,
-    /// The surface cannot be drawn on now, because it is empty, hidden or busy. Draw again when something changes.
+    /// The surface cannot be drawn on now, because it is empty, hidden or busy. Draw again when
+    /// something changes.
     Skipped,
     /// The device is lost. A new renderer is needed.
     Lost,
@@ -51,7 +52,8 @@ impl Screen {
         let view_format = if downlevel.flags.contains(wgpu::DownlevelFlags::SURFACE_VIEW_FORMATS) {
             let view_format = config.format.add_srgb_suffix();
             config.view_formats = vec![view_format];
-            // Every canvas of WebGPU can be copied to, although wgpu lists only that it can be drawn to.
+            // Every canvas of WebGPU can be copied to, although wgpu lists only that it can be
+            // drawn to.
             if adapter.get_info().backend == wgpu::Backend::BrowserWebGpu {
                 config.usage |= wgpu::TextureUsages::COPY_DST;
             }
@@ -99,7 +101,8 @@ impl Screen {
                 Some(texture)
             }
             wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Lost => {
-                // Try once more with a fresh configuration. After a second failure the next call tries again.
+                // Try once more with a fresh configuration. After a second failure the next call
+                // tries again.
                 self.configure(device, size);
                 match self.surface.get_current_texture() {
                     wgpu::CurrentSurfaceTexture::Success(texture)
@@ -119,8 +122,9 @@ impl Screen {
         })
     }
 
-    /// The texture, if samples are not to be resolved to its view but copied to it: where the view has another format, a driver may
-    /// resolve to the format of the texture, and the picture be too dark (seen in Chromium 156 with SwiftShader's WebGPU).
+    /// The texture, if samples are not to be resolved to its view but copied to it: where the view
+    /// has another format, a driver may resolve to the format of the texture, and the picture be
+    /// too dark (seen in Chromium 156 with SwiftShader's WebGPU).
     fn copied<'a>(&self, texture: &'a wgpu::SurfaceTexture) -> Option<&'a wgpu::Texture> {
         let can_copy = self.config.usage.contains(wgpu::TextureUsages::COPY_DST);
         (can_copy && self.view_format != self.config.format).then_some(&texture.texture)

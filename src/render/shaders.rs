@@ -7,7 +7,8 @@ pub struct Shader {
     pub name: &'static str,
     /// The common text and that of the file.
     pub source: &'static str,
-    /// Text without comments and indentation, which is what the device gets and what the bundle contains.
+    /// Text without comments and indentation, which is what the device gets and what the bundle
+    /// contains.
     pub lean: &'static str,
 }
 
@@ -44,8 +45,8 @@ pub const LINES: Shader = shader!("lines.wgsl");
 /// Finds how open a surface is to light from all around.
 pub const OCCLUSION: Shader = shader!("occlusion.wgsl");
 
-/// Copies `source` without `//` comments, indentation and empty lines to `out`, as far as there is room, and returns
-/// the length of the whole.
+/// Copies `source` without `//` comments, indentation and empty lines to `out`, as far as there is
+/// room, and returns the length of the whole.
 const fn strip(source: &str, out: &mut [u8]) -> usize {
     let bytes = source.as_bytes();
     let mut length = 0;

@@ -4,11 +4,12 @@ use super::chunks::{CHUNK, ChunkSpan, MOST_RECORDS, split_at_chunks};
 use super::layout::{InstanceFormats, stride};
 use core::ops::Range;
 
-/// Initial capacity of the first chunk, of 128 KiB for particles. Six doublings lead from it to a whole [`CHUNK`], and each copies what is
-/// there once.
+/// Initial capacity of the first chunk, of 128 KiB for particles. Six doublings lead from it to a
+/// whole [`CHUNK`], and each copies what is there once.
 const FIRST: u32 = 1 << 12;
 
-/// A buffer of a chunk: of the geometry of each record or, apart from it, of its colours, which change more often.
+/// A buffer of a chunk: of the geometry of each record or, apart from it, of its colours, which
+/// change more often.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Records,
@@ -41,8 +42,8 @@ impl Store {
         Self { strides: formats.map(stride), chunks: Vec::new(), count: 0 }
     }
 
-    /// Uploads a part of the records from `first` on, whose bytes these are. Records beyond the capacity of the buffers are
-    /// dropped.
+    /// Uploads a part of the records from `first` on, whose bytes these are. Records beyond the
+    /// capacity of the buffers are dropped.
     pub(super) fn write(&self, queue: &wgpu::Queue, part: Part, first: u32, bytes: &[u8]) {
         let stride = self.strides[part as usize];
         let count = (bytes.len() as u64 / stride) as u32;

@@ -6,8 +6,9 @@ use super::view::View;
 
 /// Style of a picture. Colours are sRGB with components from 0 to 1, opacity last.
 ///
-/// Values out of range are clamped when the picture is drawn; NaN counts as the lower bound. Ranges of lengths and times are wider than
-/// anyone asks for: they keep what the shaders compute finite and not zero.
+/// Values out of range are clamped when the picture is drawn; NaN counts as the lower bound. Ranges
+/// of lengths and times are wider than anyone asks for: they keep what the shaders compute finite
+/// and not zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Style {
     /// Background colour. The canvas is opaque, so the opacity has no effect there.
@@ -18,26 +19,27 @@ pub struct Style {
     pub body: Option<BodyStyle>,
     /// Whether particles are drawn as spheres where they would be drawn as discs.
     pub spheres: bool,
-    /// Radius of a disc or sphere in repulsion radii. At 1 the discs of a hexagonal packing touch; the default is a choice, which leaves
-    /// gaps that make the order visible.
+    /// Radius of a disc or sphere in repulsion radii. At 1 the discs of a hexagonal packing touch;
+    /// the default is a choice, which leaves gaps that make the order visible.
     pub disc_scale: f32,
-    /// Direction to the key light in view coordinates: x right, y up, z towards the viewer. The default is a choice: from the upper left,
-    /// as drawings are lit.
+    /// Direction to the key light in view coordinates: x right, y up, z towards the viewer. The
+    /// default is a choice: from the upper left, as drawings are lit.
     pub key_light_view: [f32; 3],
     /// Fraction by which the whole picture fades to the background, 0 to 1.
     pub dim: f32,
-    /// Fraction by which discs and faces seen from behind are drawn as an inside, darker and greyer, 0 to 1.
+    /// Fraction by which discs and faces seen from behind are drawn as an inside, darker and
+    /// greyer, 0 to 1.
     pub dim_backfaces: f32,
     /// Fraction of the ambient occlusion that darkens the surface, 0 to 1. With 0 it is not
     /// computed.
     pub occlusion: f32,
     /// Difference in warmth between lit and shaded places, 0 to 1. With 0 the light is white.
     pub warmth: f32,
-    /// Duration in seconds of the appearance of a new particle; 0 shows it at once. The default is a choice: some frames, in which the eye
-    /// catches that something appears.
+    /// Duration in seconds of the appearance of a new particle; 0 shows it at once. The default is
+    /// a choice: some frames, in which the eye catches that something appears.
     pub fade_s: f32,
-    /// Newest generation level that is drawn. Particles of later levels are hidden, those of earlier ones fade by
-    /// `mute`. With `None` all levels are drawn alike.
+    /// Newest generation level that is drawn. Particles of later levels are hidden, those of
+    /// earlier ones fade by `mute`. With `None` all levels are drawn alike.
     pub level: Option<u32>,
     /// Fraction by which earlier levels fade to the background, 0 to 1.
     pub mute: f32,
@@ -57,7 +59,8 @@ pub enum Drawing {
     /// Particles are drawn as discs.
     #[default]
     Discs,
-    /// The faces between the particles are drawn, and discs for newer particles, which no face joins yet.
+    /// The faces between the particles are drawn, and discs for newer particles, which no face
+    /// joins yet.
     Faces {
         /// Whether each face has one normal and one colour.
         flat: bool,
@@ -100,7 +103,8 @@ pub struct ClipBoxStyle {
 /// A plane that hides what is in front of it: particles by their centres, faces in part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CuttingPlane {
-    /// Normal, of any length, in world coordinates. It points to the side that is hidden. With a zero normal nothing is.
+    /// Normal, of any length, in world coordinates. It points to the side that is hidden. With a
+    /// zero normal nothing is.
     pub normal: [f32; 3],
     /// A place p is hidden if normal · p > offset.
     pub offset: f32,
@@ -224,7 +228,8 @@ impl CuttingPlane {
 /// Larger than any level of 2³² particles.
 const ALL_LEVELS: f32 = 1e10;
 
-/// Luminance of a background to which black and white have equal contrast (WCAG 2: √(1.05 · 0.05) − 0.05).
+/// Luminance of a background to which black and white have equal contrast (WCAG 2: √(1.05 · 0.05) −
+/// 0.05).
 const LIGHT_GROUND: f32 = 0.179;
 
 /// Light along the outline on a dark ground, which sets it off. On a light one the shade of the
@@ -236,7 +241,8 @@ fn luminance(linear: [f32; 4]) -> f32 {
     0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 }
 
-/// Linear components of an sRGB colour (IEC 61966-2-1), clamped to 0 … 1; the opacity is only clamped. NaN becomes 0.
+/// Linear components of an sRGB colour (IEC 61966-2-1), clamped to 0 … 1; the opacity is only
+/// clamped. NaN becomes 0.
 #[must_use]
 pub fn linear(srgb: [f32; 4]) -> [f32; 4] {
     let [r, g, b, a] = srgb.map(|c| if c >= 0.0 { c.min(1.0) } else { 0.0 });

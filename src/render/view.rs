@@ -2,8 +2,8 @@
 
 use thiserror::Error;
 
-/// A camera. In clip coordinates x points right, y points up and depth increases from 0 (near) to 1 (far), as in
-/// WebGPU.
+/// A camera. In clip coordinates x points right, y points up and depth increases from 0 (near) to 1
+/// (far), as in WebGPU.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// Matrix from world to clip coordinates, column-major.
@@ -43,8 +43,8 @@ impl View {
     /// Number of numbers that [`View::from_slice`] reads.
     pub const LEN: usize = 22;
 
-    /// Camera from numbers: the matrix from world to clip coordinates (16, column-major), the eye (3) and the viewing
-    /// direction (3). Further numbers are ignored.
+    /// Camera from numbers: the matrix from world to clip coordinates (16, column-major), the eye
+    /// (3) and the viewing direction (3). Further numbers are ignored.
     ///
     /// # Errors
     ///
@@ -67,8 +67,8 @@ impl View {
         [3, 7, 11].iter().any(|&k| self.clip_from_world[k] != 0.0)
     }
 
-    /// Matrix for a target of size `to`, given a camera for size `from`. Everything visible at size `from` stays
-    /// visible, and circles stay round.
+    /// Matrix for a target of size `to`, given a camera for size `from`. Everything visible at size
+    /// `from` stays visible, and circles stay round.
     #[must_use]
     pub fn clip_from_world_for(&self, from: [u32; 2], to: [u32; 2]) -> [[f32; 4]; 4] {
         let aspect = |size: [u32; 2]| size[0].max(1) as f32 / size[1].max(1) as f32;
@@ -82,8 +82,9 @@ impl View {
         columns
     }
 
-    /// Unit vector in world coordinates of direction `v` in view coordinates (x right, y up, z towards the viewer). If
-    /// `v` is zero or the camera is degenerate, it points towards the viewer.
+    /// Unit vector in world coordinates of direction `v` in view coordinates (x right, y up, z
+    /// towards the viewer). If `v` is zero or the camera is degenerate, it points towards the
+    /// viewer.
     #[must_use]
     pub fn world_from_view(&self, v: [f32; 3]) -> [f32; 3] {
         let m = &self.clip_from_world;

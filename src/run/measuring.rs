@@ -11,8 +11,9 @@ use crate::spatial::tree::Tree;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Largest number of particles that are kept after the front, for the comparison before and after the relaxation. Measuring them
-/// doubles the time of the report, and they take 11 MB: a choice that bounds both, at twice the number allowed by default.
+/// Largest number of particles that are kept after the front, for the comparison before and after
+/// the relaxation. Measuring them doubles the time of the report, and they take 11 MB: a choice
+/// that bounds both, at twice the number allowed by default.
 const MAX_KEPT: usize = 400_000;
 
 /// The measurements of a run.
@@ -25,7 +26,8 @@ pub(super) struct Measuring {
     pub(super) work: Option<Work<'static, MeasuringResult>>,
     /// The figures and columns of the last measurement; empty before the first.
     pub(super) measured: quality::Measurements,
-    /// Number of particles that face another sheet; none if the present particles are still to be measured.
+    /// Number of particles that face another sheet; none if the present particles are still to be
+    /// measured.
     pub(super) facing: Option<usize>,
 }
 
@@ -37,7 +39,8 @@ impl Measuring {
         }
     }
 
-    /// Gives a measurement under way up, and says that the last one is of other particles or another field.
+    /// Gives a measurement under way up, and says that the last one is of other particles or
+    /// another field.
     pub(super) fn stop(&mut self) {
         (self.work, self.facing) = (None, None);
     }
@@ -92,7 +95,8 @@ pub(super) struct MeasuringInput {
     pub(super) sampling: Sampling,
 }
 
-// These functions are not generic, so that the measurement is compiled once and not with every type of field.
+// These functions are not generic, so that the measurement is compiled once and not with every type
+// of field.
 impl MeasuringInput {
     /// The measurement in slices, of a field in the frame of the particles.
     pub(super) fn work(self, field: Arc<dyn Field>, frame: Frame) -> Work<'static, MeasuringResult> {

@@ -1,4 +1,5 @@
-//! The mesh over the particles of a run: joined when it is asked for, in slices, and dropped when they change.
+//! The mesh over the particles of a run: joined when it is asked for, in slices, and dropped when
+//! they change.
 
 use super::Run;
 use crate::export::{File, FileContent, MeshFile};
@@ -20,7 +21,8 @@ pub struct MeshAnswer {
     pub triangles: usize,
     /// Connected components, in the order of their first particles.
     pub components: Vec<MeshComponent>,
-    /// Number of border loops where no manifold could be had, other than those where the surface ends.
+    /// Number of border loops where no manifold could be had, other than those where the surface
+    /// ends.
     pub unfilled: usize,
     /// Number of particles in no triangle.
     pub left_out: usize,
@@ -29,9 +31,11 @@ pub struct MeshAnswer {
     /// Sign of f inside of the closed parts; none if there is no closed part. All face outward in
     /// files.
     pub inside: Option<Inside>,
-    /// [Smallest angle](Triangulation::smallest_angle) of any triangle, in degrees; none without triangles.
+    /// [Smallest angle](Triangulation::smallest_angle) of any triangle, in degrees; none without
+    /// triangles.
     pub smallest_angle: Option<f64>,
-    /// Border loops: rows of particles in order. Those where no manifold could be had come first, then the longest.
+    /// Border loops: rows of particles in order. Those where no manifold could be had come first,
+    /// then the longest.
     pub loops: Vec<Vec<u32>>,
 }
 
@@ -83,7 +87,8 @@ impl Meshing {
     }
 }
 
-/// Joins particles to triangles, or takes those that are `known`. `bounds` is the clip box, counted from the origin of the particles.
+/// Joins particles to triangles, or takes those that are `known`. `bounds` is the clip box, counted
+/// from the origin of the particles.
 pub(super) async fn joined(particles: &Particles, known: &[[u32; 3]], bounds: &Bounds) -> Triangulation {
     if known.is_empty() {
         build::in_slices(particles, Some(bounds)).await
@@ -128,9 +133,9 @@ impl MeshAnswer {
 }
 
 impl<F: Field> Run<F> {
-    /// Joins the particles to a mesh: up to `budget` slices of the work, some 10 to 50 microseconds each; what it adds up to, once
-    /// it is complete. A refined run has led to a mesh, which is taken as it is. Call it when the run has ended. The mesh stays
-    /// until the particles change.
+    /// Joins the particles to a mesh: up to `budget` slices of the work, some 10 to 50 microseconds
+    /// each; what it adds up to, once it is complete. A refined run has led to a mesh, which is
+    /// taken as it is. Call it when the run has ended. The mesh stays until the particles change.
     pub fn join(&mut self, budget: u32) -> Option<MeshAnswer> {
         if let MeshState::None = self.meshing.state {
             let (mut particles, bounds) = (self.particles().clone(), self.local_bounds());

@@ -1,7 +1,8 @@
 //! A run: one field, sampled in one box, from the first survey to particles, report and mesh.
 //!
-//! This is the door of the crate. [`sample`] is the whole job in one call. A [`Run`] is the same in steps, for a caller that
-//! shows progress, cancels, relaxes further or measures in slices. What either leads to is a [`Sample`].
+//! This is the door of the crate. [`sample`] is the whole job in one call. A [`Run`] is the same in
+//! steps, for a caller that shows progress, cancels, relaxes further or measures in slices. What
+//! either leads to is a [`Sample`].
 
 mod check;
 mod measuring;
@@ -35,9 +36,10 @@ use std::sync::Arc;
 
 /// Bytes of a particle that is kept after the front: its position, normal and radius.
 const KEPT_BYTES: usize = 12 + 12 + 4;
-/// Bytes per particle that a report takes while it is made, in WebAssembly, whose memory never shrinks: with the bytes kept and those of the
-/// sampler these are the 425 by which that of a front and its report grows from 100,000 to 400,000 particles of an ellipsoid. Of a gyroid it
-/// is 433, with sizes that differ 415, and refined 333; natively 378 are resident at the peak.
+/// Bytes per particle that a report takes while it is made, in WebAssembly, whose memory never
+/// shrinks: with the bytes kept and those of the sampler these are the 425 by which that of a front
+/// and its report grows from 100,000 to 400,000 particles of an ellipsoid. Of a gyroid it is 433,
+/// with sizes that differ 415, and refined 333; natively 378 are resident at the peak.
 const REPORT_BYTES: usize = 302;
 
 /// Why there is no sample of a surface.
@@ -47,8 +49,9 @@ pub enum Error {
     /// A setting or the box is out of its range, or the memory does not hold the particles.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// No box was given, and none was found: f changes its sign nowhere on the grids that were laid over cubes around the origin. A surface
-    /// that is smaller than their cells, or farther away, needs its box: [`Settings::in_box`].
+    /// No box was given, and none was found: f changes its sign nowhere on the grids that were laid
+    /// over cubes around the origin. A surface that is smaller than their cells, or farther away,
+    /// needs its box: [`Settings::in_box`].
     #[error("{} (`Settings::in_box`)", no_box(halves, *cells, *defined))]
     NoBox {
         /// Half-widths of the cubes, the largest first.
@@ -195,10 +198,12 @@ impl<F> Debug for Run<F> {
 }
 
 impl<F: Field> Run<F> {
-    /// Starts a run on the surface of `field`: in the box of the settings, or in one that fits the surface.
+    /// Starts a run on the surface of `field`: in the box of the settings, or in one that fits the
+    /// surface.
     ///
-    /// The start surveys the box and fixes the radius. A fitted box is found by bounds of the field where it has any, and by the signs of f
-    /// on grids where it has none, with some hundred thousand evaluations: [`FnField`](crate::FnField) says what these can miss.
+    /// The start surveys the box and fixes the radius. A fitted box is found by bounds of the field
+    /// where it has any, and by the signs of f on grids where it has none, with some hundred
+    /// thousand evaluations: [`FnField`](crate::FnField) says what these can miss.
     ///
     /// # Errors
     ///
@@ -242,7 +247,8 @@ impl<F: Field> Run<F> {
         }
     }
 
-    /// Begins a run in the present box; the survey is kept if field and box are those of the last start.
+    /// Begins a run in the present box; the survey is kept if field and box are those of the last
+    /// start.
     pub(crate) fn begin(&mut self, settings: &Settings) -> Result<Start, SettingsError> {
         settings.validate()?;
         self.bounds.check()?;
@@ -299,19 +305,22 @@ impl<F: Field> Run<F> {
         self.remember(progress)
     }
 
-    /// Has the particles of a finished run follow its surface to that of `field`, in the same box, which has moved but little;
-    /// [`Run::step`] does it. Each call is a frame of a motion: the transport of the particles, births and deaths where they become sparse
-    /// or crowd, and a step of relaxation. The same sequence of fields gives the same particles to the last bit.
+    /// Has the particles of a finished run follow its surface to that of `field`, in the same box,
+    /// which has moved but little; [`Run::step`] does it. Each call is a frame of a motion: the
+    /// transport of the particles, births and deaths where they become sparse or crowd, and a step
+    /// of relaxation. The same sequence of fields gives the same particles to the last bit.
     ///
-    /// The box stays what it is: one that was fitted to the first surface cuts what grows out of it, which the report says
-    /// ([`Cut::Outgrown`]).
+    /// The box stays what it is: one that was fitted to the first surface cuts what grows out of
+    /// it, which the report says ([`Cut::Outgrown`]).
     ///
-    /// The order of the fronts is lost where particles are born and die; those of a refined run move with its mesh, and keep
-    /// theirs, until the surface tears or joins. Components are no longer searched beyond a survey.
+    /// The order of the fronts is lost where particles are born and die; those of a refined run
+    /// move with its mesh, and keep theirs, until the surface tears or joins. Components are no
+    /// longer searched beyond a survey.
     ///
     /// # Errors
     ///
-    /// If the particles cannot follow: the error says why, and what to do. The run is then as if this had not been called, with its field.
+    /// If the particles cannot follow: the error says why, and what to do. The run is then as if
+    /// this had not been called, with its field.
     ///
     /// ```
     /// use marching_particles::{Bounds, Formula, Run, Settings};
@@ -337,8 +346,9 @@ impl<F: Field> Run<F> {
         followed
     }
 
-    /// [`Run::follow`] to the surface of the field that the run has, in its box: both may have changed since the last step.
-    /// `is_closed`: no particle is born, and none dies but where it does not come to the surface.
+    /// [`Run::follow`] to the surface of the field that the run has, in its box: both may have
+    /// changed since the last step. `is_closed`: no particle is born, and none dies but where it
+    /// does not come to the surface.
     pub(crate) fn follow_field(&mut self, is_closed: bool) -> Result<(), FollowError> {
         let bounds = self.local_bounds();
         self.sampler.follow(self.field.function(), &bounds, is_closed)?;
@@ -348,8 +358,9 @@ impl<F: Field> Run<F> {
         Ok(())
     }
 
-    /// Asks for more relaxation steps on the particles of a run that has ended; [`Run::step`] does them. Returns whether there are
-    /// particles to relax: while the run is under way there are none, and its steps are those of its [settings](Settings::relax_steps).
+    /// Asks for more relaxation steps on the particles of a run that has ended; [`Run::step`] does
+    /// them. Returns whether there are particles to relax: while the run is under way there are
+    /// none, and its steps are those of its [settings](Settings::relax_steps).
     #[must_use]
     pub fn relax(&mut self, steps: u32) -> bool {
         let can_relax = self.known != Known::Nothing && self.sampler.relax(steps);
@@ -380,7 +391,8 @@ impl<F: Field> Run<F> {
         progress
     }
 
-    /// Drops a measurement under way and the mesh: they are of other particles, or of another field.
+    /// Drops a measurement under way and the mesh: they are of other particles, or of another
+    /// field.
     fn forget_results(&mut self) {
         self.measuring.stop();
         self.meshing = Meshing::default();
@@ -398,9 +410,10 @@ impl<F: Field> Run<F> {
         Ok(Sample::new(self, report))
     }
 
-    /// [`Run::finish`] without measuring, which may take longer than the sampling. The report then has no figures of quality, no
-    /// number of components of the sample, and none of the warnings that come from measuring, of open edges and of close sheets; the
-    /// files have no columns of measured values.
+    /// [`Run::finish`] without measuring, which may take longer than the sampling. The report then
+    /// has no figures of quality, no number of components of the sample, and none of the warnings
+    /// that come from measuring, of open edges and of close sheets; the files have no columns of
+    /// measured values.
     ///
     /// # Errors
     ///
@@ -442,7 +455,8 @@ impl<F: Field> Run<F> {
         Err(Error::Nothing { reason: progress.stop_reason.unwrap_or(StopReason::Cancelled), message })
     }
 
-    /// The particles so far; of a generation level under way, the columns may hold provisional rows beyond [`Run::rows`].
+    /// The particles so far; of a generation level under way, the columns may hold provisional rows
+    /// beyond [`Run::rows`].
     #[must_use]
     pub fn particles(&self) -> &Particles {
         self.sampler.particles()
@@ -454,7 +468,8 @@ impl<F: Field> Run<F> {
         self.last.as_ref().map_or(0, |progress| progress.particles)
     }
 
-    /// Rows of the columns that will stay: more than there are particles where some lie on creases, with a row on each side.
+    /// Rows of the columns that will stay: more than there are particles where some lie on creases,
+    /// with a row on each side.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.last.as_ref().map_or(0, |progress| progress.rows)
@@ -505,12 +520,14 @@ impl<F: Field> Run<F> {
 
     /// Refuses, from now on, runs that need more than about `bytes` with the report on them.
     pub fn limit_memory(&mut self, bytes: usize) {
-        // A refined run takes more than a front does, but before the report is made it has given most of that back.
+        // A refined run takes more than a front does, but before the report is made it has given
+        // most of that back.
         let with_report = bytes_per_particle(&Settings::DEFAULT) + KEPT_BYTES + REPORT_BYTES;
         self.most_particles = bytes / with_report;
     }
 
-    /// Principal curvatures (κ₁, κ₂) at the particles from `from` on, in inverse units of length; NaN where the surface has none.
+    /// Principal curvatures (κ₁, κ₂) at the particles from `from` on, in inverse units of length;
+    /// NaN where the surface has none.
     pub fn curvatures(&self, from: usize) -> Vec<[f32; 2]> {
         let count = self.rows();
         let positions = &self.sampler.particles().local[from.min(count)..count];
@@ -555,8 +572,8 @@ impl<F: Field> Run<F> {
         }
     }
 
-    /// Takes another field for the next start. The particles stay until then. A field that `is_same` gives the same surface: the
-    /// survey stays good.
+    /// Takes another field for the next start. The particles stay until then. A field that
+    /// `is_same` gives the same surface: the survey stays good.
     pub(crate) fn set_field(&mut self, field: F, is_same: bool) {
         if !is_same {
             self.end();
@@ -586,7 +603,8 @@ impl<F: Field> Run<F> {
         self.creases = Some(found);
     }
 
-    /// Ends the run on a field or a box that is about to change: nothing that the sampler knows of them holds any more.
+    /// Ends the run on a field or a box that is about to change: nothing that the sampler knows of
+    /// them holds any more.
     fn end(&mut self) {
         if self.known != Known::Nothing {
             self.known = Known::Nothing;

@@ -1,4 +1,5 @@
-//! The report of a run: the counts of the sampler, and the measurements of the particles before and after the relaxation.
+//! The report of a run: the counts of the sampler, and the measurements of the particles before and
+//! after the relaxation.
 
 use super::measuring::{Measuring, MeasuringInput, MeasuringResult, measure, measured_columns};
 use super::{Run, Warning};
@@ -14,7 +15,8 @@ use glam::Vec3;
 use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
-/// Report on a run: its particles, how they were placed, the proof of completeness, quality and warnings.
+/// Report on a run: its particles, how they were placed, the proof of completeness, quality and
+/// warnings.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Report {
@@ -32,18 +34,22 @@ pub struct Report {
     /// Figures of quality.
     #[serde(flatten)]
     pub measures: Measures,
-    /// Volume that the mesh encloses to which [`Run::join`] has joined the particles; none where it is open, or they were not joined.
+    /// Volume that the mesh encloses to which [`Run::join`] has joined the particles; none where it
+    /// is open, or they were not joined.
     #[serde(rename = "volume")]
     pub joined_volume: Option<f64>,
     /// Sign of f inside of the closed parts of the surface, by that mesh if the particles were
     /// joined, else by the triangles of natural neighbours; none where no part is closed, or
     /// nothing was measured.
     pub inside: Option<Inside>,
-    /// Smallest angle of the triangles of that mesh in degrees, those at its border among them; none where the particles were not joined.
+    /// Smallest angle of the triangles of that mesh in degrees, those at its border among them;
+    /// none where the particles were not joined.
     pub smallest_angle: Option<f64>,
-    /// Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none where no faces are the same.
+    /// Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none where no
+    /// faces are the same.
     pub pairs: Option<usize>,
-    /// Particles with a child that fell outside of the box; of those that have followed a moving surface, with place for one there.
+    /// Particles with a child that fell outside of the box; of those that have followed a moving
+    /// surface, with place for one there.
     pub border: usize,
     /// Why particles lie at the border of the box.
     pub cut: Option<Cut>,
@@ -73,8 +79,8 @@ pub enum Cut {
 #[derive(Clone, Copy, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Radii {
-    /// Repulsion radius of the run; with adaptive sampling the one at which as many particles of equal radius would cover the
-    /// surface.
+    /// Repulsion radius of the run; with adaptive sampling the one at which as many particles of
+    /// equal radius would cover the surface.
     pub radius: f64,
     /// Repulsion radius of the smallest particle; 0 without particles.
     pub radius_min: f64,
@@ -96,10 +102,12 @@ pub struct Growth {
     pub gaps_filled: u64,
     /// Number of proposed children by fate.
     pub fates: FateCounts,
-    /// Field evaluations of the whole run, counted as [`Progress::evaluations`](crate::Progress::evaluations).
+    /// Field evaluations of the whole run, counted as
+    /// [`Progress::evaluations`](crate::Progress::evaluations).
     pub evaluations: u64,
     /// Points for which functions of the program were asked, of values and of gradients, from the
-    /// search for a box to this report; none of fields that do not [count](crate::Field::calls) them.
+    /// search for a box to this report; none of fields that do not [count](crate::Field::calls)
+    /// them.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(test, ts(skip))]
     pub calls: Option<u64>,
@@ -107,7 +115,8 @@ pub struct Growth {
     pub evaluations_per_particle: f64,
     /// Times that a coarse front was refined; none where it was not, or the front stands.
     pub refined_levels: Option<u32>,
-    /// Energy per particle before the first relaxation step and after each; none where nothing was relaxed.
+    /// Energy per particle before the first relaxation step and after each; none where nothing was
+    /// relaxed.
     pub energy: Option<Vec<f64>>,
 }
 
@@ -115,22 +124,24 @@ pub struct Growth {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Proof {
-    /// Number of components at this radius: those of the graph of natural neighbours of the particles. 0, and null in JSON, without
-    /// particles or where they were not measured.
+    /// Number of components at this radius: those of the graph of natural neighbours of the
+    /// particles. 0, and null in JSON, without particles or where they were not measured.
     #[serde(serialize_with = "null_for_zero")]
     #[cfg_attr(test, ts(type = "number | null"))]
     pub components: usize,
-    /// Whether it is proven that there is a witness on every component of the surface, and of each witness that it is on the
-    /// component of a particle or named in `sampled`.
+    /// Whether it is proven that there is a witness on every component of the surface, and of each
+    /// witness that it is on the component of a particle or named in `sampled`.
     pub search: Search,
     /// The witnessed components that hold particles, and those that do not.
     pub sampled: Sampled,
-    /// Cells of the box in which the proof could not decide, and witnesses of which it could not; none where no proof was
-    /// attempted.
+    /// Cells of the box in which the proof could not decide, and witnesses of which it could not;
+    /// none where no proof was attempted.
     pub undecided_cells: Option<u64>,
-    /// Places where f has no gradient on the surface, a curve of them counted as one; none where they were not looked for.
+    /// Places where f has no gradient on the surface, a curve of them counted as one; none where
+    /// they were not looked for.
     pub singular_points: Option<u64>,
-    /// Curves along which particles lie on creases, from corner to corner or closed; none where the surface has no creases.
+    /// Curves along which particles lie on creases, from corner to corner or closed; none where the
+    /// surface has no creases.
     pub creases: Option<usize>,
     /// Particles at which creases meet or end; none where the surface has no creases.
     pub corners: Option<usize>,
@@ -142,9 +153,11 @@ pub struct Proof {
 pub struct Measures {
     /// Quality of the present particles; none if there are none, or where they were not measured.
     pub quality: Option<Figures>,
-    /// Quality of the particles after the front, before the relaxation; none where nothing was relaxed.
+    /// Quality of the particles after the front, before the relaxation; none where nothing was
+    /// relaxed.
     pub quality_before: Option<Figures>,
-    /// Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of the particles.
+    /// Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of
+    /// the particles.
     pub nearest_histogram: Histogram,
     /// The crowded pairs and wide holes of the present particles.
     pub places: Places,
@@ -185,11 +198,13 @@ pub(super) fn creases_of(Particles { twins, segments, sides, .. }: &Particles) -
     }
 }
 
-/// A report that is being made, as [`Run::measure`] begins it. Dropping it gives the measurement up.
+/// A report that is being made, as [`Run::measure`] begins it. Dropping it gives the measurement
+/// up.
 pub struct Reporting<'a>(Work<'a, Report>);
 
 impl Reporting<'_> {
-    /// Does up to `budget` slices, some 10 to 50 microseconds each; the report, once it is complete.
+    /// Does up to `budget` slices, some 10 to 50 microseconds each; the report, once it is
+    /// complete.
     ///
     /// # Panics
     ///
@@ -209,8 +224,8 @@ impl<F: Field> Run<F> {
         }
     }
 
-    /// Measures the particles, before and after the relaxation, and reports. Call it when the run has ended. What was measured since the
-    /// particles last changed is not measured again.
+    /// Measures the particles, before and after the relaxation, and reports. Call it when the run
+    /// has ended. What was measured since the particles last changed is not measured again.
     pub fn report(&mut self) -> Report {
         slices::complete(self.measure().0)
     }
@@ -251,8 +266,9 @@ impl<F: Field> Run<F> {
         Some(self.reported())
     }
 
-    /// Measures particles that something else has placed on the surface, one row each, and keeps that as the last measurement. Sizes
-    /// are what [`Sampling`] says; positions are counted from the origin of the run's own particles.
+    /// Measures particles that something else has placed on the surface, one row each, and keeps
+    /// that as the last measurement. Sizes are what [`Sampling`] says; positions are counted from
+    /// the origin of the run's own particles.
     pub fn measure_placed(&mut self, placed: &Particles, sampling: Sampling) -> Measures {
         self.measuring.stop();
         let bounds = self.local_bounds();
@@ -329,9 +345,10 @@ impl<F: Field> Run<F> {
         }
     }
 
-    /// Number of particles at the border of the box, with a child that fell outside. A child beyond a crease is outside of its patch, which is
-    /// told apart by the distance from the box: a child is two radii away. The children of particles that have moved lay elsewhere; they would
-    /// now fall outside where a way of two radii in the tangent plane does.
+    /// Number of particles at the border of the box, with a child that fell outside. A child beyond
+    /// a crease is outside of its patch, which is told apart by the distance from the box: a child
+    /// is two radii away. The children of particles that have moved lay elsewhere; they would now
+    /// fall outside where a way of two radii in the tangent plane does.
     fn at_border(&self) -> usize {
         let (particles, bounds) = (self.particles(), self.local_bounds());
         let is_inside = |i: usize, reach: Vec3| {
@@ -357,7 +374,8 @@ impl<F: Field> Run<F> {
     fn cut(&self) -> Option<Cut> {
         match self.reach {
             Some(Reach::Bounded) if self.has_moved() => Some(Cut::Outgrown),
-            // Particles that are large against the surface may have a child outside of a box that holds it.
+            // Particles that are large against the surface may have a child outside of a box that
+            // holds it.
             Some(Reach::Bounded) => None,
             Some(Reach::Endless | Reach::Nowhere | Reach::Unknown) => Some(Cut::Endless),
             None => Some(Cut::Fixed),

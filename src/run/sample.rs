@@ -20,10 +20,11 @@ use std::sync::OnceLock;
 /// is anything that [`IntoField`] lists: a [`Formula`](crate::Formula), a reference or an `Arc` of
 /// a field, a closure.
 ///
-/// The surface is sampled in the box of the settings, or in one that fits it: around all of a bounded surface, and of one that goes
-/// on for ever a part. The box of a field without [bounds](crate::Bounded) is fitted to what grids show ([`FnField`](crate::FnField)): give it
-/// where it is known. The same field, settings and seed give the same particles to the last bit, on every platform. For progress,
-/// cancelling or slices of work take a [`Run`].
+/// The surface is sampled in the box of the settings, or in one that fits it: around all of a
+/// bounded surface, and of one that goes on for ever a part. The box of a field without
+/// [bounds](crate::Bounded) is fitted to what grids show ([`FnField`](crate::FnField)): give it
+/// where it is known. The same field, settings and seed give the same particles to the last bit, on
+/// every platform. For progress, cancelling or slices of work take a [`Run`].
 ///
 /// # Errors
 ///
@@ -48,7 +49,8 @@ pub fn sample<Kind>(field: impl IntoField<Kind>, settings: &Settings) -> Result<
     run.finish()
 }
 
-/// The particles of a finished run, with the report on them; their mesh is made when it is first asked for.
+/// The particles of a finished run, with the report on them; their mesh is made when it is first
+/// asked for.
 #[derive(Clone, Debug)]
 pub struct Sample {
     particles: Particles,
@@ -105,14 +107,15 @@ impl Sample {
         self.mesh.get_or_init(|| slices::complete(joined(&self.particles, &self.known, &bounds())))
     }
 
-    /// The warnings about the [mesh](Sample::mesh): another topology than that of the particles as they were measured, holes, and particles
-    /// in no triangle.
+    /// The warnings about the [mesh](Sample::mesh): another topology than that of the particles as
+    /// they were measured, holes, and particles in no triangle.
     #[must_use]
     pub fn mesh_warnings(&self) -> Vec<Warning> {
         Warning::of_mesh(&self.measured, self.mesh())
     }
 
-    /// Volume that the [mesh](Sample::mesh) encloses, see [`Triangulation::volume`]; [`Report::joined_volume`] is there if the run had joined it.
+    /// Volume that the [mesh](Sample::mesh) encloses, see [`Triangulation::volume`];
+    /// [`Report::joined_volume`] is there if the run had joined it.
     #[must_use]
     pub fn volume(&self) -> Option<f64> {
         self.mesh().volume(&self.particles)

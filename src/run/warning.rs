@@ -17,27 +17,32 @@ use crate::sampler::{
 use core::fmt;
 use serde::{Serialize, Serializer};
 
-/// Least share of the particles that face another sheet where sheets are said to be close. The particles around a tip face each other too,
-/// up to 15 of them at any radius. At radii of 0.3 % of the diagonal this share tells of none of 12 random cones and drops and of four
-/// of 6 random pairs of balls nearer than 2r; half of it tells of one and of all six, twice as much of none and of two.
+/// Least share of the particles that face another sheet where sheets are said to be close. The
+/// particles around a tip face each other too, up to 15 of them at any radius. At radii of 0.3 % of
+/// the diagonal this share tells of none of 12 random cones and drops and of four of 6 random pairs
+/// of balls nearer than 2r; half of it tells of one and of all six, twice as much of none and of
+/// two.
 const CLOSE_SHARE: f64 = 0.005;
-/// Least number of particles that face another sheet where sheets are said to be close: in samples of a few hundred, tips exceed the share.
-/// At radii of 0.5 to 1.5 % of the diagonal the two limits tell of 21 of 32 random cones and drops and of 12 of 20 random pairs of balls
-/// nearer than 2r; with half of this number of 28 and of 16, with twice of none and of 7. Of all of 20 random plates thinner than 2r they
-/// tell with any of these.
+/// Least number of particles that face another sheet where sheets are said to be close: in samples
+/// of a few hundred, tips exceed the share. At radii of 0.5 to 1.5 % of the diagonal the two limits
+/// tell of 21 of 32 random cones and drops and of 12 of 20 random pairs of balls nearer than 2r;
+/// with half of this number of 28 and of 16, with twice of none and of 7. Of all of 20 random
+/// plates thinner than 2r they tell with any of these.
 const CLOSE_COUNT: usize = 8;
-/// Places of components without a particle that are named in words: as many as a note of some four lines holds. It is a choice of
-/// length; the report has all of them.
+/// Places of components without a particle that are named in words: as many as a note of some four
+/// lines holds. It is a choice of length; the report has all of them.
 const NAMED: usize = 4;
 
-/// Largest difference of the areas of a mesh and of the surface fitted to it that is not told, as a share of the mesh's. Of smooth
-/// meshes it is 0.1 %; rounded edges take 2 % of a cylinder, 4 % of a washer and 5 % of a cube.
+/// Largest difference of the areas of a mesh and of the surface fitted to it that is not told, as a
+/// share of the mesh's. Of smooth meshes it is 0.1 %; rounded edges take 2 % of a cylinder, 4 % of
+/// a washer and 5 % of a cube.
 const AREA_TOLERANCE: f64 = 0.05;
 
 /// A warning about a run. The first sentence of its `Display` says what happened and what to do, in
 /// at most 110 letters and without the words of the method; the others are details.
 ///
-/// Positions are in the coordinates of the field. `length` is the radius of the run; `Display` rounds positions to a thousandth of it.
+/// Positions are in the coordinates of the field. `length` is the radius of the run; `Display`
+/// rounds positions to a thousandth of it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
@@ -102,7 +107,8 @@ pub enum Warning {
         /// Number of particles that face another sheet.
         count: usize,
     },
-    /// The surface crosses itself along curves, or touches itself at points, where f has no gradient.
+    /// The surface crosses itself along curves, or touches itself at points, where f has no
+    /// gradient.
     Meets {
         /// Number of sets of curves along which it crosses itself.
         crossings: usize,
@@ -195,7 +201,8 @@ pub enum Warning {
         /// Radius of the run.
         length: f64,
     },
-    /// Rounding in double precision may move the surface by more than 10⁻⁴ of the distance between neighbours.
+    /// Rounding in double precision may move the surface by more than 10⁻⁴ of the distance between
+    /// neighbours.
     Digits {
         /// The particle, of a selection, at which it does so most.
         position: [f64; 3],
@@ -274,8 +281,9 @@ impl Serialize for Warning {
 }
 
 impl Warning {
-    /// The warnings about a mesh. Its topology is compared with that of the particles, if they were measured. Where a box cuts the
-    /// surface, the two end in different ways beside its faces, and only the components are compared.
+    /// The warnings about a mesh. Its topology is compared with that of the particles, if they were
+    /// measured. Where a box cuts the surface, the two end in different ways beside its faces, and
+    /// only the components are compared.
     pub(super) fn of_mesh(measured: &Measurements, mesh: &Triangulation) -> Vec<Self> {
         let mut warnings = Vec::new();
         let Connectivity { components, euler, .. } = measured.figures.connectivity;
@@ -295,8 +303,8 @@ impl Warning {
         warnings
     }
 
-    /// The warning about a surface that was fitted to the mesh of a file, if it has another topology than the mesh or if their areas differ
-    /// by more than 5 %.
+    /// The warning about a surface that was fitted to the mesh of a file, if it has another
+    /// topology than the mesh or if their areas differ by more than 5 %.
     #[must_use]
     pub fn of_file(model: &ModelInfo, report: &Report) -> Option<Self> {
         let (mesh, figures) = (model.mesh?, report.measures.quality?);
@@ -311,7 +319,8 @@ impl Warning {
 }
 
 impl<F: Field> Run<F> {
-    /// Returns the warnings that are known at the start: `predicted` particles are expected, and `limit` are allowed.
+    /// Returns the warnings that are known at the start: `predicted` particles are expected, and
+    /// `limit` are allowed.
     pub(super) fn known_at_start(&mut self, predicted: u64, limit: u32) -> Vec<Warning> {
         let mut warnings = Vec::new();
         if predicted > u64::from(limit) {
@@ -333,7 +342,8 @@ impl<F: Field> Run<F> {
         warnings
     }
 
-    /// The warning about the faces of a cell across an axis, if particles lie on them, and not the same ones.
+    /// The warning about the faces of a cell across an axis, if particles lie on them, and not the
+    /// same ones.
     fn unpaired(&self, axis: usize) -> Option<Warning> {
         let cell = self.field.given.facts().unit_cell?.relative_to(self.particles().origin);
         let Particles { local: position, opposite, .. } = self.particles();
@@ -343,8 +353,8 @@ impl<F: Field> Run<F> {
         (!is_paired && is_reached()).then_some(Warning::Unpaired { axis, repeats: cell.repeats[axis] })
     }
 
-    /// The warnings about the run. The places in `sampled` are coordinates of the field; `facing` is the number of particles that
-    /// face another sheet.
+    /// The warnings about the run. The places in `sampled` are coordinates of the field; `facing`
+    /// is the number of particles that face another sheet.
     pub(super) fn warnings_of_run(&self, sampled: &Sampled, facing: usize) -> Vec<Warning> {
         let total = self.particles().count();
         let (length, settings, counts) =
@@ -398,8 +408,9 @@ impl<F: Field> Run<F> {
             let (edges, points) = (opening.edges, opening.points);
             warnings.push(Warning::Open { edges, points, position, length });
         }
-        // Where sheets are too near to be told apart, that is why witnesses are left open, and it is told already. No model from
-        // points has bounds, which the row of the report says. How components of a moved surface were looked for is told already, too.
+        // Where sheets are too near to be told apart, that is why witnesses are left open, and it
+        // is told already. No model from points has bounds, which the row of the report says. How
+        // components of a moved surface were looked for is told already, too.
         let is_told = |doubt: &Doubt| match doubt {
             Doubt::NoBounds | Doubt::Creases => false,
             Doubt::Witnesses { .. } => !is_unresolved,
@@ -418,7 +429,8 @@ impl<F: Field> Run<F> {
         Some(Warning::Crosses { curves, position, length: self.sampler.radius() })
     }
 
-    /// The warning that the surface crosses or touches itself where its gradient vanishes, if it does.
+    /// The warning that the surface crosses or touches itself where its gradient vanishes, if it
+    /// does.
     fn places_of_meeting(&self) -> Option<Warning> {
         let mut places = self.sampler.singular_places();
         places.retain(|place| matches!(place.kind, SingularKind::Crossing | SingularKind::Touch));

@@ -1,4 +1,5 @@
-//! The radius of a run. Where a number of particles is wanted, it is corrected from attempt to attempt.
+//! The radius of a run. Where a number of particles is wanted, it is corrected from attempt to
+//! attempt.
 
 use crate::math::{Bounds, HEXAGONAL_CELL, sort_numbers};
 use crate::sampler::constraint::CreaseLadder;
@@ -10,31 +11,35 @@ use crate::sampler::settings::{Settings, SizeMode};
 use crate::sampler::sizing::Sizing;
 use glam::Vec3;
 
-/// Particles that a front places per hexagonal cell 2√3 r², as a first guess: rows squeezed by positive curvature make it more
-/// than one, seams less. Measured on sphere, ellipsoid, torus and tanglecube: 1.02 to 1.12. With half of it 34 random surfaces
-/// take 1.07 times the evaluations, for another attempt.
+/// Particles that a front places per hexagonal cell 2√3 r², as a first guess: rows squeezed by
+/// positive curvature make it more than one, seams less. Measured on sphere, ellipsoid, torus and
+/// tanglecube: 1.02 to 1.12. With half of it 34 random surfaces take 1.07 times the evaluations,
+/// for another attempt.
 const PACKING: f64 = 1.08;
 
-/// [`PACKING`] of the adaptive front, whose arcs bend with the surface: 1.00 to 1.05 on the same surfaces. With half of it 22
-/// random surfaces take 1.07 times the evaluations, with twice as much 1.01 times.
+/// [`PACKING`] of the adaptive front, whose arcs bend with the surface: 1.00 to 1.05 on the same
+/// surfaces. With half of it 22 random surfaces take 1.07 times the evaluations, with twice as much
+/// 1.01 times.
 const ADAPTIVE_PACKING: f64 = 1.02;
 
-/// A wanted count above this is approached through a pilot run, which measures the packing. Without one 18 random surfaces take
-/// 1.07 times the evaluations for 12,000 particles, and 1.04 times for 6,000.
+/// A wanted count above this is approached through a pilot run, which measures the packing. Without
+/// one 18 random surfaces take 1.07 times the evaluations for 12,000 particles, and 1.04 times for
+/// 6,000.
 const PILOT_FROM: f64 = 8_000.0;
-/// Size of a pilot run as a share of the wanted count. Eight random surfaces get 60,000 particles but for 1.2 % at the worst;
-/// with half of it 2.6 %, with twice as much 0.8 % for 0.6 % more evaluations.
+/// Size of a pilot run as a share of the wanted count. Eight random surfaces get 60,000 particles
+/// but for 1.2 % at the worst; with half of it 2.6 %, with twice as much 0.8 % for 0.6 % more
+/// evaluations.
 const PILOT_SHARE: f64 = 1.0 / 20.0;
-/// Fewest particles of a pilot run. Of 18 random surfaces all get 20,000 particles but for 2.3 % at the worst; with half of it
-/// 2.6 %, with twice as much 1.0 % for 0.6 % more evaluations.
+/// Fewest particles of a pilot run. Of 18 random surfaces all get 20,000 particles but for 2.3 % at
+/// the worst; with half of it 2.6 %, with twice as much 1.0 % for 0.6 % more evaluations.
 const LEAST_PILOT: f64 = 1_500.0;
 
-/// Columns are reserved for the expected count times this: for the tolerance of a wanted count, and some more. Half and double
-/// give the same particles.
+/// Columns are reserved for the expected count times this: for the tolerance of a wanted count, and
+/// some more. Half and double give the same particles.
 const RESERVE: f64 = 1.05;
 
-/// A wanted count counts as met within this share. With half of it 6 of 34 random surfaces take another attempt; with twice as
-/// much a count is up to 5.6 % off.
+/// A wanted count counts as met within this share. With half of it 6 of 34 random surfaces take
+/// another attempt; with twice as much a count is up to 5.6 % off.
 pub(crate) const COUNT_TOLERANCE: f64 = 0.03;
 
 /// Attempts at meeting a wanted count, after which the nearest of them stands: a limit on time
@@ -54,7 +59,8 @@ const MOST_CHANGE: f64 = 2.0;
 /// An attempt at covering the surface.
 #[derive(Clone, Default)]
 pub(super) struct Attempt {
-    /// Repulsion radius. Of an adaptive run it is the one at which as many particles of equal radius would cover the surface.
+    /// Repulsion radius. Of an adaptive run it is the one at which as many particles of equal
+    /// radius would cover the surface.
     pub(super) radius: f64,
     /// The radius field of an adaptive run.
     pub(super) sizing: Option<Sizing>,
@@ -133,7 +139,8 @@ pub(super) struct Refining {
     nearest: Option<NearestFront>,
     /// Whether the surface has creases.
     pub(super) is_creased: bool,
-    /// The radius field of the refined particles, where sizes differ: the front has one size, but where there are creases.
+    /// The radius field of the refined particles, where sizes differ: the front has one size, but
+    /// where there are creases.
     pub(super) sizing: Option<Sizing>,
     /// The particles on creases at every level, where there are creases.
     pub(super) ladder: Option<CreaseLadder>,
@@ -202,8 +209,8 @@ impl Attempt {
         attempt
     }
 
-    /// Takes the area and the radius field of a surface that has moved, and the `growth` of the radius since the survey before where the number of
-    /// particles is given.
+    /// Takes the area and the radius field of a surface that has moved, and the `growth` of the
+    /// radius since the survey before where the number of particles is given.
     pub(super) fn follow(
         &mut self,
         settings: &Settings,
@@ -230,9 +237,10 @@ impl Attempt {
         self.area * self.packing / HEXAGONAL_CELL
     }
 
-    /// Makes this an attempt at a coarse front to be refined, on a surface with these largest curvatures at points spread over it,
-    /// if that can be. There is no pilot run: the refinement meets the wanted count by itself. Returns why it cannot be; the front
-    /// with its relaxation is attempted then.
+    /// Makes this an attempt at a coarse front to be refined, on a surface with these largest
+    /// curvatures at points spread over it, if that can be. There is no pilot run: the refinement
+    /// meets the wanted count by itself. Returns why it cannot be; the front with its relaxation is
+    /// attempted then.
     pub(super) fn refine(
         &mut self,
         settings: &Settings,
@@ -287,9 +295,9 @@ impl Attempt {
         None
     }
 
-    /// Gives the front of a refinement on a surface with creases radii that differ, where those of the wanted particles do: it decides
-    /// how many particles lie on each crease. The radii of every level are those of the front over a power of two, and their slope is
-    /// as much smaller.
+    /// Gives the front of a refinement on a surface with creases radii that differ, where those of
+    /// the wanted particles do: it decides how many particles lie on each crease. The radii of
+    /// every level are those of the front over a power of two, and their slope is as much smaller.
     pub(super) fn grade_front(&mut self, settings: &Settings) {
         let share = self.front_radius() / self.radius;
         let Some(refining) = self.refining.as_mut().filter(|refining| refining.is_creased) else { return };

@@ -96,7 +96,8 @@ impl Desk {
         self.wait_for(Wish::Now, |sampler, probe, _| what(sampler, probe)).await
     }
 
-    /// The result of a part of a method. If the run was stopped in it, what is half made is tidied up.
+    /// The result of a part of a method. If the run was stopped in it, what is half made is tidied
+    /// up.
     pub(super) async fn leaving<R>(
         &self,
         part: impl Future<Output = Result<R, Stopped>>,

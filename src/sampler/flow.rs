@@ -1,24 +1,29 @@
-//! Particles that follow a surface while it moves, frame by frame: the idea of Witkin and Heckbert 1994 (§4), for which the paper's
-//! fronts are the start.
+//! Particles that follow a surface while it moves, frame by frame: the idea of Witkin and Heckbert
+//! 1994 (§4), for which the paper's fronts are the start.
 //!
-//! A frame has three parts. The particles are *transported* down the gradient onto the new surface; one that does not come there dies. In
-//! every few frames they are *balanced*. Then they make a step of the [relaxation](super::relaxation). The surface is surveyed in the frame
-//! after a balance, so that no frame takes much longer than another. After a leap, which some particles cannot make, both come at once. The
-//! balance:
+//! A frame has three parts. The particles are *transported* down the gradient onto the new surface;
+//! one that does not come there dies. In every few frames they are *balanced*. Then they make a
+//! step of the [relaxation](super::relaxation). The surface is surveyed in the frame after a
+//! balance, so that no frame takes much longer than another. After a leap, which some particles
+//! cannot make, both come at once. The balance:
 //!
-//! * Of two particles that crowd each other the younger one dies. So does a particle with more energy than all around it, where that is too
-//!   much.
-//! * Children are placed as a front places them wherever a sector around a particle is open: where a sheet tears, widens or comes into the
-//!   box. A point of a new survey that no particle is near is a seed, of a component that was born.
-//! * A particle with less energy than all around it, where that is too little, gets a child in the widest gap beside it.
+//! * Of two particles that crowd each other the younger one dies. So does a particle with more
+//!   energy than all around it, where that is too much.
+//! * Children are placed as a front places them wherever a sector around a particle is open: where
+//!   a sheet tears, widens or comes into the box. A point of a new survey that no particle is near
+//!   is a seed, of a component that was born.
+//! * A particle with less energy than all around it, where that is too little, gets a child in the
+//!   widest gap beside it.
 //!
-//! Births and deaths at extrema of the energy are spread evenly, and hold the density. They leave the disorder of Witkin and Heckbert's
-//! system: the order of the fronts comes back with a run. The particles of a refined run keep theirs, as long as they move with its
+//! Births and deaths at extrema of the energy are spread evenly, and hold the density. They leave
+//! the disorder of Witkin and Heckbert's system: the order of the fronts comes back with a run. The
+//! particles of a refined run keep theirs, as long as they move with its
 //! [mesh](crate::sampler::refine::MovingMesh).
 //!
 //! # Differs from Witkin and Heckbert
 //!
-//! * Velocities are not integrated: a particle goes to the new surface by Newton's method, so that it never drifts from it.
+//! * Velocities are not integrated: a particle goes to the new surface by Newton's method, so that
+//!   it never drifts from it.
 //! * Radii are those of the run and do not adapt (their §4.3); fission is a birth in a gap.
 
 use crate::field::Evaluator;
@@ -41,31 +46,36 @@ use core::f32::consts::{FRAC_PI_3, PI, TAU};
 use core::f64::consts::E;
 use glam::{Vec2, Vec3};
 
-/// Frames from one balance to the next. On the twelve sweeps of `benches/flow.rs` more of the first particles live to the end than with half of
-/// it, and holes stay smaller than with half as much again.
+/// Frames from one balance to the next. On the twelve sweeps of `benches/flow.rs` more of the first
+/// particles live to the end than with half of it, and holes stay smaller than with half as much
+/// again.
 pub(crate) const BALANCE_EVERY: u32 = 4;
 
-/// Steps of relaxation after a balance; every other frame has one. With one the closest pairs of the sweeps are 0.03 nearer, a third changes
-/// nothing.
+/// Steps of relaxation after a balance; every other frame has one. With one the closest pairs of
+/// the sweeps are 0.03 nearer, a third changes nothing.
 const STEPS_AFTER_BALANCE: u32 = 2;
 
-/// Two particles nearer than this, over the sum of their radii, crowd each other: a front takes a child so near to a particle for that particle.
-/// On 16 random motions the count is off by 4.8 % and the closest pair at 0.80; with 0.6 by 6.3 % and at 0.78, with 0.8 by 5.2 %, where 32 % in
+/// Two particles nearer than this, over the sum of their radii, crowd each other: a front takes a
+/// child so near to a particle for that particle. On 16 random motions the count is off by 4.8 %
+/// and the closest pair at 0.80; with 0.6 by 6.3 % and at 0.78, with 0.8 by 5.2 %, where 32 % in
 /// place of 35 % have six neighbours.
 const CROWDED: f32 = 0.7;
 
-/// The energy, over the usual one, below which a particle gets a child if no neighbour has less, and above which it dies if none has more.
-/// With 1.25 for 1.3 two of a hundred particles more die in a sweep, and the count is nearer by half a per cent.
+/// The energy, over the usual one, below which a particle gets a child if no neighbour has less,
+/// and above which it dies if none has more. With 1.25 for 1.3 two of a hundred particles more die
+/// in a sweep, and the count is nearer by half a per cent.
 const LEAST_ENERGY: f32 = 0.9;
 const MOST_ENERGY: f32 = 1.3;
 
-/// The energy, over the usual one, below which a particle gets a child in a wide gap beside it, whatever its neighbours have: where a surface
-/// grows everywhere, extrema are too few. Without this rule spheres that grow keep two thirds of the particles that they have room for. On 16 random
-/// motions the count is off by 1.6 % with 0.6, 1.1 % with 0.8 and 1.8 % with 0.9.
+/// The energy, over the usual one, below which a particle gets a child in a wide gap beside it,
+/// whatever its neighbours have: where a surface grows everywhere, extrema are too few. Without
+/// this rule spheres that grow keep two thirds of the particles that they have room for. On 16
+/// random motions the count is off by 1.6 % with 0.6, 1.1 % with 0.8 and 1.8 % with 0.9.
 const SPARSE_ENERGY: f32 = 0.8;
 
-/// Radius of a gap, over the sum of two radii, in which a child has room beside an extremum, and that of a wide one. In a lattice it is 0.577.
-/// From 0.4 to 0.65 of the first the figures of 16 random motions are the same within 1 %. With 0.6 for the second 76.9 % have six neighbours in
+/// Radius of a gap, over the sum of two radii, in which a child has room beside an extremum, and
+/// that of a wide one. In a lattice it is 0.577. From 0.4 to 0.65 of the first the figures of 16
+/// random motions are the same within 1 %. With 0.6 for the second 76.9 % have six neighbours in
 /// place of 77.7 %, and with 0.8 the count is off by 2.5 % in place of 1.1 %.
 const GAP: f32 = 0.5;
 const WIDE_GAP: f32 = 0.7;
@@ -73,37 +83,43 @@ const WIDE_GAP: f32 = 0.7;
 /// Energy of a pair of neighbours in a lattice: exp(−2) less the energy at the end of the range.
 const LATTICE_PAIR: f64 = 1.0 / (E * E) - END_ENERGY as f64;
 
-/// A sector without a neighbour is open if its angle is larger: in a lattice it is 60°, and 120° where one neighbour is missing. From 80° to 120°
-/// the mean figures of 16 random motions are the same within 1 %.
+/// A sector without a neighbour is open if its angle is larger: in a lattice it is 60°, and 120°
+/// where one neighbour is missing. From 80° to 120° the mean figures of 16 random motions are the
+/// same within 1 %.
 const OPEN_SECTOR: f32 = 100.0 / 180.0 * PI;
 
-/// A child is placed 60° beside the neighbour at which an open sector begins, as in a front. In a sector too narrow for two it is placed in
-/// the middle: below half-way between 120° and the 180° that two take. From 120° to 180° the mean figures of 16 random motions are the same
-/// within 1 %.
+/// A child is placed 60° beside the neighbour at which an open sector begins, as in a front. In a
+/// sector too narrow for two it is placed in the middle: below half-way between 120° and the 180°
+/// that two take. From 120° to 180° the mean figures of 16 random motions are the same within 1 %.
 const NARROW_SECTOR: f32 = 150.0 / 180.0 * PI;
 
-/// Distance that a child in an open sector needs from all others, over the sum of the radii. On 16 random motions the count is off by 1.3 %
-/// with 0.7, 1.1 % with 0.8 and with 0.9, and the closest pair is at 0.72, 0.72 and 0.71.
+/// Distance that a child in an open sector needs from all others, over the sum of the radii. On 16
+/// random motions the count is off by 1.3 % with 0.7, 1.1 % with 0.8 and with 0.9, and the closest
+/// pair is at 0.72, 0.72 and 0.71.
 const CLEAR: f32 = 0.8;
 
-/// Largest share of the particles that may be farther from the new surface than from each other. On 30 random motions of fronts the count is
-/// off by 4 % eight frames after a leap in which none is, and 83 % have six neighbours. With up to this share it is off by 8 %, and 76 % have six;
-/// with up to twice of it by 11 %, and 69 %.
+/// Largest share of the particles that may be farther from the new surface than from each other. On
+/// 30 random motions of fronts the count is off by 4 % eight frames after a leap in which none is,
+/// and 83 % have six neighbours. With up to this share it is off by 8 %, and 76 % have six; with up
+/// to twice of it by 11 %, and 69 %.
 const MOST_FAR: f64 = 0.1;
 
-/// Least share of such particles at which the frame is a leap, in which the others are balanced at once: fewer may lie where the gradient
-/// vanishes. Without that, a hole was wider than 1.9 in 1 of 35 random frames of refined runs with up to half of this share, and in 9 of 15 with
-/// up to twice of it.
+/// Least share of such particles at which the frame is a leap, in which the others are balanced at
+/// once: fewer may lie where the gradient vanishes. Without that, a hole was wider than 1.9 in 1 of
+/// 35 random frames of refined runs with up to half of this share, and in 9 of 15 with up to twice
+/// of it.
 const LEAP: f64 = 0.01;
 
-/// Why particles cannot follow a surface. Nothing has changed then: a run under way goes on, and a finished one keeps its particles.
+/// Why particles cannot follow a surface. Nothing has changed then: a run under way goes on, and a
+/// finished one keeps its particles.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FollowError {
     /// The run is under way.
     #[error("the run has not ended, and goes on: let its particles follow when it has")]
     UnderWay,
-    /// No particles cover the surface: the run was cut short or has fewer than two particles, or there is none with these settings.
+    /// No particles cover the surface: the run was cut short or has fewer than two particles, or
+    /// there is none with these settings.
     #[error(
         "no particles cover the surface, of a run with these settings that has come to its end: start one"
     )]
@@ -113,7 +129,8 @@ pub enum FollowError {
         "the surface has creases or tips in the box, on which particles cannot follow: start a run on the new one"
     )]
     Creased,
-    /// The surface is gone, or it has moved too far: more than a tenth of the particles are farther from it than from each other.
+    /// The surface is gone, or it has moved too far: more than a tenth of the particles are farther
+    /// from it than from each other.
     #[error(
         "{:.0} % of the particles, first near {}, are farther from the new surface than from each other: it has moved too far, or is gone. \
          Move it there in smaller steps, or start a run on it",
@@ -145,13 +162,15 @@ pub(crate) struct FlowSurface<'a> {
 
 /// What follows the transport of a frame.
 pub(crate) struct Settled {
-    /// The new row of each particle, of those that were born, too; none if rows have neither come nor gone.
+    /// The new row of each particle, of those that were born, too; none if rows have neither come
+    /// nor gone.
     pub(crate) rows: Option<Vec<u32>>,
     /// Steps of relaxation that the frame has.
     pub(crate) steps: u32,
 }
 
-/// A neighbour in the tangent plane of a particle: its direction, and its distance over the sum of the radii.
+/// A neighbour in the tangent plane of a particle: its direction, and its distance over the sum of
+/// the radii.
 #[derive(Clone, Copy)]
 struct Bearing {
     angle: f32,
@@ -159,7 +178,8 @@ struct Bearing {
     index: u32,
 }
 
-/// A particle with too little energy, and the least radius of the gap beside it in which it gets a child.
+/// A particle with too little energy, and the least radius of the gap beside it in which it gets a
+/// child.
 struct Sparse {
     parent: usize,
     least: f32,
@@ -170,20 +190,22 @@ struct Sparse {
 pub(crate) struct Flow {
     /// Frames since the last balance: the first of them begins with a survey.
     frames: u32,
-    /// Whether the surface has moved too far for some particles in this frame, in which it is surveyed and the particles are balanced, whatever
-    /// the turn.
+    /// Whether the surface has moved too far for some particles in this frame, in which it is
+    /// surveyed and the particles are balanced, whatever the turn.
     is_leap: bool,
     /// Whether particles are neither born nor die but where the transport loses them.
     pub(crate) is_closed: bool,
     /// Whether a survey has shown no place without particles since they have moved with a mesh.
     pub(crate) is_seeded: bool,
-    /// Whether the last frame came to its end, so that the neighbour lists are those of these particles.
+    /// Whether the last frame came to its end, so that the neighbour lists are those of these
+    /// particles.
     pub(crate) is_whole: bool,
     /// Whether the neighbour lists at the beginning of this frame were those of these particles.
     are_listed: bool,
     /// The number of the next particle that is born.
     next_identity: u32,
-    /// Mean energy of the particles as the run has left them, at which one neither dies nor gets a child; none before the first balance.
+    /// Mean energy of the particles as the run has left them, at which one neither dies nor gets a
+    /// child; none before the first balance.
     usual_energy: Option<f32>,
     /// Factor by which radii had to grow at the last balance for as many particles as are wanted.
     growth: f64,
@@ -202,8 +224,8 @@ pub(crate) struct Flow {
 #[derive(Clone, Default)]
 struct BalanceColumns {
     handle: Vec<GridHandle>,
-    /// Energy, by [`pair_energy`], less that of neighbours that have died; beside an open sector with what the missing neighbours would
-    /// add.
+    /// Energy, by [`pair_energy`], less that of neighbours that have died; beside an open sector
+    /// with what the missing neighbours would add.
     energy: Vec<f32>,
     is_open: Vec<bool>,
     is_dead: Vec<bool>,
@@ -224,7 +246,8 @@ impl Flow {
         self.is_leap = true;
     }
 
-    /// Begins a frame without a mesh. Returns whether the neighbour lists are those of these particles.
+    /// Begins a frame without a mesh. Returns whether the neighbour lists are those of these
+    /// particles.
     pub(crate) fn begin_frame(&mut self) -> bool {
         self.are_listed = core::mem::take(&mut self.is_whole);
         self.are_listed
@@ -235,8 +258,8 @@ impl Flow {
         self.growth
     }
 
-    /// Ends a frame of particles that have moved with a mesh. Returns whether they cover the surface, as far as a survey has shown; if not,
-    /// the next frame balances them.
+    /// Ends a frame of particles that have moved with a mesh. Returns whether they cover the
+    /// surface, as far as a survey has shown; if not, the next frame balances them.
     pub(crate) fn end_with_mesh(&mut self, particles: &mut Particles, survey: &Survey) -> bool {
         let is_surveyed = self.is_due();
         self.end_turn();
@@ -289,13 +312,15 @@ impl Flow {
         self.frames == BALANCE_EVERY - 1 || self.is_leap
     }
 
-    /// Whether the particles should have been balanced in this frame, and can be now that their neighbours are known.
+    /// Whether the particles should have been balanced in this frame, and can be now that their
+    /// neighbours are known.
     pub(crate) fn is_late(&self) -> bool {
         self.is_last() && !self.are_listed && !self.is_closed
     }
 
-    /// Lets those particles die that the transport has lost, and balances the others if that is due. `pairs` are the neighbours of the
-    /// particles before they were transported; there are none in the first frame without a mesh, and no balance.
+    /// Lets those particles die that the transport has lost, and balances the others if that is
+    /// due. `pairs` are the neighbours of the particles before they were transported; there are
+    /// none in the first frame without a mesh, and no balance.
     pub(crate) fn settle(
         &mut self,
         probe: &mut Probe,
@@ -390,7 +415,8 @@ impl Flow {
         })
     }
 
-    /// Finds the particles on the sheet of a point of the surface that are nearer than `share` times the sum of the radii.
+    /// Finds the particles on the sheet of a point of the surface that are nearer than `share`
+    /// times the sum of the radii.
     fn gather(&mut self, particles: &Particles, point: OrientedPoint, radius: f32, share: f32) {
         self.grids.gather(point.position, |largest| share * (radius + largest), &mut self.found);
         self.found.retain(|near| {
@@ -428,7 +454,8 @@ impl Flow {
         }
     }
 
-    /// Finds the particles with an open sector among those with too little energy, and gives them what the missing neighbours would add.
+    /// Finds the particles with an open sector among those with too little energy, and gives them
+    /// what the missing neighbours would add.
     fn find_open_sectors(&mut self, particles: &Particles, usual: f32) {
         refill(&mut self.columns.is_open, particles.len(), false);
         for i in 0..particles.len() {
@@ -474,24 +501,28 @@ impl Flow {
         sort_few(&mut self.around, |a, b| (a.angle, a.index) < (b.angle, b.index));
     }
 
-    /// Compares the mean energy with that of the particles as the run has left them, and returns that.
+    /// Compares the mean energy with that of the particles as the run has left them, and returns
+    /// that.
     fn find_growth(&mut self, surface: &FlowSurface) -> f32 {
         let BalanceColumns { energy, is_dead, .. } = &self.columns;
         let living = energy.iter().zip(is_dead).filter(|(_, is_dead)| !**is_dead);
         let (sum, n) = living.fold((0.0, 0.0), |(sum, n), (&energy, _)| (sum + f64::from(energy), n + 1.0));
         let mean = sum / n;
         let usual = *self.usual_energy.get_or_insert(mean as f32);
-        // The energy of a pair in a lattice that has grown by g is exp(−2 g²), less that at the end of the range.
+        // The energy of a pair in a lattice that has grown by g is exp(−2 g²), less that at the end
+        // of the range.
         let pair = LATTICE_PAIR * mean / f64::from(usual);
         let grown_sq = -0.5 * libm::log(pair + f64::from(END_ENERGY));
         let more = surface.count.map_or(1.0, |count| (n / f64::from(count)).sqrt());
         let growth = grown_sq.max(0.0).sqrt() * more;
-        // Of a few particles without neighbours the energy says nothing. Half and double of the tenth give the same in 16 random motions.
+        // Of a few particles without neighbours the energy says nothing. Half and double of the
+        // tenth give the same in 16 random motions.
         self.growth = if growth.is_finite() { growth.clamp(0.9, 1.1) } else { 1.0 };
         usual
     }
 
-    /// Lets the particles with too much energy die that have more than all around them. Returns those with too little.
+    /// Lets the particles with too much energy die that have more than all around them. Returns
+    /// those with too little.
     fn find_extrema(&mut self, particles: &Particles, usual: f32) -> Vec<Sparse> {
         let mut sparse = Vec::new();
         for i in 0..particles.len() {
@@ -578,8 +609,8 @@ impl Flow {
         self.try_child(probe, surface, particles, parent, &circle, least);
     }
 
-    /// Places a child where a circle meets the surface, if it is in the box, on the sheet of its parent, and farther from all others than
-    /// `clear` times the sum of the radii.
+    /// Places a child where a circle meets the surface, if it is in the box, on the sheet of its
+    /// parent, and farther from all others than `clear` times the sum of the radii.
     fn try_child(
         &mut self,
         probe: &mut Probe,
@@ -636,7 +667,8 @@ fn energy_of(distance_sq: f32, sum: f32) -> f32 {
     pair_energy(4.0 * distance_sq / (sum * sum))
 }
 
-/// The circle around a particle on which a child has its place in a direction, `share` times as large as that of a front.
+/// The circle around a particle on which a child has its place in a direction, `share` times as
+/// large as that of a front.
 fn circle_around(particles: &Particles, parent: usize, direction: Vec3, share: f32) -> ChildCircle {
     let OrientedPoint { position, normal } = OrientedPoint::of(particles, parent);
     let radius = 2.0 * particles.radius[parent] * share;
@@ -668,7 +700,8 @@ fn direction_angle(x: f32, y: f32) -> f32 {
     if angle < 0.0 { angle + TAU } else { angle }
 }
 
-/// Whether it is a leap to the surface of a field: whether some particles are farther from it than they can be transported.
+/// Whether it is a leap to the surface of a field: whether some particles are farther from it than
+/// they can be transported.
 ///
 /// # Errors
 ///

@@ -91,7 +91,8 @@ impl Sampler {
         place_text((self.output.particles.origin + p).to_array(), self.bounds.diagonal())
     }
 
-    /// A sentence on the first cell that the search for components left undecided; empty if there is none.
+    /// A sentence on the first cell that the search for components left undecided; empty if there
+    /// is none.
     fn undecided_place(&self) -> String {
         let cell = self.doubts().into_iter().find_map(|doubt| match doubt {
             Doubt::Cells { position, .. } => Some(self.place(DVec3::from_array(position))),

@@ -1,6 +1,6 @@
 //! The three methods, from top to bottom: a front with its relaxation or refinement, more steps of
-//! the relaxation, and particles that follow a surface that moves. Each name of the [`Sampler`] is a
-//! step of a method; [`Desk`] says how it is done in slices.
+//! the relaxation, and particles that follow a surface that moves. Each name of the [`Sampler`] is
+//! a step of a method; [`Desk`] says how it is done in slices.
 
 use super::Sampler;
 use super::desk::{Desk, Stopped};

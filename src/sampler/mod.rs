@@ -1,9 +1,10 @@
 //! The sampler covers a surface with particles and relaxes them.
 //!
-//! [`Sampler::begin`] surveys the field and fixes the radius; [`Sampler::step`] then does a given number of units of work and
-//! returns, as often as the caller likes. A budget is a count, never a time, and how a run is cut into steps does not change its
-//! result by a bit. Placing and relaxing allocate nothing for a particle but the growth of the columns; the search for components,
-//! the audit and the refinement make memory of their own.
+//! [`Sampler::begin`] surveys the field and fixes the radius; [`Sampler::step`] then does a given
+//! number of units of work and returns, as often as the caller likes. A budget is a count, never a
+//! time, and how a run is cut into steps does not change its result by a bit. Placing and relaxing
+//! allocate nothing for a particle but the growth of the columns; the search for components, the
+//! audit and the refinement make memory of their own.
 
 mod attempt;
 mod constraint;
@@ -65,10 +66,11 @@ use relaxation::Relaxation;
 use sizing::Sizing;
 use std::sync::Arc;
 
-/// Bytes per particle that have to be free before a run: the columns, neighbour lists and grid of a front, and most of what its
-/// relaxation adds; of a refined run the columns and the last two levels of its mesh, with the wanted sizes where these differ.
-/// tests/memory.rs holds this to what runs take. It is no more than that, since memory that was asked for once is not given back
-/// by WebAssembly.
+/// Bytes per particle that have to be free before a run: the columns, neighbour lists and grid of a
+/// front, and most of what its relaxation adds; of a refined run the columns and the last two
+/// levels of its mesh, with the wanted sizes where these differ. tests/memory.rs holds this to what
+/// runs take. It is no more than that, since memory that was asked for once is not given back by
+/// WebAssembly.
 pub(crate) fn bytes_per_particle(settings: &Settings) -> usize {
     match (settings.method, settings.sampling) {
         (Method::Front, _) => 95,
@@ -184,8 +186,8 @@ fn frame_for(field: &dyn Field, origin: DVec3, bounds: &Bounds) -> Frame {
 }
 
 impl Sampler {
-    /// The particles so far. Those of a level under way may be provisional: [`Progress::particles`] says how many stay. Those
-    /// that a coarse front has placed beyond the box are not among them.
+    /// The particles so far. Those of a level under way may be provisional: [`Progress::particles`]
+    /// says how many stay. Those that a coarse front has placed beyond the box are not among them.
     #[must_use]
     pub fn particles(&self) -> &Particles {
         self.output.inside.as_ref().unwrap_or(&self.output.particles)
@@ -196,8 +198,9 @@ impl Sampler {
         self.output.inside.unwrap_or(self.output.particles)
     }
 
-    /// The mesh that a refined run has led to: triples of particles, counter-clockwise seen from outside, an oriented manifold
-    /// whose border lies on the box. There is none for a front, before the end of the run, and once the particles are relaxed.
+    /// The mesh that a refined run has led to: triples of particles, counter-clockwise seen from
+    /// outside, an oriented manifold whose border lies on the box. There is none for a front,
+    /// before the end of the run, and once the particles are relaxed.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         self.output.corners.as_chunks().0
@@ -210,9 +213,9 @@ impl Sampler {
         Counts { fates: level.fates, gaps_filled: level.filled, ..self.counts.clone() }
     }
 
-    /// Energy per particle before the first relaxation step and after each. Of uniform sampling it is Σ s (exp(−d²/2σ²) −
-    /// exp(−9/2)) over the pairs nearer than 3σ, where s goes from 1 for pairs whose normals are within 60° to 0 for those
-    /// beyond 120°: ½ + cosine in between.
+    /// Energy per particle before the first relaxation step and after each. Of uniform sampling it
+    /// is Σ s (exp(−d²/2σ²) − exp(−9/2)) over the pairs nearer than 3σ, where s goes from 1 for
+    /// pairs whose normals are within 60° to 0 for those beyond 120°: ½ + cosine in between.
     #[must_use]
     pub fn energy(&self) -> &[f64] {
         self.tools.relaxation.energy()
@@ -224,8 +227,8 @@ impl Sampler {
         self.attempt.radius
     }
 
-    /// Whether it is proven that there is a witness on every connected component, and of each witness that it is on the component
-    /// of a particle or [named](Sampled::without).
+    /// Whether it is proven that there is a witness on every connected component, and of each
+    /// witness that it is on the component of a particle or [named](Sampled::without).
     #[must_use]
     pub fn search(&self) -> Search {
         if self.doubts().is_empty() { Search::Proven } else { Search::Searched }
@@ -251,15 +254,16 @@ impl Sampler {
         self.components.sampled(self.doubts().is_empty())
     }
 
-    /// Number of cells in which the proof could not decide whether they hold the first point of a component, and of witnesses of
-    /// which it could not decide whether their component holds a particle; `None` where no proof was attempted.
+    /// Number of cells in which the proof could not decide whether they hold the first point of a
+    /// component, and of witnesses of which it could not decide whether their component holds a
+    /// particle; `None` where no proof was attempted.
     #[must_use]
     pub fn undecided_cells(&self) -> Option<u64> {
         self.components.open_questions()
     }
 
-    /// Number of points of the surface where f has no gradient, a curve of them counted as one; `None` where they were not
-    /// searched.
+    /// Number of points of the surface where f has no gradient, a curve of them counted as one;
+    /// `None` where they were not searched.
     #[must_use]
     pub fn singular_points(&self) -> Option<u64> {
         self.components.open_questions().map(|_| self.singular_places().len() as u64)
@@ -350,10 +354,12 @@ impl Sampler {
         Ok(Forecast { radius, predicted_count: predicted as u64, area })
     }
 
-    /// Surveys the field, unless creases are not given and the last survey holds. Where the survey finds no point, the search is carried
-    /// to its end at once: the area is then that of spheres with the curvature at the points that it finds.
+    /// Surveys the field, unless creases are not given and the last survey holds. Where the survey
+    /// finds no point, the search is carried to its end at once: the area is then that of spheres
+    /// with the curvature at the points that it finds.
     fn look_over(&mut self, function: &dyn Field, creases: Option<Creases>) {
-        // A survey that has found nothing by itself is made again: what it was given since depends on the run.
+        // A survey that has found nothing by itself is made again: what it was given since depends
+        // on the run.
         let is_known = self.survey.area > 0.0 && !self.survey.is_adopted;
         let creases = creases.or_else(|| (!is_known).then(|| core::mem::take(&mut self.creases)));
         if let Some(creases) = creases {
@@ -438,10 +444,12 @@ impl Sampler {
         }
     }
 
-    /// Finds the tips among the singular points of a patch, and those near bends at which f has no second derivative.
+    /// Finds the tips among the singular points of a patch, and those near bends at which f has no
+    /// second derivative.
     fn find_tips(&mut self, probe: &mut Probe, patch: Option<u32>, near: &NearSurvey, spacing: f64) {
-        /// Bends at which the gradient may jump that are looked at. Most surfaces have none; around a tip where f has a gradient they are the
-        /// sharpest. With 4 and with all 200 runs on random surfaces have the same particles; all of them make the search on a much bent one
+        /// Bends at which the gradient may jump that are looked at. Most surfaces have none; around
+        /// a tip where f has a gradient they are the sharpest. With 4 and with all 200 runs on
+        /// random surfaces have the same particles; all of them make the search on a much bent one
         /// take up to twice as long.
         const MOST: usize = 16;
         for place in singular::places(&near.points) {
@@ -470,7 +478,8 @@ impl Sampler {
         }
     }
 
-    /// Whether f touches zero without changing its sign, so that both sides of the surface are sampled.
+    /// Whether f touches zero without changing its sign, so that both sides of the surface are
+    /// sampled.
     pub(crate) fn touches(&self) -> bool {
         self.survey.touches
     }
@@ -493,13 +502,15 @@ impl Sampler {
         self.is_box_given = is_given;
     }
 
-    /// Whether the search for components was left open in a box where f is beyond double precision in places.
+    /// Whether the search for components was left open in a box where f is beyond double precision
+    /// in places.
     pub(crate) fn is_open_by_overflow(&self, field: &dyn Field) -> bool {
         self.undecided_cells().is_some_and(|cells| cells > 0)
             && precision::overflows_double(&mut *field.evaluator(self.frame), &self.bounds)
     }
 
-    /// The particle that rounding in double precision moves most, where it does by more than a particle may lie off the surface.
+    /// The particle that rounding in double precision moves most, where it does by more than a
+    /// particle may lie off the surface.
     pub(crate) fn blur(&self, field: &dyn Field) -> Option<Blur> {
         precision::blur(&mut *field.evaluator(self.frame), &self.output.particles)
     }
@@ -509,15 +520,16 @@ impl Sampler {
         self.memory_limit = Some(bytes);
     }
 
-    /// Whether there is memory for a run of `particles`. It is allocated at once and freed again, because an allocation that fails
-    /// in the middle of a run cannot be caught.
+    /// Whether there is memory for a run of `particles`. It is allocated at once and freed again,
+    /// because an allocation that fails in the middle of a run cannot be caught.
     fn has_room_for(&self, particles: usize) -> bool {
         let bytes = |particles: usize| particles.checked_mul(bytes_per_particle(&self.settings));
         let more = particles.saturating_sub(self.output.particles.local.capacity());
         let is_there = |more: usize| {
             let mut memory = Vec::<u8>::new();
             let is_there = memory.try_reserve_exact(more).is_ok();
-            // The compiler leaves out an allocation that nobody uses, and takes it for one that succeeds.
+            // The compiler leaves out an allocation that nobody uses, and takes it for one that
+            // succeeds.
             black_box(&memory);
             is_there
         };
@@ -525,8 +537,9 @@ impl Sampler {
             && bytes(more).is_some_and(is_there)
     }
 
-    /// Asks for `steps` more relaxation steps on the particles of a run that has ended; [`Sampler::step`] does them. Returns whether it has, with
-    /// particles to relax. If not, nothing has changed.
+    /// Asks for `steps` more relaxation steps on the particles of a run that has ended;
+    /// [`Sampler::step`] does them. Returns whether it has, with particles to relax. If not,
+    /// nothing has changed.
     #[must_use]
     pub fn relax(&mut self, steps: u32) -> bool {
         let can_relax = self.stop_reason.is_some() && self.output.particles.len() > 1;
@@ -538,8 +551,9 @@ impl Sampler {
         can_relax
     }
 
-    /// Begins a frame of particles that follow a surface: those of a finished run are brought to the surface of `field` in a box, which have
-    /// changed but little; [`Sampler::step`] does it. Where that `is_closed`, no particle is born, and none dies but where it is lost.
+    /// Begins a frame of particles that follow a surface: those of a finished run are brought to
+    /// the surface of `field` in a box, which have changed but little; [`Sampler::step`] does it.
+    /// Where that `is_closed`, no particle is born, and none dies but where it is lost.
     ///
     /// # Errors
     ///
@@ -583,7 +597,8 @@ impl Sampler {
         Ok(())
     }
 
-    /// Surveys a surface that has moved. The packing stays as measured, and what was proven of the surface before no longer holds.
+    /// Surveys a surface that has moved. The packing stays as measured, and what was proven of the
+    /// surface before no longer holds.
     fn look_again(&mut self, function: &dyn Field) {
         let bounds = &{ self.bounds };
         let frame = frame_for(function, self.output.particles.origin, bounds);
@@ -614,8 +629,8 @@ impl Sampler {
         self.output.fraction = 0.0;
     }
 
-    /// Ends the run where it is; the particles placed so far stay. The next step tidies them, even if
-    /// its budget is 0.
+    /// Ends the run where it is; the particles placed so far stay. The next step tidies them, even
+    /// if its budget is 0.
     pub fn cancel(&mut self) {
         self.output.inside = None;
         if let Some(method) = &mut self.method {
@@ -623,9 +638,9 @@ impl Sampler {
         }
     }
 
-    /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's share of a relaxation step.
-    /// Returns early where the search or the relaxation begins, so that the caller can show the particles of the front, and now
-    /// and then during both.
+    /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's
+    /// share of a relaxation step. Returns early where the search or the relaxation begins, so that
+    /// the caller can show the particles of the front, and now and then during both.
     pub fn step(&mut self, field: &dyn Field, budget: u32) -> Progress {
         let field = &mut *field.evaluator(self.frame);
         let mut memory = core::mem::take(&mut self.tools.memory);

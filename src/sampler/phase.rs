@@ -17,7 +17,8 @@ pub enum Phase {
     Generation,
     /// Refining a coarse front.
     Refinement,
-    /// Looking for components that the survey has missed; at the end of a run, finding out which of them hold particles.
+    /// Looking for components that the survey has missed; at the end of a run, finding out which of
+    /// them hold particles.
     Search,
     /// Relaxing the particles.
     Relaxation,

@@ -46,7 +46,8 @@ impl<'a> Probe<'a> {
     /// function this is; a surface without creases has none, and every point does. `size` is about
     /// the size of a particle there.
     ///
-    /// It is asked a little outside: within a solid, where its bodies share a plane, each of two branches gives f on its inner side alone.
+    /// It is asked a little outside: within a solid, where its bodies share a plane, each of two
+    /// branches gives f on its inner side alone.
     pub(crate) fn is_on_patch(&mut self, point: Vec3, normal: Vec3, size: f32, patch: Option<u32>) -> bool {
         /// Distance outside, in sizes of a particle, far above rounding in double precision: of two
         /// branches of which one is 10⁶ times as steep, the other one is asked within a hundredth
@@ -64,7 +65,8 @@ impl<'a> Probe<'a> {
         })
     }
 
-    /// Whether a patch may have points in a box: the zeros of √(u² + v²) on the edge of other patches are none.
+    /// Whether a patch may have points in a box: the zeros of √(u² + v²) on the edge of other
+    /// patches are none.
     pub(crate) fn may_have_zeros(&mut self, patch: Option<u32>, bounds: &Bounds) -> bool {
         let known = self.field.branches_in(bounds);
         patch.zip(known).is_none_or(|(patch, known)| known.contains(&patch))
@@ -90,8 +92,8 @@ impl<'a> Probe<'a> {
             DVec3::new(-0.7, 0.2, 0.7),
         ];
         const MOST_CUT: usize = 2;
-        /// Below this share of its largest value at that distance |f| counts as zero: Newton's method
-        /// ends nearer than that to a zero.
+        /// Below this share of its largest value at that distance |f| counts as zero: Newton's
+        /// method ends nearer than that to a zero.
         const ZERO: f64 = 0.01;
         let (at_point, slope) = self.field.value_and_gradient(point);
         // Where another branch of f is far steeper, f is small beside what is around it and yet no
@@ -182,8 +184,8 @@ impl<'a> Probe<'a> {
     /// sign or has no value there.
     fn is_zero_around(&mut self, point: DVec3, normal: DVec3, radius: f64) -> bool {
         /// Below this share of its largest value on the circle |f| counts as zero. It is far above
-        /// rounding and above what the steps leave of |f| beside a sheet; beside the curve of |u| + v²
-        /// the share is about the radius.
+        /// rounding and above what the steps leave of |f| beside a sheet; beside the curve of |u| +
+        /// v² the share is about the radius.
         const ZERO: f64 = 1e-9;
         /// The circle is divided into this many arcs; `TANGENT` is tan(π/8), of half an arc.
         const ARCS: usize = 8;
@@ -218,7 +220,8 @@ impl<'a> Probe<'a> {
         (value[0], gradient[0])
     }
 
-    /// Returns values and gradients at no more than [`BATCH`] points, which are evaluated in one call.
+    /// Returns values and gradients at no more than [`BATCH`] points, which are evaluated in one
+    /// call.
     pub(crate) fn gradients(&mut self, points: &[Vec3]) -> (&[f32], &[Vec3]) {
         let n = points.len();
         let ProbeMemory { value, gradient, evaluations, .. } = &mut *self.memory;
@@ -227,7 +230,8 @@ impl<'a> Probe<'a> {
         (&value[..n], &gradient[..n])
     }
 
-    /// Moves points onto the surface along the gradient. Returns the unit normal at each that is on it within the limits.
+    /// Moves points onto the surface along the gradient. Returns the unit normal at each that is on
+    /// it within the limits.
     pub(crate) fn land_all(
         &mut self,
         points: &mut [Vec3],

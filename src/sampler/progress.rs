@@ -7,8 +7,8 @@ use crate::sampler::phase::Phase;
 use crate::sampler::refine::{self, Refusal};
 use serde::Serialize;
 
-/// Cost of a relaxation step per particle, as a share of what it costs to place the particle, for the display of progress. On
-/// sixteen random formulas it is 0.07 to 0.2 natively.
+/// Cost of a relaxation step per particle, as a share of what it costs to place the particle, for
+/// the display of progress. On sixteen random formulas it is 0.07 to 0.2 natively.
 const RELAXATION_STEP_COST: f64 = 0.125;
 
 /// Result of [`Sampler::begin`]: the radius, and estimates for the run.
@@ -30,7 +30,8 @@ pub struct Progress {
     pub phase: Phase,
     /// Particles in the columns that will stay, each counted once.
     pub particles: usize,
-    /// Rows of the columns that will stay: one for each particle, or one on each side for those on creases.
+    /// Rows of the columns that will stay: one for each particle, or one on each side for those on
+    /// creases.
     pub rows: usize,
     /// Generation level under way.
     pub level: u32,
@@ -42,15 +43,17 @@ pub struct Progress {
     pub relax_step: u32,
     /// Relaxation steps asked for.
     pub relax_steps: u32,
-    /// Points at which the survey and all phases have evaluated the field so far, whatever derivatives they asked for. A function is called
-    /// more often: several times for each derivative by differences ([`FnField`](crate::FnField)), and for the box, the set-up and the proof,
-    /// which are not counted.
+    /// Points at which the survey and all phases have evaluated the field so far, whatever
+    /// derivatives they asked for. A function is called more often: several times for each
+    /// derivative by differences ([`FnField`](crate::FnField)), and for the box, the set-up and the
+    /// proof, which are not counted.
     pub evaluations: u64,
     /// Estimated share of the work done. It does not go back before more is asked for.
     pub fraction: f64,
     /// Set once the run has ended.
     pub stop_reason: Option<StopReason>,
-    /// A sentence for the user where the reason needs one. It may name places, which the reason does not hold.
+    /// A sentence for the user where the reason needs one. It may name places, which the reason
+    /// does not hold.
     pub message: Option<String>,
     /// Repulsion radius.
     pub radius: f64,
@@ -61,7 +64,8 @@ pub struct Progress {
 /// Counts of a run: evaluations by phase, and fates of the children.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Counts {
-    /// Evaluations of the survey, of the radius field, of the tests whether seeds are covered, and of the audit.
+    /// Evaluations of the survey, of the radius field, of the tests whether seeds are covered, and
+    /// of the audit.
     pub seeding_evaluations: u64,
     /// Evaluations of the fronts, all attempts at a wanted count.
     pub generation_evaluations: u64,
@@ -134,7 +138,8 @@ impl Sampler {
             (Phase::Done, _) => 1.0,
             // In all other phases the number of particles grows.
             _ => {
-                // A coarse front is the smaller part of its run, and so is a pilot. Any front may place more particles than are expected.
+                // A coarse front is the smaller part of its run, and so is a pilot. Any front may
+                // place more particles than are expected.
                 let (share, expected) = match &self.attempt.refining {
                     Some(refining) => {
                         (refine::coarse_share(refining.halvings), self.attempt.expected_count())

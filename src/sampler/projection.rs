@@ -1,44 +1,46 @@
-//! Projection of points onto the surface: on a circle around the parent, which keeps the distance (paper §4.3), or
-//! [along the gradient](crate::field::descent) (for seeds and the relaxation). Points are projected in batches, so that the field
-//! is evaluated in SIMD lanes.
+//! Projection of points onto the surface: on a circle around the parent, which keeps the distance
+//! (paper §4.3), or [along the gradient](crate::field::descent) (for seeds and the relaxation).
+//! Points are projected in batches, so that the field is evaluated in SIMD lanes.
 
 use crate::field::descent::{self, Descents, descend, unit};
 use crate::math::{newton, sort_few};
 use crate::sampler::probe::{BATCH, Probe, ProbeMemory};
 use glam::Vec3;
 
-/// A Newton correction shorter than this, in radii, is not checked by another evaluation: the residual that it leaves is of the order of
-/// its square. In placement half of it takes 0.5 % more evaluations, and the figures of 24 random surfaces are the same within their
-/// scatter up to five times as much.
+/// A Newton correction shorter than this, in radii, is not checked by another evaluation: the
+/// residual that it leaves is of the order of its square. In placement half of it takes 0.5 % more
+/// evaluations, and the figures of 24 random surfaces are the same within their scatter up to five
+/// times as much.
 pub(crate) const TRUSTED_CORRECTION: f32 = 0.02;
 
-/// Largest number of steps of the bracketed search, over all brackets of a circle: with those of Newton's method 50. Half and
-/// double give the same particles on 34 random surfaces.
+/// Largest number of steps of the bracketed search, over all brackets of a circle: with those of
+/// Newton's method 50. Half and double give the same particles on 34 random surfaces.
 const MAX_BRACKET_STEPS: u32 = 38;
 
-/// Largest turn of a Newton step on a circle, as the tangent of half the angle: about 23°. Half and double change the particles
-/// of 8 and 2 of 33 random surfaces, and no figure beyond scatter.
+/// Largest turn of a Newton step on a circle, as the tangent of half the angle: about 23°. Half and
+/// double change the particles of 8 and 2 of 33 random surfaces, and no figure beyond scatter.
 pub(crate) const MAX_TURN: f32 = 0.2;
 
-/// Smallest cos θ: the circle is searched up to about 100° from the tangent plane, as far as the bracketed search goes. With 95°
-/// or 111° 34 random surfaces get the same particles.
+/// Smallest cos θ: the circle is searched up to about 100° from the tangent plane, as far as the
+/// bracketed search goes. With 95° or 111° 34 random surfaces get the same particles.
 pub(crate) const MIN_COS: f32 = -0.18;
 
-/// Smallest sine of the angle between circle and surface at which Newton's method is trusted: about 6°. Half and double change
-/// the particles of 1 of 33 random surfaces, and no figure.
+/// Smallest sine of the angle between circle and surface at which Newton's method is trusted: about
+/// 6°. Half and double change the particles of 1 of 33 random surfaces, and no figure.
 pub(crate) const MIN_CROSSING: f32 = 0.1;
 
-/// Largest ratio of |f| after a Newton step to |f| before it; above it the bracketed search takes over. Half and double change
-/// the particles of 1 and 2 of 33 random surfaces, and no figure.
+/// Largest ratio of |f| after a Newton step to |f| before it; above it the bracketed search takes
+/// over. Half and double change the particles of 1 and 2 of 33 random surfaces, and no figure.
 const MAX_RATIO: f32 = 0.7;
 
-/// Number of intervals into which the bracketed search divides the arc. Two crossings in one of them, of 6.3° or a fifth of the
-/// repulsion radius, are not seen.
+/// Number of intervals into which the bracketed search divides the arc. Two crossings in one of
+/// them, of 6.3° or a fifth of the repulsion radius, are not seen.
 const ARC_SAMPLES: usize = 32;
 
 /// The circle C(p, 2r) in the plane of the parent's normal and one tangent direction.
 ///
-/// The circle has the points p + 2r (cos θ V̂ + sin θ N̂), which is the paper's formula with the centre added.
+/// The circle has the points p + 2r (cos θ V̂ + sin θ N̂), which is the paper's formula with the
+/// centre added.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ChildCircle {
     /// Parent position p.
@@ -91,8 +93,8 @@ pub(crate) struct Tolerance {
 }
 
 impl Tolerance {
-    /// Returns whether |∇f| can be divided by: it does not count as zero, and does not overflow, as it does beside a
-    /// pole, where any value would be small against it.
+    /// Returns whether |∇f| can be divided by: it does not count as zero, and does not overflow, as
+    /// it does beside a pole, where any value would be small against it.
     pub(crate) fn is_slope(&self, slope: f32) -> bool {
         slope > self.min_gradient && slope < f32::INFINITY
     }
@@ -122,11 +124,12 @@ struct Bracket {
 }
 
 impl Probe<'_> {
-    /// Finds the point of the surface nearest to the guess on each of at most [`BATCH`] circles. `landing[i]` belongs
-    /// to `circles[i]`.
+    /// Finds the point of the surface nearest to the guess on each of at most [`BATCH`] circles.
+    /// `landing[i]` belongs to `circles[i]`.
     ///
-    /// Newton's method in θ takes two evaluations where the guess is good. Where it does not converge, a bracketed
-    /// search follows. Both together take at most 50 steps, so the search ends on any field.
+    /// Newton's method in θ takes two evaluations where the guess is good. Where it does not
+    /// converge, a bracketed search follows. Both together take at most 50 steps, so the search
+    /// ends on any field.
     pub(crate) fn land_on_circles(
         &mut self,
         circles: &[ChildCircle],
@@ -186,20 +189,22 @@ impl Probe<'_> {
         }
     }
 
-    /// Goes along the surface from the centre of a circle to the circle, in small steps, so that it stays on the sheet of the
-    /// centre where others are near.
+    /// Goes along the surface from the centre of a circle to the circle, in small steps, so that it
+    /// stays on the sheet of the centre where others are near.
     pub(crate) fn walk(&mut self, circle: &ChildCircle, tolerance: Tolerance) -> CircleLanding {
-        /// Steps from the centre to the circle. One fewer or one more changes the particles of 7 of 16 random surfaces of two to
-        /// four near shells, and hardly a figure beyond scatter.
+        /// Steps from the centre to the circle. One fewer or one more changes the particles of 7 of
+        /// 16 random surfaces of two to four near shells, and hardly a figure beyond scatter.
         const STEPS: u32 = 8;
-        /// Newton steps in the plane of the circle after each. With one 16 random surfaces of near shells take 0.97 times the
-        /// evaluations, with three 1.03 times; no figure changes beyond scatter.
+        /// Newton steps in the plane of the circle after each. With one 16 random surfaces of near
+        /// shells take 0.97 times the evaluations, with three 1.03 times; no figure changes beyond
+        /// scatter.
         const LANDINGS: u32 = 2;
         let &ChildCircle { centre, normal, direction, radius, .. } = circle;
         let plane = |v: Vec3| direction * v.dot(direction) + normal * v.dot(normal);
         let step = radius / STEPS as f32;
         let (mut p, mut n) = (centre, normal);
-        // The turn of the normal over a step, as a rise: κ step²/2, with sin θ = −κ r on the circle of radius 2r.
+        // The turn of the normal over a step, as a rise: κ step²/2, with sin θ = −κ r on the circle
+        // of radius 2r.
         let mut rise = circle.guess[1] * step / STEPS as f32;
         for _ in 0..STEPS {
             let ahead = direction * n.dot(normal) - normal * n.dot(direction);
@@ -225,7 +230,8 @@ impl Probe<'_> {
         landing[0]
     }
 
-    /// Finds the root on the arc that is nearest to the guess, by bracketing and the Illinois method.
+    /// Finds the root on the arc that is nearest to the guess, by bracketing and the Illinois
+    /// method.
     fn search_arc(&mut self, circle: &ChildCircle, tolerance: Tolerance) -> CircleLanding {
         // θ runs over ±100° in equal steps from the tangent plane.
         let half = HALF_TURN;
@@ -337,18 +343,21 @@ impl Probe<'_> {
     }
 }
 
-/// Tangent of half the angle between two samples of the arc: 16 steps of 6.3° to either side, which reach [`MIN_COS`]. With half
-/// of it, and so half of the arc, 681 instead of 631 children of 33 random surfaces find no place.
+/// Tangent of half the angle between two samples of the arc: 16 steps of 6.3° to either side, which
+/// reach [`MIN_COS`]. With half of it, and so half of the arc, 681 instead of 631 children of 33
+/// random surfaces find no place.
 const HALF_TURN: f32 = 0.055;
 
-/// Rotates (cos θ, sin θ) by the angle whose half has the tangent `t`, by arithmetic alone and exactly up to rounding.
+/// Rotates (cos θ, sin θ) by the angle whose half has the tangent `t`, by arithmetic alone and
+/// exactly up to rounding.
 pub(crate) fn turned([cos, sin]: [f32; 2], t: f32) -> [f32; 2] {
     let scale = 1.0 / (1.0 + t * t);
     let (c, s) = ((1.0 - t * t) * scale, 2.0 * t * scale);
     [cos * c - sin * s, sin * c + cos * s]
 }
 
-/// Limits for the residual |f|/|∇f| of a particle. The paper stops "when the child has converged" (§4.3) and gives no number.
+/// Limits for the residual |f|/|∇f| of a particle. The paper stops "when the child has converged"
+/// (§4.3) and gives no number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ResidualLimits {
     /// The distance that single precision resolves on this field.
@@ -361,15 +370,17 @@ impl ResidualLimits {
     /// Nothing is known of the field.
     pub(crate) const UNLIMITED: Self = Self { finest: 0.0, coarsest: f32::INFINITY };
 
-    /// Returns the largest |f|/|∇f| of a particle of a radius: 10⁻⁴ r, within these limits. With half of it 38 random surfaces take 1.012 times
-    /// the evaluations, with double 0.991 times; no figure changes beyond scatter.
+    /// Returns the largest |f|/|∇f| of a particle of a radius: 10⁻⁴ r, within these limits. With
+    /// half of it 38 random surfaces take 1.012 times the evaluations, with double 0.991 times; no
+    /// figure changes beyond scatter.
     pub(crate) fn residual(self, radius: f32) -> f32 {
         (1e-4 * radius).min(self.coarsest).max(self.finest)
     }
 }
 
-/// Returns the tolerance for particles of a radius. A gradient below a millionth of the usual `gradient_scale` is cancellation
-/// noise at a singular point: half and ten times give the same particles on 38 random surfaces, some of them cones.
+/// Returns the tolerance for particles of a radius. A gradient below a millionth of the usual
+/// `gradient_scale` is cancellation noise at a singular point: half and ten times give the same
+/// particles on 38 random surfaces, some of them cones.
 pub(crate) fn tolerance(radius: f32, residual_limits: ResidualLimits, gradient_scale: f32) -> Tolerance {
     Tolerance { residual: residual_limits.residual(radius), min_gradient: 1e-6 * gradient_scale }
 }

@@ -33,8 +33,9 @@ pub enum SizeMode {
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum LawKind {
-    /// The radius at which an equilateral triangle of neighbours has its middle at the distance [`Settings::chord_error`] from a surface of the
-    /// larger curvature. Triangles of other shapes come up to twice as far from it.
+    /// The radius at which an equilateral triangle of neighbours has its middle at the distance
+    /// [`Settings::chord_error`] from a surface of the larger curvature. Triangles of other shapes
+    /// come up to twice as far from it.
     ChordError,
     /// The radius is [`Settings::curvature_scale`] / max(|κ₁|, |κ₂|).
     MaxCurvature,
@@ -87,29 +88,32 @@ pub enum Radius {
 #[serde(default, deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Settings {
-    /// Box that is sampled, in the coordinates of the field; without one it is fitted to the surface.
+    /// Box that is sampled, in the coordinates of the field; without one it is fitted to the
+    /// surface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bounds: Option<Bounds>,
     /// Repulsion radius r as a length. With one, `size_mode` and `radius_share` do not count.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
     /// Cells along the longest side of the box of the grid on which a surface is looked for whose
-    /// field has no [bounds](crate::Bounded): a part smaller than a cell may be missed. Half as many
-    /// take a quarter of the evaluations. Without a number there are 64.
+    /// field has no [bounds](crate::Bounded): a part smaller than a cell may be missed. Half as
+    /// many take a quarter of the evaluations. Without a number there are 64.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub survey_cells: Option<u32>,
     /// Uniform or adaptive sampling.
     pub sampling: Sampling,
     /// The quantity by which the size of the particles is given.
     pub size_mode: SizeMode,
-    /// Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows 2 % and 0.6 % (§6).
+    /// Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows
+    /// 2 % and 0.6 % (§6).
     pub radius_share: f64,
     /// Target count, met to within 3 %. Adaptive sampling scales all radii by one factor.
     pub count: u32,
     /// Law for the radius of an adaptive particle, given the principal curvatures.
     pub radius_law: LawKind,
-    /// Distance aimed at between the surface and a triangle of neighbours, as a share of the box diagonal; the limits on the radii go before it. With the default the ellipsoid of
-    /// the gallery takes about 16,000 particles, the sphere 13,000.
+    /// Distance aimed at between the surface and a triangle of neighbours, as a share of the box
+    /// diagonal; the limits on the radii go before it. With the default the ellipsoid of the
+    /// gallery takes about 16,000 particles, the sphere 13,000.
     pub chord_error: f64,
     /// Radius of a particle over the radius of curvature under it.
     pub curvature_scale: f64,
@@ -123,27 +127,28 @@ pub struct Settings {
     pub relax_steps: u32,
     /// Method by which the particles are placed and evened out.
     pub method: Method,
-    /// A child joins an existing particle within this distance, in units of 2r. The paper names no tolerance; 0.7 gives the most
-    /// particles with six neighbours on smooth surfaces.
+    /// A child joins an existing particle within this distance, in units of 2r. The paper names no
+    /// tolerance; 0.7 gives the most particles with six neighbours on smooth surfaces.
     pub match_tolerance: f64,
     /// Treatment of gaps where fronts meet.
     pub gaps: GapPolicy,
     /// Seed of the random choice of the point where the front begins.
     pub seed: u64,
-    /// The run stops when it has placed this many. A wanted count up to it may be missed upwards like any other.
+    /// The run stops when it has placed this many. A wanted count up to it may be missed upwards
+    /// like any other.
     pub max_particles: u32,
 }
 
-/// Largest number of particles that may be wanted. With the room and the report they take 1.5 to 1.7 GB, less than half of what
-/// WebAssembly addresses.
+/// Largest number of particles that may be wanted. With the room and the report they take 1.5 to
+/// 1.7 GB, less than half of what WebAssembly addresses.
 const MOST_WANTED: f64 = 4e6;
 
-/// Room for the particles that are expected, as a multiple of them: a wanted count is met within 3 %, and the first attempts on
-/// 34 random surfaces place at most 1.6 % too many.
+/// Room for the particles that are expected, as a multiple of them: a wanted count is met within 3
+/// %, and the first attempts on 34 random surfaces place at most 1.6 % too many.
 pub const COUNT_ROOM: f64 = 1.1;
 
-/// The smallest and the largest radius that are accepted, as shares of the diagonal: on an area of one squared diagonal they give
-/// 29 million particles and 7.
+/// The smallest and the largest radius that are accepted, as shares of the diagonal: on an area of
+/// one squared diagonal they give 29 million particles and 7.
 const LEAST_SHARE: f64 = 1e-4;
 const MOST_SHARE: f64 = 0.2;
 
@@ -155,7 +160,8 @@ const NUMBERS: [Number; 11] = [
     ("count", 1.0, MOST_WANTED, |s| s.count.into()),
     // On a sphere that fills its box, radii of 2·10⁻⁴ to 0.065 of the diagonal.
     ("chord_error", 1e-7, 0.01, |s| s.chord_error),
-    // On such a sphere from 3·10⁻⁴ on, up to 57° between the normals of neighbours: from 60° on they may be on two sheets.
+    // On such a sphere from 3·10⁻⁴ on, up to 57° between the normals of neighbours: from 60° on
+    // they may be on two sheets.
     ("curvature_scale", 1e-3, 0.5, |s| s.curvature_scale),
     ("radius_min_share", LEAST_SHARE, MOST_SHARE, |s| s.radius_min_share),
     ("radius_max_share", LEAST_SHARE, MOST_SHARE, |s| s.radius_max_share),
@@ -163,7 +169,8 @@ const NUMBERS: [Number; 11] = [
     ("grading", 0.01, 0.5, |s| s.grading),
     // A limit on time: a hundred times the paper's steps.
     ("relax_steps", 0.0, 1000.0, |s| s.relax_steps.into()),
-    // Below, children overlap by half; at 1 they are taken for the particles beside them in a lattice.
+    // Below, children overlap by half; at 1 they are taken for the particles beside them in a
+    // lattice.
     ("match_tolerance", 0.5, 0.9, |s| s.match_tolerance),
     ("seed", 0.0, u64::MAX as f64, |s| s.seed as f64),
     ("max_particles", 1.0, COUNT_ROOM * MOST_WANTED, |s| s.max_particles.into()),
@@ -208,9 +215,11 @@ fn out_of_range(name: &str, value: &f64, min: &f64, max: &f64, f: &mut fmt::Form
 }
 
 impl Settings {
-    /// The values that `Default` gives. The radius is the smaller one of the paper (§6). At the median 21 random surfaces take 21,600 particles
-    /// by the chord error, which is the default count too, and 55,000 by the largest curvature; their radii lie between the limits, of which
-    /// the smaller one gives 300,000 particles on a sphere and the larger one 340. There is room for ten times the default count.
+    /// The values that `Default` gives. The radius is the smaller one of the paper (§6). At the
+    /// median 21 random surfaces take 21,600 particles by the chord error, which is the default
+    /// count too, and 55,000 by the largest curvature; their radii lie between the limits, of which
+    /// the smaller one gives 300,000 particles on a sphere and the larger one 340. There is room
+    /// for ten times the default count.
     pub const DEFAULT: Self = Self {
         bounds: None,
         radius: None,
@@ -241,8 +250,8 @@ impl Settings {
         Self { size_mode: SizeMode::Count, count, max_particles, ..Self::DEFAULT }
     }
 
-    /// Default settings for particles with this repulsion radius, with room for as many as there can
-    /// be; neighbours sit two radii apart. Adaptive sampling takes its radii from the curvature
+    /// Default settings for particles with this repulsion radius, with room for as many as there
+    /// can be; neighbours sit two radii apart. Adaptive sampling takes its radii from the curvature
     /// instead.
     ///
     /// ```
@@ -263,8 +272,8 @@ impl Settings {
         }
     }
 
-    /// Default settings for adaptive sampling in which triangles of neighbours keep this distance from the surface: a length over
-    /// [`Bounds::diagonal`] of the box that is given.
+    /// Default settings for adaptive sampling in which triangles of neighbours keep this distance
+    /// from the surface: a length over [`Bounds::diagonal`] of the box that is given.
     #[must_use]
     pub fn with_chord_error(share: f64) -> Self {
         Self { radius_law: LawKind::ChordError, chord_error: share, ..Self::DEFAULT.adaptive() }
@@ -276,19 +285,22 @@ impl Settings {
         Self { bounds: Some(bounds), ..self }
     }
 
-    /// Asks for adaptive sampling (paper §5), in which the repulsion radius follows the curvature, and returns the settings.
+    /// Asks for adaptive sampling (paper §5), in which the repulsion radius follows the curvature,
+    /// and returns the settings.
     #[must_use]
     pub fn adaptive(self) -> Self {
         Self { sampling: Sampling::Adaptive, ..self }
     }
 
-    /// Asks for the refined method, which orders and subdivides a coarse front, and returns the settings.
+    /// Asks for the refined method, which orders and subdivides a coarse front, and returns the
+    /// settings.
     #[must_use]
     pub fn refined(self) -> Self {
         Self { method: Method::Refined, ..self }
     }
 
-    /// Sets the seed of the random choice of the point where the front begins, and returns the settings.
+    /// Sets the seed of the random choice of the point where the front begins, and returns the
+    /// settings.
     #[must_use]
     pub fn seeded(self, seed: u64) -> Self {
         Self { seed, ..self }
@@ -307,7 +319,8 @@ impl Settings {
         let share = match (self.size_mode, self.sampling, self.radius) {
             (_, Sampling::Uniform, Some(length)) => length / bounds.diagonal(),
             (SizeMode::Radius, Sampling::Uniform, None) => self.radius_share,
-            // On an area of one squared diagonal, about that of a sphere; each particle takes 2√3 r².
+            // On an area of one squared diagonal, about that of a sphere; each particle takes 2√3
+            // r².
             (SizeMode::Count, _, None) => (1.0 / (12_f64.sqrt() * f64::from(self.count))).sqrt(),
             (_, Sampling::Adaptive, _) => self.radius_max_share,
         };

@@ -1,7 +1,7 @@
 //! Whether two points of the surface lie on one sheet, or on two that come near each other.
 //!
-//! Points whose normals are more than 90° apart are on two sheets, wherever it is asked. Of those that face the same way there is
-//! a rule for each purpose:
+//! Points whose normals are more than 90° apart are on two sheets, wherever it is asked. Of those
+//! that face the same way there is a rule for each purpose:
 //!
 //! | Purpose | Rule |
 //! |---|---|
@@ -11,13 +11,14 @@
 //! | which particles repel each other beside near sheets | [`numbers`]: those of fronts that have met |
 //! | which particles may be corners of one triangle | `mesh::build::ball`, which knows no field: by directions and heights |
 //!
-//! What *proves* that points are connected is in `discovery::sheets`; `quality::sheets` judges finished particles, and shares
-//! nothing with these rules, so that a fault here shows there.
+//! What *proves* that points are connected is in `discovery::sheets`; `quality::sheets` judges
+//! finished particles, and shares nothing with these rules, so that a fault here shows there.
 //!
-//! The *lift* of two points is the mean height of each above the tangent plane at the other, along the normals. On one sheet
-//! the two heights have opposite signs and cancel but for the change of the curvature, so the lift is of third order in the
-//! distance. Between two sheets at a distance g the lift is about g. Two sheets that face the same way always have a third one
-//! between them that faces the other way.
+//! The *lift* of two points is the mean height of each above the tangent plane at the other, along
+//! the normals. On one sheet the two heights have opposite signs and cancel but for the change of
+//! the curvature, so the lift is of third order in the distance. Between two sheets at a distance g
+//! the lift is about g. Two sheets that face the same way always have a third one between them that
+//! faces the other way.
 
 use crate::field::descent;
 use crate::math::Forest;
@@ -71,58 +72,64 @@ impl PointPair {
     }
 }
 
-/// Whether two points of the surface with these normals face the same way: the normals are within 90°.
+/// Whether two points of the surface with these normals face the same way: the normals are within
+/// 90°.
 pub(crate) fn face_one_way(one: Vec3, other: Vec3) -> bool {
     one.dot(other) > 0.0
 }
 
-/// A point of the surface farther than this many radii from every particle of its sheet is not covered: a closed cover has no hole
-/// larger than 1.85 (1.6 of the ideal).
+/// A point of the surface farther than this many radii from every particle of its sheet is not
+/// covered: a closed cover has no hole larger than 1.85 (1.6 of the ideal).
 pub(crate) const UNCOVERED: f32 = 2.0;
 
-/// Whether the particle `near` a point of the surface, which has this unit normal, covers it: it faces the same way and is within
-/// [`UNCOVERED`] of its radii.
+/// Whether the particle `near` a point of the surface, which has this unit normal, covers it: it
+/// faces the same way and is within [`UNCOVERED`] of its radii.
 pub(crate) fn is_cover(particles: &Particles, near: &Neighbour, normal: Vec3) -> bool {
     let j = near.index as usize;
     let reach = UNCOVERED * particles.radius[j];
     face_one_way(particles.normal[j], normal) && near.distance_sq <= reach * reach
 }
 
-/// sin² 45°: the steepest direction from a point to one on its sheet, above the tangent plane. A sheet that bends by 45° over the
-/// distance of two neighbours is not resolved by its particles. Half and double change the particles of 10 and 3 of 33 random
-/// surfaces, and no figure beyond scatter.
+/// sin² 45°: the steepest direction from a point to one on its sheet, above the tangent plane. A
+/// sheet that bends by 45° over the distance of two neighbours is not resolved by its particles.
+/// Half and double change the particles of 10 and 3 of 33 random surfaces, and no figure beyond
+/// scatter.
 pub(crate) const MAX_RISE_SQ: f32 = 0.5;
 
-/// Square of half the match radius: nearer than that two particles are taken for one whatever the direction between them.
+/// Square of half the match radius: nearer than that two particles are taken for one whatever the
+/// direction between them.
 pub(crate) fn level_slack_sq(match_radius: f32) -> f32 {
     (0.5 * match_radius) * (0.5 * match_radius)
 }
 
-/// Whether two particles that are `distance_sq` apart face the same way, and the second rises from the tangent plane at the first
-/// by no more than 45°, or is too near for that to tell.
+/// Whether two particles that are `distance_sq` apart face the same way, and the second rises from
+/// the tangent plane at the first by no more than 45°, or is too near for that to tell.
 pub(crate) fn is_level(pair: PointPair, distance_sq: f32, match_radius: f32) -> bool {
     let rise = pair.offset.dot(pair.normal);
     pair.faces_one_way() && rise * rise <= MAX_RISE_SQ * (distance_sq + level_slack_sq(match_radius))
 }
 
-/// Returns the weight of the repulsion of two particles whose unit normals have this cosine: 1 up to 60°, where they are
-/// neighbours on one sheet of the surface, and 0 from 120°, where they are on two.
+/// Returns the weight of the repulsion of two particles whose unit normals have this cosine: 1 up
+/// to 60°, where they are neighbours on one sheet of the surface, and 0 from 120°, where they are
+/// on two.
 ///
-/// In between the weight is linear in the cosine. So no pair appears or disappears suddenly, and the energy is a
-/// continuous function of the positions. The force is the derivative with respect to the distance alone and leaves out
-/// that of the weight, so the ramp must not be steep. Of ramps from 60°, 75° and 90° to 90°, 105° and 120° this one
-/// spreads particles most evenly on the surfaces of the gallery at radii of 1 % to 5 % of the diagonal.
+/// In between the weight is linear in the cosine. So no pair appears or disappears suddenly, and
+/// the energy is a continuous function of the positions. The force is the derivative with respect
+/// to the distance alone and leaves out that of the weight, so the ramp must not be steep. Of ramps
+/// from 60°, 75° and 90° to 90°, 105° and 120° this one spreads particles most evenly on the
+/// surfaces of the gallery at radii of 1 % to 5 % of the diagonal.
 pub(crate) fn repulsion_weight(cosine: f32) -> f32 {
     (0.5 + cosine).clamp(0.0, 1.0)
 }
 
-/// Lift, in spacings, above which two particles a spacing apart may lie on two sheets. On one sheet such a lift needs a change of
-/// the curvature, over one spacing, by 0.24 of an inverse spacing. With half of it 687 instead of 631 children of 33 random
-/// surfaces find no place; with twice as much the closest pairs are 0.006 ± 0.003 nearer.
+/// Lift, in spacings, above which two particles a spacing apart may lie on two sheets. On one sheet
+/// such a lift needs a change of the curvature, over one spacing, by 0.24 of an inverse spacing.
+/// With half of it 687 instead of 631 children of 33 random surfaces find no place; with twice as
+/// much the closest pairs are 0.006 ± 0.003 nearer.
 pub(crate) const MAX_LIFT: f32 = 0.02;
 
-/// Whether two points that face the same way may lie on two sheets: their lift is larger than [`MAX_LIFT`] allows at that
-/// distance.
+/// Whether two points that face the same way may lie on two sheets: their lift is larger than
+/// [`MAX_LIFT`] allows at that distance.
 fn is_doubtful(pair: PointPair, spacing: f32) -> bool {
     let lift = pair.lift();
     // The lift grows with the third power of the distance.
@@ -132,9 +139,10 @@ fn is_doubtful(pair: PointPair, spacing: f32) -> bool {
 
 /// Rule that decides whether two points that face the same way are on one sheet or on two.
 ///
-/// As a rule a large lift makes a pair doubtful, and one evaluation between the two decides. That misses sheets nearer to each
-/// other than such a lift. Where the survey has seen sheets as near as that, every pair is doubtful whose lift can be told from 0,
-/// and the field is followed from one point to the other.
+/// As a rule a large lift makes a pair doubtful, and one evaluation between the two decides. That
+/// misses sheets nearer to each other than such a lift. Where the survey has seen sheets as near as
+/// that, every pair is doubtful whose lift can be told from 0, and the field is followed from one
+/// point to the other.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SheetRule {
     /// Least distance at which sheets are told apart, where some may be so near.
@@ -142,14 +150,16 @@ pub(crate) struct SheetRule {
 }
 
 impl SheetRule {
-    /// The rule for particles of these radii, on a surface where another sheet and a third one lie `crowding` away from a point.
+    /// The rule for particles of these radii, on a surface where another sheet and a third one lie
+    /// `crowding` away from a point.
     pub(crate) fn new(crowding: f32, radii: RadiusRange, residual_limits: ResidualLimits) -> Self {
         let is_crowded = crowding <= MAX_LIFT * 2.0 * radii.largest;
         // Both particles of a pair may be a residual away from the surface.
         Self { resolved: is_crowded.then_some(4.0 * residual_limits.residual(radii.smallest)) }
     }
 
-    /// Lift above which a particle that has moved is on another sheet; infinite where sheets are not as near.
+    /// Lift above which a particle that has moved is on another sheet; infinite where sheets are
+    /// not as near.
     pub(crate) fn largest_lift(self) -> f32 {
         self.resolved.unwrap_or(f32::INFINITY)
     }
@@ -169,15 +179,17 @@ impl SheetRule {
 
     /// Lift above which a pair near a doubtful one is looked at, wherever the two are.
     pub(crate) fn suspicious(self, spacing: f32) -> f32 {
-        // Where there is another sheet, a particle of it can be far away to the side, and the limit does not grow with the
-        // distance.
+        // Where there is another sheet, a particle of it can be far away to the side, and the limit
+        // does not grow with the distance.
         self.resolved.unwrap_or(0.5 * MAX_LIFT * spacing)
     }
 
-    /// Whether the field shows that two points which face the same way, the first at `position`, lie on one sheet.
+    /// Whether the field shows that two points which face the same way, the first at `position`,
+    /// lie on one sheet.
     pub(crate) fn is_one_sheet(self, probe: &mut Probe, position: Vec3, pair: PointPair) -> bool {
-        /// Times that the way between the two points is halved: the error of the curve between them falls by 16 each time. Two
-        /// and four give the same particles on 16 random surfaces of near shells, none other ones on 2.
+        /// Times that the way between the two points is halved: the error of the curve between them
+        /// falls by 16 each time. Two and four give the same particles on 16 random surfaces of
+        /// near shells, none other ones on 2.
         const HALVINGS: u32 = 3;
         let Some(least) = self.resolved else {
             return is_one_sheet(probe, position, pair);
@@ -187,14 +199,14 @@ impl SheetRule {
         is_one_sheet_between(probe, from, to, least, HALVINGS)
     }
 
-    /// Whether two points, the first at `position`, are on one sheet: they face the same way, and where their lift leaves that in doubt
-    /// the field shows it.
+    /// Whether two points, the first at `position`, are on one sheet: they face the same way, and
+    /// where their lift leaves that in doubt the field shows it.
     pub(crate) fn is_own(self, probe: &mut Probe, position: Vec3, pair: PointPair, spacing: f32) -> bool {
         pair.faces_one_way() && (!self.is_doubtful(pair, spacing) || self.is_one_sheet(probe, position, pair))
     }
 
-    /// Whether one of the particles `near` a point lies on the point's sheet. All of them face the same way as the point;
-    /// `spacing` is the usual distance between particles at each.
+    /// Whether one of the particles `near` a point lies on the point's sheet. All of them face the
+    /// same way as the point; `spacing` is the usual distance between particles at each.
     pub(crate) fn is_near_own(
         self,
         probe: &mut Probe,
@@ -209,19 +221,20 @@ impl SheetRule {
     }
 }
 
-/// Whether two points of the surface, the first at `position`, seem to lie on one sheet. One evaluation of the field between
-/// them decides.
+/// Whether two points of the surface, the first at `position`, seem to lie on one sheet. One
+/// evaluation of the field between them decides.
 ///
-/// The evaluation is made at the middle of the cubic curve that is tangent to the surface at both points. On one sheet the distance of this
-/// middle from the surface is of fourth order, far less than half the lift, and the gradient there faces the same way. Between
-/// two sheets the middle is half the lift away from both.
+/// The evaluation is made at the middle of the cubic curve that is tangent to the surface at both
+/// points. On one sheet the distance of this middle from the surface is of fourth order, far less
+/// than half the lift, and the gradient there faces the same way. Between two sheets the middle is
+/// half the lift away from both.
 fn is_one_sheet(probe: &mut Probe, position: Vec3, pair: PointPair) -> bool {
-    /// Smallest lift, as a share of the distance, that rounding leaves meaningful. Half of it gives the same particles of 34
-    /// random surfaces; twice as much changes 2, and no figure.
+    /// Smallest lift, as a share of the distance, that rounding leaves meaningful. Half of it gives
+    /// the same particles of 34 random surfaces; twice as much changes 2, and no figure.
     const ROUNDING: f32 = 0.01;
-    /// Share of the lift within which the surface has to be of the middle: half-way between the two, 0 on one sheet and ½ on two.
-    /// With half of it 721 instead of 631 children of 33 random surfaces find no place; with twice as much the closest pairs are
-    /// 0.008 ± 0.004 nearer.
+    /// Share of the lift within which the surface has to be of the middle: half-way between the
+    /// two, 0 on one sheet and ½ on two. With half of it 721 instead of 631 children of 33 random
+    /// surfaces find no place; with twice as much the closest pairs are 0.008 ± 0.004 nearer.
     const NEAR: f32 = 0.25;
     let PointPair { offset, normal, other } = pair;
     let length = offset.length();
@@ -232,7 +245,8 @@ fn is_one_sheet(probe: &mut Probe, position: Vec3, pair: PointPair) -> bool {
     gradient.dot(normal + other) > 0.0 && value.abs() <= reach * gradient.length()
 }
 
-/// Points of the cubic curve that is tangent to the surface at both ends, at a quarter, a half and three quarters of the way.
+/// Points of the cubic curve that is tangent to the surface at both ends, at a quarter, a half and
+/// three quarters of the way.
 fn along_the_way(from: OrientedPoint, to: OrientedPoint) -> [Vec3; 3] {
     let offset = to.position - from.position;
     let tangent = |n: Vec3| (offset - n * offset.dot(n)).normalize_or_zero() * offset.length();
@@ -243,9 +257,10 @@ fn along_the_way(from: OrientedPoint, to: OrientedPoint) -> [Vec3; 3] {
     })
 }
 
-/// Whether the field between two points of the surface shows one sheet from one to the other: at three places along the way the
-/// surface is far nearer than the two points' lift, and faces the same way. Where it is not, the way is halved at the surface.
-/// Sheets nearer than `least` count as one.
+/// Whether the field between two points of the surface shows one sheet from one to the other: at
+/// three places along the way the surface is far nearer than the two points' lift, and faces the
+/// same way. Where it is not, the way is halved at the surface. Sheets nearer than `least` count as
+/// one.
 fn is_one_sheet_between(
     probe: &mut Probe,
     from: OrientedPoint,
@@ -253,15 +268,17 @@ fn is_one_sheet_between(
     least: f32,
     halvings: u32,
 ) -> bool {
-    /// Share of the lift within which the surface has to be of the curve. The curve of two sheets is at least 5/32 away from both
-    /// at each of the three places. Half of it takes 1.02 times the evaluations on 16 random surfaces of near shells, twice as
-    /// much 0.96 times; they change the particles of 1 and 3.
+    /// Share of the lift within which the surface has to be of the curve. The curve of two sheets
+    /// is at least 5/32 away from both at each of the three places. Half of it takes 1.02 times the
+    /// evaluations on 16 random surfaces of near shells, twice as much 0.96 times; they change the
+    /// particles of 1 and 3.
     const NEAR: f32 = 0.05;
-    /// Newton steps to the surface. With one fewer 7,356 instead of 7,235 children of 16 random surfaces of near shells find no
-    /// place, with one more 7,210; no figure changes beyond scatter.
+    /// Newton steps to the surface. With one fewer 7,356 instead of 7,235 children of 16 random
+    /// surfaces of near shells find no place, with one more 7,210; no figure changes beyond
+    /// scatter.
     const STEPS: u32 = 4;
-    /// Longest of these steps, as a share of the way. Half and double give the same particles on 16 random surfaces of near
-    /// shells.
+    /// Longest of these steps, as a share of the way. Half and double give the same particles on 16
+    /// random surfaces of near shells.
     const LONGEST: f32 = 0.25;
     let (pair, facing) = (from.pair(to.position - from.position, to.normal), from.normal + to.normal);
     if !pair.faces_one_way() {
@@ -288,7 +305,8 @@ fn is_one_sheet_between(
         let (value, gradient) = probe.gradient(middle);
         slope = gradient;
         step = descent::step(value, gradient);
-        // Within a quarter of what is not told apart; an eighth and a half give the same particles on 38 random surfaces.
+        // Within a quarter of what is not told apart; an eighth and a half give the same particles
+        // on 38 random surfaces.
         if step.length_squared() <= 0.0625 * least * least {
             let middle = OrientedPoint { position: middle, normal: gradient.normalize_or_zero() };
             return middle.normal.dot(facing) > 0.0
@@ -299,8 +317,8 @@ fn is_one_sheet_between(
     false
 }
 
-/// Returns a number for each particle, equal for those of one front, and of fronts that meet on one patch: that have two neighbours
-/// whose lift is at most `largest_lift`.
+/// Returns a number for each particle, equal for those of one front, and of fronts that meet on one
+/// patch: that have two neighbours whose lift is at most `largest_lift`.
 pub(crate) fn numbers(largest_lift: f32, particles: &Particles, neighbours: &PackedNeighbours) -> Vec<u32> {
     let mut number = particles.fronts();
     let mut met = Forest::new(number.len());

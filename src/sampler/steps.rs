@@ -1,5 +1,5 @@
-//! The steps of the [methods](super::methods), on the state of a run. A step that takes long does as
-//! much as the budget allows, and has a result once it is done.
+//! The steps of the [methods](super::methods), on the state of a run. A step that takes long does
+//! as much as the budget allows, and has a result once it is done.
 
 use super::methods::Verdict;
 use super::{Output, Sampler, Tools};
@@ -19,17 +19,18 @@ use crate::sampler::sheet::OrientedPoint;
 use glam::{DVec3, Vec3};
 use rand_core::SeedableRng;
 
-/// Largest number of units of the search, of the audit or of the relaxation in one step, whatever the budget: a caller that derives its budget
-/// from the pace of the front must not wait. On 14 random surfaces a unit takes 0.04 to 0.5 µs natively in the mean, so many 0.3 to 4 ms. It
+/// Largest number of units of the search, of the audit or of the relaxation in one step, whatever
+/// the budget: a caller that derives its budget from the pace of the front must not wait. On 14
+/// random surfaces a unit takes 0.04 to 0.5 µs natively in the mean, so many 0.3 to 4 ms. It
 /// changes no particle.
 const SLICE: u32 = 8_192;
-/// Seeds that may be taken back in an attempt, and one more for every particle. Half and double give the same particles on 34
-/// random surfaces.
+/// Seeds that may be taken back in an attempt, and one more for every particle. Half and double
+/// give the same particles on 34 random surfaces.
 const MOST_LONE_SEEDS: usize = 256;
 
 impl Sampler {
-    /// Empties the columns and prepares fronts of the present radius. Says whether an earlier coarse
-    /// front is known, over whose components this one is to be.
+    /// Empties the columns and prepares fronts of the present radius. Says whether an earlier
+    /// coarse front is known, over whose components this one is to be.
     pub(super) fn begin_attempt(&mut self) -> bool {
         (self.phase, self.seeds) = (Phase::Seeding, SurveyCursor::default());
         self.attempt.grade_front(&self.settings);
@@ -69,14 +70,15 @@ impl Sampler {
         });
     }
 
-    /// Starts a front over a component of which an earlier coarse front is known. Says whether it has.
+    /// Starts a front over a component of which an earlier coarse front is known. Says whether it
+    /// has.
     pub(super) fn begin_at_known(&mut self, probe: &mut Probe) -> bool {
         let seed = self.tools.coarse.known().map(|known| OrientedPoint::of(known, 0));
         seed.is_some_and(|seed| self.begin_front(probe, seed))
     }
 
-    /// Looks for the next survey point that no particle covers and starts a front there. Says whether
-    /// there was one.
+    /// Looks for the next survey point that no particle covers and starts a front there. Says
+    /// whether there was one.
     pub(super) fn find_seed(&mut self, probe: &mut Probe, left: &mut u32) -> Option<bool> {
         while *left > 0 {
             if self.tools.front.level().capped || self.has_too_many_lone_seeds() {
@@ -114,7 +116,8 @@ impl Sampler {
         has_patches.then(|| probe.field.branch_at(point.as_dvec3()))
     }
 
-    /// Places particles on the creases, on the tips and around these, and starts fronts from them. Says whether there are any.
+    /// Places particles on the creases, on the tips and around these, and starts fronts from them.
+    /// Says whether there are any.
     pub(super) fn begin_at_creases(&mut self, probe: &mut Probe) -> bool {
         let before = probe.evaluations();
         let uniform = self.attempt.front_radius() as f32;
@@ -144,8 +147,8 @@ impl Sampler {
         true
     }
 
-    /// Starts a front. Says whether it has: not where the limit on particles is reached, nor where the
-    /// surface has no radius for an adaptive one.
+    /// Starts a front. Says whether it has: not where the limit on particles is reached, nor where
+    /// the surface has no radius for an adaptive one.
     fn begin_front(&mut self, probe: &mut Probe, seed: OrientedPoint) -> bool {
         if self.output.particles.len() >= self.settings.max_particles as usize {
             self.tools.front.cap();
@@ -154,7 +157,8 @@ impl Sampler {
         let patch = self.patch_at(probe, seed.position);
         if patch.is_some() {
             let probe = &mut probe.on(patch);
-            // Where branches are equal, on creases and where bodies share a plane, no front begins but those of the creases.
+            // Where branches are equal, on creases and where bodies share a plane, no front begins
+            // but those of the creases.
             let (place, size) = (seed.position, self.attempt.front_radius() as f32);
             let normal = probe.gradient(place).1.normalize_or_zero();
             if ![normal, -normal].into_iter().all(|aside| probe.is_on_patch(place, aside, size, patch)) {
@@ -196,8 +200,8 @@ impl Sampler {
         self.phase = if is_witness { Phase::Search } else { Phase::Seeding };
     }
 
-    /// Takes the last seed back if it stayed alone beside another particle, unless it `is_witness` of a small piece of its own.
-    /// Says whether it was.
+    /// Takes the last seed back if it stayed alone beside another particle, unless it `is_witness`
+    /// of a small piece of its own. Says whether it was.
     fn drop_lone_seed(&mut self, probe: &mut Probe, is_witness: bool) -> bool {
         let is_lone = self.with_front(probe, |front, context| front.has_lone_seed(context.particles));
         let is_kept =
@@ -208,10 +212,11 @@ impl Sampler {
         is_lone && !is_kept
     }
 
-    /// Whether the last particle, a witness, is the only one on a small piece of the surface that is closed in itself.
+    /// Whether the last particle, a witness, is the only one on a small piece of the surface that
+    /// is closed in itself.
     fn is_on_own_piece(&mut self, probe: &mut Probe) -> bool {
-        /// The reach of a piece is measured along a few paths. With half of it 1 of 34 random surfaces has crowded particles on a
-        /// tiny component, with twice as much none changes.
+        /// The reach of a piece is measured along a few paths. With half of it 1 of 34 random
+        /// surfaces has crowded particles on a tiny component, with twice as much none changes.
         const ROOM: f64 = 1.05;
         let last = self.output.particles.len() - 1;
         let Some(field) = probe.field.bounded() else { return false };
@@ -241,8 +246,8 @@ impl Sampler {
         call(&mut self.tools.front, &mut context)
     }
 
-    /// Calls a method of the front that uses up the budget, and counts its evaluations. It says whether
-    /// it is done.
+    /// Calls a method of the front that uses up the budget, and counts its evaluations. It says
+    /// whether it is done.
     fn spend_on_front(
         &mut self,
         probe: &mut Probe,
@@ -264,8 +269,8 @@ impl Sampler {
         !self.components.is_searched()
     }
 
-    /// Looks for the next witness that no particle covers and starts a front there. Says whether there
-    /// was one: after the last one the surface is covered but for the gaps.
+    /// Looks for the next witness that no particle covers and starts a front there. Says whether
+    /// there was one: after the last one the surface is covered but for the gaps.
     pub(super) fn find_witness(&mut self, probe: &mut Probe, left: &mut u32) -> Option<bool> {
         if self.tools.front.level().capped {
             return Some(false);
@@ -301,9 +306,10 @@ impl Sampler {
         None
     }
 
-    /// Whether so many seeds were taken back, because they stayed alone beside other particles, that no more are tried. A front
-    /// costs the same whether it places a particle or none: without a bound, a radius larger than the distances between
-    /// thousands of sheets makes a long run of few particles.
+    /// Whether so many seeds were taken back, because they stayed alone beside other particles,
+    /// that no more are tried. A front costs the same whether it places a particle or none: without
+    /// a bound, a radius larger than the distances between thousands of sheets makes a long run of
+    /// few particles.
     fn has_too_many_lone_seeds(&mut self) -> bool {
         let is_over = self.counts.left_out as usize > MOST_LONE_SEEDS + self.output.particles.len();
         self.counts.ended_early |= is_over;
@@ -362,8 +368,8 @@ impl Sampler {
         self.attempt.end_refinement();
     }
 
-    /// Begins to refine the front that has covered the surface, or another one over a component that may be coarser. Does nothing
-    /// where the front stands.
+    /// Begins to refine the front that has covered the surface, or another one over a component
+    /// that may be coarser. Does nothing where the front stands.
     fn begin_refinement(&mut self, probe: &mut Probe) -> Option<Verdict> {
         let target = self.attempt.target(&self.settings)?;
         let unpinned = self.unpinned();
@@ -400,7 +406,8 @@ impl Sampler {
         })
     }
 
-    /// Why the front is not refined, if there is a singular point without a particle: no tip, or one without room for it.
+    /// Why the front is not refined, if there is a singular point without a particle: no tip, or
+    /// one without room for it.
     fn unpinned(&self) -> Option<Refusal> {
         let Output { particles, .. } = &self.output;
         let is_near = |point: &Singular, p: DVec3| point.position.distance(p) <= singular::SAME * point.reach;
@@ -413,8 +420,8 @@ impl Sampler {
         Some(if is_tip { Refusal::Doubtful { at } } else { Refusal::Singular { at } })
     }
 
-    /// Tries a front of half the radius, or goes back to one of the wanted radius. Patches between creases are refined once at least, and
-    /// so is a lone component of sizes that differ.
+    /// Tries a front of half the radius, or goes back to one of the wanted radius. Patches between
+    /// creases are refined once at least, and so is a lone component of sizes that differ.
     fn refuse(&mut self, refusal: Refusal) {
         let is_lone = !self.tools.coarse.are_several;
         self.tools.coarse.end();
@@ -426,7 +433,8 @@ impl Sampler {
         }
         match &mut self.attempt.refining {
             Some(refining) if refining.halvings > least(refining) && refusal.is_coarse() => {
-                // Why a coarser front failed says more than the last refusal, which may only be that no other front can be tried.
+                // Why a coarser front failed says more than the last refusal, which may only be
+                // that no other front can be tried.
                 refining.failure = refining.failure.or(Some(refusal));
                 refining.halvings -= 1;
             }
@@ -444,8 +452,8 @@ impl Sampler {
         }
     }
 
-    /// Brings the coarse front into order and refines it. Says whether it stands then; if not, another
-    /// front is to be tried.
+    /// Brings the coarse front into order and refines it. Says whether it stands then; if not,
+    /// another front is to be tried.
     pub(super) fn refine(&mut self, probe: &mut Probe, left: &mut u32) -> Option<bool> {
         let before = probe.evaluations();
         let (Some(refining), Some(refinement)) = (&self.attempt.refining, &mut self.refinement) else {
@@ -485,8 +493,8 @@ impl Sampler {
         Some(true)
     }
 
-    /// Ends a refinement that was stopped: the columns hold the last level that was finished, or the
-    /// coarse front.
+    /// Ends a refinement that was stopped: the columns hold the last level that was finished, or
+    /// the coarse front.
     pub(super) fn leave_refinement(&mut self, _: &mut Probe) {
         self.attempt.end_refinement();
     }
@@ -525,8 +533,8 @@ impl Sampler {
         self.tools.relaxation.begin(law, limits, steps, &self.output.particles, &mut self.tools.neighbours);
     }
 
-    /// Begins a frame of particles that follow a moving surface with the mesh of a refined run. Says
-    /// whether there is one that can.
+    /// Begins a frame of particles that follow a moving surface with the mesh of a refined run.
+    /// Says whether there is one that can.
     pub(super) fn begin_mesh(&mut self) -> bool {
         if self.output.corners.is_empty() || self.tools.flow.is_closed {
             return false;
@@ -547,8 +555,8 @@ impl Sampler {
         self.tools.relaxation.begin_transport(law, limits, particles, &mut self.tools.neighbours, are_listed);
     }
 
-    /// Particles that were brought to the surface are born and die there. Returns the number of steps
-    /// of relaxation that they make.
+    /// Particles that were brought to the surface are born and die there. Returns the number of
+    /// steps of relaxation that they make.
     pub(super) fn settle(&mut self, probe: &mut Probe) -> u32 {
         let Tools { relaxation, flow, neighbours, front, .. } = &mut self.tools;
         let particles = &mut self.output.particles;
@@ -571,8 +579,8 @@ impl Sampler {
         steps
     }
 
-    /// Ends a frame of particles that follow a moving surface. Says whether they have to be brought to
-    /// it once more.
+    /// Ends a frame of particles that follow a moving surface. Says whether they have to be brought
+    /// to it once more.
     pub(super) fn end_frame(&mut self, probe: &mut Probe) -> bool {
         self.tools.flow.is_whole = true;
         if self.tools.flow.is_late() {
@@ -584,8 +592,8 @@ impl Sampler {
         false
     }
 
-    /// Moves the particles with their mesh. Says whether it could follow; where it could not, they go
-    /// on without it.
+    /// Moves the particles with their mesh. Says whether it could follow; where it could not, they
+    /// go on without it.
     pub(super) fn move_mesh(&mut self, probe: &mut Probe, left: &mut u32) -> Option<bool> {
         let Some(mesh) = &mut self.moving_mesh else { return Some(false) };
         let start = probe.evaluations();
@@ -612,7 +620,8 @@ impl Sampler {
         Some(true)
     }
 
-    /// Joins the particles of a refined run to a mesh again, which they have lost where the surface has torn or joined.
+    /// Joins the particles of a refined run to a mesh again, which they have lost where the surface
+    /// has torn or joined.
     fn join_again(&mut self, probe: &mut Probe) {
         let is_refined = self.settings.method == Method::Refined && self.counts.refusal.is_none();
         if !is_refined {

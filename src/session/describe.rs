@@ -1,5 +1,5 @@
-//! Description of surfaces, settings and figures, from which an interface can be generated: a new surface, setting
-//! or figure needs no new code anywhere else.
+//! Description of surfaces, settings and figures, from which an interface can be generated: a new
+//! surface, setting or figure needs no new code anywhere else.
 
 use super::setting::{self, Setting};
 use crate::export::{COLUMNS, Column, Presence, VERTICES, VerticesChoice};
@@ -87,8 +87,8 @@ pub struct ReportRow {
     pub key: &'static str,
     /// Path of the upper end, if the row is a range that begins at `key`.
     pub to: Option<&'static str>,
-    /// Path of the figure that replaces this one where the report has it: a figure that is relative to the lattice of one size does not
-    /// apply to particles of many sizes.
+    /// Path of the figure that replaces this one where the report has it: a figure that is relative
+    /// to the lattice of one size does not apply to particles of many sizes.
     pub unless: Option<&'static str>,
     /// Name for a person.
     pub label: &'static str,

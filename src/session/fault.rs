@@ -35,7 +35,8 @@ pub struct Fault {
     pub kind: FaultKind,
     /// The error as a sentence for the user, in plain text.
     pub message: String,
-    /// Start of the mistake in the formula, in UTF-16 code units, as the selection of a text field counts.
+    /// Start of the mistake in the formula, in UTF-16 code units, as the selection of a text field
+    /// counts.
     pub start: u32,
     /// End of the mistake in the formula, in UTF-16 code units.
     pub end: u32,

@@ -1,5 +1,6 @@
-//! What a session finds before a run starts, in slices: the box, given with the field, that of a gallery surface, or fitted around the
-//! surface of a formula; the solid that is made of the surface in it; and its creases.
+//! What a session finds before a run starts, in slices: the box, given with the field, that of a
+//! gallery surface, or fitted around the surface of a formula; the solid that is made of the
+//! surface in it; and its creases.
 
 use super::{FieldAnswer, Session, Source};
 use crate::extent::{self, Extent, Reach};
@@ -41,12 +42,13 @@ pub enum BoxCell {
     /// Nothing: each face is sampled by itself.
     #[default]
     Lone,
-    /// Opposite faces have the same particles and triangles along every axis on which the surface repeats: see [`Formula::repeated_in`].
+    /// Opposite faces have the same particles and triangles along every axis on which the surface
+    /// repeats: see [`Formula::repeated_in`].
     Periodic,
 }
 
-/// Settings that act before a run: the box, and the solid that is made of the surface of a formula. They mean nothing to a model from
-/// points.
+/// Settings that act before a run: the box, and the solid that is made of the surface of a formula.
+/// They mean nothing to a model from points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SolidSettings {
@@ -56,8 +58,8 @@ pub struct SolidSettings {
     pub box_faces: BoxFaces,
     /// What opposite faces of the box have in common, where they close the solid.
     pub box_cell: BoxCell,
-    /// Thickness of the sheet around the surface that is sampled in its place, in the units of the coordinates; 0 for the surface itself.
-    /// See [`Formula::thickened`].
+    /// Thickness of the sheet around the surface that is sampled in its place, in the units of the
+    /// coordinates; 0 for the surface itself. See [`Formula::thickened`].
     pub thickness: f64,
 }
 
@@ -86,8 +88,8 @@ impl SolidSettings {
         Some(self.thickness).filter(|&thickness| thickness > 0.0)
     }
 
-    /// The field of the solid that is made of the surface of `field`: the surface or the sheet around it, closed by a box where one is
-    /// given.
+    /// The field of the solid that is made of the surface of `field`: the surface or the sheet
+    /// around it, closed by a box where one is given.
     #[must_use]
     pub fn made_of(&self, field: Formula, closing: Option<&Bounds>) -> Formula {
         let mut solid = field.without_solid();
@@ -101,8 +103,8 @@ impl SolidSettings {
         }
     }
 
-    /// The box that closes the solid which is made of the surface of `field`: these bounds, or the unit cell there, whose place is chosen if it
-    /// `is_free`. None if the solid stays open.
+    /// The box that closes the solid which is made of the surface of `field`: these bounds, or the
+    /// unit cell there, whose place is chosen if it `is_free`. None if the solid stays open.
     #[must_use]
     pub fn faces(&self, field: &Formula, bounds: Bounds, is_free: bool) -> Option<Bounds> {
         if self.box_faces == BoxFaces::Open {
@@ -115,7 +117,8 @@ impl SolidSettings {
         Some(extent::unit_cell(&solid, field.surface_periods(), &bounds))
     }
 
-    /// The box that a surface of the gallery brings with it. Around a surface that is closed without it, there is room for the sheet.
+    /// The box that a surface of the gallery brings with it. Around a surface that is closed
+    /// without it, there is room for the sheet.
     #[must_use]
     pub fn own_box(&self, surface: &Surface) -> Bounds {
         let room = if surface.closed { DVec3::splat(0.5 * self.thickness) } else { DVec3::ZERO };
@@ -133,7 +136,8 @@ struct BoxSearch {
 }
 
 impl BoxSearch {
-    /// Does up to `budget` slices of the search around the surface of a field: its extent, once it is known.
+    /// Does up to `budget` slices of the search around the surface of a field: its extent, once it
+    /// is known.
     fn step(&mut self, field: impl FnOnce() -> Formula, budget: u32) -> Option<Extent> {
         if self.found.is_none() {
             let search = self.search.get_or_insert_with(|| {
@@ -175,7 +179,8 @@ impl Fitting {
         *self = Self { choice: self.choice, closed, ..Self::default() };
     }
 
-    /// Forgets what belongs to another field or another choice of the box; the box itself stays until the next is known.
+    /// Forgets what belongs to another field or another choice of the box; the box itself stays
+    /// until the next is known.
     pub(super) fn restart(&mut self) {
         (self.unclosed, self.closed, self.is_settled) = (BoxSearch::default(), BoxSearch::default(), false);
         self.creases = None;
@@ -183,7 +188,8 @@ impl Fitting {
 }
 
 impl Session {
-    /// Chooses the box in which the surface of a formula is sampled, and the solid that is made of it.
+    /// Chooses the box in which the surface of a formula is sampled, and the solid that is made of
+    /// it.
     ///
     /// # Errors
     ///
@@ -198,13 +204,14 @@ impl Session {
         Ok(())
     }
 
-    /// Finds the box of the next run and the creases of the surface in it, up to `budget` slices of either work of some 10 to 50
-    /// microseconds each: the field with its clip box, once all is known. [`Session::start`] does what is left. The settings may depend on
-    /// the box, as lengths do, which are shares of its diagonal there. A box that `only_grows` holds the one before it as long as the
-    /// formula stays the same: while a slider moves.
+    /// Finds the box of the next run and the creases of the surface in it, up to `budget` slices of
+    /// either work of some 10 to 50 microseconds each: the field with its clip box, once all is
+    /// known. [`Session::start`] does what is left. The settings may depend on the box, as lengths
+    /// do, which are shares of its diagonal there. A box that `only_grows` holds the one before it
+    /// as long as the formula stays the same: while a slider moves.
     ///
-    /// A solid that the clip box closes is sampled in the box of the settings, or in one that fits it: its faces are inside, and what they cut
-    /// are creases.
+    /// A solid that the clip box closes is sampled in the box of the settings, or in one that fits
+    /// it: its faces are inside, and what they cut are creases.
     pub fn fit(
         &mut self,
         settings_in: &dyn Fn(&Bounds) -> Settings,
@@ -241,8 +248,8 @@ impl Session {
         Some((before.map_or(clip, |before| clip.joined(&before)), Some(found.reach)))
     }
 
-    /// Takes the solid that is made of the surface in a clip box as the field of the next run. Returns
-    /// the box, which a unit cell may have moved.
+    /// Takes the solid that is made of the surface in a clip box as the field of the next run.
+    /// Returns the box, which a unit cell may have moved.
     fn make_solid(&mut self, clip: Bounds) -> Bounds {
         let choice = self.fitting.choice;
         let Some(field) = self.own_formula() else { return clip };
@@ -305,7 +312,8 @@ impl Session {
         self.fitting.choice.box_mode == BoxMode::Fit && !self.fitting.is_given
     }
 
-    /// Whether the box is to be fitted: not where it was given, nor around a surface of the gallery, which has its own.
+    /// Whether the box is to be fitted: not where it was given, nor around a surface of the
+    /// gallery, which has its own.
     fn is_to_fit(&self) -> bool {
         self.is_to_choose() && self.surface.is_none()
     }

@@ -1,5 +1,5 @@
-//! The session of a user: a field that is changed by requests, and runs on it. Commands go in, changes and reports come out; there is
-//! no clock, no GPU and no platform in here.
+//! The session of a user: a field that is changed by requests, and runs on it. Commands go in,
+//! changes and reports come out; there is no clock, no GPU and no platform in here.
 
 mod describe;
 mod fault;
@@ -46,7 +46,8 @@ pub struct FieldRequest {
     pub declare: Vec<Parameter>,
     /// Clip box. Without one it is that of the surface, or fitted (see [`Session::fit`]).
     pub bounds: Option<Bounds>,
-    /// Points that the surface is to pass through: the parameters change for it ([`Formula::pass_through`]).
+    /// Points that the surface is to pass through: the parameters change for it
+    /// ([`Formula::pass_through`]).
     pub pins: Vec<[f64; 3]>,
     /// Pulls on the surface of a model from points, one after the other.
     pub pulls: Vec<Pull>,
@@ -66,15 +67,18 @@ pub struct FieldAnswer {
     pub parameters: Vec<Parameter>,
     /// Parameters that were not declared but found in the formula.
     pub auto: Vec<String>,
-    /// Clip box, whose faces close the solid where they are to; before [`Session::fit`] or a start it may be that of the formula before.
+    /// Clip box, whose faces close the solid where they are to; before [`Session::fit`] or a start
+    /// it may be that of the formula before.
     pub bounds: Bounds,
     /// Whether the surface, closed by no box, is bounded, if the box was fitted to it.
     pub reach: Option<Reach>,
-    /// Period of the surface along each axis: 0 if it does not change along it, none if it is not known to be periodic.
+    /// Period of the surface along each axis: 0 if it does not change along it, none if it is not
+    /// known to be periodic.
     pub periods: [Option<f64>; 3],
     /// The formula as MathML; none if there is no formula.
     pub mathml: Option<MathNode>,
-    /// What has become of the surface that was to pass through the pins of the request; none without pins.
+    /// What has become of the surface that was to pass through the pins of the request; none
+    /// without pins.
     pub grip: Option<Grip>,
 }
 
@@ -194,12 +198,13 @@ impl Session {
         }
     }
 
-    /// Changes the field, which ends a run on another one. Its particles stay until the next [`Session::start`].
+    /// Changes the field, which ends a run on another one. Its particles stay until the next
+    /// [`Session::start`].
     ///
     /// # Errors
     ///
-    /// If the surface is unknown, the formula has a mistake, a value is not finite or the box is not one; nothing is
-    /// changed then.
+    /// If the surface is unknown, the formula has a mistake, a value is not finite or the box is
+    /// not one; nothing is changed then.
     pub fn set_field(&mut self, request: &FieldRequest) -> Result<FieldAnswer, Fault> {
         let surface = match &request.surface {
             Some(id) => Some(gallery::find(id).ok_or_else(|| {
@@ -237,19 +242,22 @@ impl Session {
         Ok(FieldAnswer { grip, ..self.answer() })
     }
 
-    /// The parameters that are declared for a formula: those of its surface or of the present formula, and those of the request.
+    /// The parameters that are declared for a formula: those of its surface or of the present
+    /// formula, and those of the request.
     fn declared_for(
         &self,
         surface: Option<&'static Surface>,
         text: &str,
         request: &FieldRequest,
     ) -> Vec<Parameter> {
-        // A declared parameter that the formula does not use stays declared: it may come back with the next key.
+        // A declared parameter that the formula does not use stays declared: it may come back with
+        // the next key.
         let mut declared = surface.map_or_else(
             || if request.formula.is_none() { self.declared.clone() } else { Vec::new() },
             |surface| surface.parameters.to_vec(),
         );
-        // What a parameter stands for, and which values it can have, is known in the surface's own formula alone.
+        // What a parameter stands for, and which values it can have, is known in the surface's own
+        // formula alone.
         if surface.is_some_and(|surface| surface.formula != text) {
             for parameter in &mut declared {
                 *parameter = Parameter::automatic(&parameter.name);
@@ -299,7 +307,8 @@ impl Session {
         Ok(field)
     }
 
-    /// Samples the field of a formula from now on, in the box `own`, which was given or is to be fitted. Ends a run on another field.
+    /// Samples the field of a formula from now on, in the box `own`, which was given or is to be
+    /// fitted. Ends a run on another field.
     fn take_formula(
         &mut self,
         field: Formula,
@@ -338,13 +347,15 @@ impl Session {
         }
     }
 
-    /// Changes the field to one from points, as `pointcloud::fit` makes it, with the pulls of a request on its surface, in the
-    /// box of the request or in that of the model with room for the pulls. [`Session::set_field`] with a surface or a formula
-    /// changes it back. Both end a run on another field, whose particles stay until the next [`Session::start`].
+    /// Changes the field to one from points, as `pointcloud::fit` makes it, with the pulls of a
+    /// request on its surface, in the box of the request or in that of the model with room for the
+    /// pulls. [`Session::set_field`] with a surface or a formula changes it back. Both end a run on
+    /// another field, whose particles stay until the next [`Session::start`].
     ///
     /// # Errors
     ///
-    /// If the data makes no field, a pull tears the surface or the box is not one; nothing is changed then.
+    /// If the data makes no field, a pull tears the surface or the box is not one; nothing is
+    /// changed then.
     pub fn set_points(
         &mut self,
         data: impl Into<Arc<RbfData>>,
@@ -389,8 +400,9 @@ impl Session {
         self.run.begin(settings)
     }
 
-    /// Has the particles of the last run, which had these settings, [follow](Run::follow) its surface to the present field, in the box that
-    /// [`Session::fit`] has found. What they have become is made from no record. `is_closed`: no particle is born, and none dies but where it
+    /// Has the particles of the last run, which had these settings, [follow](Run::follow) its
+    /// surface to the present field, in the box that [`Session::fit`] has found. What they have
+    /// become is made from no record. `is_closed`: no particle is born, and none dies but where it
     /// does not come to the surface.
     ///
     /// # Errors
@@ -406,8 +418,8 @@ impl Session {
         Ok(())
     }
 
-    /// [`Run::report`] in slices, with what the session knows of the surface. Of one of the gallery or a model, whose box was chosen for it, no cause
-    /// is told why particles lie at the border.
+    /// [`Run::report`] in slices, with what the session knows of the surface. Of one of the gallery
+    /// or a model, whose box was chosen for it, no cause is told why particles lie at the border.
     pub fn measure(&mut self, budget: u32) -> Option<Report> {
         self.run.measure_copy(budget).map(|report| self.completed(report))
     }
@@ -432,7 +444,8 @@ impl Session {
         self.completed(report)
     }
 
-    /// [`Run::finish`] or, where nothing is to be measured, [`Run::finish_unmeasured`], with the report of the session.
+    /// [`Run::finish`] or, where nothing is to be measured, [`Run::finish_unmeasured`], with the
+    /// report of the session.
     ///
     /// # Errors
     ///

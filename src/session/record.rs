@@ -1,4 +1,5 @@
-//! The record that a file carries, from which it can be made again, and the request for a mesh file.
+//! The record that a file carries, from which it can be made again, and the request for a mesh
+//! file.
 
 use super::{BoxFaces, Session, SolidSettings, Source};
 use crate::export::{self, MeshFile, MeshFormat, Placement, Vertices};
@@ -8,7 +9,8 @@ use crate::sampler::{Method, Settings};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The record of a file, from which the same particles can be made again. Files carry it as JSON ([`export::RecordText`]).
+/// The record of a file, from which the same particles can be made again. Files carry it as JSON
+/// ([`export::RecordText`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct FileRecord {
@@ -104,8 +106,9 @@ impl Session {
         }
     }
 
-    /// The mesh as a file, up to `budget` slices of the work: its bytes once it is complete, nothing before. `json` gives the JSON of the
-    /// record. Nothing inside for an unknown extension, or where the file would be too large.
+    /// The mesh as a file, up to `budget` slices of the work: its bytes once it is complete,
+    /// nothing before. `json` gives the JSON of the record. Nothing inside for an unknown
+    /// extension, or where the file would be too large.
     pub fn mesh_file(
         &mut self,
         request: &FileRequest,

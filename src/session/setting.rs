@@ -62,8 +62,8 @@ impl Setting {
             .any(|condition| condition.equal && (condition.name, condition.value) == (name, value))
     }
 
-    /// Name of its option of the command line, without the dashes. The options of the kind of sampling and of the count choose by being
-    /// there.
+    /// Name of its option of the command line, without the dashes. The options of the kind of
+    /// sampling and of the count choose by being there.
     #[must_use]
     pub fn option(&self) -> String {
         match self.name {
@@ -392,7 +392,8 @@ pub fn settings() -> Vec<Setting> {
             ))
         },
         Setting {
-            // On a slider to the largest value accepted, the paper's ten steps would be at its very beginning.
+            // On a slider to the largest value accepted, the paper's ten steps would be at its very
+            // beginning.
             max: 100.0,
             step: 1.0,
             unit: "steps",

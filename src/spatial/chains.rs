@@ -1,21 +1,22 @@
-//! Linked lists of points by cell, which are made in one pass and take little memory. The points stay in their columns;
-//! the lists hold their indices.
+//! Linked lists of points by cell, which are made in one pass and take little memory. The points
+//! stay in their columns; the lists hold their indices.
 
 use super::coordinate;
 use crate::math::NONE;
 use glam::Vec3;
 
-/// Points for each list head. With more heads most would stay empty, with fewer many cells would share one. With half and double
-/// of it runs on random surfaces take as many instructions within 0.3 %.
+/// Points for each list head. With more heads most would stay empty, with fewer many cells would
+/// share one. With half and double of it runs on random surfaces take as many instructions within
+/// 0.3 %.
 const POINTS_PER_HEAD: usize = 4;
 
-/// Hash factors of the coordinates: multiplication by them spreads neighbouring cells over all 32-bit numbers. They are
-/// primes near 2³² times the powers of 1/1.2207, where 1.2207 is the root of x⁴ = x + 1, whose multiples are evenly
-/// spread in three dimensions.
+/// Hash factors of the coordinates: multiplication by them spreads neighbouring cells over all
+/// 32-bit numbers. They are primes near 2³² times the powers of 1/1.2207, where 1.2207 is the root
+/// of x⁴ = x + 1, whose multiples are evenly spread in three dimensions.
 const FACTORS: [u32; 3] = [0xd1b5_4a45, 0xabc9_839f, 0x8cb9_2bad];
 
-/// Linked lists of points, one for all cells with the same hash. Points can be in *layers* with cells of different
-/// sizes.
+/// Linked lists of points, one for all cells with the same hash. Points can be in *layers* with
+/// cells of different sizes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Chains {
     /// 1 over the side of the cells, for each layer.
@@ -28,8 +29,8 @@ pub(crate) struct Chains {
 }
 
 impl Chains {
-    /// Empties the lists for up to `points` points, in layers with cells of these `sides`. Queries are fast for radii
-    /// of half a side.
+    /// Empties the lists for up to `points` points, in layers with cells of these `sides`. Queries
+    /// are fast for radii of half a side.
     pub(crate) fn reset(&mut self, sides: impl IntoIterator<Item = f32>, points: usize) {
         self.inverse_side.clear();
         self.inverse_side.extend(sides.into_iter().map(|side| 1.0 / side));
@@ -40,7 +41,8 @@ impl Chains {
         self.next.resize(points, NONE);
     }
 
-    /// Adds a point to a layer. Its `index` must be below the number of points, and no other point may have it.
+    /// Adds a point to a layer. Its `index` must be below the number of points, and no other point
+    /// may have it.
     pub(crate) fn insert(&mut self, layer: usize, point: Vec3, index: u32) {
         let inverse_side = self.inverse_side[layer];
         let [x, y, z] = point.to_array().map(|c| coordinate(c * inverse_side));
@@ -49,7 +51,8 @@ impl Chains {
         self.head[head as usize] = index;
     }
 
-    /// Returns those of `points` that were added to the cell of `place` in a layer, are in it now and pass `meant`.
+    /// Returns those of `points` that were added to the cell of `place` in a layer, are in it now
+    /// and pass `meant`.
     pub(crate) fn beside(
         &self,
         points: &[Vec3],
@@ -64,8 +67,8 @@ impl Chains {
         list.filter(move |&index| meant(index) && cell(points[index as usize]) == [x, y, z])
     }
 
-    /// Visits every point that was added to layer k within `reach[k]` of the box from `lo` to `hi`, and some points
-    /// beyond. No point is visited twice.
+    /// Visits every point that was added to layer k within `reach[k]` of the box from `lo` to `hi`,
+    /// and some points beyond. No point is visited twice.
     pub(crate) fn visit(
         &mut self,
         [lo, hi]: [Vec3; 2],

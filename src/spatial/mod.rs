@@ -1,11 +1,13 @@
-//! Neighbour search: a sparse grid for points that are inserted one by one, linked lists by cell for points that stay
-//! in their columns, and a tree for points that are known from the start and spread unevenly.
+//! Neighbour search: a sparse grid for points that are inserted one by one, linked lists by cell
+//! for points that stay in their columns, and a tree for points that are known from the start and
+//! spread unevenly.
 //!
-//! The cells of the grid are cubes. Eight neighbouring cells (2 × 2 × 2) form a *brick*, which a hash table with open
-//! addressing finds. The table holds the bricks themselves and is part of the grid, since the front asks it several times for every
-//! particle. A cell stores its points in blocks of eight with their coordinates, so a query reads a few contiguous blocks and compares
-//! eight distances at a time. Memory is proportional to the number of occupied cells, and a query costs the same among 10³ and
-//! 10⁶ points.
+//! The cells of the grid are cubes. Eight neighbouring cells (2 × 2 × 2) form a *brick*, which a
+//! hash table with open addressing finds. The table holds the bricks themselves and is part of the
+//! grid, since the front asks it several times for every particle. A cell stores its points in
+//! blocks of eight with their coordinates, so a query reads a few contiguous blocks and compares
+//! eight distances at a time. Memory is proportional to the number of occupied cells, and a query
+//! costs the same among 10³ and 10⁶ points.
 
 pub(crate) mod chains;
 pub(crate) mod tree;
@@ -17,8 +19,9 @@ use glam::{Vec3, Vec4};
 /// Bits of a cell coordinate: three coordinates form one hash key.
 const COORDINATE_BITS: u32 = 21;
 const COORDINATE_MASK: u64 = (1 << COORDINATE_BITS) - 1;
-/// Mean number of points in a block of eight for points on a surface, whose last blocks in each cell are partly empty.
-/// It is less than the 5.5 measured with the cell side that the sampler uses.
+/// Mean number of points in a block of eight for points on a surface, whose last blocks in each
+/// cell are partly empty. It is less than the 5.5 measured with the cell side that the sampler
+/// uses.
 const POINTS_PER_BLOCK: usize = 5;
 /// Key of an empty table entry. No brick has it, because keys have 63 bits.
 const EMPTY: u64 = u64::MAX;
@@ -79,8 +82,8 @@ pub(crate) struct LanesOf {
     pub(crate) count: usize,
 }
 
-/// The lanes of every set, which is given as bits. A query copies all entries and advances by their number: the end of
-/// a loop over the set alone would be mispredicted.
+/// The lanes of every set, which is given as bits. A query copies all entries and advances by their
+/// number: the end of a loop over the set alone would be mispredicted.
 pub(crate) static LANES_OF: [LanesOf; 1 << LANES] = {
     let mut all = [LanesOf { lane: [0; LANES], count: 0 }; 1 << LANES];
     let mut set = 0;
@@ -108,7 +111,8 @@ pub struct CellGrid {
 }
 
 impl CellGrid {
-    /// Returns an empty grid with cells of the given side. Queries are fast for radii near 0.8 of it.
+    /// Returns an empty grid with cells of the given side. Queries are fast for radii near 0.8 of
+    /// it.
     ///
     /// # Panics
     ///
@@ -202,15 +206,15 @@ impl CellGrid {
         }
     }
 
-    /// Replaces the content of `found` by all points within `radius` of `centre`, the boundary included. Their order
-    /// depends only on the history of insertions.
+    /// Replaces the content of `found` by all points within `radius` of `centre`, the boundary
+    /// included. Their order depends only on the history of insertions.
     pub fn gather(&self, centre: Vec3, radius: f32, found: &mut Vec<Neighbour>) {
         found.clear();
         self.gather_more(centre, radius, found);
     }
 
-    /// Appends to `found` all points within `radius` of `centre`, the boundary included. Their order depends only on the history of
-    /// insertions.
+    /// Appends to `found` all points within `radius` of `centre`, the boundary included. Their
+    /// order depends only on the history of insertions.
     pub fn gather_more(&self, centre: Vec3, radius: f32, found: &mut Vec<Neighbour>) {
         let mut hits = Hits { len: 0, places: [0; 8 * LANES] };
         let lo = (centre - radius).to_array().map(|x| self.coordinate(x));
@@ -234,8 +238,8 @@ impl CellGrid {
         self.take(&mut hits, centre, found);
     }
 
-    /// Appends the points of a cell that are within the radius to `hits`, which is moved to `found` whenever it is
-    /// full.
+    /// Appends the points of a cell that are within the radius to `hits`, which is moved to `found`
+    /// whenever it is full.
     #[inline]
     fn gather_cell(
         &self,
@@ -327,12 +331,14 @@ impl CellGrid {
 
 /// The integer nearest to `x`, offset so that it is not negative: non-decreasing in `x`.
 fn coordinate(x: f32) -> u32 {
-    // Cheaper than a conversion, which saturates. Cell sides are far above the spacing of the coordinates, so 22 bits suffice.
+    // Cheaper than a conversion, which saturates. Cell sides are far above the spacing of the
+    // coordinates, so 22 bits suffice.
     const CENTRE: u32 = 1 << (COORDINATE_BITS - 1);
     (x + ROUNDER).to_bits().wrapping_sub(ROUNDER.to_bits()).wrapping_add(CENTRE) & COORDINATE_MASK as u32
 }
 
-/// Cells of a brick whose coordinate on one axis lies in `lo..=hi`: `halves` are those of the lower and the upper half.
+/// Cells of a brick whose coordinate on one axis lies in `lo..=hi`: `halves` are those of the lower
+/// and the upper half.
 fn in_range(brick: u32, lo: u32, hi: u32, halves: [u32; 2]) -> u32 {
     let lower = if 2 * brick >= lo { halves[0] } else { 0 };
     let upper = if 2 * brick < hi { halves[1] } else { 0 };
@@ -349,7 +355,8 @@ fn key(x: u32, y: u32, z: u32) -> u64 {
 mod tests {
     use super::*;
 
-    /// Every point of `points` within `radius` of `centre`, by looking at all of them: the oracle of [`CellGrid::gather`].
+    /// Every point of `points` within `radius` of `centre`, by looking at all of them: the oracle
+    /// of [`CellGrid::gather`].
     pub(super) fn gather_naive(points: &[Vec3], centre: Vec3, radius: f32) -> Vec<u32> {
         let near = |p: &Vec3| {
             let d = *p - centre;

@@ -1,12 +1,14 @@
-//! A balanced tree of bounding boxes over points. The cost of a nearest-neighbour query depends neither on how the
-//! points are distributed nor on distant outliers. What lies around the points of a leaf is gathered once, in lanes.
+//! A balanced tree of bounding boxes over points. The cost of a nearest-neighbour query depends
+//! neither on how the points are distributed nor on distant outliers. What lies around the points
+//! of a leaf is gathered once, in lanes.
 
 use crate::math::{LANES, Lanes, key, sort_few, unkey};
 use crate::slices::{self, LIGHT, pause};
 use glam::Vec3;
 
-/// Largest number of points in a leaf; a leaf holds at least half as many, so the candidates of a whole leaf can be
-/// gathered once. 16 was the fastest of 8, 16 and 32 for the Voronoi cells of 50,000 points.
+/// Largest number of points in a leaf; a leaf holds at least half as many, so the candidates of a
+/// whole leaf can be gathered once. 16 was the fastest of 8, 16 and 32 for the Voronoi cells of
+/// 50,000 points.
 const LEAF: usize = 16;
 /// Depth of the traversal stack: a balanced tree over 2³² points has fewer than 33 levels.
 const STACK: usize = 64;
@@ -43,15 +45,17 @@ pub(crate) struct Leaf {
 impl Leaf {
     /// Radius of the first ball that is searched around each of the points.
     pub(crate) fn reach(&self) -> f32 {
-        /// Share of the diagonal of the box. A leaf of 8 to 16 points of spacing d spans 3 to 5 d, so the ball reaches 1.4 to 2.2 d, and few
-        /// points need a second one. With two thirds of it two runs with report and mesh take 1.00 and 1.01 times the instructions, with double
+        /// Share of the diagonal of the box. A leaf of 8 to 16 points of spacing d spans 3 to 5 d,
+        /// so the ball reaches 1.4 to 2.2 d, and few points need a second one. With two thirds of
+        /// it two runs with report and mesh take 1.00 and 1.01 times the instructions, with double
         /// 1.08 and 1.02 times.
         const SHARE: f32 = 0.45;
         SHARE * (self.hi - self.lo).length()
     }
 }
 
-/// Points in tree order: the points of a leaf are contiguous, and leaves near one another are near in memory.
+/// Points in tree order: the points of a leaf are contiguous, and leaves near one another are near
+/// in memory.
 #[derive(Debug)]
 pub(crate) struct Tree {
     /// The points, in tree order.
@@ -72,8 +76,9 @@ impl Tree {
         slices::complete(Self::in_slices(items))
     }
 
-    /// Makes the tree over points with their indices in slices of work, the largest of which visits all points once.
-    /// The points must be finite. The result depends only on them and their indices.
+    /// Makes the tree over points with their indices in slices of work, the largest of which visits
+    /// all points once. The points must be finite. The result depends only on them and their
+    /// indices.
     pub(crate) async fn in_slices(mut items: Vec<(Vec3, u32)>) -> Self {
         let mut nodes = Vec::with_capacity(items.len() / 4 + 1);
         // Ranges that are still to become nodes, each with the node whose second child it is.
@@ -115,8 +120,8 @@ impl Tree {
         leaves.map(|node| Leaf { range: node.first as usize..node.end as usize, lo: node.lo, hi: node.hi })
     }
 
-    /// Calls `visit` with the range of every leaf that meets the ball of squared radius `bound_sq` around `p`, nearer
-    /// ones first. `visit` may shrink the bound.
+    /// Calls `visit` with the range of every leaf that meets the ball of squared radius `bound_sq`
+    /// around `p`, nearer ones first. `visit` may shrink the bound.
     #[inline]
     fn search(&self, p: Vec3, mut bound_sq: f32, mut visit: impl FnMut(u32, u32, &mut f32)) {
         if self.nodes.is_empty() {
@@ -145,8 +150,8 @@ impl Tree {
         }
     }
 
-    /// Returns the squared distance from `p` to the nearest point other than `except`, and that point, if the distance
-    /// is below `bound_sq`; otherwise `bound_sq` and `except`.
+    /// Returns the squared distance from `p` to the nearest point other than `except`, and that
+    /// point, if the distance is below `bound_sq`; otherwise `bound_sq` and `except`.
     pub(crate) fn nearest(&self, p: Vec3, except: u32, bound_sq: f32) -> (f32, u32) {
         let mut best = (bound_sq, except);
         self.search(p, bound_sq, |first, end, bound| {
@@ -161,13 +166,14 @@ impl Tree {
         best
     }
 
-    /// Returns the squared distance from `p` to the nearest point other than `except`, if it is below `bound_sq`; otherwise
-    /// `bound_sq`.
+    /// Returns the squared distance from `p` to the nearest point other than `except`, if it is
+    /// below `bound_sq`; otherwise `bound_sq`.
     pub(crate) fn nearest_sq(&self, p: Vec3, except: u32, bound_sq: f32) -> f32 {
         self.nearest(p, except, bound_sq).0
     }
 
-    /// Replaces `out` by the keys of the `count` nearest points to `p` that pass `accept`, nearest first.
+    /// Replaces `out` by the keys of the `count` nearest points to `p` that pass `accept`, nearest
+    /// first.
     pub(crate) fn nearest_many(
         &self,
         p: Vec3,
@@ -248,7 +254,8 @@ impl PointsInBox {
         }));
     }
 
-    /// Returns the squared distances from `p` in the order of the points, followed by some infinite ones.
+    /// Returns the squared distances from `p` in the order of the points, followed by some infinite
+    /// ones.
     #[inline]
     pub(crate) fn distances_sq(&self, p: Vec3) -> impl Iterator<Item = Lanes> {
         self.position.iter().map(move |[x, y, z]| {
@@ -269,7 +276,8 @@ fn node_of(items: &[(Vec3, u32)], first: usize) -> TreeNode {
     TreeNode { lo, hi, first: first as u32, end: (first + items.len()) as u32, second: 0 }
 }
 
-/// Splits the `items` of `node` at the median along its longest side. Returns where the second part begins.
+/// Splits the `items` of `node` at the median along its longest side. Returns where the second part
+/// begins.
 fn split(items: &mut [(Vec3, u32)], node: &TreeNode) -> usize {
     let axis = (node.hi - node.lo).max_position();
     let middle = items.len() / 2;

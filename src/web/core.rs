@@ -31,7 +31,8 @@ const TYPES: &str = r"import type {
   Start,
 } from '../../engine/core-types.js';";
 
-/// A sampling session. Requests and answers are plain objects; columns are copies, three floats a vector.
+/// A sampling session. Requests and answers are plain objects; columns are copies, three floats a
+/// vector.
 #[wasm_bindgen]
 pub struct Core {
     session: Session,
@@ -53,7 +54,8 @@ impl Core {
         to_js(&describe())
     }
 
-    /// Changes the field: `FieldRequest` to an `Answer` with `FieldAnswer`. After an error the last good field stays.
+    /// Changes the field: `FieldRequest` to an `Answer` with `FieldAnswer`. After an error the last
+    /// good field stays.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
     pub fn set_field(
         &mut self,
@@ -74,9 +76,9 @@ impl Core {
         self.session.run.limit_memory(megabytes << 20);
     }
 
-    /// Changes the field to a model from points: the solved system as `Points.field` gives it, what `Points.info` says of it,
-    /// `SolvedModel`, and a `FieldRequest`, of which the box and the pulls count; to an `Answer` with `FieldAnswer`. After an
-    /// error the last good field stays.
+    /// Changes the field to a model from points: the solved system as `Points.field` gives it, what
+    /// `Points.info` says of it, `SolvedModel`, and a `FieldRequest`, of which the box and the
+    /// pulls count; to an `Answer` with `FieldAnswer`. After an error the last good field stays.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
     pub fn set_points(
         &mut self,
@@ -91,8 +93,9 @@ impl Core {
         }))
     }
 
-    /// Finds the box of the next run with these `Settings` and the creases in it, up to `budget` slices of the work: an
-    /// `Answer` with `FieldAnswer` once it is known, nothing before. While a slider moves the box `only_grows`.
+    /// Finds the box of the next run with these `Settings` and the creases in it, up to `budget`
+    /// slices of the work: an `Answer` with `FieldAnswer` once it is known, nothing before. While a
+    /// slider moves the box `only_grows`.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault> | undefined")]
     pub fn fit(
         &mut self,
@@ -107,7 +110,8 @@ impl Core {
         Some(answer(field))
     }
 
-    /// Starts a run: `Settings`, of which what is missing has its default; to an `Answer` with `Start`.
+    /// Starts a run: `Settings`, of which what is missing has its default; to an `Answer` with
+    /// `Start`.
     #[wasm_bindgen(unchecked_return_type = "Answer<Start, Fault>")]
     pub fn start(
         &mut self,
@@ -118,8 +122,9 @@ impl Core {
         }))
     }
 
-    /// Has the particles of the last run follow its surface to the present field, in the box that [`Core::fit`] has found: whether they can,
-    /// and the run had these `Settings`. `is_closed`: no particle is born, and none dies but where it does not come to the surface.
+    /// Has the particles of the last run follow its surface to the present field, in the box that
+    /// [`Core::fit`] has found: whether they can, and the run had these `Settings`. `is_closed`: no
+    /// particle is born, and none dies but where it does not come to the surface.
     pub fn follow(
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "Record<string, number | string>")] settings: JsValue,
@@ -159,8 +164,8 @@ impl Core {
         self.exact_positions(from).into_iter().map(|coordinate| coordinate as f32).collect()
     }
 
-    /// Positions from particle `from` on, where single precision does not hold them: in a box far from the origin. Elsewhere
-    /// nothing.
+    /// Positions from particle `from` on, where single precision does not hold them: in a box far
+    /// from the origin. Elsewhere nothing.
     pub fn exact_positions(&self, from: usize) -> Vec<f64> {
         let particles = self.session.run.particles();
         if particles.origin == DVec3::ZERO {
@@ -169,7 +174,8 @@ impl Core {
         (from..self.session.run.rows()).flat_map(|i| particles.place(i).to_array()).collect()
     }
 
-    /// For the rows of particles on creases, which come first, the first row of the same particle; nothing without creases.
+    /// For the rows of particles on creases, which come first, the first row of the same particle;
+    /// nothing without creases.
     pub fn twins(&self) -> Vec<u32> {
         self.column(&self.session.run.particles().twins, 0)
     }
@@ -199,20 +205,21 @@ impl Core {
         self.column(&self.session.run.particles().parent, from)
     }
 
-    /// The fates of the slots, three bits each, from particle `from` on: six, or up to ten of an adaptive particle. Bit 30 marks a
-    /// singular point nearby.
+    /// The fates of the slots, three bits each, from particle `from` on: six, or up to ten of an
+    /// adaptive particle. Bit 30 marks a singular point nearby.
     pub fn slots(&self, from: usize) -> Vec<u32> {
         self.column(&self.session.run.particles().slots, from).into_iter().map(|slots| slots.0).collect()
     }
 
-    /// Measures the particles, up to `budget` slices of the work: `Report` once it is complete, nothing before.
+    /// Measures the particles, up to `budget` slices of the work: `Report` once it is complete,
+    /// nothing before.
     #[wasm_bindgen(unchecked_return_type = "Report | undefined")]
     pub fn measure(&mut self, budget: u32) -> Option<JsValue> {
         self.session.measure(budget).map(|report| to_js(&report))
     }
 
-    /// Measures particles that something else has placed on the present surface, vectors of three floats: `Measures`. The columns of
-    /// the last report are then theirs.
+    /// Measures particles that something else has placed on the present surface, vectors of three
+    /// floats: `Measures`. The columns of the last report are then theirs.
     #[wasm_bindgen(unchecked_return_type = "Measures")]
     pub fn measure_placed(
         &mut self,
@@ -252,7 +259,8 @@ impl Core {
         self.column(&self.session.run.particles().periodic, 0)
     }
 
-    /// For each row, the first row of the same particle: one on a crease has a row on each side. Empty without creases.
+    /// For each row, the first row of the same particle: one on a crease has a row on each side.
+    /// Empty without creases.
     pub fn particle(&self) -> Vec<u32> {
         let particles = self.session.run.particles();
         let rows = self.session.run.rows().min(particles.patch.len());
@@ -264,7 +272,8 @@ impl Core {
         self.session.run.measured().residual.clone()
     }
 
-    /// Energy of each particle among its natural neighbours, over that of six at the ideal distance, as of the last report.
+    /// Energy of each particle among its natural neighbours, over that of six at the ideal
+    /// distance, as of the last report.
     pub fn energy(&self) -> Vec<f32> {
         self.session.run.measured().energy.clone()
     }
@@ -279,7 +288,8 @@ impl Core {
         self.session.run.curvatures(from).into_flattened()
     }
 
-    /// Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is complete, nothing before.
+    /// Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is
+    /// complete, nothing before.
     #[wasm_bindgen(unchecked_return_type = "MeshAnswer | undefined")]
     pub fn join(&mut self, budget: u32) -> Option<JsValue> {
         self.session.run.join(budget).map(|answer| to_js(&answer))
@@ -291,8 +301,9 @@ impl Core {
         self.session.run.mesh().map_or_else(Vec::new, |mesh| mesh.corners().as_flattened().to_vec())
     }
 
-    /// The mesh as a file, with the record of what it was made from: `FileRequest`, up to `budget` slices of the work; its bytes once it is
-    /// complete, undefined before; null for another extension or if it is too large.
+    /// The mesh as a file, with the record of what it was made from: `FileRequest`, up to `budget`
+    /// slices of the work; its bytes once it is complete, undefined before; null for another
+    /// extension or if it is too large.
     #[wasm_bindgen(unchecked_return_type = "Uint8Array<ArrayBuffer> | null | undefined")]
     pub fn mesh_file(
         &mut self,
@@ -310,7 +321,8 @@ impl Core {
         }
     }
 
-    /// The record of what the particles were made from, for their files: `FileRecord`; null before the first run.
+    /// The record of what the particles were made from, for their files: `FileRecord`; null before
+    /// the first run.
     #[wasm_bindgen(unchecked_return_type = "FileRecord | null")]
     pub fn record(&self) -> JsValue {
         to_js(&self.session.record(None))
@@ -321,7 +333,8 @@ impl Core {
         format!("{:016x}", self.session.run.particles().digest())
     }
 
-    /// The settings of a run, and with them those of the box and the solid, which the session takes.
+    /// The settings of a run, and with them those of the box and the solid, which the session
+    /// takes.
     fn read_settings(&mut self, settings: JsValue) -> Result<Settings, Fault> {
         let solid: SolidSettings = read(settings.clone(), FaultKind::Settings)?;
         self.session.choose(solid).map_err(|error| Fault::new(FaultKind::Settings, &error))?;

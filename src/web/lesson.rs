@@ -29,14 +29,16 @@ const TYPES: &str = r"import type {
   Pull,
 } from '../../engine/core-types.js';";
 
-/// The paper's algorithms, event by event. Requests and answers are plain objects; columns are copies.
+/// The paper's algorithms, event by event. Requests and answers are plain objects; columns are
+/// copies.
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Lesson {
     run: Option<lesson::Lesson>,
 }
 
-/// A field that is asked for jets alone. Evaluation in lanes and bounds over boxes stay out of the bundle.
+/// A field that is asked for jets alone. Evaluation in lanes and bounds over boxes stay out of the
+/// bundle.
 struct Pointwise<F>(F);
 
 impl<F: Field> Field for Pointwise<F> {
@@ -71,8 +73,8 @@ impl Lesson {
         Self::default()
     }
 
-    /// Begins a run on a formula, and gives up the one before: `LessonField` and `LessonSettings`, of which what is missing has its
-    /// default; to an `Answer` with `LessonProgress`.
+    /// Begins a run on a formula, and gives up the one before: `LessonField` and `LessonSettings`,
+    /// of which what is missing has its default; to an `Answer` with `LessonProgress`.
     #[wasm_bindgen(unchecked_return_type = "Answer<LessonProgress, Fault>")]
     pub fn start(
         &mut self,
@@ -83,8 +85,9 @@ impl Lesson {
         self.begin(field.and_then(|field| Ok((formula(&field)?, field.bounds))), settings)
     }
 
-    /// Begins a run on a model from points: `system` is the solved system that `Points.field` returns, `pulls` are those on its surface, and
-    /// `bounds` is its `Bounds`; to an `Answer` with `LessonProgress`.
+    /// Begins a run on a model from points: `system` is the solved system that `Points.field`
+    /// returns, `pulls` are those on its surface, and `bounds` is its `Bounds`; to an `Answer` with
+    /// `LessonProgress`.
     #[wasm_bindgen(unchecked_return_type = "Answer<LessonProgress, Fault>")]
     pub fn start_points(
         &mut self,
@@ -98,8 +101,9 @@ impl Lesson {
         self.begin(pulled.and_then(|field| Ok((field, bounds?))), settings)
     }
 
-    /// Has the particles of a particle system follow their surface to that of a formula, `LessonField`, whose box does not count; to an
-    /// `Answer` with `LessonProgress`, null before a run.
+    /// Has the particles of a particle system follow their surface to that of a formula,
+    /// `LessonField`, whose box does not count; to an `Answer` with `LessonProgress`, null before a
+    /// run.
     #[wasm_bindgen(unchecked_return_type = "Answer<LessonProgress, Fault> | null")]
     pub fn follow(
         &mut self,
@@ -133,18 +137,21 @@ impl Lesson {
         to_js(&self.run.as_mut().map(|run| run.events(first, count)).unwrap_or_default())
     }
 
-    /// Goes to the moment before event number `event`; returns the number of events that have happened then.
+    /// Goes to the moment before event number `event`; returns the number of events that have
+    /// happened then.
     pub fn seek(&mut self, event: u32) -> u32 {
         self.run.as_mut().map_or(0, |run| run.seek(event))
     }
 
-    /// The events at which a particle was added, treated and done: `LessonLife`; null if there is no such particle.
+    /// The events at which a particle was added, treated and done: `LessonLife`; null if there is
+    /// no such particle.
     #[wasm_bindgen(unchecked_return_type = "LessonLife | null")]
     pub fn life(&self, particle: u32) -> JsValue {
         to_js(&self.run.as_ref().and_then(|run| run.life(particle)))
     }
 
-    /// Returns the repulsion of a particle by each of its neighbours at the moment that was sought: an array of `LessonPush`.
+    /// Returns the repulsion of a particle by each of its neighbours at the moment that was sought:
+    /// an array of `LessonPush`.
     #[wasm_bindgen(unchecked_return_type = "LessonPush[]")]
     pub fn pushes(&self, particle: u32) -> JsValue {
         to_js(&self.run.as_ref().map(|run| run.pushes(particle)).unwrap_or_default())
@@ -190,8 +197,8 @@ impl Lesson {
         self.column(|particle| u8::from(particle.is_done))
     }
 
-    /// The curve f = 0 in the plane of `centre` and two perpendicular unit vectors, within `half` of the centre: segments as four
-    /// floats each, x along `right` and y along `up`.
+    /// The curve f = 0 in the plane of `centre` and two perpendicular unit vectors, within `half`
+    /// of the centre: segments as four floats each, x along `right` and y along `up`.
     pub fn section(&mut self, centre: &[f64], right: &[f64], up: &[f64], half: f64, cells: u32) -> Vec<f32> {
         let (Some(run), Some(centre), Some(right), Some(up)) =
             (&mut self.run, vector(centre), vector(right), vector(up))

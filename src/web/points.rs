@@ -30,15 +30,15 @@ impl Points {
         Self::default()
     }
 
-    /// Begins a built-in model, and gives up what was begun before: an `Answer` with `PointsProgress`. 0 centres are the default number
-    /// of them.
+    /// Begins a built-in model, and gives up what was begun before: an `Answer` with
+    /// `PointsProgress`. 0 centres are the default number of them.
     #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, string>")]
     pub fn model(&mut self, id: &str, centres: u32) -> JsValue {
         self.begin(|| Job::model(id, wanted(centres)))
     }
 
-    /// Begins a file, and gives up what was begun before: an `Answer` with `PointsProgress`. `name` is for reports. 0 centres are the
-    /// default number of them.
+    /// Begins a file, and gives up what was begun before: an `Answer` with `PointsProgress`. `name`
+    /// is for reports. 0 centres are the default number of them.
     #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, string>")]
     pub fn file(&mut self, name: &str, bytes: Vec<u8>, centres: u32) -> JsValue {
         self.begin(|| Job::file(name, bytes, wanted(centres)))

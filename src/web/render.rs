@@ -1,7 +1,7 @@
 //! The renderer as JavaScript sees it: newtypes and copies.
 //!
-//! Every method borrows the renderer for the length of the call only, also the asynchronous one, so that a
-//! picture may be on its way while the next frame is drawn.
+//! Every method borrows the renderer for the length of the call only, also the asynchronous one, so
+//! that a picture may be on its way while the next frame is drawn.
 
 use crate::render::chunks::MOST_RECORDS;
 use crate::render::style::{BodyStyle, ClipBoxStyle, CuttingPlane, Drawing, Style};
@@ -15,10 +15,11 @@ use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::{JsFuture, future_to_promise, spawn_local};
 use web_sys::HtmlCanvasElement;
 
-/// Particles copied at a time: 2.4 MB of columns, so that a million need no second copy of themselves in this memory.
+/// Particles copied at a time: 2.4 MB of columns, so that a million need no second copy of
+/// themselves in this memory.
 const SLICE: u32 = 1 << 16;
-/// Milliseconds between two looks at whether a picture has arrived, where nobody calls (WebGL2). It is the least that the HTML Standard
-/// gives timers that are set from timers (§8.6, "Timers").
+/// Milliseconds between two looks at whether a picture has arrived, where nobody calls (WebGL2). It
+/// is the least that the HTML Standard gives timers that are set from timers (§8.6, "Timers").
 const POLL_MS: i32 = 4;
 
 #[wasm_bindgen]
@@ -27,7 +28,8 @@ extern "C" {
     fn set_timeout(handler: &Function, timeout_ms: i32);
 }
 
-/// Draws particles on a canvas. `free()` it when done; a lost device needs a new renderer on a new canvas.
+/// Draws particles on a canvas. `free()` it when done; a lost device needs a new renderer on a new
+/// canvas.
 #[wasm_bindgen]
 pub struct Renderer {
     inner: Rc<RefCell<Inner>>,
@@ -58,9 +60,9 @@ impl Scratch {
 impl Renderer {
     /// Opens a graphics device on `canvas`, which must have no context of another kind yet.
     ///
-    /// `on_lost(reason, message)` is called once, when the device is gone; reason is "unknown" or "destroyed".
-    /// `on_error(message)` is called when the device refuses a call; drawing goes on. Both are called after the method
-    /// that caused them has returned, and may use the renderer.
+    /// `on_lost(reason, message)` is called once, when the device is gone; reason is "unknown" or
+    /// "destroyed". `on_error(message)` is called when the device refuses a call; drawing goes on.
+    /// Both are called after the method that caused them has returned, and may use the renderer.
     ///
     /// # Errors
     ///
@@ -111,21 +113,24 @@ impl Renderer {
         MOST_RECORDS
     }
 
-    /// Sets the canvas's size in pixels. Beyond the device's limit it shrinks in proportion (read `canvas.width` after
-    /// the next `draw`); where a side is 0 nothing is drawn.
+    /// Sets the canvas's size in pixels. Beyond the device's limit it shrinks in proportion (read
+    /// `canvas.width` after the next `draw`); where a side is 0 nothing is drawn.
     pub fn resize(&self, width_px: u32, height_px: u32) {
         self.inner.borrow_mut().resize([width_px, height_px]);
     }
 
-    /// Appends or overwrites particles `first..first + radii.length`; the number drawn grows to their end.
+    /// Appends or overwrites particles `first..first + radii.length`; the number drawn grows to
+    /// their end.
     ///
-    /// Three numbers per particle in `positions` and `normals`; a negative radius is that of a dot that faces the eye; a level
-    /// of 4294967295 stands for none, and such a particle is always drawn; `colours` are 0xAABBGGRR, sRGB. They begin to appear
-    /// at `birth_s` on the clock of `draw`; -Infinity shows them at once.
+    /// Three numbers per particle in `positions` and `normals`; a negative radius is that of a dot
+    /// that faces the eye; a level of 4294967295 stands for none, and such a particle is always
+    /// drawn; `colours` are 0xAABBGGRR, sRGB. They begin to appear at `birth_s` on the clock of
+    /// `draw`; -Infinity shows them at once.
     ///
     /// # Errors
     ///
-    /// Throws where the columns disagree in length or there are more particles than `max_particles()`.
+    /// Throws where the columns disagree in length or there are more particles than
+    /// `max_particles()`.
     #[allow(clippy::too_many_arguments, reason = "JavaScript hands over one typed array for each column")]
     pub fn write(
         &self,
@@ -183,8 +188,9 @@ impl Renderer {
         MOST_RECORDS
     }
 
-    /// Writes faces from `first` on: of each corner what `write` takes of a particle, three corners a face, counter-clockwise
-    /// seen from outside. `marks` are the colours of marks on the corners, 0 for none. Hand over some ten thousand at a time.
+    /// Writes faces from `first` on: of each corner what `write` takes of a particle, three corners
+    /// a face, counter-clockwise seen from outside. `marks` are the colours of marks on the
+    /// corners, 0 for none. Hand over some ten thousand at a time.
     ///
     /// # Errors
     ///
@@ -228,18 +234,19 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws the first `count` faces from now on, where the style asks for faces, in the place of the first `particles` particles.
-    /// Without faces there are discs.
+    /// Draws the first `count` faces from now on, where the style asks for faces, in the place of
+    /// the first `particles` particles. Without faces there are discs.
     pub fn set_faces(&self, count: u32, particles: u32) {
         self.inner.borrow_mut().set_faces(count, particles);
     }
 
-    /// Draws these pieces of creases from now on: eight numbers each in `ends`, the position of either end and the radius of the
-    /// particle there; `colours` are 0xAABBGGRR, sRGB.
+    /// Draws these pieces of creases from now on: eight numbers each in `ends`, the position of
+    /// either end and the radius of the particle there; `colours` are 0xAABBGGRR, sRGB.
     ///
     /// # Errors
     ///
-    /// Throws where the columns disagree in length or there are more of them than `max_particles()`.
+    /// Throws where the columns disagree in length or there are more of them than
+    /// `max_particles()`.
     pub fn write_lines(&self, ends: &Float32Array, colours: &Uint32Array) -> Result<(), JsError> {
         let count = colours.length();
         check_end(0, count, "lines")?;
@@ -253,8 +260,9 @@ impl Renderer {
         Ok(())
     }
 
-    /// Sets the camera: clip from world (16, column-major, depth 0 to 1), eye (3) and viewing direction (3) in world
-    /// coordinates. Further numbers are ignored; whether the camera is orthographic follows from the matrix.
+    /// Sets the camera: clip from world (16, column-major, depth 0 to 1), eye (3) and viewing
+    /// direction (3) in world coordinates. Further numbers are ignored; whether the camera is
+    /// orthographic follows from the matrix.
     ///
     /// # Errors
     ///
@@ -264,7 +272,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Sets the look from a JSON object; missing keys take their defaults, unknown ones are ignored.
+    /// Sets the look from a JSON object; missing keys take their defaults, unknown ones are
+    /// ignored.
     ///
     /// `background` [r, g, b, a] · `faces` {flat, edge_px} or null for discs · `body` {colour,
     /// is_open, bounds: {min, max}} beneath them or null · `spheres` in the place of discs ·
@@ -283,7 +292,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws one picture on the canvas: "drawn", "skipped" (nothing to draw on now) or "lost" (make a new renderer).
+    /// Draws one picture on the canvas: "drawn", "skipped" (nothing to draw on now) or "lost" (make
+    /// a new renderer).
     pub fn draw(&self, time_s: f64) -> String {
         match self.screen.borrow_mut().draw(&mut self.inner.borrow_mut(), time_s) {
             DrawOutcome::Drawn => "drawn",
@@ -293,14 +303,15 @@ impl Renderer {
         .to_owned()
     }
 
-    /// `[width, height]` that `read_pixels` draws for a wanted size: the wanted one unless the device cannot.
+    /// `[width, height]` that `read_pixels` draws for a wanted size: the wanted one unless the
+    /// device cannot.
     pub fn picture_size(&self, width_px: u32, height_px: u32) -> Uint32Array {
         Uint32Array::from(self.inner.borrow().picture_size([width_px, height_px]).as_slice())
     }
 
-    /// Draws the picture into a texture of `picture_size(width_px, height_px)`, with every particle fully shown, and
-    /// resolves to its pixels: rows from top to bottom, red, green, blue, opacity (not multiplied in), sRGB. Rejects
-    /// where the device is lost.
+    /// Draws the picture into a texture of `picture_size(width_px, height_px)`, with every particle
+    /// fully shown, and resolves to its pixels: rows from top to bottom, red, green, blue, opacity
+    /// (not multiplied in), sRGB. Rejects where the device is lost.
     #[wasm_bindgen(unchecked_return_type = "Promise<Uint8Array<ArrayBuffer>>")]
     pub fn read_pixels(&self, width_px: u32, height_px: u32, transparent: bool) -> Promise {
         let inner = Rc::clone(&self.inner);
@@ -350,8 +361,9 @@ impl Drop for Renderer {
     }
 }
 
-/// Calls `callback` once the JavaScript that runs now has returned: wgpu reports from within calls, when the renderer is
-/// borrowed. What the callback throws is its own affair; there is no caller to hand it to.
+/// Calls `callback` once the JavaScript that runs now has returned: wgpu reports from within calls,
+/// when the renderer is borrowed. What the callback throws is its own affair; there is no caller to
+/// hand it to.
 fn call_later(callback: &Function, arguments: Array) {
     let callback = callback.clone();
     spawn_local(async move {
@@ -359,7 +371,8 @@ fn call_later(callback: &Function, arguments: Array) {
     });
 }
 
-/// Lets go of a canvas's WebGL context now. A browser keeps sixteen, and else would wait for its garbage collector.
+/// Lets go of a canvas's WebGL context now. A browser keeps sixteen, and else would wait for its
+/// garbage collector.
 fn lose_context(canvas: &HtmlCanvasElement) {
     let lose = || -> Result<(), JsValue> {
         let context = canvas.get_context("webgl2")?.ok_or(JsValue::NULL)?;
@@ -470,7 +483,8 @@ fn read_style(json: &str) -> Result<Style, JsError> {
     Ok(style)
 }
 
-/// Overwrites `numbers` by the value of `key`, where it is there: a number for one, an array of as many for several.
+/// Overwrites `numbers` by the value of `key`, where it is there: a number for one, an array of as
+/// many for several.
 fn read(object: &JsValue, key: &str, numbers: &mut [f32]) -> Result<(), JsError> {
     let value = get(object, key)?;
     if value.is_undefined() {

@@ -1,7 +1,7 @@
 //! Values that cross between Rust and JavaScript, as plain objects.
 //!
-//! Through JSON text the core would be larger by 61 kB (gzip) and not by 29: half of that would be code and tables for decimal
-//! digits.
+//! Through JSON text the core would be larger by 61 kB (gzip) and not by 29: half of that would be
+//! code and tables for decimal digits.
 
 #[cfg(any(feature = "page-core", feature = "page-lesson"))]
 use crate::session::{Fault, FaultKind};
@@ -16,13 +16,14 @@ pub(super) fn read<T: serde::de::DeserializeOwned>(value: JsValue, kind: FaultKi
     serde_wasm_bindgen::from_value(value).map_err(|error| Fault::new(kind, &error))
 }
 
-/// The value as JSON would have it: structures and maps are objects, what is absent is null. A number that is not finite stays
-/// what it is.
+/// The value as JSON would have it: structures and maps are objects, what is absent is null. A
+/// number that is not finite stays what it is.
 pub(super) fn to_js(value: &impl Serialize) -> JsValue {
     value.serialize(&Serializer::json_compatible()).expect("every value of the core has a form in JavaScript")
 }
 
-/// The answer to a command that can be refused: `{ok: true, …}` with the fields of the value, a structure, or `{ok: false, error: …}`.
+/// The answer to a command that can be refused: `{ok: true, …}` with the fields of the value, a
+/// structure, or `{ok: false, error: …}`.
 pub(super) fn answer<T: Serialize, E: Serialize>(result: Result<T, E>) -> JsValue {
     #[derive(Serialize)]
     struct Refused<E> {

@@ -1,5 +1,5 @@
-//! Tests of the adaptive front (paper §5): children touch their parents, particles cover the surface, and a run does not
-//! depend on how it is cut into steps.
+//! Tests of the adaptive front (paper §5): children touch their parents, particles cover the
+//! surface, and a run does not depend on how it is cut into steps.
 
 use crate::runs::{assert_fates, begun, figures, gallery_figures, of_gallery, sampled, sampled_in_any_steps};
 use crate::smooth::smooth;
@@ -37,7 +37,8 @@ fn on_ripples_about_as_wide_as_particles_they_do_not_crowd() {
     }
 }
 
-/// Largest circumradius of a triangle of neighbours, relative to that of three touching discs of their mean radius.
+/// Largest circumradius of a triangle of neighbours, relative to that of three touching discs of
+/// their mean radius.
 fn largest_hole(particles: &Particles) -> f32 {
     let mut largest = 0.0_f32;
     for triangle in triangulate(particles, None).triangles {
@@ -69,8 +70,9 @@ fn closest(particles: &Particles) -> f32 {
     least
 }
 
-/// 98th percentile of the relative deviation of a child's distance to its parent from r_i + r_j. The other children are
-/// left out because, where the radius law is steep, grading lowers a radius after the children are placed.
+/// 98th percentile of the relative deviation of a child's distance to its parent from r_i + r_j.
+/// The other children are left out because, where the radius law is steep, grading lowers a radius
+/// after the children are placed.
 fn untouched(particles: &Particles) -> f32 {
     let mut deviation: Vec<f32> = (0..particles.len())
         .filter(|&i| particles.parent[i] != Particles::NO_PARENT)
@@ -282,8 +284,8 @@ fn levels_increase_along_the_columns() {
     assert!(particles.parent[1..].is_sorted());
 }
 
-/// The paper pushes one child after the other and has no limit on how steeply sizes change. Its particles are others, but there
-/// are as many, and they are as large.
+/// The paper pushes one child after the other and has no limit on how steeply sizes change. Its
+/// particles are others, but there are as many, and they are as large.
 #[test]
 fn a_front_of_many_sizes_has_as_many_and_as_large_particles_as_the_paper_s() {
     use marching_particles::lesson::{self, Lesson, Matched};

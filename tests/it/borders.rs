@@ -1,4 +1,5 @@
-//! Surfaces that the box cuts, by the second method: the border lies on the box, and nothing is lost without a word.
+//! Surfaces that the box cuts, by the second method: the border lies on the box, and nothing is
+//! lost without a word.
 
 use crate::runs::{begun, figures, sampled, sampled_in_any_steps};
 use glam::Vec3;
@@ -29,7 +30,8 @@ fn assert_inside(particles: &Particles, bounds: &Bounds) {
     assert_eq!(outside, None, "outside the box");
 }
 
-/// The triangles over the particles are a manifold with this Euler number, and its border lies on the box.
+/// The triangles over the particles are a manifold with this Euler number, and its border lies on
+/// the box.
 fn assert_border_on_box(particles: &Particles, bounds: &Bounds, euler: i64, name: &str) {
     let mesh = mesh_of(particles, bounds);
     assert!(mesh.topology.is_manifold() && mesh.left_out.is_empty(), "{name}: {:?}", mesh.left_out);
@@ -117,7 +119,8 @@ fn the_border_lies_on_the_box_and_the_topology_is_that_of_the_surface() {
 
 #[test]
 fn acute_corners_hold_no_crowded_pair() {
-    // Eight pieces that meet the edges of the box at 16° and at 30°, and a corner that comes to lie beside a particle.
+    // Eight pieces that meet the edges of the box at 16° and at 30°, and a corner that comes to lie
+    // beside a particle.
     let sphere = "x^2 + y^2 + z^2 = 1";
     for (formula, bounds, euler) in [
         (sphere, Bounds::cube(0.7), 8),
@@ -153,7 +156,8 @@ fn acute_corners_hold_no_crowded_pair() {
 
 #[test]
 fn a_sliver_in_a_corner_of_the_box_is_on_the_surface() {
-    // A piece smaller than the particles is left of a sheet in the corner, and one step of Newton's method leads out of the box there.
+    // A piece smaller than the particles is left of a sheet in the corner, and one step of Newton's
+    // method leads out of the box there.
     let waves = "0.857*sin(-2.742*x-0.235*y+0.902*z+3.248) + 0.746*sin(0.738*x-0.41*y-0.765*z+2.977) + 0.792*cos(2.702*x-0.49*y-2.892*z+1.312) \
         + 0.489*sin(1.819*x-1.653*y-2.218*z+0.169) + 0.528*cos(-2.271*x+1.143*y+2.634*z+4.389) = 0.21";
     let bounds = Bounds { min: [0.9, 1.0, -1.1], max: [1.6, 1.6, 0.0] };

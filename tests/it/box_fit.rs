@@ -183,7 +183,8 @@ fn the_same_box_is_not_searched_or_surveyed_again() {
     let mut session = Session::new();
     set(&mut session, "x^2+y^2+z^2=1");
     let first = run(&mut session, &coarse());
-    // The next run with another number of steps begins at once: one slice is enough to know the box.
+    // The next run with another number of steps begins at once: one slice is enough to know the
+    // box.
     set(&mut session, "x^2+y^2+z^2=1");
     assert!(session.fit(&|_| coarse(), false, 1).is_some());
     assert_eq!(run(&mut session, &coarse()).digest, first.digest);

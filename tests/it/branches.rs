@@ -17,7 +17,8 @@ fn at_work(field: &Formula) -> Box<dyn Evaluator + '_> {
     field.evaluator(Frame::default())
 }
 
-/// The field with its branches as they are in a box, and the cells of the box that may have creases.
+/// The field with its branches as they are in a box, and the cells of the box that may have
+/// creases.
 fn creased(field: &Formula, bounds: &Bounds) -> (Arc<dyn Creased>, Vec<Bounds>) {
     let (cells, field) = complete(field.creases_in(bounds, 0.05));
     (field, cells)
@@ -268,7 +269,8 @@ fn the_branch_at_a_point_gives_the_value_of_the_gallery_there() {
     }
 }
 
-/// Checks that the branch at `p` has the value of f there and is among those of boxes around `p`, if f is 0 in them.
+/// Checks that the branch at `p` has the value of f there and is among those of boxes around `p`,
+/// if f is 0 in them.
 fn agrees(field: &Formula, p: DVec3, text: &str) {
     let mut field = at_work(field);
     let wanted = field.value_and_gradient(p).0;
@@ -365,7 +367,8 @@ fn the_surfaces_of_the_gallery_have_no_creases() {
 
 #[test]
 fn choices_that_meet_smoothly_are_no_creases() {
-    // A blend by hand, a rounded box, two spheres that stay apart, an edge outside the box, an edge of half a degree.
+    // A blend by hand, a rounded box, two spheres that stay apart, an edge outside the box, an edge
+    // of half a degree.
     for text in [
         "min(x, y) - max(0.5 - abs(x - y), 0)^2/2 + 0.3",
         "sqrt(max(abs(x) - 0.7, 0)^2 + max(abs(y) - 0.7, 0)^2 + max(abs(z) - 0.7, 0)^2) + min(max(abs(x), abs(y), abs(z)) - 0.7, 0) - 0.2",

@@ -30,7 +30,8 @@ fn sample(arguments: &[&str]) -> Value {
     serde_json::from_str(&text).expect("a line of JSON")
 }
 
-/// Runs the tool, which must fail with `code` and print nothing on standard output, and returns its message.
+/// Runs the tool, which must fail with `code` and print nothing on standard output, and returns its
+/// message.
 #[track_caller]
 fn fails(code: i32, arguments: &[&str]) -> String {
     let output = run(arguments);

@@ -1,5 +1,5 @@
-//! Tests that every component of the surface gets particles, however small or near another one, and that the report
-//! says whether this is proven.
+//! Tests that every component of the surface gets particles, however small or near another one, and
+//! that the report says whether this is proven.
 
 use crate::runs::{finished, run, session};
 use glam::{DVec3, Vec3};
@@ -165,7 +165,8 @@ fn a_component_between_the_nodes_of_the_survey_is_found_beside_a_large_one() {
 
 #[test]
 fn each_of_many_pieces_of_one_factor_between_the_nodes_of_the_survey_is_found() {
-    // Balls of radius 0.006: f is flat everywhere else, so that no node leads to them. Their witnesses face the same way.
+    // Balls of radius 0.006: f is flat everywhere else, so that no node leads to them. Their
+    // witnesses face the same way.
     let place = |k: i32| {
         DVec3::new(f64::from(k % 4) - 1.47, f64::from(k / 4 % 2) - 0.53, f64::from(k / 8) - 0.98) * 0.4
     };
@@ -204,7 +205,8 @@ fn a_clipped_gyroid_is_proven_to_be_found_whole() {
 
 #[test]
 fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() {
-    // Thin parts, long blends and a high degree keep the search for further components from a proof.
+    // Thin parts, long blends and a high degree keep the search for further components from a
+    // proof.
     const UNPROVEN: [&str; 3] = ["decocube", "drilled-block", "chmutov"];
     for surface in gallery::SURFACES.iter() {
         for share in [0.02, 0.006] {
@@ -218,8 +220,9 @@ fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() 
             }
             let mut counts = vec![0; report.proof.components];
             session.run.measured().component.iter().for_each(|&label| counts[label as usize] += 1);
-            // At 2 % the decocube's ridges are narrower than a spacing, and it is chance which particles the triangles
-            // connect. Of ten seeds, three to five leave one or two particles unconnected, with or without relaxation.
+            // At 2 % the decocube's ridges are narrower than a spacing, and it is chance which
+            // particles the triangles connect. Of ten seeds, three to five leave one or two
+            // particles unconnected, with or without relaxation.
             let is_resolved = surface.smooth && (surface.id != "decocube" || share < 0.01);
             assert!(!is_resolved || counts.iter().all(|&count| count > 2), "{context}: {counts:?}");
         }
@@ -244,7 +247,8 @@ fn a_surface_that_touches_its_box_is_proven_to_be_found() {
 
 #[test]
 fn caps_that_the_box_cuts_off_are_components() {
-    // Of a sphere larger than the box eight corners are left. Another one reaches through a face by a hundredth.
+    // Of a sphere larger than the box eight corners are left. Another one reaches through a face by
+    // a hundredth.
     let (_, report) = sampled("x^2 + y^2 + z^2 - 2.5", 1.0, 0.008);
     is_proven(&report, "corners");
     assert_eq!(report.proof.components, 8);
@@ -278,8 +282,8 @@ fn an_empty_surface_is_proven_empty() {
 
 #[test]
 fn cone_points_leave_nothing_undecided() {
-    // A cone off the centre, so that its circle in a face touches no edge, and the Cayley cubic at the level of its
-    // cone points and at levels close to it.
+    // A cone off the centre, so that its circle in a face touches no edge, and the Cayley cubic at
+    // the level of its cone points and at levels close to it.
     for formula in [
         "(x - 0.1)^2 + (y + 0.05)^2 = (z - 0.02)^2",
         "4(x^2 + y^2 + z^2) + 16x y z = 1",
@@ -295,7 +299,8 @@ fn cone_points_leave_nothing_undecided() {
 
 #[test]
 fn a_small_component_beside_a_cone_point_is_found() {
-    // Small spheres inside and outside of the cone, so near to its apex that the cells around the apex must shrink.
+    // Small spheres inside and outside of the cone, so near to its apex that the cells around the
+    // apex must shrink.
     for [x, y, z] in [[0.07, 0.03, 0.01], [0.2, -0.1, 0.03], [0.02, 0.01, 0.15]] {
         let bubble = format!("exp(-((x - {x})^2 + (y - ({y}))^2 + (z - {z})^2)/0.0001)");
         let value = 1.2 * x * x + 1.1 * y * y - z * z;
@@ -317,7 +322,8 @@ fn discontinuous_gradients_hide_no_component() {
         let (_, report) = sampled(formula, 1.0, 0.002);
         assert_eq!(report.growth.components_seeded.min(2), 2, "{formula}: {report:?}");
     }
-    // The bounds of the second derivatives would exclude the component if they were used where they do not hold.
+    // The bounds of the second derivatives would exclude the component if they were used where they
+    // do not hold.
     let field = Formula::as_written("abs(x) + abs(y) + abs(z) - 0.1", &[]).unwrap();
     let across = [-0.1, 0.1].map(|from| Bounds::new(DVec3::splat(from), DVec3::splat(0.2)));
     let mut known = [Enclosure::UNKNOWN; 2];
@@ -385,7 +391,8 @@ fn search_ends_on_singular_surfaces_and_reports_undecided_cells() {
 
 #[test]
 fn thin_sheets_nearer_than_a_spacing_are_never_joined() {
-    // A plate, a flat ellipsoid, and nested shells have sheets a tenth and a third of a spacing apart.
+    // A plate, a flat ellipsoid, and nested shells have sheets a tenth and a third of a spacing
+    // apart.
     let shells = balls(&[([0.0; 3], 0.7), ([0.0; 3], 0.69), ([0.0; 3], 0.66), ([0.0; 3], 0.65)]);
     let sheet = |p: Vec3| -> u32 {
         let d = p.length();
@@ -564,8 +571,8 @@ fn a_piece_smaller_than_a_particle_beside_a_large_one_is_sampled_or_named() {
     }
 }
 
-/// Particles and names of an ellipsoid with half-axes of `size`, `size` and 3 `size`, around a place this far up the z-axis, beside
-/// the unit sphere.
+/// Particles and names of an ellipsoid with half-axes of `size`, `size` and 3 `size`, around a
+/// place this far up the z-axis, beside the unit sphere.
 fn told_of_a_small_ellipsoid(size: f64, height: f64, r: f64) -> (usize, usize, Report) {
     let formula = format!("(x^2+y^2+z^2-1)*(x^2+y^2+(z-{height})^2/9-{})", size * size);
     let (session, report) = sampled(&formula, 1.5, r / 27.0_f64.sqrt());

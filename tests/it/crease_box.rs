@@ -1,5 +1,6 @@
-//! Refined surfaces whose creases run to the box: on random ones the mesh ends at the box alone, its edges follow the creases, and it is a
-//! surface of the Euler number that a fine grid of tetrahedra finds.
+//! Refined surfaces whose creases run to the box: on random ones the mesh ends at the box alone,
+//! its edges follow the creases, and it is a surface of the Euler number that a fine grid of
+//! tetrahedra finds.
 
 use crate::cases;
 use glam::{DVec3, Vec3};
@@ -27,7 +28,8 @@ fn sheet(random: &mut Pcg32) -> String {
     }
 }
 
-/// Two or three sheets, of each of which a part is left, as a formula; and one with rounded creases.
+/// Two or three sheets, of each of which a part is left, as a formula; and one with rounded
+/// creases.
 fn roof(random: &mut Pcg32) -> [String; 2] {
     let mut roof = [(); 2].map(|()| sheet(random)).map(|sheet| [sheet.clone(), sheet]);
     for _ in 0..1 + random.next_u32() % 2 {
@@ -42,8 +44,9 @@ fn roof(random: &mut Pcg32) -> [String; 2] {
     [exact, rounded]
 }
 
-/// Euler number of the surface f = 0 in a box, by the tetrahedra of a grid of so many cells along each axis: it crosses each of their edges in a
-/// point, each of their triangles in a line and each of themselves in a face, or not at all.
+/// Euler number of the surface f = 0 in a box, by the tetrahedra of a grid of so many cells along
+/// each axis: it crosses each of their edges in a point, each of their triangles in a line and each
+/// of themselves in a face, or not at all.
 pub(crate) fn euler_on_grid(field: Formula, bounds: &Bounds, cells: usize) -> i64 {
     let side = cells + 1;
     let node = |k: usize| {
@@ -82,8 +85,8 @@ pub(crate) fn euler_on_grid(field: Formula, bounds: &Bounds, cells: usize) -> i6
     euler
 }
 
-/// The mesh is a surface that ends on faces of the box alone, and along each piece of a crease it has an edge of two triangles. Returns the
-/// number of ends of creases on faces of the box.
+/// The mesh is a surface that ends on faces of the box alone, and along each piece of a crease it
+/// has an edge of two triangles. Returns the number of ends of creases on faces of the box.
 fn check(sample: &Sample, bounds: &Bounds, euler: Option<i64>, what: &str) -> usize {
     let (mesh, particles) = (sample.mesh(), sample.particles());
     assert!(mesh.topology.is_manifold() && mesh.unfilled.is_empty(), "{what}");

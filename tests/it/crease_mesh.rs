@@ -6,8 +6,8 @@ use marching_particles::mesh::build::{Triangulation, triangulate};
 use marching_particles::particles::Particles;
 use marching_particles::{Bounds, Formula, Settings, Topology, sample};
 
-/// The mesh of a closed surface, held to what is promised: one closed manifold of this Euler number and about this area, with every
-/// segment of a crease as an edge between two patches.
+/// The mesh of a closed surface, held to what is promised: one closed manifold of this Euler number
+/// and about this area, with every segment of a crease as an edge between two patches.
 #[track_caller]
 fn assert_closed(name: &str, solid: &Creased, euler: i64, flatness: f64) {
     let particles = solid.particles();
@@ -61,7 +61,8 @@ fn a_box_is_closed_with_its_edges() {
 
 #[test]
 fn no_chord_between_creases_is_of_two_patches() {
-    // Faces of the box that the surface nearly touches: three particles that follow each other there are a triangle of either.
+    // Faces of the box that the surface nearly touches: three particles that follow each other
+    // there are a triangle of either.
     let quarter = core::f64::consts::FRAC_PI_4;
     let gyroid = Bounds { min: [-3.0 * quarter; 3], max: [5.0 * quarter; 3] };
     let sheets = Bounds { min: [0.1623, -0.6704, -1.5473], max: [3.5162, 1.6861, 1.5419] };
@@ -79,7 +80,8 @@ fn no_chord_between_creases_is_of_two_patches() {
 
 #[test]
 fn bodies_that_share_a_plane_have_no_wall_between_them() {
-    // A small cube in the middle of a face, one that covers the face, and one that covers a part of it.
+    // A small cube in the middle of a face, one that covers the face, and one that covers a part of
+    // it.
     for (other, area, volume) in [
         ("max(abs(x-1.5),abs(y),abs(z))-0.5", 28.0, 9.0),
         ("max(abs(x-2),abs(y),abs(z))-1", 40.0, 16.0),
@@ -102,7 +104,8 @@ fn bodies_that_share_a_plane_have_no_wall_between_them() {
 
 #[test]
 fn a_strip_beside_a_larger_part_of_its_patch_is_filled() {
-    // Its only particles are those of its creases, and the nearest others of the patch lie beyond a slot.
+    // Its only particles are those of its creases, and the nearest others of the patch lie beyond a
+    // slot.
     let comb =
         [[0.0, 0.0], [1.16, 0.0], [1.16, 1.0], [1.07, 1.0], [1.07, 0.5], [1.0, 0.5], [1.0, 1.0], [0.0, 1.0]];
     assert_closed("comb", &prism(&[&comb], 0.9, 0.1), 2, 1e-6);

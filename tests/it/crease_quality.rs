@@ -1,4 +1,5 @@
-//! Figures of particles on surfaces with creases: neighbours are those of one patch, and the patches are one surface.
+//! Figures of particles on surfaces with creases: neighbours are those of one patch, and the
+//! patches are one surface.
 
 use crate::creased::{Creased, cuboid, drilled_cube, prism, two_spheres};
 use glam::{DVec3, Vec3};
@@ -49,7 +50,8 @@ fn figures(name: &str, solid: Creased, euler: i64, flatness: f64) -> Measurement
 fn edges_of_a_solid_are_no_defects() {
     for (name, solid) in [("cube", cuboid([1.0; 3], 0.07)), ("plate", cuboid([2.0, 1.5, 0.03], 0.05))] {
         let figures = figures(name, solid, 2, 1e-5).figures;
-        // The lattice has six neighbours but beside the edges, and its holes there are less than a particle wide.
+        // The lattice has six neighbours but beside the edges, and its holes there are less than a
+        // particle wide.
         assert!(figures.order.six > 0.6 && figures.order.open == 0, "{name}: {figures:?}");
         assert!(figures.coverage.cover < 1.6, "{name}: {figures:?}");
     }

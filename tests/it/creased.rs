@@ -1,4 +1,5 @@
-//! Particles on surfaces with creases, made by hand: rows along every crease, and a lattice on every patch.
+//! Particles on surfaces with creases, made by hand: rows along every crease, and a lattice on
+//! every patch.
 
 use glam::{DVec2, DVec3, Vec3};
 use marching_particles::field::{Evaluator, Field, Frame, Jet, Patches};
@@ -199,7 +200,8 @@ fn around(centre: DVec3, x: DVec3, y: DVec3, spacing: f64) -> Vec<DVec3> {
     (0..=count).map(point).collect()
 }
 
-/// A hexagonal lattice on a square around zero of half-width `half`, turned a little, so that it fits no edge.
+/// A hexagonal lattice on a square around zero of half-width `half`, turned a little, so that it
+/// fits no edge.
 fn lattice(half: f64, spacing: f64) -> Vec<DVec2> {
     let count = (1.5 * half / spacing) as i32 + 2;
     let turn = DVec2::from_angle(0.2);
@@ -214,7 +216,8 @@ fn lattice(half: f64, spacing: f64) -> Vec<DVec2> {
     points
 }
 
-/// A flat face: the number of its plane, and loops of corners, counter-clockwise seen from outside around the face.
+/// A flat face: the number of its plane, and loops of corners, counter-clockwise seen from outside
+/// around the face.
 pub(crate) type Face = (u32, Vec<Vec<DVec3>>);
 
 fn plane_normal(face: &Face) -> DVec3 {
@@ -292,7 +295,8 @@ pub(crate) fn polyhedron(faces: Vec<Face>, spacing: f64) -> Creased {
     Creased { creases, inner, branch: Box::new(branch), nearest: Box::new(nearest), area, spacing }
 }
 
-/// A prism over an outline, counter-clockwise in the plane, with holes, clockwise. Sides are of one patch if they are of one plane.
+/// A prism over an outline, counter-clockwise in the plane, with holes, clockwise. Sides are of one
+/// patch if they are of one plane.
 pub(crate) fn prism(loops: &[&[[f64; 2]]], height: f64, spacing: f64) -> Creased {
     let at = |[x, y]: [f64; 2], z: f64| DVec3::new(x, y, z);
     let top = loops.iter().map(|outline| outline.iter().map(|&p| at(p, height)).collect()).collect();

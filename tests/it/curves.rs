@@ -1,4 +1,5 @@
-//! Zero sets that are no surface, boxes that are found around surfaces, and a search of corners that ends.
+//! Zero sets that are no surface, boxes that are found around surfaces, and a search of corners
+//! that ends.
 
 use glam::DVec3;
 use marching_particles::{

@@ -76,7 +76,8 @@ fn a_torus_has_the_curvatures_of_its_circles() {
         let along_ring = (axis_distance - ring) / (tube * axis_distance);
         assert_close(k.k1, around_tube, "κ₁", p);
         assert!((k.k2 - along_ring).abs() <= RELATIVE * around_tube, "κ₂ at {p}: {}", k.k2);
-        // κ₁ is the curvature of the tube, so its direction is in the plane of the tube's cross-section.
+        // κ₁ is the curvature of the tube, so its direction is in the plane of the tube's
+        // cross-section.
         let along = DVec3::new(-p.y, p.x, 0.0) / axis_distance;
         assert!(k.direction.dot(along).abs() < 1e-6, "direction at {p}: {}", k.direction);
         assert_close(k.max_abs(), around_tube, "max|κ|", p);
@@ -87,7 +88,8 @@ fn a_torus_has_the_curvatures_of_its_circles() {
 fn an_ellipsoid_has_the_curvatures_of_the_closed_form() {
     let [a, b, c] = [1.0_f64, 0.7, 0.5].map(|axis| axis * axis);
     for (p, k) in sampled("ellipsoid", 500) {
-        // With w = Σ x_i²/a_i⁴: K = 1/((abc)² w²), and 2H = (a² + b² + c² − |p|²) / ((abc)² w^{3/2}).
+        // With w = Σ x_i²/a_i⁴: K = 1/((abc)² w²), and 2H = (a² + b² + c² − |p|²) / ((abc)²
+        // w^{3/2}).
         let w = p.x * p.x / (a * a) + p.y * p.y / (b * b) + p.z * p.z / (c * c);
         let gaussian = 1.0 / (a * b * c * w * w);
         let mean = 0.5 * (a + b + c - p.length_squared()) / (a * b * c * w * w.sqrt());
@@ -130,8 +132,9 @@ fn normals_of_the_gallery_turn_as_the_curvature_says() {
                     |h: f64| (normal(&mut field, p + d * h) - normal(&mut field, p - d * h)) / (2.0 * h);
                 let h = 2e-4 / size;
                 let (coarse, fine) = (difference(h), difference(0.5 * h));
-                // A difference that changes when the step is halved is not that of a smooth normal, as at the joints of
-                // the drilled block's blends and at the foot of a cone. Such points are skipped.
+                // A difference that changes when the step is halved is not that of a smooth normal,
+                // as at the joints of the drilled block's blends and at the foot of a cone. Such
+                // points are skipped.
                 if (coarse - fine).length() > 0.5 * RELATIVE * size {
                     continue;
                 }

@@ -310,3 +310,30 @@ fn prose_wraps_at_100_columns_and_the_readme_is_short() {
     }
     assert!(read("README.md").len() <= 10_000, "the README has at most 10 kB");
 }
+
+/// The Rust files below a folder.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let (folders, files): (Vec<PathBuf>, Vec<PathBuf>) = entries.partition(|path| path.is_dir());
+    let inner = folders.iter().flat_map(|folder| sources(folder));
+    files.into_iter().filter(|path| path.extension().is_some_and(|kind| kind == "rs")).chain(inner).collect()
+}
+
+#[test]
+fn comments_wrap_at_100_columns() {
+    let folders = ["src", "tests", "benches", "examples", "xtask/src", "fuzz/targets"];
+    let files: Vec<PathBuf> = folders.iter().flat_map(|folder| sources(&root().join(folder))).collect();
+    assert!(files.len() > 300, "{} files were found", files.len());
+    for file in files {
+        let mut is_code = false;
+        for line in fs::read_to_string(&file).expect("a source").lines() {
+            let Some(comment) = line.trim_start().strip_prefix("//") else { continue };
+            let text = comment.trim_start_matches(['/', '!']).trim_start();
+            is_code ^= text.starts_with("```");
+            // Tables and examples stay as they are.
+            let columns = line.chars().count();
+            let is_prose = !is_code && !text.starts_with('|');
+            assert!(columns <= 100 || !is_prose, "{}: {columns} columns: {line}", file.display());
+        }
+    }
+}

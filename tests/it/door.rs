@@ -420,7 +420,8 @@ fn a_field_with_faults_in_places_ends_in_particles_of_the_rest_or_in_a_sentence(
                     let Particles { local: position, normal, .. } = sample.particles();
                     assert!(position.iter().all(|p| p.is_finite()), "{what}, {settings:?}");
                     assert!(normal.iter().all(|n| (n.length() - 1.0).abs() < 1e-4), "{what}, {settings:?}");
-                    // Values beyond single precision are computed in double precision, and nothing is amiss.
+                    // Values beyond single precision are computed in double precision, and nothing
+                    // is amiss.
                     let is_told = !sample.report().warnings.is_empty();
                     assert!(is_told || what == "beyond single precision", "{what}, {settings:?}: not a word");
                 }

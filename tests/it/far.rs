@@ -52,8 +52,9 @@ fn far_from_the_origin_the_figures_are_those_at_the_origin() {
                 here.accuracy.err_max,
                 there.accuracy.err_max
             );
-            // 0.4 %. Where a surface is refined, surgery ends one level before the last, and a particle there stands for four: by the
-            // rounding of the field, the torus has two more or fewer of its 583.
+            // 0.4 %. Where a surface is refined, surgery ends one level before the last, and a
+            // particle there stands for four: by the rounding of the field, the torus has two more
+            // or fewer of its 583.
             assert!(
                 near.count.abs_diff(far.count) * 250 <= near.count,
                 "{name}: {} {}",

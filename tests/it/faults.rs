@@ -1,5 +1,6 @@
-//! Tests on formulas without a regular surface: poles, jumps, self-intersections, singular points, open surfaces. The
-//! sampler ends on all of them, places particles only on zeros, and reports what it met.
+//! Tests on formulas without a regular surface: poles, jumps, self-intersections, singular points,
+//! open surfaces. The sampler ends on all of them, places particles only on zeros, and reports what
+//! it met.
 
 use crate::runs::session;
 use glam::{DVec3, Vec3};
@@ -15,7 +16,8 @@ use marching_particles::{Report, Warning};
 fn sampled(formula: &str, half: f64, settings: &Settings) -> (Session, Progress, Report) {
     let mut session = session(formula, Bounds::cube(half));
     session.start(settings).unwrap_or_else(|error| panic!("{formula}: {error}"));
-    // The limit is far more work than any of these surfaces takes, so a run that does not end fails.
+    // The limit is far more work than any of these surfaces takes, so a run that does not end
+    // fails.
     let mut progress = session.run.step(0);
     for _ in 0..2_000 {
         if progress.stop_reason.is_some() {
@@ -136,8 +138,9 @@ fn a_surface_at_which_f_ends_is_found_whichever_sign_f_has_there() {
 
 #[test]
 fn singular_points_do_not_stop_the_front() {
-    // The surfaces have the apex of a cone, edges and corners of an octahedron, a cusp, and planes that cross, where
-    // the gradient vanishes along lines. The front passes all of them, and the run ends.
+    // The surfaces have the apex of a cone, edges and corners of an octahedron, a cusp, and planes
+    // that cross, where the gradient vanishes along lines. The front passes all of them, and the
+    // run ends.
     for (formula, area) in [
         ("x^2 + y^2 - z^2", 2.0 * core::f64::consts::SQRT_2 * core::f64::consts::PI),
         ("hypot(x, y) - abs(z)", 2.0 * core::f64::consts::SQRT_2 * core::f64::consts::PI),
@@ -207,7 +210,8 @@ fn a_surface_that_crosses_or_touches_itself_is_told() {
         (text("(z - 0.1)(z - 0.1 - x^2 - 2y^2)"), 1.0, Some("touches itself at 1 point.")),
         (gallery("roman"), 0.55, Some("crosses itself")),
         (gallery("klein-bottle"), 6.0, Some("crosses itself along 1 curve.")),
-        // The tip of a cone, a cusp along a line, a curve on which the gradient vanishes and the surface is smooth.
+        // The tip of a cone, a cusp along a line, a curve on which the gradient vanishes and the
+        // surface is smooth.
         (text("x^2 + y^2 = z^2"), 1.0, None),
         (text("x^4 + y^4 = z^4"), 1.0, None),
         (text("y^2 = x^3"), 1.0, None),
@@ -293,8 +297,8 @@ fn powers_of_a_factor_have_the_surface_of_the_factor() {
             report.warnings
         );
     }
-    // In a product, the domain of a root restricts the zeros of the other factors, and a pole lowers the order of a
-    // zero.
+    // In a product, the domain of a root restricts the zeros of the other factors, and a pole
+    // lowers the order of a zero.
     for formula in [
         "z sqrt(1 - x^2 - y^2)",
         "y x^0.5",
@@ -404,7 +408,8 @@ fn jumps_are_no_surface_and_end_the_projection_along_the_circle() {
     for p in &session.run.particles().local {
         assert!(((5.0 * p.x).floor() / 5.0 - p.y).abs() < 1e-4, "{p}");
     }
-    // A projection takes at most 50 evaluations, and each of a particle's six slots is projected once.
+    // A projection takes at most 50 evaluations, and each of a particle's six slots is projected
+    // once.
     let slots = 6.0 * report.count as f64;
     assert!(report.growth.evaluations_per_particle * report.count as f64 <= 50.0 * slots, "{report:?}");
 }
@@ -508,7 +513,8 @@ fn a_formula_may_be_in_any_units() {
 
 #[test]
 fn a_few_large_particles_on_many_sheets_take_little_work() {
-    // Twenty-six planes, on which two particles are wanted. Every other seed stays alone beside them.
+    // Twenty-six planes, on which two particles are wanted. Every other seed stays alone beside
+    // them.
     let settings = settings!(size_mode: SizeMode::Count, count: 2; ..Settings::default());
     let (session, progress, report) = sampled("cos(z)", 40.0, &settings);
     assert!(progress.stop_reason.is_some() && session.run.count() > 0);

@@ -30,7 +30,8 @@ fn started(formula: &str, q: f64, half: f64, settings: &Settings) -> Run<Formula
     run
 }
 
-/// Moves the surface of a run from one value of `q` to another in so many frames, each done with steps of `budget`.
+/// Moves the surface of a run from one value of `q` to another in so many frames, each done with
+/// steps of `budget`.
 fn sweep(run: &mut Run<Formula>, formula: &str, [from, to]: [f64; 2], frames: u32, budget: u32) {
     for frame in 1..=frames {
         let q = from + (to - from) * f64::from(frame) / f64::from(frames);
@@ -363,7 +364,8 @@ impl Drag {
     }
 }
 
-/// A finished run on an ellipsoid that is drawn out to twice its length, as in the lesson: without births and deaths, too.
+/// A finished run on an ellipsoid that is drawn out to twice its length, as in the lesson: without
+/// births and deaths, too.
 fn drawn_out(is_closed: bool) -> Session {
     let mut drag = Drag::new(0.04);
     for step in 1..=60 {

@@ -381,7 +381,8 @@ fn a_likely_misspelling_is_no_parameter_unless_it_is_declared() {
     assert!(Formula::as_written("alpha x + sim y", &[Parameter::automatic("sim")]).is_ok());
     let near = Formula::as_written("radius x + radios y", &[Parameter::automatic("radius")]).unwrap_err();
     assert_eq!(near.suggestion.as_deref(), Some("radius"));
-    // Indexed names, single letters and Greek letters are not taken for misspellings, and what is only called elsewhere is a name.
+    // Indexed names, single letters and Greek letters are not taken for misspellings, and what is
+    // only called elsewhere is a name.
     for text in ["length x + norm", "pow x", "phi0 x", "r_1 x + r_2 y", "E x + R", "λ x + μ", "rx x"] {
         parse(text);
     }
@@ -574,7 +575,8 @@ fn a_field_without_a_zero_is_seen_by_its_bounds() {
     };
     let known = bounds("x^2 + y^2 + z^2 + 1");
     assert!(known.value.lo > 0.9 && known.value.hi < 302.0 && known.defined, "{known:?}");
-    // Whatever way an even power is written: the bounds of a product of two factors would reach below 0.
+    // Whatever way an even power is written: the bounds of a product of two factors would reach
+    // below 0.
     for text in ["x^4", "x^3 x", "x x^3", "x x x x", "x^2 x^2", "(x y) (x y)^3", "(x y)^3 (x y)"] {
         let known = bounds(&format!("{text} + 1"));
         assert!(known.value.lo > 0.9, "{text}: {known:?}");

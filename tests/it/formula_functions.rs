@@ -2,7 +2,8 @@
 
 use marching_particles::math::functions as single;
 
-/// Numbers of every magnitude: a few hundred mantissas for each exponent, in both signs, with the ends of the range.
+/// Numbers of every magnitude: a few hundred mantissas for each exponent, in both signs, with the
+/// ends of the range.
 fn all_sizes() -> Vec<f32> {
     let mut out = vec![0.0, f32::from_bits(1), f32::MIN_POSITIVE, f32::MAX, 1.0, f32::EPSILON];
     let mut bits: u32 = 3;
@@ -20,8 +21,8 @@ fn between(lo: f32, hi: f32, count: u32) -> Vec<f32> {
     (0..=count).map(|k| lo + (hi - lo) * (k as f32 / count as f32)).collect()
 }
 
-/// Distance from `got` to `exact` in units in the last place of `exact`, or infinity if only one of them is NaN or
-/// infinite.
+/// Distance from `got` to `exact` in units in the last place of `exact`, or infinity if only one of
+/// them is NaN or infinite.
 fn ulps(got: f32, exact: f64) -> f64 {
     let rounded = exact as f32;
     if got.is_nan() && exact.is_nan() || got == rounded {
@@ -30,7 +31,8 @@ fn ulps(got: f32, exact: f64) -> f64 {
     if got.is_nan() || exact.is_nan() {
         return f64::INFINITY;
     }
-    // Infinity counts as the successor of the largest finite number, so rounding to infinity is 1 ulp.
+    // Infinity counts as the successor of the largest finite number, so rounding to infinity is 1
+    // ulp.
     let finite = |x: f32| f64::from(x.clamp(-f32::MAX, f32::MAX));
     let size = rounded.abs().min(f32::MAX.next_down());
     let unit = f64::from(size.next_up()) - f64::from(size);

@@ -1,5 +1,5 @@
-//! Properties of arbitrary formulas: nothing panics, printing and parsing are inverse, all ways of evaluation agree,
-//! and the MathML is well formed.
+//! Properties of arbitrary formulas: nothing panics, printing and parsing are inverse, all ways of
+//! evaluation agree, and the MathML is well formed.
 
 use crate::fuzz::harness;
 use glam::{DVec3, Vec3};
@@ -70,7 +70,8 @@ fn programs() -> impl Strategy<Value = String> {
     })
 }
 
-/// The same formula as it might be pasted from LaTeX, where it has brackets, quotients, powers and calls.
+/// The same formula as it might be pasted from LaTeX, where it has brackets, quotients, powers and
+/// calls.
 fn in_latex(node: &MathNode) -> Option<String> {
     let all = |children: &[MathNode]| children.iter().map(in_latex).collect::<Option<Vec<String>>>();
     match node {
@@ -328,15 +329,16 @@ proptest! {
         let p = DVec3::from_array(point);
         let other = field.transformed_jet(p);
         let jet = field.jet(p);
-        // The effect of rounding depends on the formula. Its measure here is the change of the result when the point
-        // moves by some thousand units in the last place.
+        // The effect of rounding depends on the formula. Its measure here is the change of the
+        // result when the point moves by some thousand units in the last place.
         let near = field.jet(p * (1.0 + 1e-12));
         let (exact, moved, other) = (numbers(&jet), numbers(&near), numbers(&other));
         let size = 1.0 + exact.iter().map(|v| v.abs()).sum::<f64>();
         let steady = exact.iter().zip(&moved).all(|(a, b)| (a - b).abs() < 1e-7 * size);
         if steady && size < 1e9 {
             for (a, b) in exact.iter().zip(&other) {
-                // If a branch that is not taken overflows, the transformed derivative may be NaN, but not wrong.
+                // If a branch that is not taken overflows, the transformed derivative may be NaN,
+                // but not wrong.
                 prop_assert!(b.is_nan() || (a - b).abs() < 1e-6 * size, "{text}: {exact:?} but {other:?}");
             }
         }

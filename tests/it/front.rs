@@ -1,5 +1,5 @@
-//! Tests of the uniform front (paper §4): its quality on smooth surfaces, and its agreement with the paper as it is written, the
-//! reference, particle by particle.
+//! Tests of the uniform front (paper §4): its quality on smooth surfaces, and its agreement with
+//! the paper as it is written, the reference, particle by particle.
 
 use crate::runs::{assert_fates, gallery_figures, of_gallery, sampled};
 use crate::smooth::smooth;
@@ -41,8 +41,9 @@ fn reference_of(id: &str, sampler: &Sampler) -> Lesson {
     run
 }
 
-/// Number of the first particle whose slots have other fates than in the reference, or of all; and the largest distance between
-/// a particle before it and that of the reference. Those must have the same parent and the same level.
+/// Number of the first particle whose slots have other fates than in the reference, or of all; and
+/// the largest distance between a particle before it and that of the reference. Those must have the
+/// same parent and the same level.
 fn agreement(id: &str, fast: &Particles, reference: &[Particle]) -> (usize, f64) {
     let both = fast.len().min(reference.len());
     let first = (0..both).find(|&i| fast.slots[i] != reference[i].slots).unwrap_or(both);
@@ -63,15 +64,16 @@ fn the_front_places_the_particles_of_the_reference() {
         assert_eq!(fast.len(), run.particles().len(), "{id}");
         let (first, apart) = agreement(id, fast, run.particles());
         assert_eq!(first, fast.len(), "{id}: the first particle with other fates");
-        // The front is in single precision. Where rounding decides whether a child passes the residual of 10⁻⁴ r, the difference
-        // is of that size, and it grows from level to level.
+        // The front is in single precision. Where rounding decides whether a child passes the
+        // residual of 10⁻⁴ r, the difference is of that size, and it grows from level to level.
         assert!(apart < 0.01 * sampler.radius(), "{id}: {apart} apart");
     }
 }
 
 #[test]
 fn where_the_front_leaves_the_reference_rounding_has_decided() {
-    // Where the curvature changes its sign, differences grow until one decides a comparison. What follows is another front.
+    // Where the curvature changes its sign, differences grow until one decides a comparison. What
+    // follows is another front.
     for share in [0.007, 0.008, 0.009] {
         let sampler = front("tanglecube", share);
         let (fast, mut run) = (sampler.particles(), reference_of("tanglecube", &sampler));
@@ -110,7 +112,8 @@ fn a_front_covers_smooth_surfaces_regularly() {
         assert_eq!(figures.order.open, 0, "{context}");
         assert_eq!(figures.connectivity.components, 1, "{context}");
         assert_eq!(figures.connectivity.euler, euler, "{context}");
-        // A residual of 10⁻⁴ r is half of that in units of the spacing. Single precision adds its rounding.
+        // A residual of 10⁻⁴ r is half of that in units of the spacing. Single precision adds its
+        // rounding.
         assert!(figures.accuracy.err_max <= 2.5e-4, "{context}");
         // No two particles are closer than the match tolerance.
         let closest = figures.spacing.nn_min * figures.d_hex / (2.0 * sampler.radius());

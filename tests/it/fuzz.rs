@@ -1,5 +1,5 @@
-//! Mutated formulas, files and requests, by the checks that libFuzzer runs for long (`fuzz/`), and whole runs on damaged formulas
-//! of the gallery.
+//! Mutated formulas, files and requests, by the checks that libFuzzer runs for long (`fuzz/`), and
+//! whole runs on damaged formulas of the gallery.
 
 use crate::cases;
 use marching_particles::field::formula::MAX_FORMULA_BYTES;
@@ -36,7 +36,8 @@ fn tokens() -> Vec<Vec<u8>> {
     quoted.map(|line| line.trim_end_matches('"').replace("\\\\", "\\").into_bytes()).collect()
 }
 
-/// A seed with fewer than `most` changes: bytes drop out or change, pieces of the dictionary or of another seed come in.
+/// A seed with fewer than `most` changes: bytes drop out or change, pieces of the dictionary or of
+/// another seed come in.
 fn mutated(random: &mut Pcg32, seeds: &[Vec<u8>], tokens: &[Vec<u8>], most: usize) -> Vec<u8> {
     let mut bytes = seeds[below(random, seeds.len())].clone();
     for _ in 0..below(random, most) {

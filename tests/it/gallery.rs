@@ -35,7 +35,8 @@ fn differences(field: &dyn Field, p: DVec3, h: f64) -> (DVec3, [f64; 6]) {
 
 #[test]
 fn derivatives_agree_with_central_differences() {
-    // The error of a central difference is about h² times the third derivative, plus a rounding error of 1e-16/h.
+    // The error of a central difference is about h² times the third derivative, plus a rounding
+    // error of 1e-16/h.
     const STEP: f64 = 1e-5;
     const TOLERANCE: f64 = 1e-6;
     for surface in SURFACES.iter() {
@@ -77,7 +78,8 @@ fn batches_agree_with_double_precision() {
         let (mut value2, mut gradient2) = (vec![0.0; n], vec![Vec3::ZERO; n]);
         field.evaluator(Frame::default()).hessians(&points, &mut value2, &mut gradient2, &mut hessian);
         let jets: Vec<Jet> = points.iter().map(|p| field.jet(p.as_dvec3())).collect();
-        // Rounding errors are relative to the terms of the sum, which are as large as the field's maximum in the box.
+        // Rounding errors are relative to the terms of the sum, which are as large as the field's
+        // maximum in the box.
         let size = |of: &dyn Fn(&Jet) -> f64| jets.iter().map(of).fold(1.0, f64::max);
         let sizes = [
             size(&|jet| jet.value.abs()),

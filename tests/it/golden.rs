@@ -1,4 +1,5 @@
-//! Golden files: results that the same code gives on every platform, kept as JSON in `tests/golden`.
+//! Golden files: results that the same code gives on every platform, kept as JSON in
+//! `tests/golden`.
 //!
 //! `UPDATE_GOLDEN=1` writes them anew, after a change that is meant to alter them.
 

@@ -28,8 +28,9 @@ fn run(id: &str, settings: &Settings) -> (Sampler, Figures) {
 
 #[test]
 fn sizes_that_differ_come_out_in_order() {
-    // Surface, seed, and the least of six, of the mean smallest angle and of the smallest angle, and the most of the spread of
-    // distances over radii. The adaptive front comes to 0.91, 55.2°, 34° and 0.067.
+    // Surface, seed, and the least of six, of the mean smallest angle and of the smallest angle,
+    // and the most of the spread of distances over radii. The adaptive front comes to 0.91, 55.2°,
+    // 34° and 0.067.
     for (id, seed, [six, mean, smallest, spread]) in
         [("ellipsoid", 0, [0.97, 55.4, 37.0, 0.06]), ("torus", 1, [0.975, 56.2, 37.0, 0.05])]
     {
@@ -73,7 +74,8 @@ fn radii_are_those_of_the_law_and_their_cells_cover_the_surface() {
     }
     // Elsewhere the slope is what limits them.
     assert!(as_law as f64 >= 0.9 * particles.len() as f64, "{as_law} of {}", particles.len());
-    // The adaptive front comes to 1.01 here. Where particles are large they lie a little closer than wanted.
+    // The adaptive front comes to 1.01 here. Where particles are large they lie a little closer
+    // than wanted.
     let cells: f64 = particles.radius.iter().map(|&r| 12.0_f64.sqrt() * f64::from(r) * f64::from(r)).sum();
     assert!((0.98..1.09).contains(&(cells / f.area)), "cells cover {} of the surface", cells / f.area);
 }

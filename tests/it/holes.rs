@@ -104,7 +104,8 @@ fn the_largest_hole_of_a_clipped_surface_is_that_of_brute_force() {
     panic!("only {compared} surfaces had particles");
 }
 
-/// The middle of this surface is a sphere's like; two strips lie at opposite edges of the box, nearly in one plane.
+/// The middle of this surface is a sphere's like; two strips lie at opposite edges of the box,
+/// nearly in one plane.
 #[test]
 fn triangles_across_a_gap_do_not_count() {
     let formula = "0.764x^2 + 0.464x^2 y^4 - 0.243x^2 z^4 + 0.048y + 0.481z^4 + 0.413x^2 z + 1.11(x^2 + y^2 + z^2) - 0.89";

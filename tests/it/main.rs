@@ -1,5 +1,6 @@
-//! Integration tests, one module per part of the library. They are one binary, because linking each module by itself
-//! would take longer than running it. `cargo test --test it front::` runs one module.
+//! Integration tests, one module per part of the library. They are one binary, because linking each
+//! module by itself would take longer than running it. `cargo test --test it front::` runs one
+//! module.
 
 #[macro_use]
 mod settings;

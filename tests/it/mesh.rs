@@ -1,5 +1,6 @@
-//! Triangles over particles: one closed oriented manifold of the right genus over each smooth surface, one with border where
-//! the box cuts, and for any other set of points a manifold and a list of what is not in it.
+//! Triangles over particles: one closed oriented manifold of the right genus over each smooth
+//! surface, one with border where the box cuts, and for any other set of points a manifold and a
+//! list of what is not in it.
 
 use crate::runs::of_gallery;
 use glam::{DVec3, Vec3};

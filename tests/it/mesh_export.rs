@@ -1,4 +1,5 @@
-//! Mesh files, read back. `cargo xtask test gltf` gives the GLB files that this writes to Khronos' validator.
+//! Mesh files, read back. `cargo xtask test gltf` gives the GLB files that this writes to Khronos'
+//! validator.
 
 use crate::runs::of_gallery;
 use glam::Vec3;
@@ -378,7 +379,8 @@ fn files_face_outward_whichever_way_f_grows_and_the_report_says_so() {
     }
 }
 
-/// A 3MF file's documents by their names: the archive is read by its central directory, as readers do.
+/// A 3MF file's documents by their names: the archive is read by its central directory, as readers
+/// do.
 fn entries(bytes: &[u8]) -> BTreeMap<String, &[u8]> {
     let half = |at: usize| usize::from(u16::from_le_bytes([bytes[at], bytes[at + 1]]));
     let end = bytes.len() - 22;

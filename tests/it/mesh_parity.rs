@@ -1,8 +1,9 @@
-//! Test that the same run gives the same mesh files on every platform. It compares what the native core writes with the digests in
-//! `tests/golden/meshes.json`; `tests/wasm/parity.mjs` compares the WebAssembly core, and a browser test what the page
-//! downloads, with the same file.
+//! Test that the same run gives the same mesh files on every platform. It compares what the native
+//! core writes with the digests in `tests/golden/meshes.json`; `tests/wasm/parity.mjs` compares the
+//! WebAssembly core, and a browser test what the page downloads, with the same file.
 //!
-//! A change that is meant to alter meshes or particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test it mesh_parity::`.
+//! A change that is meant to alter meshes or particles rewrites the file:
+//! `UPDATE_GOLDEN=1 cargo test --test it mesh_parity::`.
 
 use crate::golden;
 use crate::runs::run;

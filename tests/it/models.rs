@@ -1,7 +1,8 @@
 //! Origin of the points of the built-in models, with tests that the shipped files hold them.
 //!
-//! Two models are made here from formulas. The bunny's points are vertices of the closed mesh in the npm package
-//! `bunny` 1.0.1, which is not part of this project. These commands make all files again:
+//! Two models are made here from formulas. The bunny's points are vertices of the closed mesh in
+//! the npm package `bunny` 1.0.1, which is not part of this project. These commands make all files
+//! again:
 //!
 //! ```sh
 //! npm pack bunny@1.0.1 && tar xzf bunny-1.0.1.tgz
@@ -97,8 +98,9 @@ fn every_model_has_two_hundred_points_of_its_own() {
     assert_eq!(models::cloud("ellipsoid"), None);
 }
 
-/// Function of an ellipsoid with the given centre and semi-axes, rotated about y (top forward) and then about z (front
-/// to the left) by angles in degrees. It approximates the distance; the rounder the ellipsoid, the better.
+/// Function of an ellipsoid with the given centre and semi-axes, rotated about y (top forward) and
+/// then about z (front to the left) by angles in degrees. It approximates the distance; the rounder
+/// the ellipsoid, the better.
 fn ellipsoid(centre: [f64; 3], axes: [f64; 3], (pitch, yaw): (f64, f64)) -> String {
     let (sp, cp) = libm::sincos(pitch.to_radians());
     let (sy, cy) = libm::sincos(yaw.to_radians());
@@ -118,8 +120,8 @@ fn union(parts: &[(f64, String)]) -> String {
     parts[1..].iter().fold(first, |all, (width, part)| format!("smin({all}, {part}, {width})"))
 }
 
-/// Points of the formula's surface on lattice lines parallel to the axes, in the box from (−1.3, −1.3, −0.3) to
-/// (1.3, 1.3, 2.7).
+/// Points of the formula's surface on lattice lines parallel to the axes, in the box from (−1.3,
+/// −1.3, −0.3) to (1.3, 1.3, 2.7).
 fn points_of(formula: &str) -> Cloud {
     const STEP: f64 = 0.04;
     const CELLS: [usize; 3] = [65, 65, 75];
@@ -216,7 +218,8 @@ struct Mesh {
     faces: Vec<[usize; 3]>,
 }
 
-/// Mesh of the bunny from the only file of the package, rotated so that z is up and the bunny faces along x.
+/// Mesh of the bunny from the only file of the package, rotated so that z is up and the bunny faces
+/// along x.
 fn bunny(text: &str) -> Mesh {
     let rows = |name: &str| -> Vec<[f64; 3]> {
         let list = text.split_once(&format!("exports.{name}=[[")).expect("the list is there").1;
@@ -244,9 +247,10 @@ fn bunny(text: &str) -> Mesh {
     Mesh { vertices: Cloud { position, normal, ..Cloud::default() }, faces }
 }
 
-/// Vertices of the ears without their outer sides. The ears are the two largest components of the mesh above `HEIGHT`.
-/// A vertex belongs if its normal does not point away from the nearest vertex of the other ear. (If only the vertices
-/// that face the other ear were removed, the gap below the handle would be so narrow that coarse particles bridge it.)
+/// Vertices of the ears without their outer sides. The ears are the two largest components of the
+/// mesh above `HEIGHT`. A vertex belongs if its normal does not point away from the nearest vertex
+/// of the other ear. (If only the vertices that face the other ear were removed, the gap below the
+/// handle would be so narrow that coarse particles bridge it.)
 fn between_the_ears(mesh: &Mesh) -> Vec<bool> {
     const HEIGHT: f64 = 8.0;
     /// Cosine of the angle between the normal and the direction to the other ear.

@@ -1,5 +1,5 @@
-//! Tests that sheets of the surface very near each other are told apart, or that the report says that they are not; and that it
-//! explains figures of the sample that are not those of the surface.
+//! Tests that sheets of the surface very near each other are told apart, or that the report says
+//! that they are not; and that it explains figures of the sample that are not those of the surface.
 
 use crate::runs::{finished, session};
 use marching_particles::field::formula::Formula;
@@ -16,7 +16,8 @@ fn of_radius(radius: f64, half: f64) -> Settings {
     settings!(radius_share: radius / (2.0 * half * 3.0_f64.sqrt()); ..Settings::default())
 }
 
-/// Particles of half to one and a half times this radius, by the curvature, in a cube of half-width `half`.
+/// Particles of half to one and a half times this radius, by the curvature, in a cube of half-width
+/// `half`.
 fn adaptive(radius: f64, half: f64) -> Settings {
     let share = of_radius(radius, half).radius_share;
     settings!(sampling: Sampling::Adaptive,
@@ -25,7 +26,8 @@ fn adaptive(radius: f64, half: f64) -> Settings {
         chord_error: 6e-4; ..Settings::default())
 }
 
-/// Concentric spheres about the unit sphere, and planes, at equal distances; with the number of components and the Euler number.
+/// Concentric spheres about the unit sphere, and planes, at equal distances; with the number of
+/// components and the Euler number.
 fn layers(gap: f64) -> [(String, usize, i64); 4] {
     let spheres = |count: u32| {
         let factor = |k: u32| format!("(x^2+y^2+z^2-(1+{k}*{gap})^2)");
@@ -56,7 +58,8 @@ fn sheets_as_near_as_single_precision_tells_apart_are_sampled_each() {
 
 #[test]
 fn the_area_of_two_near_sheets_is_that_of_both() {
-    // Nearer to each other than the nodes of the survey's grid, so that no two neighbouring nodes differ in sign.
+    // Nearer to each other than the nodes of the survey's grid, so that no two neighbouring nodes
+    // differ in sign.
     let planes = |gap: f64| format!("(z-0.31-0.2*x)*(z-0.31-{gap}-0.2*x)");
     let spheres = |gap: f64| format!("(x^2+y^2+z^2-1)*(x^2+y^2+z^2-(1+{gap})^2)");
     for gap in [0.02, 1e-3, 1e-4] {

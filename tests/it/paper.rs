@@ -1,7 +1,8 @@
-//! Tests of the paper's algorithms and of the lesson's engine, which runs them: what the paper says holds, going back is exact, and
-//! the digests are those of every platform.
+//! Tests of the paper's algorithms and of the lesson's engine, which runs them: what the paper says
+//! holds, going back is exact, and the digests are those of every platform.
 //!
-//! A change that is meant to move particles rewrites the golden file: `UPDATE_GOLDEN=1 cargo test --test it paper::`.
+//! A change that is meant to move particles rewrites the golden file:
+//! `UPDATE_GOLDEN=1 cargo test --test it paper::`.
 
 use crate::golden;
 use glam::DVec3;

@@ -1,8 +1,10 @@
-//! Test that the same field, parameters and seed give the same particles on every platform. It compares the native core
-//! with the digests in `tests/golden/digests.json`; `tests/wasm/parity.mjs` compares the WebAssembly core, and the
-//! browser tests the page, with the same file.
+//! Test that the same field, parameters and seed give the same particles on every platform. It
+//! compares the native core with the digests in `tests/golden/digests.json`;
+//! `tests/wasm/parity.mjs` compares the WebAssembly core, and the browser tests the page, with the
+//! same file.
 //!
-//! A change that is meant to move particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test it parity::`.
+//! A change that is meant to move particles rewrites the file:
+//! `UPDATE_GOLDEN=1 cargo test --test it parity::`.
 
 use crate::golden;
 use marching_particles::field::model;
@@ -42,7 +44,8 @@ struct Run {
     digest: String,
 }
 
-/// Units of work per step. Any other number must give the same particles, and the WebAssembly test uses another one.
+/// Units of work per step. Any other number must give the same particles, and the WebAssembly test
+/// uses another one.
 const BUDGET: u32 = 100_000;
 
 fn run(case: &Run) -> (usize, String) {

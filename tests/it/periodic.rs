@@ -1,4 +1,5 @@
-//! Unit cells: opposite faces of the box are the same bit for bit but for the shift, and copies of the mesh join across them.
+//! Unit cells: opposite faces of the box are the same bit for bit but for the shift, and copies of
+//! the mesh join across them.
 
 use glam::DVec3;
 use marching_particles::field::formula::Formula;
@@ -28,7 +29,8 @@ fn sampled(field: Formula, count: u32, method: Method) -> Sample {
     run.finish().expect("there is a surface")
 }
 
-/// The topology of the surface without the faces across these axes, once it is joined to itself there.
+/// The topology of the surface without the faces across these axes, once it is joined to itself
+/// there.
 fn glued(sample: &Sample) -> Topology {
     let particles = sample.particles();
     let is_face = |row: u32| {
@@ -42,7 +44,8 @@ fn glued(sample: &Sample) -> Topology {
     Topology::new(&triangles, particles.len())
 }
 
-/// Checks that opposite faces have the same rows and triangles, and returns the number of pairs of particles.
+/// Checks that opposite faces have the same rows and triangles, and returns the number of pairs of
+/// particles.
 fn check_faces(sample: &Sample, bounds: &Bounds, axes: &[u8], what: &str) -> usize {
     let particles = sample.particles();
     let own: Vec<u8> = particles.opposite.iter().map(|faces| faces.axis).collect();
@@ -99,7 +102,8 @@ fn check_mesh(sample: &Sample, what: &str) {
 
 #[test]
 fn unit_cells_have_the_same_opposite_faces_and_join_across_them() {
-    // Of genus 3 in the cell that repeats (Schwarz; Schoen 1970), of which the box of 2π holds two, one and four.
+    // Of genus 3 in the cell that repeats (Schwarz; Schoen 1970), of which the box of 2π holds two,
+    // one and four.
     for (text, euler) in [(GYROID, -8), (SCHWARZ_P, -4), (SCHWARZ_D, -16)] {
         let bounds = one_period(&mut formula(text));
         for (count, method) in [(1500, Method::Front), (4000, Method::Front), (4000, Method::Refined)] {
@@ -122,7 +126,8 @@ fn unit_cells_have_the_same_opposite_faces_and_join_across_them() {
 
 #[test]
 fn sheets_and_solids_with_creases_of_their_own_repeat() {
-    // A wall has two sides. The cubes are around the corners of the box, which its faces cut, and the hollows within it.
+    // A wall has two sides. The cubes are around the corners of the box, which its faces cut, and
+    // the hollows within it.
     let cell = Bounds::cube(core::f64::consts::PI);
     for (field, euler, what) in [
         (formula(GYROID).thickened(0.6), -16, "a gyroid's wall"),

@@ -91,8 +91,8 @@ fn estimated_normals_of_sphere_and_torus_are_right_and_outward() {
 
 #[test]
 fn estimated_normals_of_thin_shapes_point_outward() {
-    // The shapes are a leaf, whose thickness is a twentieth of its length, and a needle. The points do not resolve the
-    // curvature at the rim of the leaf.
+    // The shapes are a leaf, whose thickness is a twentieth of its length, and a needle. The points
+    // do not resolve the curvature at the rim of the leaf.
     for axes in [DVec3::new(1.0, 0.7, 0.05), DVec3::new(1.0, 0.05, 0.05)] {
         let position: Vec<DVec3> = sphere(5000).iter().map(|p| *p * axes).collect();
         let mut cloud = Cloud { position, normal: Vec::new(), source: NormalSource::Estimated };

@@ -1,9 +1,9 @@
-//! Tests of jobs from a file or a model to a field: they give the same bits on every platform and for any budget per
-//! step, and errors are explained.
+//! Tests of jobs from a file or a model to a field: they give the same bits on every platform and
+//! for any budget per step, and errors are explained.
 //!
-//! `tests/golden/points.json` holds digests of the solved systems, and `tests/wasm/points.mjs` compares the WebAssembly
-//! module with the same file. A change that is meant to move surfaces rewrites it: `UPDATE_GOLDEN=1 cargo test --test
-//! it pointcloud_job::`.
+//! `tests/golden/points.json` holds digests of the solved systems, and `tests/wasm/points.mjs`
+//! compares the WebAssembly module with the same file. A change that is meant to move surfaces
+//! rewrites it: `UPDATE_GOLDEN=1 cargo test --test it pointcloud_job::`.
 
 use crate::golden;
 use crate::rbf::sampled;
@@ -44,8 +44,8 @@ fn file(text: &str, centres: u32) -> Result<Fit, JobError> {
     run(Job::file("points.xyz", text.into(), centres)?, 100)
 }
 
-/// Text of points on an ellipsoid: grid points on the faces of a cube, projected onto it. `tests/wasm/points.mjs` makes
-/// the same.
+/// Text of points on an ellipsoid: grid points on the faces of a cube, projected onto it.
+/// `tests/wasm/points.mjs` makes the same.
 fn ellipsoid(steps: i32, normals: bool) -> String {
     let mut text = String::new();
     for i in -steps..=steps {
@@ -237,7 +237,8 @@ fn fewer_points_of_a_model_can_be_fitted_and_the_others_are_measured() {
     }
 }
 
-/// Thinning leaves at most 20,000 points, among which the centres are chosen; the residuals are those of all points.
+/// Thinning leaves at most 20,000 points, among which the centres are chosen; the residuals are
+/// those of all points.
 #[test]
 fn the_points_that_thinning_leaves_out_are_measured_too() {
     let mut text = ellipsoid(42, true);
@@ -245,7 +246,8 @@ fn the_points_that_thinning_leaves_out_are_measured_too() {
     assert!(count > 2 * KEPT, "{count} points");
     let of = |text: &str| file(text, 100).expect("a good cloud").info;
     let before = of(&text);
-    // A point 0.001 from another, which shares its cell and stands before it in the file, so that thinning leaves this one out.
+    // A point 0.001 from another, which shares its cell and stands before it in the file, so that
+    // thinning leaves this one out.
     let first: Vec<f64> =
         text.lines().next().expect("points").split(' ').map(|word| word.parse().expect("a number")).collect();
     let [x, y, z] = [0, 1, 2].map(|k| first[k] * 1.001);
@@ -401,7 +403,8 @@ fn random_points(is_torus: bool, count: usize, random: &mut Pcg64Mcg) -> Vec<(DV
     points
 }
 
-/// Text of the points, each coordinate with normal noise of a share of `size`, with their normals or without.
+/// Text of the points, each coordinate with normal noise of a share of `size`, with their normals
+/// or without.
 fn noisy(points: &[(DVec3, DVec3)], noise: f64, has_normals: bool, random: &mut Pcg64Mcg) -> String {
     let mut number = || (f64::from(random.next_u32()) + 0.5) / (f64::from(u32::MAX) + 1.0);
     // Box and Muller's method.
@@ -419,7 +422,8 @@ fn noisy(points: &[(DVec3, DVec3)], noise: f64, has_normals: bool, random: &mut 
     text
 }
 
-/// Components and Euler number of a fit, and the root of the mean square of its distances from the true surface.
+/// Components and Euler number of a fit, and the root of the mean square of its distances from the
+/// true surface.
 fn distance_of(fit: Fit, distance: impl Fn(DVec3) -> f64) -> (usize, i64, f64) {
     let (session, report) = sampled(fit, &Settings::with_count(2000));
     let connectivity = report.measures.quality.expect("particles").connectivity;
@@ -461,7 +465,8 @@ fn noise_is_smoothed_by_all_points() {
     }
 }
 
-/// With noise of 1 % and no normals, what the 200 points gave had 3 components and the Euler number −65.
+/// With noise of 1 % and no normals, what the 200 points gave had 3 components and the Euler number
+/// −65.
 #[test]
 fn a_noisy_bunny_keeps_its_form() {
     let bunny = marching_particles::pointcloud::fit_model(&MODELS[0]);

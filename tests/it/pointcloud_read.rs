@@ -83,7 +83,8 @@ pub(crate) fn assert_is_tetrahedron(cloud: &Cloud) {
     }
 }
 
-/// Binary PLY in either byte order: `header` follows the format line, and rows of numbers follow the header.
+/// Binary PLY in either byte order: `header` follows the format line, and rows of numbers follow
+/// the header.
 pub(crate) fn binary_ply(big: bool, header: &str, rows: &[(&str, f64)]) -> Vec<u8> {
     let order = if big { "big" } else { "little" };
     let mut bytes = format!("ply\nformat binary_{order}_endian 1.0\n{header}end_header\n").into_bytes();
@@ -165,8 +166,8 @@ fn ply_as_text_has_any_line_ends_and_faces_of_any_size() {
         let (cloud, _) = cloud("a.ply", text.replace('\n', end));
         assert_eq!(cloud.len(), 5);
         assert_eq!(cloud.normal[4], DVec3::Z);
-        // A corner of the base gets the area vector of the base, 4 downwards, and those of two sides of area √2, each
-        // with 1 upwards.
+        // A corner of the base gets the area vector of the base, 4 downwards, and those of two
+        // sides of area √2, each with 1 upwards.
         for (n, p) in cloud.normal.iter().zip(&cloud.position).take(4) {
             assert!(
                 (*n - DVec3::new(p.x, p.y, -2.0).normalize_or_zero()).length() < 1e-12,

@@ -1,4 +1,5 @@
-//! Products whose factors cross: each factor is sampled by itself, up to curves on which four sheets share their particles.
+//! Products whose factors cross: each factor is sampled by itself, up to curves on which four
+//! sheets share their particles.
 
 use core::f64::consts::PI;
 use glam::DVec3;
@@ -22,7 +23,8 @@ fn crossings(sample: &Sample) -> usize {
 fn factors_that_cross_are_one_surface_of_the_right_euler_number() {
     let (refined, front) = (Method::Refined, Method::Front);
     for (text, half, method, euler, area, creases) in [
-        // Euler numbers add up, less those of the curves, and more those of points on three factors.
+        // Euler numbers add up, less those of the curves, and more those of points on three
+        // factors.
         ("(x^2+y^2+z^2-1) ((x-1)^2+y^2+z^2-1)", 2.2, refined, 4, 8.0 * PI, [1, 0]),
         ("(x^2+y^2+z^2-1) ((x-1)^2+y^2+z^2-1)", 2.2, front, 4, 8.0 * PI, [1, 0]),
         // A torus and a ball around half of its tube: both circles on the one are on the other.
@@ -70,7 +72,8 @@ fn a_particle_on_a_crossing_has_a_row_for_each_of_four_sheets() {
         assert_eq!(rows.len(), 4);
         let p = particles.place(rows[0]);
         assert!((p.length() - 1.0).abs() < 1e-6 && (p.distance(DVec3::X) - 1.0).abs() < 1e-6, "{p}");
-        // Two sheets of each ball, which face opposite ways: inside of the other ball f is positive within the ball.
+        // Two sheets of each ball, which face opposite ways: inside of the other ball f is positive
+        // within the ball.
         let normals: Vec<DVec3> = rows.iter().map(|&row| particles.normal[row].as_dvec3()).collect();
         for normal in &normals {
             assert_eq!(normals.iter().filter(|other| other.dot(*normal) < -0.999).count(), 1, "{normals:?}");

@@ -1,5 +1,6 @@
-//! A property of random surfaces whose components are known: where the search says `proven`, every component holds particles
-//! or is named in the report, with its place and its size. Where it does not say so, the report says why.
+//! A property of random surfaces whose components are known: where the search says `proven`, every
+//! component holds particles or is named in the report, with its place and its size. Where it does
+//! not say so, the report says why.
 
 use crate::cases;
 use crate::runs::session;
@@ -83,8 +84,8 @@ impl Piece {
     }
 }
 
-/// Smallest gap above which sheets have to be told apart in a box of half-width 1, where two units in the last place are 2⁻²²: 48
-/// of these, and half as much again.
+/// Smallest gap above which sheets have to be told apart in a box of half-width 1, where two units
+/// in the last place are 2⁻²²: 48 of these, and half as much again.
 const RESOLVED: f64 = 2e-5;
 /// Usual share of gaps below a thousandth of the radius.
 const TINY_SHARE: f64 = 0.2;
@@ -128,7 +129,8 @@ impl Random {
         self.direction() * self.between(0.0, most)
     }
 
-    /// A gap between sheets, from a thousandth of the radius of a particle to ten of them, now and then from 10⁻⁷ on.
+    /// A gap between sheets, from a thousandth of the radius of a particle to ten of them, now and
+    /// then from 10⁻⁷ on.
     fn gap(&mut self, r: f64) -> f64 {
         let gap = if self.unit() < self.tiny_share {
             self.length(1e-7, 1e-3 * r)
@@ -151,7 +153,8 @@ fn says(warnings: &[Warning], words: &str) -> bool {
     warnings.iter().any(|warning| warning.to_string().contains(words))
 }
 
-/// Says whether the search was proven; panics if it says so and a component is neither sampled nor named.
+/// Says whether the search was proven; panics if it says so and a component is neither sampled nor
+/// named.
 fn holds(case: &Case, context: &str) -> bool {
     let Case { formula, pieces, settings } = case;
     let mut session = session(formula, Bounds::cube(1.0));
@@ -189,7 +192,8 @@ fn holds(case: &Case, context: &str) -> bool {
         let place = DVec3::from_array(position);
         let Some(k) = nearest(place) else { continue };
         is_told[k] = true;
-        // What is larger than is followed may have witnesses too far from one another to be connected.
+        // What is larger than is followed may have witnesses too far from one another to be
+        // connected.
         names[k] += usize::from(!goes_on);
         // Only what the box cuts, or what is larger than is followed, goes on.
         if let (false, Some(width)) = (goes_on, pieces[k].width()) {
@@ -206,8 +210,8 @@ fn holds(case: &Case, context: &str) -> bool {
     true
 }
 
-/// Runs the cases of a family. At least this share of those without a gap below [`RESOLVED`] must be proven. The search takes the
-/// factors of a formula one by one.
+/// Runs the cases of a family. At least this share of those without a gap below [`RESOLVED`] must
+/// be proven. The search takes the factors of a formula one by one.
 fn family(name: &str, share: f64, make: impl Fn(&mut Random, f64) -> Vec<Piece>) {
     family_of(name, share, (75, TINY_SHARE), |factors| factors.join("*"), make);
 }
@@ -232,7 +236,8 @@ fn family_of(
             relax_steps: random.count(0, 3),
             seed,
             sampling: if adaptive { Sampling::Adaptive } else { Sampling::Uniform },
-            // Adaptive particles about as large as uniform ones: with the usual error all cases take 2.6 times as long.
+            // Adaptive particles about as large as uniform ones: with the usual error all cases
+            // take 2.6 times as long.
             chord_error: 1e-3; ..Settings::default());
         let case = Case { formula: join(&formula), pieces, settings };
         let is_proven = holds(&case, &format!("{name} {seed}"));

@@ -51,8 +51,8 @@ fn torus() -> Analytic<impl Fn(DVec3) -> Jet + Send + Sync> {
 
 const HEXAGONAL: [f64; 2] = [0.5, 0.866_025_403_784_438_6];
 
-/// Plane lattice spanned by (1, 0) and `second`, times `scale`, in the square of half-width `half`, and that square as
-/// clip box.
+/// Plane lattice spanned by (1, 0) and `second`, times `scale`, in the square of half-width `half`,
+/// and that square as clip box.
 fn lattice(second: [f64; 2], scale: f64, half: f64) -> (Vec<Vec3>, Bounds) {
     let steps = (4.0 * half / scale) as i32;
     let mut points = Vec::new();
@@ -164,7 +164,8 @@ fn hexagonal_lattice_is_perfect_in_every_figure() {
 
 #[test]
 fn square_lattice_has_valence_four_and_half_right_angles() {
-    // The scale is a power of two: all coordinates are exact, and the corners of each square are exactly cocircular.
+    // The scale is a power of two: all coordinates are exact, and the corners of each square are
+    // exactly cocircular.
     let scale = 1.0 / 32.0;
     let (points, bounds) = lattice([0.0, 1.0], scale, 1.0);
     let report = measure(&points, &[], &plane(), Some(&bounds), &with_area(points.len(), scale * scale));
@@ -178,7 +179,8 @@ fn square_lattice_has_valence_four_and_half_right_angles() {
     assert_eq!(report.valence[centre], 4);
     // exp(6iθ) of the four neighbours is 1, −1, 1, −1.
     close("psi6", f.order.psi6, 0.0, 1e-9);
-    // The four corners of a square see different triangulations of it, on none of which two corners agree.
+    // The four corners of a square see different triangulations of it, on none of which two corners
+    // agree.
     close("agree", f.connectivity.agree, 0.0, 0.0);
     assert!(f.angles.ang_min.is_nan());
 }
@@ -199,7 +201,8 @@ fn nearly_square_lattice_has_the_figures_of_the_square() {
     // The circumradius of a triangle of area 1/2 is half the product of its sides.
     let circumradius = 0.5 * (1.0_f64 + 0.02 * 0.02).sqrt() * (1.0_f64 + 0.98 * 0.98).sqrt();
     close("cover", f.coverage.cover, circumradius / (d_hex / 3.0_f64.sqrt()), 1e-4);
-    // The mean squared distance to the centre of a unit square is 1/6. The measured region cuts through a row of cells.
+    // The mean squared distance to the centre of a unit square is 1/6. The measured region cuts
+    // through a row of cells.
     close("quant", f.coverage.quant, (1.0 / 6.0) / (5.0 / (18.0 * 3.0_f64.sqrt())), 0.01);
 }
 
@@ -237,8 +240,9 @@ fn fibonacci_sphere_is_a_closed_manifold() {
     close("tri_ok", f.connectivity.tri_ok, 1.0, 2e-3);
     close("agree", f.connectivity.agree, 1.0, 3e-3);
     assert_eq!((f.order.open, f.boundary_excluded), (0, 0));
-    // On a closed triangulation Σ (6 − valence) = 6χ. Near the poles four points are almost cocircular; where both
-    // diagonals are accepted, there are two neighbours and two triangles too many.
+    // On a closed triangulation Σ (6 − valence) = 6χ. Near the poles four points are almost
+    // cocircular; where both diagonals are accepted, there are two neighbours and two triangles too
+    // many.
     let defect: i32 = report.valence.iter().map(|&v| 6 - i32::from(v)).sum();
     let surplus = (f.connectivity.tri_ok - 1.0) * (2 * n - 4) as f64;
     close("defect", f64::from(defect), 12.0 - surplus, 1e-6);
@@ -316,7 +320,8 @@ fn hole_is_measured_as_a_hole() {
 
 #[test]
 fn missed_component_and_missed_half_are_holes_too() {
-    // The second of two unit spheres has no particles. Its far pole is at the distance 5 from the first sphere.
+    // The second of two unit spheres has no particles. Its far pole is at the distance 5 from the
+    // first sphere.
     let pair = Analytic(|p| {
         let other = p - DVec3::X * 4.0;
         let centre = if p.x < 2.0 { p } else { other };
@@ -393,7 +398,8 @@ fn touching_the_box_from_inside_is_no_border_and_crossing_it_is() {
     let options = MeasureOptions { area: Some(area), ..MeasureOptions::default() };
     let f = measure(&points, &[], &sphere(), Some(&cut), &options).figures;
     println!("{f:#?}");
-    // The zone extends from the border, 60° from the pole, to where the chord to the border is 4 d_hex.
+    // The zone extends from the border, 60° from the pole, to where the chord to the border is 4
+    // d_hex.
     let arc = 2.0 * (2.0 * f.d_hex).asin();
     let zone = core::f64::consts::TAU * (0.5 - (60.0_f64.to_radians() + arc).cos());
     let wanted = zone / area * points.len() as f64;
@@ -415,7 +421,8 @@ fn edges_are_compared_with_the_wanted_radii() {
     let equal = vec![0.5 * scale as f32; points.len()];
     close("equal radii", measured(Some(&equal)), 0.0, 1e-4);
     assert!(measured(None).is_nan());
-    // The sum of radii is 6 in one half and 2 in the other, so |P − Q| / sum has the values s/6 and s/2.
+    // The sum of radii is 6 in one half and 2 in the other, so |P − Q| / sum has the values s/6 and
+    // s/2.
     let unequal: Vec<f32> = points.iter().map(|p| if p.x > 0.0 { 3.0 } else { 1.0 }).collect();
     close("two sizes", measured(Some(&unequal)), 0.5, 0.03);
     // With equal radii, the variation is that of the edges themselves.
@@ -425,9 +432,9 @@ fn edges_are_compared_with_the_wanted_radii() {
     close("size_cv", f.edges.size_cv, f.edges.edge_cv, 1e-6);
 }
 
-/// Conformal image, under exp, of a hexagonal lattice: the spacing is proportional to the distance from the origin, and
-/// each point has six neighbours. Returns the points in the square from 0.55 to 1.35 and their radii, which are half
-/// the distance of neighbours to first order in `step`.
+/// Conformal image, under exp, of a hexagonal lattice: the spacing is proportional to the distance
+/// from the origin, and each point has six neighbours. Returns the points in the square from 0.55
+/// to 1.35 and their radii, which are half the distance of neighbours to first order in `step`.
 fn growing_lattice(step: f64) -> (Vec<Vec3>, Vec<f32>) {
     let (mut points, mut radii) = (Vec::new(), Vec::new());
     let reach = (1.0 / step) as i64 + 2;
@@ -454,7 +461,8 @@ fn smoothly_growing_particles_are_measured_against_their_own_size() {
     let options = MeasureOptions { area: Some(0.64), radii: Some(&radii), ..MeasureOptions::default() };
     let f = measure(&points, &[], &plane(), Some(&bounds), &options).figures;
     println!("{} points: {f:#?}", points.len());
-    // A neighbour at δ = step · exp(iθ) in the logarithm is 2 |sinh(δ/2)| / (step cosh(Re δ/2)) sums of radii away.
+    // A neighbour at δ = step · exp(iθ) in the logarithm is 2 |sinh(δ/2)| / (step cosh(Re δ/2))
+    // sums of radii away.
     let ratios = [0.0, 60.0_f64, 120.0].map(|angle| {
         let (re, im) = (0.5 * step * angle.to_radians().cos(), 0.5 * step * angle.to_radians().sin());
         let sinh_sq = re.sinh() * re.sinh() + im.sin() * im.sin();
@@ -492,8 +500,8 @@ fn a_missing_particle_is_a_hole_of_its_own_size() {
         let options = MeasureOptions { area: Some(0.64), radii: Some(&radius), ..MeasureOptions::default() };
         measure(&position, &[], &plane(), Some(&bounds), &options).figures
     };
-    // The six points around a missing one are a spacing away from its position, √3 times as far as from the centre of
-    // an ideal triangle.
+    // The six points around a missing one are a spacing away from its position, √3 times as far as
+    // from the centre of an ideal triangle.
     let root_3 = 3.0_f64.sqrt();
     let small = hole_at(Vec3::new(0.72, 0.72, 0.0));
     close("cover_local, small", small.coverage.cover_local, root_3, 0.05);
@@ -580,7 +588,8 @@ fn the_energy_is_one_in_a_lattice_less_beside_a_hole_and_more_in_a_crowd() {
         .expect("a neighbour");
     for sizes in [None, Some(&radii[..])] {
         close("lattice", f64::from(energy_of(&whole, middle, sizes)), 1.0, 1e-4);
-        // Half a spacing nearer: exp(−1/2) instead of exp(−2) from one of six, and less from others.
+        // Half a spacing nearer: exp(−1/2) instead of exp(−2) from one of six, and less from
+        // others.
         let mut crowd = whole.clone();
         crowd[neighbour] = 0.5 * (whole[neighbour] + whole[middle]);
         let energy = energy_of(&crowd, middle, sizes);

@@ -1,5 +1,5 @@
-//! Random solids: bodies with centres on a grid, so that they touch, cut and cross each other in special places, sampled and joined to a
-//! mesh.
+//! Random solids: bodies with centres on a grid, so that they touch, cut and cross each other in
+//! special places, sampled and joined to a mesh.
 
 use crate::cases;
 use crate::fuzz::{below, harness};
@@ -56,7 +56,8 @@ fn solid(random: &mut Pcg32, depth: usize) -> String {
     }
 }
 
-/// Samples and joins a random solid, and checks what there is of it. Returns whether all of its particles are joined to one oriented surface.
+/// Samples and joins a random solid, and checks what there is of it. Returns whether all of its
+/// particles are joined to one oriented surface.
 fn check(seed: u64) -> bool {
     let mut random = Pcg32::seed_from_u64(seed);
     let depth = 1 + below(&mut random, 3);

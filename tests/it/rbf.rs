@@ -1,4 +1,5 @@
-//! Tests of fields from points: the fit, its errors, and the evaluation against the sum in double precision.
+//! Tests of fields from points: the fit, its errors, and the evaluation against the sum in double
+//! precision.
 
 use crate::runs::run;
 use glam::{DVec3, Vec3};
@@ -120,7 +121,8 @@ fn derivatives_agree_with_differences() {
     }
 }
 
-/// Points on the surface and off it, near a centre, on the faces of the octree's cells, and far away.
+/// Points on the surface and off it, near a centre, on the faces of the octree's cells, and far
+/// away.
 fn places(fit: &Fit) -> Vec<Vec3> {
     let mut random = Random::new(11);
     let mut places = Vec::new();
@@ -160,7 +162,8 @@ fn batches_agree_with_the_sum_in_double_precision() {
         for (i, &p) in places.iter().enumerate() {
             let jet = fit.data.jet(p.as_dvec3());
             let size = jet.gradient.length().max(1.0);
-            // The coordinates are of the order of 1. Away from the surface the cells are larger and less accurate.
+            // The coordinates are of the order of 1. Away from the surface the cells are larger and
+            // less accurate.
             let off = (f64::from(value[i]) - jet.value).abs();
             let allowed = if jet.value.abs() < 1e-3 { 3e-5 } else { 2e-4 * (1.0 + jet.value.abs()) };
             assert!(off < allowed * size, "{id}: {} for {} at {p}", value[i], jet.value);
@@ -182,8 +185,8 @@ fn batches_agree_with_the_sum_in_double_precision() {
                 distances.push(off / jet.gradient.length());
             }
         }
-        // On the surface, three quarters of the errors are within a tenth of the tolerance of particles of the default
-        // radius.
+        // On the surface, three quarters of the errors are within a tenth of the tolerance of
+        // particles of the default radius.
         distances.sort_by(f64::total_cmp);
         let quartile = distances[distances.len() * 3 / 4] / fit.bounds.diagonal();
         assert!(quartile < 6e-7, "{id}: {quartile:e} of the diagonal");
@@ -223,8 +226,8 @@ fn the_result_at_a_point_depends_on_the_point_alone() {
     let mut value = vec![0.0; n];
     let mut gradient = vec![Vec3::ZERO; n];
     field.evaluator(Frame::default()).gradients(&places, &mut value, &mut gradient);
-    // The point is evaluated alone, in another order, with cells made by other points, and with fewer and more
-    // derivatives.
+    // The point is evaluated alone, in another order, with cells made by other points, and with
+    // fewer and more derivatives.
     let other = RbfField::new(fit.data).expect("a field");
     let mut hessian = [Sym3::<f32>::default()];
     for i in (0..n).rev() {
@@ -339,8 +342,8 @@ fn unusable_points_are_refused_with_the_reason() {
     assert_eq!(with(&|c| *c = Cloud::default()), FitError::TooFew { count: 0 });
     let plane = with(&|c| c.position.iter_mut().for_each(|p| p.z = 0.25));
     assert_eq!(plane, FitError::Cloud(CloudError::Plane));
-    // Two points are as near as allowed, with normals that point at each other. The system is solved, with or without a
-    // warning.
+    // Two points are as near as allowed, with normals that point at each other. The system is
+    // solved, with or without a warning.
     let mut cloud = good;
     cloud.position[20] = cloud.position[4] + DVec3::X * 3e-6;
     cloud.normal[20] = -cloud.normal[4];
@@ -393,7 +396,8 @@ fn a_pull_takes_its_place_along_and_leaves_what_is_far() {
     assert!((there - before).abs() < 1e-12, "{there} in the place of {before}");
     let far = DVec3::from(first.at) + DVec3::splat(2.0 * first.reach);
     assert_eq!(pulled.jet(far), own.jet(far));
-    // The second derivatives of the model itself have no limit at its centres; the points are beside them.
+    // The second derivatives of the model itself have no limit at its centres; the points are
+    // beside them.
     let step = 1e-5 * first.reach;
     let mut random = Random::new(5);
     for _ in 0..40 {

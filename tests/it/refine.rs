@@ -1,4 +1,5 @@
-//! The refinement of a coarse front: its figures, its count, and what happens where it cannot be had.
+//! The refinement of a coarse front: its figures, its count, and what happens where it cannot be
+//! had.
 
 use crate::runs::{begun, figures, sampled, sampled_in_any_steps};
 use marching_particles::field::formula::Formula;
@@ -13,7 +14,8 @@ fn refined(count: u32, seed: u64) -> Settings {
     settings!(method: Method::Refined, size_mode: SizeMode::Count, count, seed; ..Settings::default())
 }
 
-/// Columns that belong together: every particle but the first of a component has a parent one level below.
+/// Columns that belong together: every particle but the first of a component has a parent one level
+/// below.
 pub(crate) fn assert_rings(particles: &Particles) {
     for i in 0..particles.len() {
         let parent = particles.parent[i];
@@ -98,7 +100,8 @@ fn what_is_cancelled_keeps_the_last_whole_level() {
             "{} particles after {steps} steps",
             particles.len()
         );
-        // The coarse front and the first level are too coarse for the triangles of the report to agree everywhere.
+        // The coarse front and the first level are too coarse for the triangles of the report to
+        // agree everywhere.
         let close = if particles.len() > 300 { 0.0 } else { 0.03 };
         assert!(
             (f.connectivity.tri_ok - 1.0).abs() <= close,
@@ -153,8 +156,8 @@ fn on_small_sphere(particles: &Particles) -> usize {
 #[test]
 fn each_component_is_refined_as_often_as_it_allows() {
     let (field, bounds) = two_spheres();
-    // With one number of levels for both there is none with 180 particles on the small sphere, and the front stands: six is 0.93,
-    // 0.965 and 0.97.
+    // With one number of levels for both there is none with 180 particles on the small sphere, and
+    // the front stands: six is 0.93, 0.965 and 0.97.
     for (count, levels, six) in [(4_000, 2, 0.965), (14_000, 3, 0.985), (40_000, 3, 0.985)] {
         let sampler = sampled(&field, &bounds, &refined(count, 0), 10_000);
         let counts = sampler.counts();
@@ -346,7 +349,8 @@ fn fronts_that_cannot_be_refined_are_not_tried_for_ever() {
     /// Steps of 10,000 units of work, ten times as many as it takes.
     const STEPS: usize = 900;
 
-    // The middle of an edge of one sphere is nearer to the other one. The first of them can be refined all the same.
+    // The middle of an edge of one sphere is nearer to the other one. The first of them can be
+    // refined all the same.
     for outer in [1.02, 1.0002] {
         let text = format!("(x^2 + y^2 + z^2 - 1) (x^2 + y^2 + z^2 - {outer})");
         let field = Formula::as_written(&text, &[]).expect("a formula");

@@ -1,5 +1,5 @@
-//! Tests of the relaxation (paper §4.5): the energy decreases at every step, holes and crowded pairs shrink, and
-//! particles stay on the surface.
+//! Tests of the relaxation (paper §4.5): the energy decreases at every step, holes and crowded
+//! pairs shrink, and particles stay on the surface.
 
 use crate::runs::{begun, gallery_figures, sampled};
 use crate::smooth::smooth;
@@ -26,12 +26,14 @@ fn before_and_after(surface: &gallery::Surface, settings: &Settings) -> (Particl
     (before, sampler)
 }
 
-/// Weight of the repulsion of two particles whose normals have this cosine: 1 up to 60°, 0 from 120°.
+/// Weight of the repulsion of two particles whose normals have this cosine: 1 up to 60°, 0 from
+/// 120°.
 fn same_sheet_weight(cosine: f32) -> f64 {
     (0.5 + f64::from(cosine)).clamp(0.0, 1.0)
 }
 
-/// Energy per particle by its definition, over all pairs. A sweep along one axis excludes most of the pairs.
+/// Energy per particle by its definition, over all pairs. A sweep along one axis excludes most of
+/// the pairs.
 fn energy(particles: &Particles, radius: f64) -> f64 {
     let Particles { local: position, normal, .. } = particles;
     let mut order: Vec<usize> = (0..particles.len()).collect();
@@ -50,13 +52,15 @@ fn energy(particles: &Particles, radius: f64) -> f64 {
     sum / particles.len() as f64
 }
 
-/// Energies by the definition before the first relaxation step and after each step, and those that the sampler reports.
+/// Energies by the definition before the first relaxation step and after each step, and those that
+/// the sampler reports.
 fn energies(surface: &gallery::Surface, settings: &Settings) -> (Vec<f64>, Vec<f64>) {
     let field = surface.field();
     let mut sampler = begun(&field, &surface.bounds, settings);
     while sampler.step(&field, 100_000).phase != Phase::Relaxation {}
     let mut defined = Vec::new();
-    // Steps of one unit of work catch the particles of an accepted step before the next one moves any.
+    // Steps of one unit of work catch the particles of an accepted step before the next one moves
+    // any.
     while sampler.step(&field, 1).stop_reason.is_none() {
         if sampler.energy().len() > defined.len() {
             defined.push(energy(sampler.particles(), sampler.radius()));
@@ -72,8 +76,9 @@ fn the_energy_falls_at_every_step_on_every_smooth_surface_at_every_radius() {
             let settings = settings!(radius_share; ..Settings::default());
             let (defined, reported) = energies(surface, &settings);
             let context = format!("{} at {radius_share}: {defined:?}, reported {reported:?}", surface.id);
-            // Where many particles have a neighbour across a bend that the radius does not resolve, the forces do not lower the energy
-            // any further, and the relaxation ends before its tenth step: of the double torus at 0.03 for a fifth of 60 seeds.
+            // Where many particles have a neighbour across a bend that the radius does not resolve,
+            // the forces do not lower the energy any further, and the relaxation ends before its
+            // tenth step: of the double torus at 0.03 for a fifth of 60 seeds.
             let is_coarse = radius_share >= 0.03;
             assert_eq!(defined.len(), reported.len(), "{context}");
             assert!(defined.len() == 11 || is_coarse && defined.len() > 1, "{context}");
@@ -91,7 +96,8 @@ fn cutting_a_relaxation_into_steps_changes_nothing_even_if_moves_are_taken_back(
     let settings = settings!(radius_share: 0.03; ..Settings::default());
     let run = |budget: u32| sampled(&surface.field(), &surface.bounds, &settings, budget);
     let whole = run(u32::MAX);
-    // There are two evaluations per particle and step, and two at the end. The others are those of rejected steps.
+    // There are two evaluations per particle and step, and two at the end. The others are those of
+    // rejected steps.
     let evaluations = whole.counts().relaxation_evaluations;
     assert!(evaluations > 22 * whole.particles().len() as u64, "no step was taken back: {evaluations}");
     for budget in [1, 7, 100] {
@@ -173,7 +179,8 @@ fn every_gallery_surface_is_sampled_with_particles_on_it_and_in_its_box() {
             residual.push(value.abs() / gradient.length() / sampler.radius());
         }
         residual.sort_by(f64::total_cmp);
-        // Near a singular point the first-order distance is meaningless. One particle in a hundred may be there.
+        // Near a singular point the first-order distance is meaningless. One particle in a hundred
+        // may be there.
         let share = if surface.smooth { 1.0 } else { 0.99 };
         let most = residual[((residual.len() - 1) as f64 * share) as usize];
         assert!(most < 2e-4, "{}: residual {most} r", surface.id);

@@ -37,7 +37,8 @@ pub(crate) fn of_gallery(id: &str, settings: &Settings) -> Sampler {
     sampled(&surface.field(), &surface.bounds, settings, 10_000)
 }
 
-/// The fates of the slots agree with what was counted, and each particle but a seed is the child of one other.
+/// The fates of the slots agree with what was counted, and each particle but a seed is the child of
+/// one other.
 pub(crate) fn assert_fates(sampler: &Sampler, context: &str) {
     let (particles, fates) = (sampler.particles(), sampler.counts().fates);
     let count = |fate| {

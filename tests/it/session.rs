@@ -454,8 +454,8 @@ fn a_field_from_points_takes_the_formulas_place_and_gives_it_back() {
     use marching_particles::field::model::ModelInfo;
     use marching_particles::field::rbf::RbfData;
 
-    // The field is r³ − 1, a sphere: one centre with α = 1 gives r³, and a far one with a small coefficient adds a
-    // constant.
+    // The field is r³ − 1, a sphere: one centre with α = 1 gives r³, and a far one with a small
+    // coefficient adds a constant.
     let data = RbfData {
         centres: vec![[0.0; 3], [0.0, 0.0, 1000.0]],
         alpha: vec![1.0, -1e-9],
@@ -574,7 +574,8 @@ mod solids {
         thickness: 0.0,
     };
 
-    /// A run of the session on a field, in which the box is found in slices of work, as the page has it.
+    /// A run of the session on a field, in which the box is found in slices of work, as the page
+    /// has it.
     fn run_on(session: &mut Session, field: &str, choice: SolidSettings, settings: &Settings) -> Bounds {
         session.set_field(&request(field)).expect("a field");
         session.choose(choice).expect("a solid");
@@ -608,7 +609,8 @@ mod solids {
         assert!((cell.size() - period).abs().max_element() < 1e-9, "{cell:?}");
         assert!(session.report().pairs.is_some_and(|pairs| pairs > 200));
         assert_eq!(open_edges(&mut session), 0);
-        // Without the choice the box is that of the gallery, and its faces are sampled each by itself.
+        // Without the choice the box is that of the gallery, and its faces are sampled each by
+        // itself.
         let closed = run_on(&mut session, gyroid, solid(BoxFaces::Closed, 0.0), &settings);
         assert!(closed.size().min_element() > 1.5 * period && session.report().pairs.is_none());
         // A box that is given stays, and the report says what does not repeat in it.
@@ -635,7 +637,8 @@ mod solids {
             let report = session.report();
             let volume = own.size().element_product();
             let half = 0.5 * volume;
-            // One half of a box of whole periods is inside the gyroid; the sheet takes about its thickness times its area.
+            // One half of a box of whole periods is inside the gyroid; the sheet takes about its
+            // thickness times its area.
             let wanted = if thickness > 0.0 { 0.2 * volume..0.3 * volume } else { 0.95 * half..1.05 * half };
             assert!(
                 report.joined_volume.is_some_and(|found| wanted.contains(&found)),
@@ -646,7 +649,8 @@ mod solids {
             assert_eq!(session.run.rows(), session.run.particles().len());
             assert!(session.run.count() < session.run.rows());
             assert!(report.cut.is_none() && report.proof.creases > Some(0), "{report:?}");
-            // The same request again, as when a setting changes, and the same parameters declared anew.
+            // The same request again, as when a setting changes, and the same parameters declared
+            // anew.
             let digest = session.run.particles().digest();
             run_on(&mut session, gyroid, closed, &settings);
             assert_eq!(session.run.particles().digest(), digest);

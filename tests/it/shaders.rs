@@ -1,5 +1,5 @@
-//! Tests of the shaders without a GPU: each is valid WGSL, translates to GLSL ES 3.00 as in wgpu's WebGL2 back end, and
-//! has the layout of the data that the Rust side writes.
+//! Tests of the shaders without a GPU: each is valid WGSL, translates to GLSL ES 3.00 as in wgpu's
+//! WebGL2 back end, and has the layout of the data that the Rust side writes.
 
 use marching_particles::Settings;
 use marching_particles::render::chunks::{CHUNK, MOST_RECORDS};
@@ -34,8 +34,8 @@ fn shaders() -> Vec<(&'static str, Module, ModuleInfo)> {
         .collect()
 }
 
-/// GLSL ES 3.00 of an entry point, translated with the flags of wgpu's WebGL2 back end, and its number of uniform
-/// blocks.
+/// GLSL ES 3.00 of an entry point, translated with the flags of wgpu's WebGL2 back end, and its
+/// number of uniform blocks.
 fn glsl(name: &str, module: &Module, info: &ModuleInfo, entry: &naga::EntryPoint) -> (String, usize) {
     let options = glsl::Options {
         version: glsl::Version::Embedded { version: 300, is_webgl: true },

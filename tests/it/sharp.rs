@@ -1,4 +1,5 @@
-//! Solids with sharp edges, from the formula to the mesh: closed, of the right Euler number, with the right volume.
+//! Solids with sharp edges, from the formula to the mesh: closed, of the right Euler number, with
+//! the right volume.
 
 use crate::cases;
 use crate::solid_table::{SOLIDS, Solid};
@@ -7,7 +8,8 @@ use marching_particles::{Formula, Method, Sample, Settings, sample};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
-/// Checks that the mesh of every solid is closed and keeps its edges, and that it has fewer defects once it is refined.
+/// Checks that the mesh of every solid is closed and keeps its edges, and that it has fewer defects
+/// once it is refined.
 fn check(settings: Settings) {
     for Solid { name, formula, euler, volume: exact, creases } in SOLIDS {
         let runs = [settings, settings.refined()].map(|settings| {
@@ -25,7 +27,8 @@ fn check(settings: Settings) {
             let components = &sample.mesh().topology.components;
             assert_eq!(components.len(), 1, "{name}");
             assert_eq!((components[0].euler(), components[0].border_edges), (euler, 0), "{name}");
-            // Flat faces lose nothing; round ones their distance from a chord, of the order of the square of the spacing.
+            // Flat faces lose nothing; round ones their distance from a chord, of the order of the
+            // square of the spacing.
             let found = sample.volume().expect("a closed mesh");
             let slack = 12.0 / f64::from(count);
             assert!((found / exact - 1.0).abs() <= slack, "{name}: volume {found} for {exact}");

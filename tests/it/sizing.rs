@@ -1,5 +1,5 @@
-//! Tests of the radius field in adaptive sampling (paper §5): radii follow the radius law, respect the grading, and the
-//! relaxation evens them out.
+//! Tests of the radius field in adaptive sampling (paper §5): radii follow the radius law, respect
+//! the grading, and the relaxation evens them out.
 
 use crate::runs::{gallery_figures, of_gallery, sampled};
 use marching_particles::differential::{Curvature, curvatures};

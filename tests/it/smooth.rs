@@ -1,5 +1,5 @@
-//! The surfaces on which claims about smooth closed surfaces are made: a round one, one whose curvature varies, one with a handle
-//! and one with five.
+//! The surfaces on which claims about smooth closed surfaces are made: a round one, one whose
+//! curvature varies, one with a handle and one with five.
 
 use marching_particles::field::gallery;
 

@@ -23,7 +23,8 @@ const fn solid(
     Solid { name, formula, euler, volume, creases }
 }
 
-/// Volume of the union of two unit balls whose centres are 1 apart: two balls less their lens of 5π/12.
+/// Volume of the union of two unit balls whose centres are 1 apart: two balls less their lens of
+/// 5π/12.
 const TWO_BALLS: f64 = 8.0 * PI / 3.0 - 5.0 * PI / 12.0;
 
 pub(crate) const SOLIDS: [Solid; 19] = [
@@ -107,7 +108,8 @@ pub(crate) const SOLIDS: [Solid; 19] = [
         [2, 0],
     ),
     solid("two cylinders", "max(x^2 + y^2, x^2 + z^2) - 1", 2, 16.0 / 3.0, [4, 2]),
-    // The corner of the cuts is just outside the ball, and three creases are too short to be found by themselves.
+    // The corner of the cuts is just outside the ball, and three creases are too short to be found
+    // by themselves.
     solid(
         "ball with three cuts",
         "max(x^2 + y^2 + z^2 - 1, x - 0.5785, y - 0.5785, z - 0.5785)",

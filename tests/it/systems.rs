@@ -1,4 +1,5 @@
-//! Tests of the two particle systems that the paper compares its methods with: they do what their sources say.
+//! Tests of the two particle systems that the paper compares its methods with: they do what their
+//! sources say.
 
 use glam::DVec3;
 use marching_particles::field::formula::Formula;

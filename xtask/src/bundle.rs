@@ -56,9 +56,11 @@ impl Purpose {
 pub(crate) enum Bundle {
     /// The sampler, which runs in a worker.
     Core,
-    /// The solver that makes fields from files of points. It runs in a worker of its own when it is asked for.
+    /// The solver that makes fields from files of points. It runs in a worker of its own when it is
+    /// asked for.
     Points,
-    /// The paper's algorithms event by event, which run in a worker of their own when the lesson is asked for.
+    /// The paper's algorithms event by event, which run in a worker of their own when the lesson is
+    /// asked for.
     Lesson,
     /// The renderer on WebGPU.
     Webgpu,
@@ -117,8 +119,9 @@ impl Bundle {
         }
     }
 
-    /// The core and the solver are built for speed: at level s the solver weighs 1.4 kB less and takes 1.7 times as long.
-    /// The renderers work on the GPU and the lesson is slow for a reader's sake, so what counts is the time to load them.
+    /// The core and the solver are built for speed: at level s the solver weighs 1.4 kB less and
+    /// takes 1.7 times as long. The renderers work on the GPU and the lesson is slow for a reader's
+    /// sake, so what counts is the time to load them.
     fn opt_level(self) -> &'static str {
         match self {
             Self::Core | Self::Points => "3",
@@ -127,9 +130,10 @@ impl Bundle {
         }
     }
 
-    /// Flags of the compiler for this bundle alone. A function of more than this cost is called where LLVM's own limit, 250, would
-    /// still copy it into its callers: the core weighs 7 % less. Those that run often ask for it by `#[inline]`, so that
-    /// sampling takes as many instructions as before; at 40 it weighs 9 % less and takes 1 to 4 % more.
+    /// Flags of the compiler for this bundle alone. A function of more than this cost is called
+    /// where LLVM's own limit, 250, would still copy it into its callers: the core weighs 7 % less.
+    /// Those that run often ask for it by `#[inline]`, so that sampling takes as many instructions
+    /// as before; at 40 it weighs 9 % less and takes 1 to 4 % more.
     fn flags(self) -> &'static [&'static str] {
         match self {
             Self::Core | Self::Points => &["-Cllvm-args=-inline-threshold=100"],
@@ -137,8 +141,9 @@ impl Bundle {
         }
     }
 
-    /// The sources that the bundle is made of, under the root. The renderers share the crate with the sampler but use
-    /// nothing of it (`tests/architecture.rs` holds them to that), so that a change to the sampler leaves them alone.
+    /// The sources that the bundle is made of, under the root. The renderers share the crate with
+    /// the sampler but use nothing of it (`tests/architecture.rs` holds them to that), so that a
+    /// change to the sampler leaves them alone.
     fn sources(self) -> &'static [&'static str] {
         match self {
             Self::Core | Self::Points | Self::Lesson => &["src"],
@@ -254,8 +259,8 @@ fn process_version(project: &Project, bundle: Bundle) -> Result<String> {
         .finish())
 }
 
-/// The flags for the wasm target. They are set here in full, so that `RUSTFLAGS` in the environment does not change
-/// what is published; paths of this machine are kept out of the panic messages.
+/// The flags for the wasm target. They are set here in full, so that `RUSTFLAGS` in the environment
+/// does not change what is published; paths of this machine are kept out of the panic messages.
 fn rust_flags(project: &Project, bundle: Bundle) -> Vec<String> {
     let mut flags = vec!["-Ctarget-feature=+simd128".to_owned()];
     flags.extend(bundle.flags().iter().map(|&flag| flag.to_owned()));
@@ -277,12 +282,14 @@ fn compile(project: &Project, target: &WasmTarget, bundle: Bundle, purpose: Purp
         .args(["--profile", purpose.profile()])
         .args(["--no-default-features", "--features", bundle.features()])
         .arg("--message-format=json-render-diagnostics")
-        // Cargo lets one build at a time into a folder. This one is apart so that the native checks can run meanwhile.
+        // Cargo lets one build at a time into a folder. This one is apart so that the native checks
+        // can run meanwhile.
         .env("CARGO_TARGET_DIR", project.target.join("wasm"))
         .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", bundle.opt_level())
         .env("CARGO_ENCODED_RUSTFLAGS", rust_flags(project, bundle).join("\u{1f}"))
-        // Without this the builds would write one file of the same name, and cargo would take one bundle's
-        // module for another's. With it the name carries a hash of the features and the profile.
+        // Without this the builds would write one file of the same name, and cargo would take one
+        // bundle's module for another's. With it the name carries a hash of the features and the
+        // profile.
         .env("__CARGO_DEFAULT_LIB_METADATA", bundle.folder());
     let messages = step::run(&format!("{}: compile", bundle.folder()), &mut command, "")?;
     let module = messages
@@ -301,15 +308,17 @@ fn compile(project: &Project, target: &WasmTarget, bundle: Bundle, purpose: Purp
     module.context("cargo named no wasm module among its results")
 }
 
-/// Writes the module and its JavaScript to `stage`. This is the work of the `wasm-bindgen` command with `--target web`, as a
-/// library: the lock file pins its version, and nobody has to install a tool.
+/// Writes the module and its JavaScript to `stage`. This is the work of the `wasm-bindgen` command
+/// with `--target web`, as a library: the lock file pins its version, and nobody has to install a
+/// tool.
 fn bind(bundle: Bundle, module: &Path, stage: &Path) -> Result<()> {
     step::task(&format!("{}: bind", bundle.folder()), || {
         Bindgen::new()
             .input_path(module)
             .out_name(bundle.out_name())
             .typescript(true)
-            // Keeps `new URL('…_bg.wasm', import.meta.url)` in the module, which is how bundlers find the wasm file.
+            // Keeps `new URL('…_bg.wasm', import.meta.url)` in the module, which is how bundlers
+            // find the wasm file.
             .omit_default_module_path(false)
             .remove_producers_section(true)
             .web(true)?

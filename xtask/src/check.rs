@@ -34,7 +34,8 @@ pub(crate) enum Part {
     LintWasm,
     /// Unit, integration and documentation tests, and every example.
     Native,
-    /// The core, the solver for points and the lesson as WebAssembly, in Node, against the digests of the native ones.
+    /// The core, the solver for points and the lesson as WebAssembly, in Node, against the digests
+    /// of the native ones.
     Parity,
     /// The page: format, lint, types, unit tests and those of its engine with the core, in Node.
     Page,
@@ -43,7 +44,8 @@ pub(crate) enum Part {
     /// Licences, sources and duplicates of the dependencies; skipped, with the reason, without
     /// cargo-deny.
     Deny,
-    /// rustdoc, warnings denied, the crate as cargo would publish it, and a program that depends on it.
+    /// rustdoc, warnings denied, the crate as cargo would publish it, and a program that depends on
+    /// it.
     Docs,
     /// The bundles of the published site, held to their budgets and to the digests of the native
     /// core.
@@ -55,7 +57,8 @@ pub(crate) enum Part {
     Readers,
     /// Pictures of the renderer, drawn natively by Vulkan, against those that are kept.
     Pictures,
-    /// A core of the browser tests in Firefox and WebKit; skipped, with the reason, where they cannot be had.
+    /// A core of the browser tests in Firefox and WebKit; skipped, with the reason, where they
+    /// cannot be had.
     Browsers,
     /// Hundreds of resamplings in Chromium, after which the page holds no more memory than before.
     Soak,
@@ -88,7 +91,8 @@ const ALL: [Part; 15] = [
 /// because the last crate of every build takes one processor only.
 const BUNDLES: [Part; 3] = [Part::Parity, Part::Release, Part::Page];
 
-/// Parts that drive a browser, which takes all processors and waits for time to pass: they run last and alone.
+/// Parts that drive a browser, which takes all processors and waits for time to pass: they run last
+/// and alone.
 const BROWSERS: [Part; 3] = [Part::Chromium, Part::Browsers, Part::Soak];
 
 /// Without WebAssembly and a browser.
@@ -102,8 +106,8 @@ pub(crate) struct Options {
     fast: bool,
     /// Everything that the published site is held to: besides the usual parts the documentation,
     /// the bundles and the site as they are published, Firefox and WebKit, files in the programs
-    /// that read them, pictures drawn natively, all random cases, and a soak. With parts: these, on the published bundles
-    /// and with all random cases.
+    /// that read them, pictures drawn natively, all random cases, and a soak. With parts: these, on
+    /// the published bundles and with all random cases.
     #[arg(long)]
     all: bool,
     /// The parts to run; the usual ones if none is named.
@@ -134,8 +138,8 @@ struct Checks<'a> {
     cases: [(&'static str, String); 2],
 }
 
-/// Runs the checks. Parts that fail do not keep the others from running; the first line of each failure is repeated at
-/// the end.
+/// Runs the checks. Parts that fail do not keep the others from running; the first line of each
+/// failure is repeated at the end.
 pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
     let started = Instant::now();
     let parts = options.parts();
@@ -276,8 +280,8 @@ fn lint(project: &Project) -> Result<()> {
     step::run("lint (native)", &mut command, "").map(drop)
 }
 
-/// One pass for all bundles: their features can be had together. That for WebGL2 is left out, because no line of the sources
-/// depends on which back end the renderer has.
+/// One pass for all bundles: their features can be had together. That for WebGL2 is left out,
+/// because no line of the sources depends on which back end the renderer has.
 fn lint_wasm(project: &Project) -> Result<()> {
     let features =
         [Bundle::Core, Bundle::Points, Bundle::Lesson, Bundle::Webgpu].map(Bundle::features).join(",");

@@ -14,7 +14,8 @@ use crate::step;
 /// Variables that name an executable, the one the page's tests read first.
 const VARIABLES: [&str; 2] = ["CHROMIUM_PATH", "CHROME"];
 
-/// Names under which systems install the one without windows, in which a page takes a third less of the processor.
+/// Names under which systems install the one without windows, in which a page takes a third less of
+/// the processor.
 const HEADLESS: [&str; 2] = ["chromium-headless-shell", "chrome-headless-shell"];
 
 /// Names under which systems install the whole browser.
@@ -27,7 +28,8 @@ const PLACES: [&str; 3] = [
     r"C:\Program Files\Google\Chrome\Application\chrome.exe",
 ];
 
-/// Finds a Chromium that starts, or installs one: Debian's package without windows when root, else Playwright's own.
+/// Finds a Chromium that starts, or installs one: Debian's package without windows when root, else
+/// Playwright's own.
 pub(crate) fn find(project: &Project) -> Result<PathBuf> {
     for variable in VARIABLES {
         if let Some(path) = env::var_os(variable).map(PathBuf::from) {

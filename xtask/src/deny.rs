@@ -1,7 +1,8 @@
 //! Licences, sources and duplicates of the dependencies, by cargo-deny and `deny.toml`.
 //!
-//! The check looks at files of this machine only. It cannot fail because a registry is out of reach or because something new became
-//! known of a dependency: then the reason is printed, and the check is skipped.
+//! The check looks at files of this machine only. It cannot fail because a registry is out of reach
+//! or because something new became known of a dependency: then the reason is printed, and the check
+//! is skipped.
 
 use std::process::Command;
 

@@ -1,5 +1,5 @@
-//! Content hashes that decide whether a step's inputs have changed. Times of files are not used: a checkout or a copy
-//! changes them without changing anything else.
+//! Content hashes that decide whether a step's inputs have changed. Times of files are not used: a
+//! checkout or a copy changes them without changing anything else.
 
 use std::fs;
 use std::path::{Path, PathBuf};

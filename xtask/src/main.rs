@@ -42,9 +42,9 @@ Examples:
 
 /// Tasks of the Marching Particles project.
 ///
-/// Every task sets up what it needs and is missing: the compiler's WebAssembly target, the page's npm packages, a
-/// Chromium for the browser tests. What cannot be set up is named, with what to install. Node.js 20.19 or newer is the
-/// one thing to have beside Rust.
+/// Every task sets up what it needs and is missing: the compiler's WebAssembly target, the page's
+/// npm packages, a Chromium for the browser tests. What cannot be set up is named, with what to
+/// install. Node.js 20.19 or newer is the one thing to have beside Rust.
 #[derive(Parser)]
 #[command(bin_name = "cargo xtask", max_term_width = 100, disable_help_subcommand = true, after_help = EXAMPLES)]
 struct Arguments {

@@ -29,11 +29,13 @@ const SUITES: [&str; 8] = [
     "experimental",
 ];
 
-/// The packages that hold the compiler's source: the suite's own compiler, and the one kept for building browsers.
+/// The packages that hold the compiler's source: the suite's own compiler, and the one kept for
+/// building browsers.
 const PACKAGES: [&str; 2] = ["rust-src", "rust-web-src"];
 
-/// The `library` folder of the compiler's source, from the first place that has it: `RUST_SRC_PATH`, another toolchain
-/// of the same compiler, a package installed under `/usr/src`, and Debian's archive.
+/// The `library` folder of the compiler's source, from the first place that has it:
+/// `RUST_SRC_PATH`, another toolchain of the same compiler, a package installed under `/usr/src`,
+/// and Debian's archive.
 pub(crate) fn find(project: &Project, version: &str, release: &str) -> Result<PathBuf> {
     if let Some(path) = env::var_os("RUST_SRC_PATH").map(PathBuf::from) {
         if is_library(&path) {
@@ -122,7 +124,8 @@ fn find_package(folder: &Path, release: &str) -> Result<Option<Package>> {
     let index = folder.join("Packages.xz");
     for suite in SUITES {
         let url = format!("{DEBIAN}/dists/{suite}/main/binary-all/Packages.xz");
-        // A suite that has been archived or does not exist is no reason to stop looking in the others.
+        // A suite that has been archived or does not exist is no reason to stop looking in the
+        // others.
         if step::run(&format!("Debian's index of {suite}"), &mut fetch(&url, &index), "").is_err() {
             continue;
         }

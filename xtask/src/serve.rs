@@ -1,4 +1,5 @@
-//! The development server. What the page needs at once is built before it starts, the other bundles while it serves.
+//! The development server. What the page needs at once is built before it starts, the other bundles
+//! while it serves.
 
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
@@ -17,7 +18,8 @@ use crate::step;
 /// How often the Rust sources are looked at.
 const LOOK_EVERY: Duration = Duration::from_millis(400);
 
-/// Loaded into the server: it ends when its input does, that is when this process is gone, however it went.
+/// Loaded into the server: it ends when its input does, that is when this process is gone, however
+/// it went.
 const END_WITH_INPUT: &str = "data:text/javascript,process.stdin.on('end',()=>process.exit()).resume()";
 
 /// Options of the development server.
@@ -29,7 +31,8 @@ pub(crate) struct Options {
     /// The port to listen on; the next free one if it is taken.
     #[arg(long, default_value_t = 5173)]
     port: u16,
-    /// Draw with WebGPU where the browser has it, which compiles a second renderer; without this, with WebGL2.
+    /// Draw with WebGPU where the browser has it, which compiles a second renderer; without this,
+    /// with WebGL2.
     #[arg(long)]
     webgpu: bool,
     /// Serve the built static site (dist/) in place of the development server.
@@ -37,10 +40,12 @@ pub(crate) struct Options {
     release_site: bool,
 }
 
-/// Builds what is out of date, serves the page, and rebuilds the bundles whenever a Rust source or a shader changes.
+/// Builds what is out of date, serves the page, and rebuilds the bundles whenever a Rust source or
+/// a shader changes.
 pub(crate) fn serve(project: &Project, options: &Options) -> Result<()> {
     let started = Instant::now();
-    // One renderer is enough, and that for WebGL2 runs in every browser. The last two are for what a visitor may ask for later.
+    // One renderer is enough, and that for WebGL2 runs in every browser. The last two are for what
+    // a visitor may ask for later.
     let mut bundles = vec![Bundle::Core, Bundle::Webgl];
     bundles.extend(options.webgpu.then_some(Bundle::Webgpu));
     let first = bundles.len();
@@ -81,7 +86,8 @@ pub(crate) fn serve(project: &Project, options: &Options) -> Result<()> {
             println!("\n  sources changed");
         }
         seen = now;
-        // A source that does not compile is an everyday event: say so and keep serving the last good bundles.
+        // A source that does not compile is an everyday event: say so and keep serving the last
+        // good bundles.
         if let Err(error) = bundle::build(project, &bundles, Purpose::Development, Declarations::Rewrite) {
             eprintln!("\nerror: {error:#}\n");
         }

@@ -14,17 +14,19 @@ use crate::fingerprint::{files_under, sha256_of};
 use crate::node;
 use crate::project::Project;
 
-/// The largest gzip size, in kB, of what the page shows before any WebAssembly: HTML, style sheets and scripts.
+/// The largest gzip size, in kB, of what the page shows before any WebAssembly: HTML, style sheets
+/// and scripts.
 ///
-/// A budget is an alarm against accidents, not a goal. A change that needs more raises it in a commit of its own, which
-/// says why; no code is contorted to stay under one.
+/// A budget is an alarm against accidents, not a goal. A change that needs more raises it in a
+/// commit of its own, which says why; no code is contorted to stay under one.
 const FIRST_PAINT_BUDGET_KB: f64 = 87.0;
 
-/// The largest gzip size, in kB, of what the lesson's page shows before any WebAssembly; its figures come to life after that.
+/// The largest gzip size, in kB, of what the lesson's page shows before any WebAssembly; its
+/// figures come to life after that.
 const LESSON_PAGE_BUDGET_KB: f64 = 51.0;
 
-/// The largest gzip size of a bundle, in kB: its module and its JavaScript. What [`FIRST_PAINT_BUDGET_KB`] says of budgets
-/// holds here too.
+/// The largest gzip size of a bundle, in kB: its module and its JavaScript. What
+/// [`FIRST_PAINT_BUDGET_KB`] says of budgets holds here too.
 fn budget_kb(bundle: Bundle) -> f64 {
     match bundle {
         Bundle::Core => 726.0,
@@ -134,8 +136,9 @@ fn gzip_size(file: &Path, content: &[u8]) -> Result<usize> {
     Ok(encoder.finish()?.len())
 }
 
-/// The addresses, in the site, of the scripts and style sheets that a page loads before it first paints: scripts, module
-/// preloads (Vite lists the static imports of the entry there) and style sheets.
+/// The addresses, in the site, of the scripts and style sheets that a page loads before it first
+/// paints: scripts, module preloads (Vite lists the static imports of the entry there) and style
+/// sheets.
 fn first_paint(html: &str) -> Vec<String> {
     let mut found = Vec::new();
     for tag in html.split('<').filter_map(|part| part.split_once('>')).map(|(tag, _)| tag) {

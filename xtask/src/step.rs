@@ -1,5 +1,5 @@
-//! Running a command as a named step: what it does, how long it took, and on failure the command, its output and
-//! what to do.
+//! Running a command as a named step: what it does, how long it took, and on failure the command,
+//! its output and what to do.
 
 use std::io::{Read, Write as _};
 use std::process::{Command, Stdio};
@@ -15,8 +15,8 @@ pub(crate) fn set_verbose(verbose: bool) {
     VERBOSE.store(verbose, Ordering::Relaxed);
 }
 
-/// A step that has been announced and not yet finished. It has a line at its begin and one at its end, since other steps may run
-/// meanwhile.
+/// A step that has been announced and not yet finished. It has a line at its begin and one at its
+/// end, since other steps may run meanwhile.
 pub(crate) struct Step {
     label: String,
     started: Instant,
@@ -56,8 +56,8 @@ pub(crate) fn task<T>(label: &str, work: impl FnOnce() -> Result<T>) -> Result<T
     }
 }
 
-/// Runs `command` as a step and returns what it wrote to its standard output. A failure carries the command line, all
-/// it wrote, and `advice`.
+/// Runs `command` as a step and returns what it wrote to its standard output. A failure carries the
+/// command line, all it wrote, and `advice`.
 pub(crate) fn run(label: &str, command: &mut Command, advice: &str) -> Result<String> {
     task(label, || capture(command, advice))
 }

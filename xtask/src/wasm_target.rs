@@ -1,9 +1,10 @@
 //! The compiler's `wasm32-unknown-unknown` target.
 //!
-//! Where it is missing it is added through rustup. Where rustup's server cannot be reached, or there is no rustup, the
-//! standard library is compiled from its source as part of every wasm build (cargo's `-Zbuild-std`, which the stable
-//! compiler accepts under `RUSTC_BOOTSTRAP=1`). The compiler looks for that source inside its own folder, so where it
-//! has to be put there, it is put in a copy of the toolchain made of hard links; the toolchain itself is left alone.
+//! Where it is missing it is added through rustup. Where rustup's server cannot be reached, or
+//! there is no rustup, the standard library is compiled from its source as part of every wasm build
+//! (cargo's `-Zbuild-std`, which the stable compiler accepts under `RUSTC_BOOTSTRAP=1`). The
+//! compiler looks for that source inside its own folder, so where it has to be put there, it is put
+//! in a copy of the toolchain made of hard links; the toolchain itself is left alone.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -92,7 +93,8 @@ fn add_by_rustup(project: &Project) -> Result<()> {
     step::run(&format!("compiler target {TARGET} (rustup)"), &mut command, "").map(drop)
 }
 
-/// A compiler whose sysroot holds the standard library's source: `None` for cargo's own, if it has it.
+/// A compiler whose sysroot holds the standard library's source: `None` for cargo's own, if it has
+/// it.
 fn toolchain_with_source(project: &Project, sysroot: &Path, version: &str) -> Result<Option<PathBuf>> {
     if sysroot.join(SOURCE_IN_SYSROOT).join("std/Cargo.toml").is_file() {
         return Ok(None);
@@ -120,7 +122,8 @@ fn toolchain_with_source(project: &Project, sysroot: &Path, version: &str) -> Re
     Ok(Some(rustc))
 }
 
-/// Links the compiler, its libraries and the host's standard library. Documentation and sources are left out.
+/// Links the compiler, its libraries and the host's standard library. Documentation and sources are
+/// left out.
 fn link_toolchain(sysroot: &Path, copy: &Path) -> Result<()> {
     let executable = format!("bin/rustc{}", std::env::consts::EXE_SUFFIX);
     link_file(&sysroot.join(&executable), &copy.join(&executable))?;

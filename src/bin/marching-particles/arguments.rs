@@ -73,7 +73,8 @@ pub(crate) struct SweepArguments {
     #[command(flatten)]
     pub(crate) sampling: SamplingOptions,
 
-    /// Directory for the files, which is made if it is not there; files of the same names are replaced
+    /// Directory for the files, which is made if it is not there; files of the same names are
+    /// replaced
     #[arg(long, value_name = "DIRECTORY", help_heading = "Output")]
     pub(crate) out: PathBuf,
 
@@ -169,8 +170,8 @@ pub(crate) struct SampleArguments {
     #[arg(long, value_name = "NUMBER", value_parser = scale, default_value_t = 1.0, help_heading = "Output")]
     pub(crate) scale: f64,
 
-    /// Unit of the files of --mesh: 3mf names it, and glb is in metres, to which lengths are converted. Without it numbers stay what they
-    /// are: metres in glb, millimetres in 3mf
+    /// Unit of the files of --mesh: 3mf names it, and glb is in metres, to which lengths are
+    /// converted. Without it numbers stay what they are: metres in glb, millimetres in 3mf
     #[arg(long, value_name = "WORD", value_parser = one_of(&Unit::ALL), help_heading = "Output")]
     pub(crate) unit: Option<(&'static str, Unit)>,
 
@@ -178,9 +179,10 @@ pub(crate) struct SampleArguments {
     #[arg(long, value_name = "AXIS", value_parser = one_of(&UpAxis::ALL), default_value = "z", help_heading = "Output")]
     pub(crate) up: (&'static str, UpAxis),
 
-    /// Do not measure the particles: no figures of quality, no components and Euler number of the sample, no warnings that come
-    /// from these, and no columns valence, nearest and residual in the files. Measuring can take longer than sampling on surfaces
-    /// of many sheets and on long formulas
+    /// Do not measure the particles: no figures of quality, no components and Euler number of the
+    /// sample, no warnings that come from these, and no columns valence, nearest and residual in
+    /// the files. Measuring can take longer than sampling on surfaces of many sheets and on long
+    /// formulas
     #[arg(long, help_heading = "Output")]
     pub(crate) no_report: bool,
 
@@ -210,8 +212,8 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["surface", "formula", "parameters"], help_heading = "Surface")]
     pub(crate) points: Option<PathBuf>,
 
-    /// Centres of the surface among the points of --points or of a model, 100 to 800: more follow finer details and take longer
-    /// [default: 200]
+    /// Centres of the surface among the points of --points or of a model, 100 to 800: more follow
+    /// finer details and take longer [default: 200]
     #[arg(long, value_name = "N", help_heading = "Surface", value_parser = centres)]
     pub(crate) centres: Option<u32>,
 
@@ -219,22 +221,24 @@ pub(crate) struct SurfaceArguments {
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter, help_heading = "Surface")]
     pub(crate) parameters: Vec<(String, f64)>,
 
-    /// Box to sample in: `fit` for one around the surface of a formula, found up to ±10,000, in which what goes on for ever is cut;
-    /// `fixed` for a surface's own, ±2 for a formula; or H for -H..H on each axis, three half-widths, or the two corners (six
-    /// numbers), separated by commas. A named surface keeps its own box [default: fit]
+    /// Box to sample in: `fit` for one around the surface of a formula, found up to ±10,000, in
+    /// which what goes on for ever is cut; `fixed` for a surface's own, ±2 for a formula; or H for
+    /// -H..H on each axis, three half-widths, or the two corners (six numbers), separated by
+    /// commas. A named surface keeps its own box [default: fit]
     #[arg(
         long = "box", value_name = "fit|fixed|NUMBERS", value_parser = choice_of_box, allow_hyphen_values = true,
         help_heading = "Surface"
     )]
     pub(crate) bounds: Option<BoxChoice>,
 
-    /// Close with the faces of the box what they cut: the solid f ≤ 0 in the box, whose edges are sharp. For formulas
+    /// Close with the faces of the box what they cut: the solid f ≤ 0 in the box, whose edges are
+    /// sharp. For formulas
     #[arg(long, conflicts_with = "points", help_heading = "Surface")]
     pub(crate) closed: bool,
 
-    /// Give opposite faces of the box of --closed the same particles and triangles, bit for bit but for the shift, along every axis on
-    /// which it is a whole number of periods wide. Without --box, it is one period wide. The column `periodic` of ply and csv has the
-    /// pairs
+    /// Give opposite faces of the box of --closed the same particles and triangles, bit for bit but
+    /// for the shift, along every axis on which it is a whole number of periods wide. Without
+    /// --box, it is one period wide. The column `periodic` of ply and csv has the pairs
     #[arg(long, requires = "closed", help_heading = "Surface")]
     pub(crate) periodic: bool,
 
@@ -246,7 +250,8 @@ pub(crate) struct SurfaceArguments {
     #[arg(skip)]
     pub(crate) pulls: Vec<Pull>,
 
-    /// Sheet of this thickness around the surface, |f| ≤ T/2 |∇f|, in place of the surface. For formulas
+    /// Sheet of this thickness around the surface, |f| ≤ T/2 |∇f|, in place of the surface. For
+    /// formulas
     #[arg(long, value_name = "T", conflicts_with = "points", value_parser = thickness, help_heading = "Surface")]
     pub(crate) thickness: Option<f64>,
 }

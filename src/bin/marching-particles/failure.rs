@@ -10,7 +10,8 @@ use std::process::ExitCode;
 
 /// Exit code: a file could not be read or written.
 pub(crate) const FILE: u8 = 1;
-/// Exit code: an argument, the formula, a setting or a file of points is invalid. clap uses the same code.
+/// Exit code: an argument, the formula, a setting or a file of points is invalid. clap uses the
+/// same code.
 pub(crate) const USAGE: u8 = 2;
 /// Exit code: no particle could be placed.
 pub(crate) const NOTHING: u8 = 3;
@@ -81,7 +82,8 @@ impl fmt::Display for Failure {
 /// Writes the message, the formula with carets under the span, and suggestions.
 fn formula(f: &mut fmt::Formatter<'_>, text: &str, fault: &Fault) -> fmt::Result {
     write!(f, "error: {}", fault.message)?;
-    // A formula of more than three lines of a terminal breaks, and the carets are not below it; an error in --param has no span.
+    // A formula of more than three lines of a terminal breaks, and the carets are not below it; an
+    // error in --param has no span.
     const LONGEST: usize = 240;
     let has_span = fault.kind != FaultKind::Formula(FormulaErrorKind::BadParameter);
     if has_span && !text.is_empty() && text.len() <= LONGEST {

@@ -12,7 +12,8 @@ use marching_particles::{FormulaErrorKind, Settings, SettingsError};
 use serde_json::{Map, Value as Json};
 use std::ops::RangeInclusive;
 
-/// The option that asks for sizes that follow the curvature, and the setting that it chooses a value of.
+/// The option that asks for sizes that follow the curvature, and the setting that it chooses a
+/// value of.
 const ADAPTIVE: &str = "adaptive";
 const SAMPLING: &str = "sampling";
 /// The option that asks for a number of particles, by which the measure of the size is chosen too.
@@ -96,7 +97,8 @@ fn length(text: &str) -> Result<Length, String> {
     }
 }
 
-/// Settings of a run as the options give them: lengths become shares of the box's diagonal only once there is a box.
+/// Settings of a run as the options give them: lengths become shares of the box's diagonal only
+/// once there is a box.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SamplingOptions {
     values: Map<String, Json>,
@@ -195,7 +197,8 @@ impl FromArgMatches for SamplingOptions {
     }
 }
 
-/// Whether a setting has an option here. Those of the box are among the options of the surface, which say more.
+/// Whether a setting has an option here. Those of the box are among the options of the surface,
+/// which say more.
 fn is_of_run(setting: &Setting) -> bool {
     setting.name != SIZE_MODE && setting.group != SettingGroup::Box
 }
@@ -224,7 +227,8 @@ fn option(setting: &Setting) -> Arg {
         }
         SettingKind::Integer => {
             let (min, max) = setting.accepted().into_inner();
-            // Counts that are too large are refused with what they are counts of, by the settings themselves.
+            // Counts that are too large are refused with what they are counts of, by the settings
+            // themselves.
             let largest = if max > f64::from(u32::MAX) { u64::MAX } else { u32::MAX.into() };
             let range = min as u64..=largest;
             arg.value_name("N").value_parser(move |text: &str| whole(text, &range))

@@ -41,7 +41,8 @@ pub(crate) struct Outcome {
     pub(crate) seconds: Seconds,
     /// Peak resident memory of the process in 10⁶ bytes; null if the system does not report it.
     pub(crate) peak_mb: Option<f64>,
-    /// Peak resident memory at the end of the sampling, before quality is measured and files are written.
+    /// Peak resident memory at the end of the sampling, before quality is measured and files are
+    /// written.
     pub(crate) peak_sampling_mb: Option<f64>,
     /// Names of the files written, with replacement characters for invalid Unicode.
     pub(crate) files: Vec<String>,

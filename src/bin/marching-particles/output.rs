@@ -6,8 +6,8 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
-/// A file that is written beside its path and takes the place of what is there when it is complete. One that is dropped before is
-/// removed, and what is there stays.
+/// A file that is written beside its path and takes the place of what is there when it is complete.
+/// One that is dropped before is removed, and what is there stays.
 #[derive(Debug)]
 pub(crate) struct OutputFile {
     path: PathBuf,
@@ -19,7 +19,8 @@ impl OutputFile {
     ///
     /// # Errors
     ///
-    /// If a directory does not take files, a path is that of a directory, or two paths are of one file.
+    /// If a directory does not take files, a path is that of a directory, or two paths are of one
+    /// file.
     pub(crate) fn beside(paths: &[&PathBuf]) -> Result<Vec<Self>, Failure> {
         let mut outputs: Vec<Self> = Vec::new();
         for &path in paths {

@@ -22,7 +22,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// Units of work between two readings of the clock. They take about 0.1 ms, which is the accuracy of the phases' times.
+/// Units of work between two readings of the clock. They take about 0.1 ms, which is the accuracy
+/// of the phases' times.
 const BUDGET: u32 = 256;
 
 /// The record of what a file was made from: in it, or in the file beside it.
@@ -248,7 +249,8 @@ fn fit_points(arguments: &SurfaceArguments, quiet: bool) -> Result<Option<Fit>, 
     Ok(fit)
 }
 
-/// Has the session take the surface that the arguments name. Returns the report of the fit, for a surface near points.
+/// Has the session take the surface that the arguments name. Returns the report of the fit, for a
+/// surface near points.
 pub(crate) fn choose(
     session: &mut Session,
     arguments: &SurfaceArguments,

@@ -112,8 +112,8 @@ fn points(out: &mut impl Write, title: &str, model: &ModelInfo) -> io::Result<()
     )
 }
 
-/// Writes the table of quality figures, before and after relaxation. The group `Run` of the report is left out, because
-/// the lines above the table have it.
+/// Writes the table of quality figures, before and after relaxation. The group `Run` of the report
+/// is left out, because the lines above the table have it.
 fn table(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     let report = serde_json::to_value(&outcome.report).map_err(io::Error::other)?;
     let compared = !report["quality_before"].is_null();

@@ -10,8 +10,9 @@ use marching_particles::{Bounds, FollowError, export};
 use std::io::Write;
 use std::process::ExitCode;
 
-/// Values of the parameter, spread over its range, at which a box is fitted. In between the surface may be larger: where its size grows
-/// and shrinks as a parabola, by (1/8)² of the growth, 1.6 %, at most, and a fitted box has 5 % of its size as room on every side.
+/// Values of the parameter, spread over its range, at which a box is fitted. In between the surface
+/// may be larger: where its size grows and shrinks as a parabola, by (1/8)² of the growth, 1.6 %,
+/// at most, and a fitted box has 5 % of its size as room on every side.
 const FITTED: u32 = 9;
 
 pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {

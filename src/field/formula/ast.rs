@@ -316,7 +316,8 @@ impl Function {
         self.info().name
     }
 
-    /// Minimum and maximum number of arguments, as the signature shows them; a function with `…` takes any number from the minimum on.
+    /// Minimum and maximum number of arguments, as the signature shows them; a function with `…`
+    /// takes any number from the minimum on.
     pub(crate) fn arity(self) -> (usize, usize) {
         let signature = self.info().signature;
         let commas = signature.matches(',').count();

@@ -7,8 +7,8 @@
 //! anew, so that equal operations are one node: branches with the same root are the same function,
 //! as both sides of |x| are in |x|².
 //!
-//! An absolute value to a power above 1 has a gradient at 0 and is no choice. Neither is one that no coordinate enters, nor one of which
-//! it was found that it makes [no crease](super::creases).
+//! An absolute value to a power above 1 has a gradient at 0 and is no choice. Neither is one that
+//! no coordinate enters, nor one of which it was found that it makes [no crease](super::creases).
 
 use super::compiled::Compiled;
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
@@ -19,11 +19,12 @@ use crate::math::Bounds;
 use glam::DVec3;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Maximum number of branches that are listed for a box: four choices beyond those at a corner of three faces that meet in |x|, |y|
-/// and |z|. A smaller box has fewer.
+/// Maximum number of branches that are listed for a box: four choices beyond those at a corner of
+/// three faces that meet in |x|, |y| and |z|. A smaller box has fewer.
 const MAX_LISTED: usize = 64;
 
-/// Maximum number of branches whose numbers do not depend on the order in which they are met: as many as eight choices have.
+/// Maximum number of branches whose numbers do not depend on the order in which they are met: as
+/// many as eight choices have.
 const MAX_NUMBERED: usize = 256;
 
 /// Condition by which a choice takes one of its operands.
@@ -35,7 +36,8 @@ pub(super) enum ChoiceCondition {
     NotNegative(Id),
 }
 
-/// Role of a node in the walk from f to the operands that are taken: it has a condition, which takes one of them, or takes all.
+/// Role of a node in the walk from f to the operands that are taken: it has a condition, which
+/// takes one of them, or takes all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum NodeRole {
     /// The node is no choice: it takes all of its operands.
@@ -46,7 +48,8 @@ pub(super) enum NodeRole {
     Choice(ChoiceCondition),
 }
 
-/// The operand of a choice that counts where its condition holds, or elsewhere; none if its value is a number there.
+/// The operand of a choice that counts where its condition holds, or elsewhere; none if its value
+/// is a number there.
 pub(super) fn taken(choice: Node, holds: bool) -> Option<Id> {
     match choice {
         Node::Binary(_, a, b) | Node::Smin(_, a, b, _) | Node::Select(_, _, _, a, b) => {
@@ -75,7 +78,8 @@ impl ChoiceCondition {
         if holds { Holds::Always } else { Holds::Never }
     }
 
-    /// Where the condition holds in a box, from the bounds of the nodes. A tie belongs to both sides.
+    /// Where the condition holds in a box, from the bounds of the nodes. A tie belongs to both
+    /// sides.
     pub(super) fn in_box(self, range: impl Fn(Id) -> Range) -> Holds {
         let below = |a: Id, b: Id| range(a).bounds.hi < range(b).bounds.lo;
         let (always, never) = match self {
@@ -100,18 +104,21 @@ pub(super) struct BranchPart {
     pub(super) nodes: Vec<Id>,
     /// The number of the branch; none while choices remain.
     pub(super) number: Option<u32>,
-    /// The part for each way in which the conditions hold or do not, in the order of [`BranchWalk`]; sorted.
+    /// The part for each way in which the conditions hold or do not, in the order of
+    /// [`BranchWalk`]; sorted.
     taken: Vec<(Vec<bool>, TakenPart)>,
     /// The branch compiled, once it has been asked for.
     compiled: Option<Arc<Compiled>>,
 }
 
-/// The part of f that follows from another part, once each condition of that one is known to hold or not.
+/// The part of f that follows from another part, once each condition of that one is known to hold
+/// or not.
 #[derive(Clone, Copy, Debug)]
 struct TakenPart {
     /// Index of the part.
     index: usize,
-    /// Whether the conditions hold together in no more than ties, as u ≥ 0 and u ≤ 0 do. Others hold around such a place.
+    /// Whether the conditions hold together in no more than ties, as u ≥ 0 and u ≤ 0 do. Others
+    /// hold around such a place.
     is_tie: bool,
     /// Whether zeros of f need it: not those in ties, where other parts give f as well.
     has_zeros: bool,
@@ -139,8 +146,9 @@ impl BranchWalk {
         self.holds.clear();
     }
 
-    /// Walks to the end. `decide` is called with each new condition; where that holds somewhere only, the walk through the places where
-    /// it does not is left in `forks`. `visit` is called with each node on the way, and whether its condition holds.
+    /// Walks to the end. `decide` is called with each new condition; where that holds somewhere
+    /// only, the walk through the places where it does not is left in `forks`. `visit` is called
+    /// with each node on the way, and whether its condition holds.
     fn run(
         &mut self,
         nodes: &[Id],
@@ -166,7 +174,8 @@ impl BranchWalk {
                         }
                         self.conditions.push(condition);
                         if holds == Holds::Somewhere {
-                            // The other walk finds the condition known when it comes to this node again.
+                            // The other walk finds the condition known when it comes to this node
+                            // again.
                             let mut fork = self.clone();
                             fork.holds.push(false);
                             forks.push(fork);
@@ -245,8 +254,9 @@ impl Base {
         }
     }
 
-    /// The root of `part` where the conditions on the way from it hold or do not, as `holds` says. With it, whether they hold together in ties
-    /// alone, and whether the root is zero in ties alone.
+    /// The root of `part` where the conditions on the way from it hold or do not, as `holds` says.
+    /// With it, whether they hold together in ties alone, and whether the root is zero in ties
+    /// alone.
     fn specialised(
         &mut self,
         part: &BranchPart,
@@ -293,7 +303,8 @@ impl Base {
         }
         let root = map[part.root as usize];
         self.extend(values);
-        // √(u² + v²) is zero where both are, which is an edge of the part in which one of them is not negative.
+        // √(u² + v²) is zero where both are, which is an edge of the part in which one of them is
+        // not negative.
         let squares = self.graph.squares(root);
         let is_end = |u: &Id| holds_in(&ordered, &map, [zero, *u]) || holds_in(&ordered, &map, [*u, zero]);
         let is_edge = squares.len() > 1 && squares.iter().any(is_end);
@@ -313,7 +324,8 @@ impl Base {
         pairs.collect()
     }
 
-    /// Returns whether a condition holds where others hold or do not, as far as those decide it. A way that ties alone allow is none.
+    /// Returns whether a condition holds where others hold or do not, as far as those decide it. A
+    /// way that ties alone allow is none.
     fn where_free(&self, known: &[ChoiceCondition], holds: &[bool], condition: ChoiceCondition) -> Holds {
         let [is_tie, is_tie_else] = [true, false].map(|side| {
             let mut ordered = self.ordered(&[condition], &[side]);
@@ -327,7 +339,8 @@ impl Base {
         }
     }
 
-    /// Whether the nodes of some pair have to be equal, where in each pair the first is at most the second.
+    /// Whether the nodes of some pair have to be equal, where in each pair the first is at most the
+    /// second.
     fn are_tied(&self, mut ordered: Vec<[Id; 2]>) -> bool {
         let pairs = ordered.clone();
         let mut next = 0;
@@ -348,8 +361,9 @@ impl Base {
         pairs.into_iter().any(|[a, b]| self.is_at_most(&ordered, &mut found, [b, a]))
     }
 
-    /// Whether the first node is at most the second, by what is `known` of others, or was `found` of them. Only what is known of a number and
-    /// a function that has it nowhere but on surfaces counts: max(u, v) and u, or |u| and u, may be equal in a solid.
+    /// Whether the first node is at most the second, by what is `known` of others, or was `found`
+    /// of them. Only what is known of a number and a function that has it nowhere but on surfaces
+    /// counts: max(u, v) and u, or |u| and u, may be equal in a solid.
     fn is_at_most(&self, known: &[[Id; 2]], found: &mut Vec<[Id; 2]>, [a, b]: [Id; 2]) -> bool {
         let parts = match (self.graph.node(a), self.graph.node(b)) {
             _ if found.contains(&[a, b]) => return true,
@@ -367,7 +381,8 @@ impl Base {
         is_at_most
     }
 
-    /// Whether a node is a smooth function, or the absolute value of one, but for numbers that are added or multiplied.
+    /// Whether a node is a smooth function, or the absolute value of one, but for numbers that are
+    /// added or multiplied.
     fn is_nowhere_level(&self, mut id: Id) -> bool {
         loop {
             id = match self.graph.node(id) {
@@ -392,11 +407,13 @@ impl Base {
     }
 }
 
-/// Maximum number of products that are told by their factors: a product of five factors has 46 ways to them, below [`MAX_LISTED`].
+/// Maximum number of products that are told by their factors: a product of five factors has 46 ways
+/// to them, below [`MAX_LISTED`].
 const MAX_PRODUCTS: usize = 4;
 
-/// The node of a function with the signs, and so with the zeros, of node `root`, in which products that decide them are choices: ab has the
-/// signs of max(min(a, b), min(−a, −b)), which is ±a or ±b, whichever is smaller. These are added to `choices`.
+/// The node of a function with the signs, and so with the zeros, of node `root`, in which products
+/// that decide them are choices: ab has the signs of max(min(a, b), min(−a, −b)), which is ±a or
+/// ±b, whichever is smaller. These are added to `choices`.
 pub(super) fn by_signs(graph: &mut Graph, root: Id, choices: &mut Vec<Id>) -> Id {
     match graph.node(root) {
         Node::Unary(Unary::Neg, u) => {
@@ -419,7 +436,8 @@ pub(super) fn by_signs(graph: &mut Graph, root: Id, choices: &mut Vec<Id>) -> Id
     }
 }
 
-/// Whether the zeros of factors of a product may cross. They do not where the factors differ by numbers, as those of concentric spheres do.
+/// Whether the zeros of factors of a product may cross. They do not where the factors differ by
+/// numbers, as those of concentric spheres do.
 fn may_cross(graph: &mut Graph, root: Id) -> bool {
     let factors = graph.factors(root);
     factors.iter().skip(1).any(|&factor| {
@@ -454,7 +472,8 @@ impl Clone for SharedBranches {
     }
 }
 
-/// The branches of f that have been met, with their numbers. There are none of a formula without choices.
+/// The branches of f that have been met, with their numbers. There are none of a formula without
+/// choices.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Branches {
     pub(super) base: Base,
@@ -462,12 +481,13 @@ pub(super) struct Branches {
     pub(super) parts: Vec<BranchPart>,
     /// The part of each branch, by its number.
     numbered: Vec<usize>,
-    /// The factors of the branches of the surface in a box, each by its branch and its number there, if it was found that some meet in creases
-    /// in that box.
+    /// The factors of the branches of the surface in a box, each by its branch and its number
+    /// there, if it was found that some meet in creases in that box.
     pub(super) factors: Vec<(u32, usize)>,
     /// The choices that [stand for products](by_signs).
     pub(super) products: Vec<Id>,
-    /// The graph's function, which is evaluated in the place of f where factors of a product cross: its gradient does not vanish there.
+    /// The graph's function, which is evaluated in the place of f where factors of a product cross:
+    /// its gradient does not vanish there.
     pub(super) split: Option<Arc<Compiled>>,
     walk: BranchWalk,
     /// Roles with the parameters before, kept for their memory.
@@ -477,13 +497,14 @@ pub(super) struct Branches {
 }
 
 impl Branches {
-    /// The branches of a function, with these values of the parameters. They are looked for when first asked for.
+    /// The branches of a function, with these values of the parameters. They are looked for when
+    /// first asked for.
     pub(super) fn new(f: &Compiled, values: &[f64]) -> Self {
         Self::of(&f.graph, f.root, &[], values)
     }
 
-    /// The branches of a function whose products are [told by their signs](by_signs); none if it has no products, or is one whose factors
-    /// cannot cross.
+    /// The branches of a function whose products are [told by their signs](by_signs); none if it
+    /// has no products, or is one whose factors cannot cross.
     pub(super) fn of_factors(f: &Compiled, values: &[f64]) -> Option<Self> {
         let (mut products, mut graph) = (Vec::new(), (*f.graph).clone());
         if matches!(graph.node(f.root), Node::Binary(Binary::Mul, ..)) && !may_cross(&mut graph, f.root) {
@@ -561,7 +582,8 @@ impl Branches {
         index
     }
 
-    /// Returns the part that follows from part `of` where its conditions hold or do not, as `holds` says.
+    /// Returns the part that follows from part `of` where its conditions hold or do not, as `holds`
+    /// says.
     fn taken(&mut self, of: usize, holds: &[bool], values: &[f64]) -> TakenPart {
         let known = &self.parts[of].taken;
         let place = match known.binary_search_by(|(way, _)| way.as_slice().cmp(holds)) {
@@ -575,7 +597,8 @@ impl Branches {
         part
     }
 
-    /// The ways in which the conditions of part `of` hold or do not, at most `limit`, those that hold first.
+    /// The ways in which the conditions of part `of` hold or do not, at most `limit`, those that
+    /// hold first.
     fn ways(
         &self,
         of: usize,
@@ -595,7 +618,8 @@ impl Branches {
         found
     }
 
-    /// Gives numbers to the first branches of part `of`, at most `left`, in an order that the formula alone decides.
+    /// Gives numbers to the first branches of part `of`, at most `left`, in an order that the
+    /// formula alone decides.
     fn number(&mut self, of: usize, left: &mut usize, values: &[f64]) {
         if self.parts[of].number.is_some() {
             *left = left.saturating_sub(1);
@@ -641,8 +665,8 @@ impl Branches {
         }
     }
 
-    /// The numbers of the branches that may have a zero in the box where they give f, ascending; none if there are more than
-    /// [`MAX_LISTED`] ways in which conditions may hold.
+    /// The numbers of the branches that may have a zero in the box where they give f, ascending;
+    /// none if there are more than [`MAX_LISTED`] ways in which conditions may hold.
     pub(super) fn within(&mut self, values: &[f64], bounds: &Bounds) -> Option<Vec<u32>> {
         if self.parts.is_empty() {
             return Some(vec![0]);

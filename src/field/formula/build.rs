@@ -8,12 +8,13 @@ use super::operations::{Binary, Unary};
 use super::statements;
 use super::token::Comparison;
 
-/// Adds f = left − right to `graph` and returns its node. `parameters` are the parameter names by index.
+/// Adds f = left − right to `graph` and returns its node. `parameters` are the parameter names by
+/// index.
 ///
 /// # Errors
 ///
-/// [`ErrorKind::NotFinite`] for a constant subexpression without a finite value, [`ErrorKind::TooComplex`] if the graph
-/// grows beyond [`MAX_OPERATIONS`] nodes.
+/// [`ErrorKind::NotFinite`] for a constant subexpression without a finite value,
+/// [`ErrorKind::TooComplex`] if the graph grows beyond [`MAX_OPERATIONS`] nodes.
 pub(super) fn build(graph: &mut Graph, equation: &Equation, parameters: &[&str]) -> Result<Id, FormulaError> {
     let definitions = &equation.definitions;
     let mut builder =
@@ -93,7 +94,8 @@ impl Builder<'_> {
         if self.graph.as_constant(id).is_some_and(|value| !value.is_finite()) {
             return Err(not_finite(expr));
         }
-        // Checked before differentiation, which multiplies the nodes: a hostile formula is refused cheaply.
+        // Checked before differentiation, which multiplies the nodes: a hostile formula is refused
+        // cheaply.
         if self.graph.len() > MAX_OPERATIONS || self.expressions > MAX_EXPRESSIONS {
             return Err(too_complex(expr));
         }

@@ -266,7 +266,8 @@ impl From<Expr> for Formula {
     ///
     /// # Panics
     ///
-    /// If the expression is nested deeper than [`MAX_DEPTH`], or has more operations than [`MAX_OPERATIONS`].
+    /// If the expression is nested deeper than [`MAX_DEPTH`], or has more operations than
+    /// [`MAX_OPERATIONS`].
     fn from(Expr { tree, depth }: Expr) -> Self {
         assert!(depth <= MAX_DEPTH, "an expression is nested {depth} deep, and {MAX_DEPTH} are possible");
         let equation = Equation { definitions: Vec::new(), left: tree, right: None };

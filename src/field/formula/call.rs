@@ -1,9 +1,9 @@
 //! Calls of functions, with brackets or without: `sin(x)`, `ln 2x`, `sin^2 x cos y`.
 //!
-//! A call without brackets is read where it has one reading, and refused with brackets suggested where it has two. The function is
-//! applied to the power that follows and, after numbers and constants, to what stands directly beside them: `sin 2πx^2` is
-//! sin(2πx²). Then a sign, a bracket that closes or another function has to come: `sin x y`, `sin x/2` and `sqrt 2x` may mean
-//! either.
+//! A call without brackets is read where it has one reading, and refused with brackets suggested
+//! where it has two. The function is applied to the power that follows and, after numbers and
+//! constants, to what stands directly beside them: `sin 2πx^2` is sin(2πx²). Then a sign, a bracket
+//! that closes or another function has to come: `sin x y`, `sin x/2` and `sqrt 2x` may mean either.
 
 use super::ast::{Expr, ExprKind, Factor, Function, Sign};
 use super::conditions::as_condition;
@@ -32,7 +32,8 @@ impl Parser<'_> {
         false
     }
 
-    /// Parses the exponent and the arguments of `function`, whose name has just been consumed at `span`.
+    /// Parses the exponent and the arguments of `function`, whose name has just been consumed at
+    /// `span`.
     pub(super) fn call(&mut self, function: Function, span: Range<usize>) -> Parse {
         let exponent = self.exponent_of_value(function, &span)?;
         let (mut arguments, whole) = if let Token::Open(_) = self.peek().token {
@@ -138,7 +139,8 @@ impl Parser<'_> {
         Ok(Expr { kind, span: whole })
     }
 
-    /// Parses the exponent after the name of a function: in `sin^2(x)` and `sin²(x)` it applies to the value.
+    /// Parses the exponent after the name of a function: in `sin^2(x)` and `sin²(x)` it applies to
+    /// the value.
     fn exponent_of_value(
         &mut self,
         function: Function,
@@ -209,8 +211,8 @@ impl Parser<'_> {
         Ok(operand)
     }
 
-    /// Parses a power, and what stands directly beside it if there is one reading: after numbers and constants anything, after
-    /// coordinates written as one word the others of them.
+    /// Parses a power, and what stands directly beside it if there is one reading: after numbers
+    /// and constants anything, after coordinates written as one word the others of them.
     fn beside(&mut self) -> Parse {
         let first = self.power()?;
         let mut is_coefficient = is_coefficient(&first.kind);

@@ -13,8 +13,9 @@ use std::sync::{Arc, OnceLock};
 
 /// The graph of f and its derivatives, and the programs that were compiled from it.
 ///
-/// The Hessian and the bounds are compiled when first asked for: uniform sampling needs no Hessian, and a check of the
-/// text needs neither. Copies share what does not depend on the values of the parameters.
+/// The Hessian and the bounds are compiled when first asked for: uniform sampling needs no Hessian,
+/// and a check of the text needs neither. Copies share what does not depend on the values of the
+/// parameters.
 #[derive(Clone, Debug)]
 pub(super) struct Compiled {
     pub(super) graph: Arc<Graph>,
@@ -40,7 +41,8 @@ impl Compiled {
     ///
     /// # Errors
     ///
-    /// The errors of [`build::build`], and [`TooComplex`](super::FormulaErrorKind::TooComplex) beyond [`MAX_OPERATIONS`].
+    /// The errors of [`build::build`], and [`TooComplex`](super::FormulaErrorKind::TooComplex)
+    /// beyond [`MAX_OPERATIONS`].
     pub(super) fn new(equation: &Equation, parameters: &[Parameter]) -> Result<Self, FormulaError> {
         let names: Vec<&str> = parameters.iter().map(|parameter| &*parameter.name).collect();
         let mut graph = Graph::default();

@@ -1,13 +1,18 @@
-//! Parameters for which the surface passes through given points (Witkin and Heckbert 1994, §3, "control").
+//! Parameters for which the surface passes through given points (Witkin and Heckbert 1994, §3,
+//! "control").
 //!
-//! The rows of J are ∂f/∂q at the points, over |∇f| there, so that a residual is a distance, and with each parameter in units of its
-//! range, so that none is changed more than another only because its numbers are larger. Each step is the shortest one that solves
-//! J δ = −r, that is δ = Jᵀ(J Jᵀ)⁻¹(−r). A parameter that comes to an end of its range stays there, and the others are solved for anew.
+//! The rows of J are ∂f/∂q at the points, over |∇f| there, so that a residual is a distance, and
+//! with each parameter in units of its range, so that none is changed more than another only
+//! because its numbers are larger. Each step is the shortest one that solves J δ = −r, that is δ =
+//! Jᵀ(J Jᵀ)⁻¹(−r). A parameter that comes to an end of its range stays there, and the others are
+//! solved for anew.
 //!
 //! # Differs from Witkin and Heckbert
 //!
-//! * The parameters are found for the places of the points, not integrated from their velocities, so that they depend on no history.
-//! * J Jᵀ has a small multiple of the unit matrix added, in the place of a singular value decomposition.
+//! * The parameters are found for the places of the points, not integrated from their velocities,
+//!   so that they depend on no history.
+//! * J Jᵀ has a small multiple of the unit matrix added, in the place of a singular value
+//!   decomposition.
 
 use super::evaluator::FormulaEvaluator;
 use super::graph::{Graph, Id, Node};
@@ -22,9 +27,11 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Grip {
-    /// Whether the surface passes through all points. Otherwise it has come as near as the ranges of the parameters allow.
+    /// Whether the surface passes through all points. Otherwise it has come as near as the ranges
+    /// of the parameters allow.
     pub holds: bool,
-    /// For each point, one of the surface that is nearest to it, found down the gradient; the point itself if none is found.
+    /// For each point, one of the surface that is nearest to it, found down the gradient; the point
+    /// itself if none is found.
     pub places: Vec<[f64; 3]>,
     /// The parameters that have changed, with their values.
     pub changed: BTreeMap<String, f64>,
@@ -32,27 +39,31 @@ pub struct Grip {
     pub idle: Vec<String>,
 }
 
-/// The parameters take at most this many steps towards the points. So many of the longest steps cross a range eight
-/// times. Of 1,398 random pulls at one to three points of seven families as many are met with half of them, two more with twice.
+/// The parameters take at most this many steps towards the points. So many of the longest steps
+/// cross a range eight times. Of 1,398 random pulls at one to three points of seven families as
+/// many are met with half of them, two more with twice.
 const MOST_STEPS: usize = 64;
 
-/// A step changes a parameter by at most this share of its range, so that a surface that is pulled far passes through what lies
-/// between. Of the same pulls 1,282 are met; with half of it 1,291, with twice as much 1,267.
+/// A step changes a parameter by at most this share of its range, so that a surface that is pulled
+/// far passes through what lies between. Of the same pulls 1,282 are met; with half of it 1,291,
+/// with twice as much 1,267.
 const LONGEST_STEP: f64 = 0.125;
 
-/// A step that does not bring the surface nearer to the points is halved at most this often, to a 2,000th of a range. Then the
-/// parameters stay where they are. Two and sixteen meet the same pulls.
+/// A step that does not bring the surface nearer to the points is halved at most this often, to a
+/// 2,000th of a range. Then the parameters stay where they are. Two and sixteen meet the same
+/// pulls.
 const MOST_HALVINGS: usize = 8;
 
-/// Distance from a point, over its distance from the origin or over 1, at which the surface passes through it: a hundredth of what single
-/// precision, in which particles are kept, rounds off.
+/// Distance from a point, over its distance from the origin or over 1, at which the surface passes
+/// through it: a hundredth of what single precision, in which particles are kept, rounds off.
 const NEAR: f64 = 1e-9;
 
-/// Multiple of the unit matrix that J Jᵀ gets, over its largest diagonal entry: half of the digits of double precision.
+/// Multiple of the unit matrix that J Jᵀ gets, over its largest diagonal entry: half of the digits
+/// of double precision.
 const RIDGE: f64 = 1e-8;
 
-/// A parameter is idle if it moves the surface less than this share of what the strongest one does: less than a pixel of a picture that the
-/// strongest one moves across.
+/// A parameter is idle if it moves the surface less than this share of what the strongest one does:
+/// less than a pixel of a picture that the strongest one moves across.
 const IDLE: f64 = 1e-3;
 
 /// f as a function of the parameters, three at a time.
@@ -111,7 +122,8 @@ struct Control<'a> {
     ends: Vec<[f64; 2]>,
 }
 
-/// The distances of the surface from the points, to first order, and how each parameter changes them: a row for each point.
+/// The distances of the surface from the points, to first order, and how each parameter changes
+/// them: a row for each point.
 struct Residuals {
     distance: Vec<f64>,
     rows: Vec<Vec<f64>>,
@@ -134,8 +146,8 @@ impl Control<'_> {
         Residuals { distance, rows }
     }
 
-    /// The shortest step that brings the surface to the points to first order and no parameter beyond an end of its range, in units of
-    /// the ranges.
+    /// The shortest step that brings the surface to the points to first order and no parameter
+    /// beyond an end of its range, in units of the ranges.
     fn step(&self, residuals: &Residuals, values: &[f64]) -> Vec<f64> {
         let mut fixed = vec![None; values.len()];
         loop {
@@ -197,7 +209,8 @@ fn solve_positive(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
     right
 }
 
-/// The number with five significant digits or as a whole one, as a link and a box for numbers hold it.
+/// The number with five significant digits or as a whole one, as a link and a box for numbers hold
+/// it.
 fn rounded(value: f64) -> f64 {
     let mut scale = 1.0;
     while (value * scale).abs() < 1e4 && scale < 1e12 {
@@ -208,9 +221,10 @@ fn rounded(value: f64) -> f64 {
 }
 
 impl Formula {
-    /// Changes the parameters, each in units of its range, as little as possible so that the surface passes through these points, in the
-    /// coordinates of the formula. Where that cannot be, the surface comes as near as the ranges allow. Values are rounded to five
-    /// significant digits.
+    /// Changes the parameters, each in units of its range, as little as possible so that the
+    /// surface passes through these points, in the coordinates of the formula. Where that cannot
+    /// be, the surface comes as near as the ranges allow. Values are rounded to five significant
+    /// digits.
     ///
     /// ```
     /// use marching_particles::field::formula::Formula;
@@ -277,7 +291,8 @@ impl Formula {
         (value.is_finite() && gradient.is_finite()).then(|| gradient.length())
     }
 
-    /// A point of the surface near a point, both in the coordinates of the formula; the point itself if none is found.
+    /// A point of the surface near a point, both in the coordinates of the formula; the point
+    /// itself if none is found.
     fn place_near(&self, p: DVec3) -> DVec3 {
         let at_rest = NEAR * p.length().max(1.0);
         let limits = StepLimits { at_rest, ..StepLimits::steps(newton::STEPS) };

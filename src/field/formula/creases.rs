@@ -1,10 +1,12 @@
 //! The choices of a formula that crease its surface.
 //!
-//! Where a surface crosses the tie of a choice, at which both operands are equal, it has a crease if the gradient of f jumps there, else
-//! a *seam*. |x| makes a seam in a blend that takes no account of it near x = 0. A minimum of functions whose zeros stay apart makes
-//! neither. A search of the box, halved again and again, excludes by interval arithmetic the cells in which f has no zero, or where no
-//! choice has both a tie and an effect on f. In a cell that is left, Newton's method finds a place where f and the difference of the
-//! operands vanish, and the gradients on both sides of it are compared. Around the choices that crease the surface smaller cells are
+//! Where a surface crosses the tie of a choice, at which both operands are equal, it has a crease
+//! if the gradient of f jumps there, else a *seam*. |x| makes a seam in a blend that takes no
+//! account of it near x = 0. A minimum of functions whose zeros stay apart makes neither. A search
+//! of the box, halved again and again, excludes by interval arithmetic the cells in which f has no
+//! zero, or where no choice has both a tie and an effect on f. In a cell that is left, Newton's
+//! method finds a place where f and the difference of the operands vanish, and the gradients on
+//! both sides of it are compared. Around the choices that crease the surface smaller cells are
 //! looked at, in which the creases are then followed.
 
 use super::branches::{Base, BranchPart, Branches, ChoiceCondition, Holds, NodeRole, taken};
@@ -18,22 +20,27 @@ use crate::math::newton::{STEPS, step_to_curve};
 use crate::slices::pause;
 use glam::DVec3;
 
-/// Number of halvings of the box after which a place is looked for: 32 cells on every axis. On 60 random solids, products and powers of a
-/// thickness 12 leave 8 % more edges open in 0.84 times the time; with 18 five runs differ, in 0.95 times.
+/// Number of halvings of the box after which a place is looked for: 32 cells on every axis. On 60
+/// random solids, products and powers of a thickness 12 leave 8 % more edges open in 0.84 times the
+/// time; with 18 five runs differ, in 0.95 times.
 const DEPTH: u32 = 15;
 
-/// Number of halvings after which a choice counts that can be neither excluded nor tested: 256 cells on every axis. On the same surfaces
-/// 18 leave 8 % more edges open in 0.84 times the time, 36 leave 6 % fewer in 1.08 times.
+/// Number of halvings after which a choice counts that can be neither excluded nor tested: 256
+/// cells on every axis. On the same surfaces 18 leave 8 % more edges open in 0.84 times the time,
+/// 36 leave 6 % fewer in 1.08 times.
 const DEEPEST: u32 = 24;
 
-/// Maximum number of cells of a search, as many as there are after [`DEPTH`] halvings. The choices in question at its end count.
+/// Maximum number of cells of a search, as many as there are after [`DEPTH`] halvings. The choices
+/// in question at its end count.
 const MAX_CELLS: usize = 1 << DEPTH;
 
-/// Maximum number of cells that are visited to narrow creases down: those of a gyroid in its box take 50,000.
+/// Maximum number of cells that are visited to narrow creases down: those of a gyroid in its box
+/// take 50,000.
 const MOST_VISITED: usize = 1 << 18;
 
-/// Distance from the tie at which the gradients are taken, and a hundred times the error of its place; as a share of the diagonal of
-/// the box. On the same surfaces ten times this and a tenth of it change no figure beyond scatter.
+/// Distance from the tie at which the gradients are taken, and a hundred times the error of its
+/// place; as a share of the diagonal of the box. On the same surfaces ten times this and a tenth of
+/// it change no figure beyond scatter.
 const STEP: f64 = 1e-6;
 
 /// Kind of the surface where the operands of a choice are equal.
@@ -103,7 +110,8 @@ impl Branches {
         cells
     }
 
-    /// Searches a box for creases; none if f has no choices, or is a product whose factors do not cross there.
+    /// Searches a box for creases; none if f has no choices, or is a product whose factors do not
+    /// cross there.
     async fn search_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Option<FoundCreases> {
         let part = self.parts.first().filter(|part| part.number.is_none())?;
         let is_choice = |id: &Id| matches!(self.base.roles[*id as usize], NodeRole::Choice(_));
@@ -135,13 +143,15 @@ struct FoundCreases {
     smooth: Vec<Id>,
 }
 
-/// f where a choice is tied: functions that are f where the choice is taken and its operands are equal. Their bounds are closer than those of
-/// f, and all must hold zero where the choice is tied on the surface.
+/// f where a choice is tied: functions that are f where the choice is taken and its operands are
+/// equal. Their bounds are closer than those of f, and all must hold zero where the choice is tied
+/// on the surface.
 ///
 /// |f| − t/2 |∇f| is the greater of f − t/2 |∇f| and −f − t/2 |∇f|. Where both are equal it is −t/2 |∇f|, which has no zero.
 struct Tie {
     choice: Id,
-    /// f with the first operand in the place of the choice, with the second one, and with what is half of their sum.
+    /// f with the first operand in the place of the choice, with the second one, and with what is
+    /// half of their sum.
     roots: Vec<Id>,
     /// The nodes that the roots need and f does not, in the order of the graph.
     nodes: Vec<Id>,
@@ -170,8 +180,8 @@ fn ties_of(base: &mut Base, part: &BranchPart, choices: &[Id], values: &[f64]) -
 }
 
 impl Base {
-    /// The root of a part with another node in the place of a choice. Of choices above it that hang on this one alone, the operand that
-    /// leads to it is taken.
+    /// The root of a part with another node in the place of a choice. Of choices above it that hang
+    /// on this one alone, the operand that leads to it is taken.
     fn root_with(&mut self, part: &BranchPart, choice: Id, other: Id) -> Id {
         let mut uses = vec![0_u32; self.graph.len()];
         part.nodes.iter().for_each(|&id| self.graph.node(id).operands(|operand| uses[operand as usize] += 1));
@@ -215,7 +225,8 @@ struct TieSearch<'a> {
 }
 
 impl TieSearch<'_> {
-    /// For each node its kind, if it is one of the `choices` and tied somewhere on the surface: it makes a seam or a crease there.
+    /// For each node its kind, if it is one of the `choices` and tied somewhere on the surface: it
+    /// makes a seam or a crease there.
     async fn kinds(&self, choices: &[Id]) -> Vec<Option<TieKind>> {
         let mut kinds = vec![None; self.part.root as usize + 1];
         let mut open = vec![TieCell { bounds: *self.bounds, depth: 0, choices: choices.to_vec() }];
@@ -257,12 +268,14 @@ impl TieSearch<'_> {
         kinds
     }
 
-    /// Kind where nothing can be said. A product stays one unless its factors cross: as one it shows where they touch.
+    /// Kind where nothing can be said. A product stays one unless its factors cross: as one it
+    /// shows where they touch.
     fn kind_in_doubt(&self, id: Id) -> TieKind {
         if self.products.contains(&id) { TieKind::Seam } else { TieKind::Crease }
     }
 
-    /// Cells no wider than `width`, but for those at the end of a long search, in which one of these choices may be tied on the surface.
+    /// Cells no wider than `width`, but for those at the end of a long search, in which one of
+    /// these choices may be tied on the surface.
     async fn cells(&self, creasing: &[Id], width: f64) -> Vec<Bounds> {
         let (mut scratch, mut found) = (TieScratch::default(), Vec::new());
         let mut open = if creasing.is_empty() { Vec::new() } else { vec![*self.bounds] };
@@ -290,22 +303,24 @@ impl TieSearch<'_> {
         found
     }
 
-    /// The choices, out of `choices`, that may be tied somewhere in the cell, with their reach; none if f has no zero in it.
+    /// The choices, out of `choices`, that may be tied somewhere in the cell, with their reach;
+    /// none if f has no zero in it.
     fn tied(&self, cell: &Bounds, choices: &[Id], scratch: &mut TieScratch) -> Vec<(Id, TieReach)> {
         let mut open_to = self.open_to(cell, choices, scratch);
         open_to.retain(|&(id, _)| self.may_be_tied(id, cell, &mut scratch.ranges));
         open_to
     }
 
-    /// Whether f may be zero in the cell where a choice is tied, which the cell is [open to](Self::open_to).
+    /// Whether f may be zero in the cell where a choice is tied, which the cell is
+    /// [open to](Self::open_to).
     fn may_be_tied(&self, id: Id, cell: &Bounds, ranges: &mut Vec<interval::Row<1>>) -> bool {
         let Tie { roots, nodes, .. } = &self.ties[self.ties.partition_point(|tie| tie.choice < id)];
         interval::bounds(&self.base.graph, nodes, self.values, cell, ranges);
         !roots.iter().any(|&root| ranges[root as usize].at(0).is_nonzero())
     }
 
-    /// The choices, out of `choices`, whose operands may be equal somewhere in the cell and on which f depends there, with their reach;
-    /// none if f has no zero in it.
+    /// The choices, out of `choices`, whose operands may be equal somewhere in the cell and on
+    /// which f depends there, with their reach; none if f has no zero in it.
     fn open_to(&self, cell: &Bounds, choices: &[Id], scratch: &mut TieScratch) -> Vec<(Id, TieReach)> {
         let (base, part) = (self.base, self.part);
         let TieScratch { ranges, reaches, .. } = scratch;
@@ -353,7 +368,8 @@ impl TieSearch<'_> {
         open_to
     }
 
-    /// Kind of the surface at a place near the cell where choice `id` is tied; none if no such place is found.
+    /// Kind of the surface at a place near the cell where choice `id` is tied; none if no such
+    /// place is found.
     fn kind(
         &self,
         id: Id,
@@ -366,7 +382,8 @@ impl TieSearch<'_> {
         let reach = 2.0 * cell.diagonal();
         let size = self.bounds.diagonal();
         let NodeRole::Choice(condition) = self.base.roles[id as usize] else { return None };
-        // f and the difference of the operands, which are below f in the graph, each with its gradient.
+        // f and the difference of the operands, which are below f in the graph, each with its
+        // gradient.
         let mut at = |p: DVec3| {
             scalar::jets(graph, self.part.root, self.values, p, jets);
             let of = |id: Id| jets[id as usize].first_order();

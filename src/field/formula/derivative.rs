@@ -1,13 +1,14 @@
 //! Exact derivatives by graph transformation: the partial derivatives of a node are again nodes.
 //!
-//! The gradient comes from one backward (reverse-mode) sweep, in which each operation passes its adjoint to its
-//! operands, or from three forward-mode sweeps. The Hessian comes from sweeps of either kind over the gradient.
-//! Hash-consing shares the subexpressions that sweeps have in common, and the caller keeps the cheaper result
-//! (A. Griewank & A. Walther, "Evaluating Derivatives", 2008). Derivatives are graphs of the same kind as the field, so
-//! the same code evaluates them; multiplications by a known zero are folded away.
+//! The gradient comes from one backward (reverse-mode) sweep, in which each operation passes its
+//! adjoint to its operands, or from three forward-mode sweeps. The Hessian comes from sweeps of
+//! either kind over the gradient. Hash-consing shares the subexpressions that sweeps have in
+//! common, and the caller keeps the cheaper result (A. Griewank & A. Walther, "Evaluating
+//! Derivatives", 2008). Derivatives are graphs of the same kind as the field, so the same code
+//! evaluates them; multiplications by a known zero are folded away.
 //!
-//! A kink has the derivative of one of its sides: abs has slope 0 at 0, min and max take the slope of the first operand
-//! at a tie, floor and sign have slope 0 everywhere.
+//! A kink has the derivative of one of its sides: abs has slope 0 at 0, min and max take the slope
+//! of the first operand at a tie, floor and sign have slope 0 everywhere.
 
 use super::graph::{Blend, Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::operations::{Binary, Unary};
@@ -21,7 +22,8 @@ pub(super) fn gradient(graph: &mut Graph, root: Id) -> [Id; 3] {
     if cost(graph, forward) <= cost(graph, backward) { forward } else { backward }
 }
 
-/// Nodes of the Hessian (xx, xy, xz, yy, yz, zz), by the cheaper of forward and backward sweeps over the gradient.
+/// Nodes of the Hessian (xx, xy, xz, yy, yz, zz), by the cheaper of forward and backward sweeps
+/// over the gradient.
 pub(super) fn hessian(graph: &mut Graph, gradient: [Id; 3]) -> [Id; 6] {
     let columns = [0, 1, 2].map(|axis| forward(graph, &gradient, axis));
     let forward = [columns[0][0], columns[1][0], columns[2][0], columns[1][1], columns[2][1], columns[2][2]];
@@ -73,8 +75,8 @@ pub(super) fn forward(graph: &mut Graph, roots: &[Id], axis: u8) -> Vec<Id> {
         }
         tangent[id as usize] = match graph.node(id) {
             Node::Coordinate(_) => one,
-            // The tangent is selected, not multiplied by 0 or 1: the branch not taken may have an infinite or undefined
-            // slope.
+            // The tangent is selected, not multiplied by 0 or 1: the branch not taken may have an
+            // infinite or undefined slope.
             Node::Binary(Binary::Min, a, b) => choose(graph, a, b, tangent[a as usize], tangent[b as usize]),
             Node::Binary(Binary::Max, a, b) => choose(graph, b, a, tangent[a as usize], tangent[b as usize]),
             Node::If(at_most, a, b, v) => graph.when(at_most, a, b, tangent[v as usize]),
@@ -102,7 +104,8 @@ fn choose(graph: &mut Graph, a: Id, b: Id, first: Id, second: Id) -> Id {
     graph.add(first, second)
 }
 
-/// Contribution adjoint · ∂id/∂operand of node `id` to the adjoint of each operand. Uniform operands are left out.
+/// Contribution adjoint · ∂id/∂operand of node `id` to the adjoint of each operand. Uniform
+/// operands are left out.
 fn operand_adjoints(graph: &mut Graph, id: Id, adjoint: Id) -> [Option<(Id, Id)>; 3] {
     match graph.node(id) {
         Node::Constant(_) | Node::Parameter(_) | Node::Coordinate(_) => [None; 3],

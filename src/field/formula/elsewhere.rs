@@ -178,8 +178,8 @@ pub(super) fn logarithm(name: &str, span: core::ops::Range<usize>) -> Option<For
     Some(error.choose(choices.iter().map(|&choice| choice.to_owned())))
 }
 
-/// The error for a call that is written otherwise here: that of the name which is token `at`, before a bracket. None for the call of
-/// another function.
+/// The error for a call that is written otherwise here: that of the name which is token `at`,
+/// before a bracket. None for the call of another function.
 pub(super) fn call_error(text: &str, tokens: &[Spanned], at: usize) -> Option<FormulaError> {
     let Spanned { token: Token::Name(name), span } = &tokens[at] else { return None };
     let error = |message: String| FormulaError::new(ErrorKind::UnknownFunction, span.clone(), message);
@@ -230,8 +230,8 @@ pub(super) fn call_error(text: &str, tokens: &[Spanned], at: usize) -> Option<Fo
     })
 }
 
-/// The arguments in the bracket that token `open` opens, as they are written, and the token that closes it. None without a bracket;
-/// no arguments where it is not closed.
+/// The arguments in the bracket that token `open` opens, as they are written, and the token that
+/// closes it. None without a bracket; no arguments where it is not closed.
 fn arguments<'a>(text: &'a str, tokens: &[Spanned], open: usize) -> Option<(Vec<&'a str>, usize)> {
     let mut depth = 0_usize;
     let mut list = Vec::new();

@@ -1,4 +1,5 @@
-//! Errors of a formula: their class, a message for the user, the text concerned and a suggested correction.
+//! Errors of a formula: their class, a message for the user, the text concerned and a suggested
+//! correction.
 
 use core::ops::Range;
 
@@ -10,7 +11,8 @@ use core::ops::Range;
 pub enum FormulaErrorKind {
     /// The text holds nothing but white space.
     Empty,
-    /// The text is longer than [`MAX_FORMULA_BYTES`](super::MAX_FORMULA_BYTES). It is refused before parsing.
+    /// The text is longer than [`MAX_FORMULA_BYTES`](super::MAX_FORMULA_BYTES). It is refused
+    /// before parsing.
     TooLong,
     /// The formula is nested too deep.
     TooDeep,
@@ -111,7 +113,8 @@ impl FormulaError {
         self
     }
 
-    /// Span in UTF-16 code units, which a browser's text field counts in. `text` is the formula that was parsed.
+    /// Span in UTF-16 code units, which a browser's text field counts in. `text` is the formula
+    /// that was parsed.
     #[must_use]
     pub fn utf16_span(&self, text: &str) -> Range<usize> {
         utf16_offset(text, self.span.start)..utf16_offset(text, self.span.end)
@@ -120,7 +123,8 @@ impl FormulaError {
 
 /// Offset in UTF-16 code units of byte `byte` of `text`.
 ///
-/// An offset past the end gives the length; one inside a character gives the start of that character.
+/// An offset past the end gives the length; one inside a character gives the start of that
+/// character.
 #[must_use]
 pub fn utf16_offset(text: &str, byte: usize) -> usize {
     text.char_indices().take_while(|&(at, c)| at + c.len_utf8() <= byte).map(|(_, c)| c.len_utf16()).sum()

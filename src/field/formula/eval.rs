@@ -1,7 +1,8 @@
 //! Interpreter of a program over points, a block at a time.
 //!
-//! A register holds up to [`BLOCK`] × 8 points, which spreads the cost of decoding an instruction over many points. The
-//! same IEEE operations are applied in every lane, so the result at a point does not depend on the other points.
+//! A register holds up to [`BLOCK`] × 8 points, which spreads the cost of decoding an instruction
+//! over many points. The same IEEE operations are applied in every lane, so the result at a point
+//! does not depend on the other points.
 
 use super::graph::whole_power;
 use super::operations::{Binary, Unary};
@@ -16,12 +17,14 @@ use glam::Vec3;
 /// Maximum number of [`Lanes`] in a block: those of a batch.
 pub(super) const BLOCK: usize = BATCH / LANES;
 
-/// Intended maximum size of the register file in bytes: half of a small first-level cache. With half of it six runs on random surfaces take up to
-/// 0.2 % more instructions, with double they take the same.
+/// Intended maximum size of the register file in bytes: half of a small first-level cache. With
+/// half of it six runs on random surfaces take up to 0.2 % more instructions, with double they take
+/// the same.
 const FILE_BYTES: usize = 16 * 1024;
 
-/// Evaluates `program` at `points`, and calls `store` with the index of each eighth point and the first `N` results at it and at those that
-/// follow. `file` is the memory of the registers, which grows as needed and is reused.
+/// Evaluates `program` at `points`, and calls `store` with the index of each eighth point and the
+/// first `N` results at it and at those that follow. `file` is the memory of the registers, which
+/// grows as needed and is reused.
 pub(super) fn run<const N: usize>(
     program: &Program,
     file: &mut Vec<Lanes>,
@@ -116,11 +119,13 @@ fn sine_cosine(registers: &RegisterCells<'_>, i: &Instruction) {
     }
 }
 
-/// Largest exponent of a parameter that is evaluated by products, which are faster than exp(b ln a). They are as accurate: eight factors err by
-/// seven roundings, which is 4·10⁻⁷ at most; thirty were found to err by 1.1·10⁻⁶.
+/// Largest exponent of a parameter that is evaluated by products, which are faster than exp(b ln
+/// a). They are as accurate: eight factors err by seven roundings, which is 4·10⁻⁷ at most; thirty
+/// were found to err by 1.1·10⁻⁶.
 const MAX_SMALL_INTEGER: f32 = 8.0;
 
-/// `exponent` as an integer, if it is a small one other than 0. The exponents of parameters often are.
+/// `exponent` as an integer, if it is a small one other than 0. The exponents of parameters often
+/// are.
 fn small_integer(exponent: f32) -> Option<i32> {
     let small =
         exponent != 0.0 && exponent.abs() <= MAX_SMALL_INTEGER && functions::floor(exponent) == exponent;

@@ -1,7 +1,7 @@
 //! Graph of a formula in static single-assignment (SSA) form.
 //!
-//! It is a list of operations in which operands precede their uses. Equal operations are one node (hash-consing), and
-//! constants are folded.
+//! It is a list of operations in which operands precede their uses. Equal operations are one node
+//! (hash-consing), and constants are folded.
 
 use super::operations::{Binary, Unary};
 use core::ops::Mul;
@@ -22,7 +22,8 @@ pub(super) enum Node {
     Power(Id, i32),
     /// Smooth minimum of two values, with its blend width.
     Smin(Blend, Id, Id, Id),
-    /// The third value where the first is at most the second, or, with `false`, where it is not; else 0.
+    /// The third value where the first is at most the second, or, with `false`, where it is not;
+    /// else 0.
     If(bool, Id, Id, Id),
     /// The third value where the first is at most the second, else the fourth; whether it is known
     /// that the last two are equal where the first two are.
@@ -106,8 +107,8 @@ pub(super) fn whole_power<T: Copy + Mul<Output = T>>(one: T, x: T, n: u32) -> T 
     result
 }
 
-/// Smallest blend width of a smooth minimum. Smaller and negative widths are raised to it: the second derivatives are up to
-/// its inverse, and no picture shows a blend as narrow.
+/// Smallest blend width of a smooth minimum. Smaller and negative widths are raised to it: the
+/// second derivatives are up to its inverse, and no picture shows a blend as narrow.
 pub(super) const MIN_BLEND_WIDTH: f64 = 1e-9;
 
 /// Smooth minimum min(a, b) − k (1 − |u|)³/6 with u = (a − b)/k clamped to −1 … 1, or min(a, b) − k
@@ -131,8 +132,9 @@ pub(super) struct Graph {
     axes: Vec<u8>,
     /// The nodes in the order of `Node`, among which each is found.
     sorted: Vec<Id>,
-    /// Whether a product with the constant 0 folds to 0. It does in derivatives, where 0 means independence of the
-    /// coordinate. It does not in the formula itself: `0*ln(x)` is undefined for negative x.
+    /// Whether a product with the constant 0 folds to 0. It does in derivatives, where 0 means
+    /// independence of the coordinate. It does not in the formula itself: `0*ln(x)` is undefined
+    /// for negative x.
     zero_annihilates: bool,
 }
 
@@ -180,9 +182,11 @@ impl Graph {
         sum
     }
 
-    /// The functions whose zeros together are those of `root`, each once; none if it depends on no coordinate.
+    /// The functions whose zeros together are those of `root`, each once; none if it depends on no
+    /// coordinate.
     ///
-    /// A product is taken apart into its factors, a power into its base, and a function that vanishes only at 0 into its argument.
+    /// A product is taken apart into its factors, a power into its base, and a function that
+    /// vanishes only at 0 into its argument.
     pub(super) fn factors(&self, root: Id) -> Vec<Id> {
         let mut factors = Vec::new();
         let mut open = vec![root];
@@ -213,7 +217,8 @@ impl Graph {
         factors
     }
 
-    /// The functions that are zero together where `root` is, a sum of even powers or a root of one; none if it is no such sum.
+    /// The functions that are zero together where `root` is, a sum of even powers or a root of one;
+    /// none if it is no such sum.
     pub(super) fn squares(&self, root: Id) -> Vec<Id> {
         let (mut open, mut squares, mut next) = (vec![root], Vec::new(), 0);
         while let Some(&id) = open.get(next) {
@@ -248,7 +253,8 @@ impl Graph {
         (0..).zip(needed).filter(|&(_, is_needed)| is_needed).map(|(id, _)| id).collect()
     }
 
-    /// Evaluates `nodes` at a point: `results` gets the value of each at its index. The operands of each have to be among them.
+    /// Evaluates `nodes` at a point: `results` gets the value of each at its index. The operands of
+    /// each have to be among them.
     pub(super) fn evaluate(&self, nodes: &[Id], parameters: &[f64], point: DVec3, results: &mut Vec<f64>) {
         let point = point.to_array();
         results.resize(self.nodes.len().max(results.len()), 0.0);
@@ -314,7 +320,8 @@ impl Graph {
         (part, roots[0])
     }
 
-    /// A graph of `outputs` with their indices in it: `write` adds each node that they need, in the same order.
+    /// A graph of `outputs` with their indices in it: `write` adds each node that they need, in the
+    /// same order.
     pub(super) fn rewritten(
         &self,
         outputs: &[Id],
@@ -347,8 +354,8 @@ impl Graph {
         self.as_constant(id) == Some(value)
     }
 
-    /// Operands of a commutative operation in canonical order, so that a + b and b + a are one node. A uniform operand
-    /// comes second.
+    /// Operands of a commutative operation in canonical order, so that a + b and b + a are one
+    /// node. A uniform operand comes second.
     fn ordered(&self, a: Id, b: Id) -> (Id, Id) {
         let key = |id: Id| (self.is_uniform(id), id);
         if key(a) <= key(b) { (a, b) } else { (b, a) }
@@ -362,7 +369,8 @@ impl Graph {
             return a;
         }
         match (self.node(a), self.node(b)) {
-            // A varying operand plus a negated uniform stays a sum: `sub` would turn it back into one.
+            // A varying operand plus a negated uniform stays a sum: `sub` would turn it back into
+            // one.
             (_, Node::Unary(Unary::Neg, inner)) if !self.is_uniform(inner) || self.is_uniform(a) => {
                 return self.sub(a, inner);
             }
@@ -381,7 +389,8 @@ impl Graph {
             let sum = self.add(u, b);
             return self.add(v, sum);
         }
-        // (u − v) + w = (u + w) − v likewise: the faces of boxes that lie in one plane are then one function.
+        // (u − v) + w = (u + w) − v likewise: the faces of boxes that lie in one plane are then one
+        // function.
         if self.is_uniform(b)
             && let Node::Binary(Binary::Sub, u, v) = self.node(a)
             && self.is_uniform(u)
@@ -577,8 +586,8 @@ impl Graph {
         self.folded(Node::Smin(blend, a, b, k))
     }
 
-    /// The width of the blend of a smooth minimum, which is no smaller than [`MIN_BLEND_WIDTH`], and the difference of its operands over
-    /// that width, clamped to −1 … 1.
+    /// The width of the blend of a smooth minimum, which is no smaller than [`MIN_BLEND_WIDTH`],
+    /// and the difference of its operands over that width, clamped to −1 … 1.
     pub(super) fn blend(&mut self, a: Id, b: Id, k: Id) -> (Id, Id) {
         let least = self.constant(MIN_BLEND_WIDTH);
         let width = self.binary(Binary::Max, k, least);

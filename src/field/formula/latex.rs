@@ -61,7 +61,8 @@ pub(super) fn greek(name: &str) -> Option<&'static str> {
     GREEK.iter().find(|(known, _)| *known == name).map(|&(_, letter)| letter)
 }
 
-/// The meaning of the LaTeX command `word`, given without its backslash; none if the command is unknown.
+/// The meaning of the LaTeX command `word`, given without its backslash; none if the command is
+/// unknown.
 pub(super) fn command(word: &str) -> Option<LatexCommand> {
     let token = match word {
         "," | ";" | ":" | "!" | " " | "quad" | "qquad" | "displaystyle" | "textstyle" | "big" | "Big"

@@ -62,8 +62,9 @@ fn continues_name(c: char) -> bool {
     starts_name(c) || c.is_ascii_digit() || c == '_'
 }
 
-/// The names that parameters may have, as a regular expression of JavaScript: a letter, then letters, digits and `_`. Names of
-/// coordinates, constants and functions match it, and are refused all the same.
+/// The names that parameters may have, as a regular expression of JavaScript: a letter, then
+/// letters, digits and `_`. Names of coordinates, constants and functions match it, and are refused
+/// all the same.
 #[must_use]
 pub fn name_pattern() -> String {
     let letters: String = LETTERS.iter().map(|(first, last)| format!("{first}-{last}")).collect();
@@ -78,7 +79,8 @@ pub(super) fn is_name(name: &str) -> bool {
 
 /// Tokens of `text`, the last of which is `End`.
 ///
-/// A name in `declared` stays one token even where a run of coordinates such as `xy` would otherwise be a product.
+/// A name in `declared` stays one token even where a run of coordinates such as `xy` would
+/// otherwise be a product.
 pub(super) fn tokens(text: &str, declared: &[&str]) -> Result<Vec<Spanned>, FormulaError> {
     let characters = text.char_indices().map(|(at, c)| (at, mapped(c))).collect();
     let mut lexer = Lexer { text, declared, characters, next: 0, tokens: Vec::new() };
@@ -325,7 +327,8 @@ impl Lexer<'_> {
         name
     }
 
-    /// The characters of a name between the brace at character `open` and the one that closes it, and the index after that.
+    /// The characters of a name between the brace at character `open` and the one that closes it,
+    /// and the index after that.
     fn braced(&self, open: usize) -> Option<(String, usize)> {
         let mut end = open + 1;
         while self.get(end).is_some_and(continues_name) {
@@ -483,7 +486,8 @@ impl Lexer<'_> {
         self.declared.contains(&letter.to_string().as_str()) || places.any(|(at, _)| is_alone(at))
     }
 
-    /// Consumes the superscript integer that begins at character `start`; a larger one counts as the largest `i32`.
+    /// Consumes the superscript integer that begins at character `start`; a larger one counts as
+    /// the largest `i32`.
     fn superscript(&mut self, start: usize) -> Result<i32, FormulaError> {
         let negative = self.get(start) == Some('⁻');
         let first = start + usize::from(negative);

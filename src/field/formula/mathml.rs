@@ -291,8 +291,8 @@ fn separated(elements: impl Iterator<Item = MathNode>, operator: &str) -> Vec<Ma
     out
 }
 
-/// Name of a parameter. The name of a Greek letter becomes the letter; trailing digits, or what follows `_`, become a
-/// subscript.
+/// Name of a parameter. The name of a Greek letter becomes the letter; trailing digits, or what
+/// follows `_`, become a subscript.
 fn parameter(name: &str) -> MathNode {
     let (stem, index) = match name.split_once('_') {
         Some((stem, index)) if !index.is_empty() => (stem, index),
@@ -318,7 +318,8 @@ fn constant_letter(constant: Constant) -> &'static str {
     }
 }
 
-/// Name of a function that is written with its name and brackets; `None` for one with a notation of its own.
+/// Name of a function that is written with its name and brackets; `None` for one with a notation of
+/// its own.
 fn plain_name(function: Function) -> Option<&'static str> {
     Some(match function {
         Function::Hypot

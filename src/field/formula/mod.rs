@@ -33,10 +33,11 @@
 //!
 //! # Evaluation
 //!
-//! The text is parsed to a syntax tree, which is translated to a graph in static single-assignment form. The graph is
-//! evaluated as a second-order jet in double precision, in interval arithmetic over a few boxes at a time and, compiled
-//! to a straight-line program, in single precision over batches of points. Gradient and Hessian are graphs too, derived
-//! from that of f. Where f takes one of two operands, as a maximum does, each of its smooth branches is a graph as well.
+//! The text is parsed to a syntax tree, which is translated to a graph in static single-assignment
+//! form. The graph is evaluated as a second-order jet in double precision, in interval arithmetic
+//! over a few boxes at a time and, compiled to a straight-line program, in single precision over
+//! batches of points. Gradient and Hessian are graphs too, derived from that of f. Where f takes
+//! one of two operands, as a maximum does, each of its smooth branches is a graph as well.
 
 mod ast;
 mod branches;
@@ -95,15 +96,17 @@ use solids::Solid;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// Maximum length of a formula in bytes of UTF-8. Longer text is refused before it is parsed, so that the time that a typed character
-/// takes is bounded: a sum of this length is parsed and compiled in a millisecond, a product of five hundred factors in nine.
+/// Maximum length of a formula in bytes of UTF-8. Longer text is refused before it is parsed, so
+/// that the time that a typed character takes is bounded: a sum of this length is parsed and
+/// compiled in a millisecond, a product of five hundred factors in nine.
 pub const MAX_FORMULA_BYTES: usize = 4096;
 
-/// Maximum nesting of brackets, calls, signs and exponents. So deep a formula takes less than 256 kB of stack, of the 1 MiB that there is in
-/// WebAssembly.
+/// Maximum nesting of brackets, calls, signs and exponents. So deep a formula takes less than 256
+/// kB of stack, of the 1 MiB that there is in WebAssembly.
 pub const MAX_DEPTH: usize = 64;
 
-/// Maximum number of operations of a formula: one for each byte, which only powers can exceed. An integer power counts as its products.
+/// Maximum number of operations of a formula: one for each byte, which only powers can exceed. An
+/// integer power counts as its products.
 pub const MAX_OPERATIONS: usize = MAX_FORMULA_BYTES;
 
 /// A named number of a formula, which can be changed without parsing the formula again.
@@ -159,11 +162,13 @@ impl Parameter {
 #[derive(Clone, Debug)]
 pub struct Formula {
     written: Arc<WrittenFormula>,
-    /// Equation of the same surface that is evaluated instead, if [`Formula::without_powers`] has found one.
+    /// Equation of the same surface that is evaluated instead, if [`Formula::without_powers`] has
+    /// found one.
     simplified: Option<Arc<Equation>>,
     /// The graph of the surface, and its node, from which a solid is made.
     surface: Arc<(Graph, Id)>,
-    /// The solid that is sampled in place of the surface, if one is: a sheet of some thickness, closed by a box or not.
+    /// The solid that is sampled in place of the surface, if one is: a sheet of some thickness,
+    /// closed by a box or not.
     solid: Solid,
     parameters: Vec<Parameter>,
     /// Values of `parameters`, as the compiled formula takes them.
@@ -187,7 +192,8 @@ struct WrittenFormula {
 impl Formula {
     /// The field of a formula, whose unknown names become parameters: see [`Formula::with`].
     ///
-    /// Powers and repeated factors stand once in what is evaluated, which has the same surface and a gradient on it.
+    /// Powers and repeated factors stand once in what is evaluated, which has the same surface and
+    /// a gradient on it.
     ///
     /// # Errors
     ///
@@ -196,7 +202,8 @@ impl Formula {
         Ok(Self::as_written(text, &[])?.without_powers())
     }
 
-    /// Returns the formula with another value of a parameter. Parameters that [`Formula::parse`] finds have the value 1.
+    /// Returns the formula with another value of a parameter. Parameters that [`Formula::parse`]
+    /// finds have the value 1.
     ///
     /// # Errors
     ///
@@ -208,13 +215,14 @@ impl Formula {
 
     /// Parses and compiles a formula, to be evaluated as it is written.
     ///
-    /// The field's parameters are those of `declared` that occur in the text, in the order of declaration, followed by
-    /// the unknown names as automatic parameters, in order of appearance.
+    /// The field's parameters are those of `declared` that occur in the text, in the order of
+    /// declaration, followed by the unknown names as automatic parameters, in order of appearance.
     ///
     /// # Errors
     ///
-    /// Any of [`FormulaErrorKind`], with its span in bytes of `text`. The time and memory that it takes to find an
-    /// error are bounded by [`MAX_FORMULA_BYTES`], [`MAX_DEPTH`] and [`MAX_OPERATIONS`].
+    /// Any of [`FormulaErrorKind`], with its span in bytes of `text`. The time and memory that it
+    /// takes to find an error are bounded by [`MAX_FORMULA_BYTES`], [`MAX_DEPTH`] and
+    /// [`MAX_OPERATIONS`].
     #[doc(hidden)]
     pub fn as_written(text: &str, declared: &[Parameter]) -> Result<Self, FormulaError> {
         check_declared(declared)?;
@@ -231,7 +239,8 @@ impl Formula {
         Ok(Self::of(written, parameters, compiled))
     }
 
-    /// The field of an equation with automatic parameters of these names, to be evaluated as it is written.
+    /// The field of an equation with automatic parameters of these names, to be evaluated as it is
+    /// written.
     fn of_equation(text: &str, equation: Equation, automatic: Vec<String>) -> Result<Self, FormulaError> {
         let parameters: Vec<Parameter> = automatic.iter().map(|name| Parameter::automatic(name)).collect();
         let compiled = Compiled::new(&equation, &parameters)?;
@@ -253,16 +262,19 @@ impl Formula {
         }
     }
 
-    /// Field of the same surface in which powers and repeated factors stand once: u in place of u², √u or |u|.
+    /// Field of the same surface in which powers and repeated factors stand once: u in place of u²,
+    /// √u or |u|.
     ///
-    /// The gradient of u² vanishes on the surface u = 0, so that there is no normal; the gradient of u does not. Text,
-    /// normal form and MathML remain those of the formula. A field without such factors is returned unchanged.
+    /// The gradient of u² vanishes on the surface u = 0, so that there is no normal; the gradient
+    /// of u does not. Text, normal form and MathML remain those of the formula. A field without
+    /// such factors is returned unchanged.
     #[must_use]
     #[doc(hidden)]
     pub fn without_powers(mut self) -> Self {
         if self.simplified.is_none()
             && let Some(simplified) = powers::without_powers(&self.written.equation)
-            // The simplified equation is shorter, so it meets no limit; if it did, the formula itself would still do.
+            // The simplified equation is shorter, so it meets no limit; if it did, the formula
+            // itself would still do.
             && let Ok(compiled) = Compiled::new(&simplified, &self.parameters)
         {
             self.simplified = Some(Arc::new(simplified));
@@ -275,9 +287,10 @@ impl Formula {
         self
     }
 
-    /// Field of the solid that the faces of a box close: max(f, x − `bounds.max[0]`, `bounds.min[0]` − x, …), which is negative in the
-    /// box where f is. It is to be sampled in a larger box. The faces of the box are creases of the surface. Text and MathML remain
-    /// those of the formula, whose surface is no longer periodic.
+    /// Field of the solid that the faces of a box close: max(f, x − `bounds.max[0]`,
+    /// `bounds.min[0]` − x, …), which is negative in the box where f is. It is to be sampled in a
+    /// larger box. The faces of the box are creases of the surface. Text and MathML remain those of
+    /// the formula, whose surface is no longer periodic.
     #[must_use]
     pub fn closed_by(mut self, bounds: &Bounds) -> Self {
         self.solid.closed = Some(*bounds);
@@ -285,8 +298,9 @@ impl Formula {
         self
     }
 
-    /// [`Formula::closed_by`], and opposite faces of the box are to be the same along every axis on which it is a whole number of
-    /// [periods](Formula::surface_periods) wide: [`Facts::unit_cell`] says which.
+    /// [`Formula::closed_by`], and opposite faces of the box are to be the same along every axis on
+    /// which it is a whole number of [periods](Formula::surface_periods) wide: [`Facts::unit_cell`]
+    /// says which.
     #[must_use]
     pub fn repeated_in(mut self, bounds: &Bounds) -> Self {
         self.solid.is_cell = true;
@@ -300,9 +314,10 @@ impl Formula {
         [0, 1, 2].map(|axis| periods::period(graph, *root, axis, &self.values))
     }
 
-    /// Field of the sheet of this thickness around the surface: |f| − t/2 |∇f|, which is negative where the distance from the surface
-    /// is less than t/2 to first order. A box [closes](Formula::closed_by) the sheet, not the solid. Text and MathML remain those of
-    /// the formula.
+    /// Field of the sheet of this thickness around the surface: |f| − t/2 |∇f|, which is negative
+    /// where the distance from the surface is less than t/2 to first order. A box
+    /// [closes](Formula::closed_by) the sheet, not the solid. Text and MathML remain those of the
+    /// formula.
     #[must_use]
     pub fn thickened(mut self, thickness: f64) -> Self {
         self.solid.thickness = Some(thickness);
@@ -356,8 +371,8 @@ impl Formula {
         &self.written.text
     }
 
-    /// Formula in normal form: with explicit products and no redundant brackets. It is ASCII except for Greek names,
-    /// and parsing it gives the same field.
+    /// Formula in normal form: with explicit products and no redundant brackets. It is ASCII except
+    /// for Greek names, and parsing it gives the same field.
     #[must_use]
     #[doc(hidden)]
     pub fn normal_form(&self) -> String {
@@ -390,14 +405,15 @@ impl Formula {
         &self.written.automatic
     }
 
-    /// Whether f is the same everywhere for any values of the parameters. Such a field has no surface.
+    /// Whether f is the same everywhere for any values of the parameters. Such a field has no
+    /// surface.
     #[must_use]
     pub fn is_constant(&self) -> bool {
         self.compiled.is_constant
     }
 
-    /// Sets the value of a parameter, which may lie outside the range of its slider. A declared parameter that the
-    /// formula does not use is accepted and has no effect.
+    /// Sets the value of a parameter, which may lie outside the range of its slider. A declared
+    /// parameter that the formula does not use is accepted and has no effect.
     ///
     /// # Errors
     ///
@@ -421,8 +437,9 @@ impl Formula {
         Ok(())
     }
 
-    /// f, ∇f and ∇∇f at `p`, computed in double precision from the transformed graphs that the batched programs are
-    /// compiled from. It equals [`Field::jet`] up to rounding and is derived independently of it.
+    /// f, ∇f and ∇∇f at `p`, computed in double precision from the transformed graphs that the
+    /// batched programs are compiled from. It equals [`Field::jet`] up to rounding and is derived
+    /// independently of it.
     #[doc(hidden)]
     #[must_use]
     pub fn transformed_jet(&self, p: DVec3) -> Jet {
@@ -518,7 +535,8 @@ impl Field for Formula {
         FormulaEvaluator::new(self, Frame::default()).jet(p)
     }
 
-    /// Around another origin than zero batches are computed in double precision, which takes longer.
+    /// Around another origin than zero batches are computed in double precision, which takes
+    /// longer.
     fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
         Box::new(FormulaEvaluator::new(self, frame))
     }

@@ -53,8 +53,8 @@ pub(super) fn sign(a: f64) -> f64 {
     }
 }
 
-/// a^b, or NaN if either operand is NaN, where `libm::pow` may give 1, or a power of −∞ is none, as other powers of negative
-/// numbers are, where it gives 0 or ∞.
+/// a^b, or NaN if either operand is NaN, where `libm::pow` may give 1, or a power of −∞ is none, as
+/// other powers of negative numbers are, where it gives 0 or ∞.
 fn pow(a: f64, b: f64) -> f64 {
     let is_none = a == f64::NEG_INFINITY && libm::floor(b) != b;
     if is_none || a.is_nan() || b.is_nan() { f64::NAN } else { libm::pow(a, b) }

@@ -13,8 +13,8 @@
 //!            | function [ exponent ] ( "(" value { "," value } ")" | operand )
 //! ```
 //!
-//! An opening bracket of any kind, `(`, `[` or `{`, is closed by its own. [`call`](super::call) says what a function without
-//! brackets is applied to.
+//! An opening bracket of any kind, `(`, `[` or `{`, is closed by its own. [`call`](super::call)
+//! says what a function without brackets is applied to.
 
 use super::MAX_DEPTH;
 use super::ast::{Constant, Definition, Expr, ExprKind, Factor, Function, Sign};
@@ -32,7 +32,8 @@ pub(super) struct Parser<'a> {
     pub(super) depth: usize,
     /// The greatest depth so far in the present definition.
     pub(super) deepest: usize,
-    /// Whether the innermost bracket around the next token is a bar, which a bar after an operand closes.
+    /// Whether the innermost bracket around the next token is a bar, which a bar after an operand
+    /// closes.
     pub(super) is_in_bars: bool,
     /// Whether a comparison stands before the next token in its bracket, so that `||` is a logical
     /// operator.
@@ -162,7 +163,8 @@ impl<'a> Parser<'a> {
         FormulaError::new(ErrorKind::UnexpectedSymbol, self.peek().span.clone(), message)
     }
 
-    /// The numbers on both sides of the comma that is token `at`, if it may be a decimal one: they have no point, and there is no space.
+    /// The numbers on both sides of the comma that is token `at`, if it may be a decimal one: they
+    /// have no point, and there is no space.
     fn numbers_beside(&self, at: usize) -> Option<[&Range<usize>; 2]> {
         let [
             Spanned { token: Token::Number(_), span: whole },
@@ -343,7 +345,8 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// In `|x|y|z|` the second bar may close or open: an error at the third one, where the factors lead to it.
+    /// In `|x|y|z|` the second bar may close or open: an error at the third one, where the factors
+    /// lead to it.
     fn check_bars(&self, factors: &[(Factor, Expr)]) -> Result<(), FormulaError> {
         let Spanned { token, span } = self.peek();
         let is_barred = |(_, factor): &(Factor, Expr)| slice(self.text, &factor.span).ends_with('|');
@@ -459,7 +462,8 @@ impl<'a> Parser<'a> {
         result
     }
 
-    /// Parses a bracket, which is the next token, with what `inside` parses; returns the span of it all too.
+    /// Parses a bracket, which is the next token, with what `inside` parses; returns the span of it
+    /// all too.
     fn bracketed<T>(
         &mut self,
         inside: impl FnOnce(&mut Self) -> Result<T, FormulaError>,
@@ -561,7 +565,8 @@ impl<'a> Parser<'a> {
             }
             Token::Equals => {
                 let before = self.next.checked_sub(1).map_or(0, |last| self.tokens[last].span.end);
-                // Editors close a bracket as soon as it is opened: that one stands too far to the right.
+                // Editors close a bracket as soon as it is opened: that one stands too far to the
+                // right.
                 let late = self.tokens[self.next..].iter().find(|later| later.token == Token::Close(closing));
                 let (span, inside) = match late {
                     Some(late) => (before..late.span.end, slice(self.text, &(before..late.span.start))),

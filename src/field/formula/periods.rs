@@ -5,8 +5,9 @@ use super::operations::{Binary, Unary};
 use crate::math::SINGLE_ROUNDING;
 use core::f64::consts::{PI, TAU};
 
-/// Largest numerator and denominator of the ratio of two periods that have a common multiple. What comes together only after
-/// more of them is taken for not periodic: of 20,000 particles each of 12³ small cells in a large one has a dozen.
+/// Largest numerator and denominator of the ratio of two periods that have a common multiple. What
+/// comes together only after more of them is taken for not periodic: of 20,000 particles each of
+/// 12³ small cells in a large one has a dozen.
 const MOST_PERIODS: u32 = 12;
 
 /// The dependence of a value on one coordinate.
@@ -22,8 +23,8 @@ enum Along {
     Other,
 }
 
-/// The period of node `root` along an axis, with these values of the parameters: 0 if it does not change along it, none if it is not known
-/// to be periodic.
+/// The period of node `root` along an axis, with these values of the parameters: 0 if it does not
+/// change along it, none if it is not known to be periodic.
 pub(super) fn period(graph: &Graph, root: Id, axis: u8, parameters: &[f64]) -> Option<f64> {
     let mut known: Vec<Along> = Vec::with_capacity(graph.len());
     for (id, &node) in (0..).zip(graph.nodes()) {

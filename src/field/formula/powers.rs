@@ -1,16 +1,18 @@
 //! Reduction of an equation to one of the same surface without multiple factors.
 //!
-//! The gradient of a power u^n, or of a product with such a factor, vanishes on the surface u = 0. There is no normal,
-//! and the residual |f|/|∇f| is no distance. The function u has the same zeros and a gradient there. Roots and absolute
-//! values are replaced by their arguments too, since their slope at 0 is infinite or jumps.
-//! The syntax tree is changed and not the graph, because the user is shown the equation that is sampled.
+//! The gradient of a power u^n, or of a product with such a factor, vanishes on the surface u = 0.
+//! There is no normal, and the residual |f|/|∇f| is no distance. The function u has the same zeros
+//! and a gradient there. Roots and absolute values are replaced by their arguments too, since their
+//! slope at 0 is infinite or jumps. The syntax tree is changed and not the graph, because the user
+//! is shown the equation that is sampled.
 
 use super::ast::{Definition, Equation, Expr, ExprKind, Factor, Function, Sign};
 use super::build::build;
 use super::graph::Graph;
 use super::operations::Unary;
 
-/// Equation of the same surface without powers of factors and without repeated factors, or `None` if there are none.
+/// Equation of the same surface without powers of factors and without repeated factors, or `None`
+/// if there are none.
 ///
 /// An equation with two sides other than zero is not a product and is left alone.
 pub(super) fn without_powers(equation: &Equation) -> Option<Equation> {

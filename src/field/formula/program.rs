@@ -1,4 +1,5 @@
-//! Compiler from a graph to a straight-line program over a small register file, for batches of points.
+//! Compiler from a graph to a straight-line program over a small register file, for batches of
+//! points.
 //!
 //! A node that depends on no coordinate is a *uniform*. It is computed once, in double precision,
 //! whenever a parameter changes, and enters the instructions as a broadcast operand. The varying
@@ -24,7 +25,8 @@ pub(super) enum Op {
     Binary(Binary),
     /// R[a] ∘ U[b]
     Uniform(Binary),
-    /// R[c] where R[a] ≤ R[b], or, with `false`, where R[a] > R[b]; else 0, and NaN where either is NaN
+    /// R[c] where R[a] ≤ R[b], or, with `false`, where R[a] > R[b]; else 0, and NaN where either is
+    /// NaN
     If(bool),
 }
 
@@ -104,8 +106,9 @@ impl Program {
     }
 }
 
-/// Number of operations that compute `outputs` at a point. It serves to choose between forward and backward differentiation. Where each
-/// operation counts for what it takes, two adaptive runs of the gallery and one of 58 on random surfaces choose the other, and take as long.
+/// Number of operations that compute `outputs` at a point. It serves to choose between forward and
+/// backward differentiation. Where each operation counts for what it takes, two adaptive runs of
+/// the gallery and one of 58 on random surfaces choose the other, and take as long.
 pub(super) fn cost(graph: &Graph, outputs: &[Id]) -> usize {
     let is_operation = |&id: &Id| !graph.is_uniform(id) && !matches!(graph.node(id), Node::Coordinate(_));
     graph.needed_by(outputs).iter().filter(|id| is_operation(id)).count()
@@ -158,11 +161,13 @@ struct Compiler<'a> {
     graph: &'a Graph,
     outputs: &'a [Id],
     tape: Tape,
-    /// The nodes that the outputs need, in the order of the graph, which is that of the instructions.
+    /// The nodes that the outputs need, in the order of the graph, which is that of the
+    /// instructions.
     needed: Vec<Id>,
     /// Index in `uniform_nodes` of each uniform node that is needed.
     uniform: Vec<u32>,
-    /// Instructions over virtual registers, each of which is set once. The coordinates have the first three, used or not.
+    /// Instructions over virtual registers, each of which is set once. The coordinates have the
+    /// first three, used or not.
     code: Vec<Instruction>,
     /// Number of virtual registers.
     values: usize,
@@ -244,8 +249,8 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Emits a sine or cosine. If the graph has both of one angle, one instruction computes them: they share the
-    /// argument reduction.
+    /// Emits a sine or cosine. If the graph has both of one angle, one instruction computes them:
+    /// they share the argument reduction.
     fn emit_sine_or_cosine(&mut self, operation: Unary, a: Id) -> u32 {
         let angle = self.operand(a);
         let other = if operation == Unary::Sin { Unary::Cos } else { Unary::Sin };

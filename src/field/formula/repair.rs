@@ -3,8 +3,8 @@
 use super::error::{FormulaError, Mended};
 use super::{MAX_FORMULA_BYTES, syntax};
 
-/// The error, with the formula in which all mistakes of its kind are corrected, if there are several: each suggestion is taken until
-/// none follows, or a mistake of another kind.
+/// The error, with the formula in which all mistakes of its kind are corrected, if there are
+/// several: each suggestion is taken until none follows, or a mistake of another kind.
 pub(super) fn throughout(text: &str, declared: &[&str], error: FormulaError) -> FormulaError {
     let mut mended = text.to_owned();
     let mut places = 0;
@@ -13,7 +13,8 @@ pub(super) fn throughout(text: &str, declared: &[&str], error: FormulaError) -> 
         let Some(suggestion) = correction(&present).filter(|_| is_same_kind(&present, &error)) else { break };
         mended.replace_range(present.span.clone(), suggestion);
         places += 1;
-        // A formula has no more mistakes than bytes: a suggestion that leads to itself corrects nothing.
+        // A formula has no more mistakes than bytes: a suggestion that leads to itself corrects
+        // nothing.
         if places > text.len() || mended.len() > MAX_FORMULA_BYTES {
             return error;
         }

@@ -1,6 +1,7 @@
 //! Jets of first and second order in double precision, carried forward through the graph of f.
 //!
-//! Forward accumulation shares no code with the graphs of the derivatives, so that tests can check one by the other.
+//! Forward accumulation shares no code with the graphs of the derivatives, so that tests can check
+//! one by the other.
 
 use super::graph::{Blend, Graph, Id, MIN_BLEND_WIDTH, Node, power, smin};
 use super::operations::{Binary, Unary};
@@ -8,7 +9,8 @@ use crate::field::Jet;
 use crate::math::Sym3;
 use glam::DVec3;
 
-/// Jet: value, gradient, and the first `N` entries of the Hessian in the order xx, xy, xz, yy, yz, zz: all six, or none.
+/// Jet: value, gradient, and the first `N` entries of the Hessian in the order xx, xy, xz, yy, yz,
+/// zz: all six, or none.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ForwardJet<const N: usize> {
     value: f64,
@@ -32,8 +34,8 @@ impl<const N: usize> ForwardJet<N> {
         (self.value, DVec3::from_array(self.first))
     }
 
-    /// Jet of f(self) by the chain rule, where f has the given value and first two derivatives. Derivatives along axes
-    /// outside `axes` stay 0 even where f has an infinite derivative.
+    /// Jet of f(self) by the chain rule, where f has the given value and first two derivatives.
+    /// Derivatives along axes outside `axes` stay 0 even where f has an infinite derivative.
     fn apply(&self, [value, d1, d2]: [f64; 3], axes: u8) -> Self {
         let has = |k: usize| axes >> k & 1 == 1;
         let mut out = Self::uniform(value);
@@ -206,7 +208,8 @@ fn binary<const N: usize>(
             b.mul(&logarithm).apply([value; 3], axes)
         }
         Binary::Atan2 => {
-            // The derivatives are those of atan(a/b), or of −atan(b/a) where that is better conditioned.
+            // The derivatives are those of atan(a/b), or of −atan(b/a) where that is better
+            // conditioned.
             let angle = operation.evaluate(a.value, b.value);
             let jet = if a.value.abs() <= b.value.abs() {
                 let ratio = a.mul(&b.reciprocal(of_b));

@@ -1,6 +1,8 @@
-//! Solids made of the surface of a formula: a sheet of some thickness, and what the faces of a box close.
+//! Solids made of the surface of a formula: a sheet of some thickness, and what the faces of a box
+//! close.
 //!
-//! Both are further nodes of the graph of f, so that derivatives, bounds and branches are found as for any formula.
+//! Both are further nodes of the graph of f, so that derivatives, bounds and branches are found as
+//! for any formula.
 
 use super::branches::by_signs;
 use super::derivative;
@@ -8,12 +10,15 @@ use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
 use crate::math::Bounds;
 
-/// Maximum number of smooth functions that the sheets of a thickened surface are put together from. Beyond it the choices of f are
-/// taken as they are, and edges of a sheet may be off where gradients of different length meet. Of 16 random solids and products none changes
-/// with half or twice as many, half of them with 16; a function in k absolute values, one in the other, takes 2ᵏ.
+/// Maximum number of smooth functions that the sheets of a thickened surface are put together from.
+/// Beyond it the choices of f are taken as they are, and edges of a sheet may be off where
+/// gradients of different length meet. Of 16 random solids and products none changes with half or
+/// twice as many, half of them with 16; a function in k absolute values, one in the other, takes
+/// 2ᵏ.
 const MAX_SHEETS: usize = 128;
 
-/// The solid that is made of a surface: its thickness and the box that closes it. Without both it is the surface itself.
+/// The solid that is made of a surface: its thickness and the box that closes it. Without both it
+/// is the surface itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Solid {
     /// Thickness of the sheet around the surface.
@@ -47,11 +52,13 @@ impl Solid {
     }
 }
 
-/// The node of |f| − t/2 |∇f|, of the places whose distance from the surface is at most t/2 to first order.
+/// The node of |f| − t/2 |∇f|, of the places whose distance from the surface is at most t/2 to
+/// first order.
 ///
-/// Where f has choices, so has the distance: the sheets beside max(a, b) = 0 are those beside a = 0 and b = 0, each by its own gradient.
-/// These sheets meet in edges. With the one gradient of max(a, b) they would miss each other by the jump of |∇f|. Nor has a product a
-/// gradient where its factors cross: each of them has a sheet of its own.
+/// Where f has choices, so has the distance: the sheets beside max(a, b) = 0 are those beside a = 0
+/// and b = 0, each by its own gradient. These sheets meet in edges. With the one gradient of max(a,
+/// b) they would miss each other by the jump of |∇f|. Nor has a product a gradient where its
+/// factors cross: each of them has a sheet of its own.
 fn thickened(graph: &mut Graph, root: Id, thickness: f64) -> Id {
     let half = graph.constant(0.5 * thickness);
     let mut sheets = SheetBuilder { graph, half, left: MAX_SHEETS };

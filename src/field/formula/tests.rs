@@ -51,7 +51,8 @@ fn derivatives_hold_no_dead_operations() {
     let field = compiled("x + y + z");
     let operations_of = |field: &Formula| operations(&field.compiled.gradient_program);
     assert_eq!(operations_of(&field).iter().filter(|op| **op != Op::Splat).count(), 2);
-    // Three squares and three sums for the value. The gradient of a sphere is three products by 2, and no product by a known zero or one.
+    // Three squares and three sums for the value. The gradient of a sphere is three products by 2,
+    // and no product by a known zero or one.
     let field = compiled("x^2 + y^2 + z^2 - 1");
     assert_eq!(operations_of(&field).len(), 9);
 }
@@ -111,13 +112,15 @@ fn periods_are_found_along_each_axis() {
     };
     close("sin(x)cos(y)+sin(y)cos(z)+sin(z)cos(x)", [Some(TAU); 3]);
     close("cos(10x) + cos(4 y/2) = tan(z)/3", [Some(TAU / 10.0), Some(PI), Some(PI)]);
-    // Half a period and a third of one come together after a whole one; phases and other axes change nothing.
+    // Half a period and a third of one come together after a whole one; phases and other axes
+    // change nothing.
     close("sin(2x + y)^2 + exp(cos(3x - 1)) = 1", [Some(TAU), Some(TAU), Some(0.0)]);
     close("sin(-2 pi x) = max(cos(x - x + y), 0)", [Some(1.0), Some(TAU), Some(0.0)]);
     close("sin(sqrt(2) x) = cos(y/3)", [Some(TAU / core::f64::consts::SQRT_2), Some(3.0 * TAU), Some(0.0)]);
     // A parameter counts by its value, here 1.
     close("sin(k x) + sin(y) + sin(z)", [Some(TAU); 3]);
-    // None of these come again: a plane, a factor that is not a number, a frequency that changes, incommensurate ones.
+    // None of these come again: a plane, a factor that is not a number, a frequency that changes,
+    // incommensurate ones.
     close("z = sin(x)", [Some(TAU), Some(0.0), None]);
     close("x sin(x) = 0", [None, Some(0.0), Some(0.0)]);
     close("sin(x y) = z - z", [None, None, Some(0.0)]);

@@ -1,4 +1,5 @@
-//! Coefficients of the sum: those of single centres, and those of the polynomials that stand for many.
+//! Coefficients of the sum: those of single centres, and those of the polynomials that stand for
+//! many.
 
 use crate::math::{LANES, Lanes};
 use glam::DVec3;
@@ -9,8 +10,9 @@ pub(super) const DEGREE: usize = 7;
 /// Rows of a polynomial: one for each pair of powers of z and x whose sum is at most [`DEGREE`].
 pub(super) const ROWS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
 
-/// Coefficients of a polynomial in single precision. The lanes are the powers of y. Rows go from the largest power of z
-/// down, and within it from the largest power of x down. Coefficients beyond the degree are zero.
+/// Coefficients of a polynomial in single precision. The lanes are the powers of y. Rows go from
+/// the largest power of z down, and within it from the largest power of x down. Coefficients beyond
+/// the degree are zero.
 pub(super) type Rows = [Lanes; ROWS];
 
 const _: () = assert!(LANES == DEGREE + 1, "the powers of y fill the lanes");

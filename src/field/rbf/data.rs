@@ -9,11 +9,12 @@ use glam::{DVec3, Vec3};
 const MAGIC: [u8; 8] = *b"mp-hrbf1";
 /// Number of doubles per centre: position, α, β.
 const NUMBERS: usize = 7;
-/// Number of points that are evaluated together in double precision: two SIMD registers of WebAssembly, one of AVX.
+/// Number of points that are evaluated together in double precision: two SIMD registers of
+/// WebAssembly, one of AVX.
 const QUAD: usize = 4;
 
-/// Centres and coefficients of f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³. The three lists have equal
-/// lengths.
+/// Centres and coefficients of f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³. The three
+/// lists have equal lengths.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RbfData {
     /// Centres cⱼ.
@@ -117,7 +118,8 @@ impl RbfData {
         Ok(data)
     }
 
-    /// f, ∇f and ∇∇f at `p`, summed over the centres in order. At a centre its own term counts as zero.
+    /// f, ∇f and ∇∇f at `p`, summed over the centres in order. At a centre its own term counts as
+    /// zero.
     #[must_use]
     pub fn jet(&self, p: DVec3) -> Jet {
         let mut value = 0.0;

@@ -3,14 +3,16 @@
 use crate::math::{Bounds, power_of_two};
 use glam::DVec3;
 
-/// Grid of the origin in local units. The origin is a multiple of it, so that rounding of points does not move it. Half and
-/// double give the same residuals of four random clouds, to three digits.
+/// Grid of the origin in local units. The origin is a multiple of it, so that rounding of points
+/// does not move it. Half and double give the same residuals of four random clouds, to three
+/// digits.
 const GRID: f64 = 1.0 / 16.0;
 
 /// Local coordinates s (x − o).
 ///
-/// The box of the centres is centred at the origin up to a sixteenth, and its longest side is between one and two. s is
-/// a power of two and o is representable in single precision, so the transformation loses no digits.
+/// The box of the centres is centred at the origin up to a sixteenth, and its longest side is
+/// between one and two. s is a power of two and o is representable in single precision, so the
+/// transformation loses no digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CentredFrame {
     origin: DVec3,

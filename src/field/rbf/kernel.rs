@@ -1,15 +1,16 @@
-//! Evaluation in single precision, in two ways that give the same bits: at one point, with SIMD lanes over the
-//! coefficients of a cell's polynomial and over its near centres, and at eight points of one cell, with lanes over the
-//! points.
+//! Evaluation in single precision, in two ways that give the same bits: at one point, with SIMD
+//! lanes over the coefficients of a cell's polynomial and over its near centres, and at eight
+//! points of one cell, with lanes over the points.
 //!
-//! Consecutive points of a front or of a relaxation step mostly share a cell, but not all do. Eight together take 5.8 times the
-//! instructions of one. With those in eight lanes too that are alone in their cell, a run on the bunny takes 19 % more.
+//! Consecutive points of a front or of a relaxation step mostly share a cell, but not all do. Eight
+//! together take 5.8 times the instructions of one. With those in eight lanes too that are alone in
+//! their cell, a run on the bunny takes 19 % more.
 
 use super::coefficients::{Centre, DEGREE, Rows};
 use crate::math::{LANES, Lanes};
 
-/// Smallest |d| that is divided by, in local units, so that nothing is divided by zero at a centre: far below the rounding of
-/// positions, 10⁻⁷.
+/// Smallest |d| that is divided by, in local units, so that nothing is divided by zero at a centre:
+/// far below the rounding of positions, 10⁻⁷.
 const LEAST_DISTANCE: f32 = 1e-12;
 /// Eight near centres, in lanes.
 #[derive(Clone, Copy, Debug)]
@@ -63,9 +64,9 @@ pub(super) struct LocalPoint {
 
 /// Returns f and ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy, yz, zz), in local units.
 ///
-/// The functions that it calls are not inlined: the compiler keeps lanes in registers of their own only where they come
-/// in and go out by memory. Inlined, they and those of [`sums_of_eight`] make a uniform run on the bunny take 39 % more
-/// instructions.
+/// The functions that it calls are not inlined: the compiler keeps lanes in registers of their own
+/// only where they come in and go out by memory. Inlined, they and those of [`sums_of_eight`] make
+/// a uniform run on the bunny take 39 % more instructions.
 pub(super) fn sums<const N: usize>(rows: &Rows, near: &[Near], point: &LocalPoint) -> [f32; N] {
     let [x, y, z] = point.offset.map(Lanes::splat);
     let mut planes = [Lanes::splat(0.0); 6];
@@ -78,8 +79,8 @@ pub(super) fn sums<const N: usize>(rows: &Rows, near: &[Near], point: &LocalPoin
     sums.map(Lanes::sum)
 }
 
-/// Evaluates the polynomial and its derivatives by x and z by Horner's rule along both: f, ∂x, ∂z, ½ ∂xx, ∂xz, ½ ∂zz.
-/// The lanes hold the powers of y, which are still to be summed.
+/// Evaluates the polynomial and its derivatives by x and z by Horner's rule along both: f, ∂x, ∂z,
+/// ½ ∂xx, ∂xz, ½ ∂zz. The lanes hold the powers of y, which are still to be summed.
 // Not inlined, for the registers: see `sums`.
 #[inline(never)]
 fn polynomial<const N: usize>(planes: &mut [Lanes; 6], rows: &Rows, x: &Lanes, z: &Lanes) {
@@ -94,8 +95,8 @@ fn polynomial<const N: usize>(planes: &mut [Lanes; 6], rows: &Rows, x: &Lanes, z
     *planes = nested;
 }
 
-/// Does one step of Horner's rule along z. `row` are the coefficients of the polynomial in x of the next smaller power
-/// of z, from the largest power of x down.
+/// Does one step of Horner's rule along z. `row` are the coefficients of the polynomial in x of the
+/// next smaller power of z, from the largest power of x down.
 // Inlined, so that the lanes stay in registers from call to call.
 #[inline(always)]
 fn nest<const N: usize>(planes: &mut [Lanes; 6], x: Lanes, z: Lanes, row: impl Iterator<Item = Lanes>) {
@@ -135,7 +136,8 @@ fn slope(power: Lanes) -> Lanes {
     Lanes(core::array::from_fn(|j| if j < 1 { 0.0 } else { j as f32 * power.0[j - 1] }))
 }
 
-/// Multiplies the planes by the powers of y, and turns derivatives by the offset into derivatives by the position.
+/// Multiplies the planes by the powers of y, and turns derivatives by the offset into derivatives
+/// by the position.
 // Not inlined, for the registers: see `sums`.
 #[inline(never)]
 fn weigh<const N: usize>(sums: &mut [Lanes; N], planes: &[Lanes; 6], powers: &Lanes, inverse: f32) {
@@ -192,7 +194,8 @@ fn add_term<const N: usize>(sums: &mut [Lanes; N], &[x, y, z]: &[Lanes; 3], near
     if N == 4 {
         return;
     }
-    // 3 (α r + β·u) I + 3 (α r − β·u) u uᵀ + 3 (β uᵀ + u βᵀ): the last two together are u pᵀ + p uᵀ.
+    // 3 (α r + β·u) I + 3 (α r − β·u) u uᵀ + 3 (β uᵀ + u βᵀ): the last two together are u pᵀ + p
+    // uᵀ.
     let (ux, uy, uz) = (dx * inverse, dy * inverse, dz * inverse);
     let half = Lanes::splat(0.5) * (stretch - slope);
     let (px, py, pz) = (half * ux + bx, half * uy + by, half * uz + bz);
@@ -206,8 +209,8 @@ fn add_term<const N: usize>(sums: &mut [Lanes; N], &[x, y, z]: &[Lanes; 3], near
 
 /// Does what [`sums`] does for eight points of one cell, with the same bits.
 ///
-/// The lanes are the points here. The eight lanes of [`sums`] are eight partial sums, which are added in the same
-/// order.
+/// The lanes are the points here. The eight lanes of [`sums`] are eight partial sums, which are
+/// added in the same order.
 pub(super) fn sums_of_eight<const N: usize>(
     rows: &Rows,
     near: &[Near],
@@ -238,7 +241,8 @@ pub(super) struct LocalPoints {
 fn expand<const N: usize>(sums: &mut [[Lanes; N]; LANES], rows: &Rows, offset: &[Lanes; 3], inverse: f32) {
     let [x, y, z] = *offset;
     let inverse = Lanes::splat(inverse);
-    // These are yʲ, and the weights of the first two derivatives by the position for the power before.
+    // These are yʲ, and the weights of the first two derivatives by the position for the power
+    // before.
     let mut power = Lanes::splat(1.0);
     let [mut power_before, mut first_before] = [Lanes::splat(0.0); 2];
     for (j, sums) in sums.iter_mut().enumerate() {

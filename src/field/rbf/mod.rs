@@ -1,8 +1,9 @@
 //! Hermite radial basis functions: a smooth field near points with normals.
 //!
-//! The field is f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³. For d = x − cⱼ, the gradient ∇φ = 3 r d and
-//! the Hessian 3 (r I + d dᵀ/r) vanish at d = 0. `pointcloud::fit` computes the coefficients from the conditions f = 0
-//! and ∇f = n at points. The models of the paper (§6) are fields of this kind.
+//! The field is f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³. For d = x − cⱼ, the
+//! gradient ∇φ = 3 r d and the Hessian 3 (r I + d dᵀ/r) vanish at d = 0. `pointcloud::fit` computes
+//! the coefficients from the conditions f = 0 and ∇f = n at points. The models of the paper (§6)
+//! are fields of this kind.
 
 mod coefficients;
 mod data;
@@ -25,11 +26,13 @@ use std::sync::Arc;
 
 /// A field given by centres and coefficients, defined everywhere.
 ///
-/// The cost of a point is about that of forty terms of the sum, however many centres there are (see `tree`). The first
-/// point in a cell of the octree allocates a few kilobytes; a model has some hundred cells near its surface.
+/// The cost of a point is about that of forty terms of the sum, however many centres there are (see
+/// `tree`). The first point in a cell of the octree allocates a few kilobytes; a model has some
+/// hundred cells near its surface.
 ///
-/// The value is that of the sum in double precision to about 10⁻⁶ of the model's size, and it jumps by as much between
-/// cells. The Hessian has no limit at a centre with β ≠ 0; at the centre itself it is the sum over the other centres.
+/// The value is that of the sum in double precision to about 10⁻⁶ of the model's size, and it jumps
+/// by as much between cells. The Hessian has no limit at a centre with β ≠ 0; at the centre itself
+/// it is the sum over the other centres.
 #[derive(Clone, Debug)]
 pub struct RbfField {
     data: Arc<RbfData>,
@@ -55,7 +58,8 @@ impl RbfField {
     ///
     /// # Errors
     ///
-    /// [`DataError::Pull`] if one is not finite, or longer than [`LONGEST_PULL`] of its reach; nothing is changed then.
+    /// [`DataError::Pull`] if one is not finite, or longer than [`LONGEST_PULL`] of its reach;
+    /// nothing is changed then.
     #[doc(hidden)]
     pub fn pull(&mut self, pulls: &[Pull]) -> Result<(), DataError> {
         self.pulls = Pulls::new(pulls)?;

@@ -1,9 +1,10 @@
 //! Pulls, by which a surface is drawn out or pushed in around a place while the rest of it stays.
 //!
-//! A pull by the vector b takes the surface {f = 0} to {f ∘ w = 0}, where w(x) = x − g b moves points back. The weight g = (1 − q)³ with
-//! q = |x − c|²/R² is 1 at the place c to which the surface is pulled, and 0 from the distance R on. It has two continuous derivatives, and
-//! where |b| ≤ R/2 the map w is one to one: the slope of g is at most 1.72/R, so the surface neither tears nor meets itself. Several pulls
-//! are made one after the other.
+//! A pull by the vector b takes the surface {f = 0} to {f ∘ w = 0}, where w(x) = x − g b moves
+//! points back. The weight g = (1 − q)³ with q = |x − c|²/R² is 1 at the place c to which the
+//! surface is pulled, and 0 from the distance R on. It has two continuous derivatives, and where
+//! |b| ≤ R/2 the map w is one to one: the slope of g is at most 1.72/R, so the surface neither
+//! tears nor meets itself. Several pulls are made one after the other.
 
 use super::DataError;
 use crate::field::Jet;
@@ -11,7 +12,8 @@ use crate::math::{Bounds, Sym3};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Largest way of a pull, over its reach. Space folds from 0.58 on: one over the largest slope of (1 − s²)³, which is 1.717, at s = 1/√5.
+/// Largest way of a pull, over its reach. Space folds from 0.58 on: one over the largest slope of
+/// (1 − s²)³, which is 1.717, at s = 1/√5.
 pub const LONGEST_PULL: f64 = 0.5;
 
 /// A pull on a surface.
@@ -22,7 +24,8 @@ pub struct Pull {
     pub at: [f64; 3],
     /// The vector by which it is pulled.
     pub by: [f64; 3],
-    /// Distance from where the place comes to, from which on nothing moves. It is at least twice the length of `by`.
+    /// Distance from where the place comes to, from which on nothing moves. It is at least twice
+    /// the length of `by`.
     pub reach: f64,
 }
 
@@ -35,7 +38,8 @@ impl Pull {
             && by <= LONGEST_PULL * self.reach
     }
 
-    /// The offset of a point from where the place comes to, over the reach, and 1 less its square; none beyond the reach.
+    /// The offset of a point from where the place comes to, over the reach, and 1 less its square;
+    /// none beyond the reach.
     fn offset(&self, p: DVec3) -> Option<(DVec3, f64)> {
         let offset = (p - DVec3::from(self.at) - DVec3::from(self.by)) / self.reach;
         let rest = 1.0 - offset.length_squared();

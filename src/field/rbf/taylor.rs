@@ -1,9 +1,10 @@
 //! Taylor polynomials of the sum over far centres.
 //!
-//! Around the middle of a cell the terms of far centres are smooth, so one polynomial of a few dozen coefficients
-//! replaces all of them. The recurrence for |d + t|³ follows from u ∇φ = 3 (d + t) φ with u = |d + t|², φ = u^(3/2),
-//! degree by degree (Duan & Krasny, "An adaptive treecode for computing nonbonded potential energy in classical
-//! molecular systems", 2001, have it for other powers).
+//! Around the middle of a cell the terms of far centres are smooth, so one polynomial of a few
+//! dozen coefficients replaces all of them. The recurrence for |d + t|³ follows from u ∇φ = 3 (d +
+//! t) φ with u = |d + t|², φ = u^(3/2), degree by degree (Duan & Krasny, "An adaptive treecode for
+//! computing nonbonded potential energy in classical molecular systems", 2001, have it for other
+//! powers).
 
 use super::coefficients::{Centre, DEGREE, Rows};
 use crate::math::{LANES, Lanes};
@@ -21,16 +22,16 @@ const fn below(degree: usize) -> usize {
     degree * (degree + 1) * (degree + 2) / 6
 }
 
-/// Coefficients in the order of their degree. The variables are offsets from the middle of a cell in units of its
-/// half-width.
+/// Coefficients in the order of their degree. The variables are offsets from the middle of a cell
+/// in units of its half-width.
 pub(super) type Polynomial = [f64; TERMS];
 
 /// The powers of a term, and the indices of the terms next to it.
 #[derive(Clone, Copy, Debug)]
 struct Term {
     powers: [usize; 3],
-    /// Index of the term with one power less along each axis; [`MORE_TERMS`], whose coefficient is zero, if there is
-    /// none. The type is a byte, so that indices need no bounds checks.
+    /// Index of the term with one power less along each axis; [`MORE_TERMS`], whose coefficient is
+    /// zero, if there is none. The type is a byte, so that indices need no bounds checks.
     less: [u8; 3],
     /// Index of the term with two powers less.
     less_two: [u8; 3],
@@ -48,7 +49,8 @@ pub(super) struct Taylor {
 
 /// A number for each of the centres that are expanded together.
 type CentreGroup = [f64; LANES];
-/// Length of the buffer for the coefficients of a group of centres: as many entries as a byte can index.
+/// Length of the buffer for the coefficients of a group of centres: as many entries as a byte can
+/// index.
 const PLACES: usize = 256;
 
 impl Taylor {
@@ -117,8 +119,8 @@ impl Taylor {
         collect(polynomial, powers, &self.terms, alpha, &beta);
     }
 
-    /// Returns the polynomial of the eighth of the cell whose middle is at `side`/2; each component of `side` is −1 or
-    /// 1.
+    /// Returns the polynomial of the eighth of the cell whose middle is at `side`/2; each component
+    /// of `side` is −1 or 1.
     pub(super) fn shifted(&self, polynomial: &Polynomial, side: [f64; 3]) -> Polynomial {
         let mut cube = [0.0; POWERS * POWERS * POWERS];
         let place = |[k, j, i]: [usize; 3]| (i * POWERS + j) * POWERS + k;

@@ -1,13 +1,15 @@
 //! Octree that evaluates the field in single precision.
 //!
-//! A direct sum costs as many terms as there are centres, and in single precision its result on the surface is noise,
-//! because hundreds of terms of both signs cancel. The octree avoids both. In each cell, one
-//! [Taylor polynomial](super::taylor) replaces the terms of all far centres; its coefficients are summed in double
-//! precision. Only the terms of a few near centres, which are small, are summed directly. A cell is made when the first
-//! point falls into it, and depends on the field alone.
+//! A direct sum costs as many terms as there are centres, and in single precision its result on the
+//! surface is noise, because hundreds of terms of both signs cancel. The octree avoids both. In
+//! each cell, one [Taylor polynomial](super::taylor) replaces the terms of all far centres; its
+//! coefficients are summed in double precision. Only the terms of a few near centres, which are
+//! small, are summed directly. A cell is made when the first point falls into it, and depends on
+//! the field alone.
 //!
-//! The scheme is the dual of the tree code of J. Barnes & P. Hut (1986): the expansions are about the targets, as the
-//! local expansions of the fast multipole method (L. Greengard & V. Rokhlin, 1987).
+//! The scheme is the dual of the tree code of J. Barnes & P. Hut (1986): the expansions are about
+//! the targets, as the local expansions of the fast multipole method (L. Greengard & V. Rokhlin,
+//! 1987).
 
 use super::coefficients::{Centre, DEGREE, Rows};
 use super::data::RbfData;
@@ -18,30 +20,34 @@ use crate::math::{LANES, Lanes};
 use glam::{DVec3, Vec3};
 use std::sync::OnceLock;
 
-/// Half-width of the root cell in local units, in which the centres fill a box of half-width 1/2 to 1: the box of a fit with its
-/// margin needs at most a third of it. The field outside of the root cell is evaluated in double precision.
+/// Half-width of the root cell in local units, in which the centres fill a box of half-width 1/2 to
+/// 1: the box of a fit with its margin needs at most a third of it. The field outside of the root
+/// cell is evaluated in double precision.
 const ROOT: f64 = 4.0;
 
-/// Largest bound on the remainder of a far centre's Taylor series, without its coefficient of about 1/300. On the
-/// surface of the bunny, half of the series then have an error below 10⁻⁷ of the model's size, which is that of
-/// rounding in the near terms.
+/// Largest bound on the remainder of a far centre's Taylor series, without its coefficient of about
+/// 1/300. On the surface of the bunny, half of the series then have an error below 10⁻⁷ of the
+/// model's size, which is that of rounding in the near terms.
 const MAX_REMAINDER: f64 = 3e-4;
-/// Minimum distance of a far centre, in radii of the cell: the series converges beyond 1. With half of it 2 of 4 random clouds
-/// give other particles in the same time; twice as much takes 1.1 times as long.
+/// Minimum distance of a far centre, in radii of the cell: the series converges beyond 1. With half
+/// of it 2 of 4 random clouds give other particles in the same time; twice as much takes 1.1 times
+/// as long.
 const MIN_DISTANCE: f64 = 1.5;
-/// Maximum number of near centres of a leaf, beyond which it is split. A smaller number makes evaluation cheaper and
-/// the cells costlier: with 32, the cells of a model of 200 centres pay off after about 10,000 evaluations.
-/// With half of it a fit and 3,000 or 12,000 particles of a random surface take 5 % more instructions, with double 1 to 2 % fewer.
+/// Maximum number of near centres of a leaf, beyond which it is split. A smaller number makes
+/// evaluation cheaper and the cells costlier: with 32, the cells of a model of 200 centres pay off
+/// after about 10,000 evaluations. With half of it a fit and 3,000 or 12,000 particles of a random
+/// surface take 5 % more instructions, with double 1 to 2 % fewer.
 const MAX_NEAR: usize = 32;
-/// Distance of the nearest centre, in radii of the cell, beyond which a cell is not split: little of the surface is there. With
-/// half of it four random clouds take 1.9 times as long, with twice as much they give the same particles.
+/// Distance of the nearest centre, in radii of the cell, beyond which a cell is not split: little
+/// of the surface is there. With half of it four random clouds take 1.9 times as long, with twice
+/// as much they give the same particles.
 const CLOSE: f64 = 1.0;
-/// Half-width at which a cell is not split, even in a cluster of centres. Half and double give the same particles on four random
-/// clouds.
+/// Half-width at which a cell is not split, even in a cluster of centres. Half and double give the
+/// same particles on four random clouds.
 const MIN_HALF_WIDTH: f64 = 1.0 / 512.0;
 
-/// Minimum number of consecutive points of a cell that are evaluated together. With 3 a run on the bunny takes 3 % more instructions, with 1
-/// some 20 %.
+/// Minimum number of consecutive points of a cell that are evaluated together. With 3 a run on the
+/// bunny takes 3 % more instructions, with 1 some 20 %.
 const MIN_TOGETHER: usize = 6;
 
 /// A cell of the octree.
@@ -136,7 +142,8 @@ impl CellTree {
         let mut last: Option<&LeafCell> = None;
         let mut n = 0;
         while n < points.len() {
-            // Up to eight of the next points, of which those in the cell of the first one are evaluated together.
+            // Up to eight of the next points, of which those in the cell of the first one are
+            // evaluated together.
             let count = LANES.min(points.len() - n);
             let mut local = [Lanes::splat(0.0); 3];
             for (lane, p) in points[n..n + count].iter().enumerate() {

@@ -5,18 +5,21 @@ use crate::spatial::LANES_OF;
 use crate::spatial::tree::{PointsInBox, Tree};
 use glam::{Vec3, Vec4};
 
-/// Largest number of points in a ball. In a hexagonal lattice the first ball that is searched holds some 18. With half of it 6 of 24 unrelaxed
-/// random runs have another mesh, with double 2, in as many instructions within 0.1 %.
+/// Largest number of points in a ball. In a hexagonal lattice the first ball that is searched holds
+/// some 18. With half of it 6 of 24 unrelaxed random runs have another mesh, with double 2, in as
+/// many instructions within 0.1 %.
 pub(super) const MOST: usize = 64;
 /// Numbers that are worked on at once: the lanes of a SIMD register.
 const WIDTH: usize = 4;
 const BLOCKS: usize = MOST / WIDTH;
-/// Two points are on one sheet only if the sine squared of the angle between their line and the normal is at least this: the line
-/// rises by 63° at most. Half of it gives the same meshes of 46 unrelaxed random runs, twice as much changes two.
+/// Two points are on one sheet only if the sine squared of the angle between their line and the
+/// normal is at least this: the line rises by 63° at most. Half of it gives the same meshes of 46
+/// unrelaxed random runs, twice as much changes two.
 const MIN_FLAT: f32 = 0.2;
-/// Two points are on one sheet only if their line rises from one tangent plane as it sinks below the other, up to this share of
-/// its length: that tells sheets apart that face the same way. With half of it 492 instead of 154 particles of 46 unrelaxed
-/// random runs are in no triangle; with twice as much 81, but a surface that crosses itself has a hole more.
+/// Two points are on one sheet only if their line rises from one tangent plane as it sinks below
+/// the other, up to this share of its length: that tells sheets apart that face the same way. With
+/// half of it 492 instead of 154 particles of 46 unrelaxed random runs are in no triangle; with
+/// twice as much 81, but a surface that crosses itself has a hole more.
 pub(super) const MAX_LIFT: f32 = 0.35;
 
 /// The points of a tree in a box, with their normals.
@@ -47,7 +50,8 @@ fn four(row: &PerPoint, block: usize) -> Vec4 {
     Vec4::from_array(row.as_chunks().0[block])
 }
 
-/// Points round a centre, four by four. Points on another sheet lie at the centre, infinitely far away.
+/// Points round a centre, four by four. Points on another sheet lie at the centre, infinitely far
+/// away.
 pub(super) struct Ball {
     /// Number of points.
     count: usize,
@@ -77,7 +81,8 @@ impl Default for Ball {
 }
 
 impl Ball {
-    /// Holds the points of `surroundings` nearer to `centre` than √`bound_sq`, but not `except`; whether there is room for all.
+    /// Holds the points of `surroundings` nearer to `centre` than √`bound_sq`, but not `except`;
+    /// whether there is room for all.
     pub(super) fn take(
         &mut self,
         surroundings: &BallPoints,
@@ -116,8 +121,8 @@ impl Ball {
         true
     }
 
-    /// Holds the points within `radius` of point `i`, or the nearest ones if those are too many; the square of the radius within
-    /// which all are held.
+    /// Holds the points within `radius` of point `i`, or the nearest ones if those are too many;
+    /// the square of the radius within which all are held.
     pub(super) fn search(&mut self, tree: &Tree, normal: &[Vec3], i: u32, radius: f32) -> f32 {
         self.count = 0;
         let centre = tree.position[i as usize];
@@ -153,8 +158,9 @@ impl Ball {
         self.count = k + 1;
     }
 
-    /// Lays the points that face the same way into the tangent plane of the centre, whose normal is `normal`, if the centre `is_tip` of a cone;
-    /// else gives that normal to those among the `tips`, which see the centre far above their own plane.
+    /// Lays the points that face the same way into the tangent plane of the centre, whose normal is
+    /// `normal`, if the centre `is_tip` of a cone; else gives that normal to those among the
+    /// `tips`, which see the centre far above their own plane.
     pub(super) fn level(&mut self, tips: &[u32], normal: Vec3, is_tip: bool) {
         if tips.is_empty() {
             return;
@@ -179,8 +185,8 @@ impl Ball {
         self.count.div_ceil(WIDTH).min(BLOCKS)
     }
 
-    /// Lays the points of the centre's sheet, but those nearer than √`twin_sq`, into its tangent plane, at their true
-    /// distances.
+    /// Lays the points of the centre's sheet, but those nearer than √`twin_sq`, into its tangent
+    /// plane, at their true distances.
     pub(super) fn unroll(&mut self, normal: Vec3, twin_sq: f32) {
         let (u, v) = tangent_frame(normal);
         let dot = |x: Vec4, y: Vec4, z: Vec4, a: Vec3| x * a.x + y * a.y + z * a.z;
@@ -226,16 +232,16 @@ impl Ball {
         self.least(|block| four(&self.distance_sq, block)).map(|(_, k)| k)
     }
 
-    /// The point after `from` in the hull of the inverted points: to its left where `side` is 1, to its right where it is −1; and
-    /// the square of the diameter of the circle through both and the centre. None, and infinite, if there is none within half a
-    /// turn.
+    /// The point after `from` in the hull of the inverted points: to its left where `side` is 1, to
+    /// its right where it is −1; and the square of the diameter of the circle through both and the
+    /// centre. None, and infinite, if there is none within half a turn.
     pub(super) fn next(&self, from: usize, side: f32) -> (Option<usize>, f32) {
         let [u, v] = self.flat(from);
         let found = self.least(|block| {
             let [x, y] = [&self.flat[0], &self.flat[1]].map(|row| four(row, block));
             let cross = y * (side * u) - x * (side * v);
-            // The cotangent of the angle at the point over the chord from the centre to `from`: the circle's centre is half
-            // that many chords away from the chord.
+            // The cotangent of the angle at the point over the chord from the centre to `from`: the
+            // circle's centre is half that many chords away from the chord.
             let cotangent = (four(&self.distance_sq, block) - (x * u + y * v)) / cross;
             Vec4::select(cross.cmpgt(Vec4::ZERO), cotangent, Vec4::INFINITY)
         });
@@ -243,7 +249,8 @@ impl Ball {
         (found.map(|(_, k)| k), self.distance_sq(from) * (1.0 + cotangent * cotangent))
     }
 
-    /// The least of the numbers that the points have, and the first point that has it; none if none is finite.
+    /// The least of the numbers that the points have, and the first point that has it; none if none
+    /// is finite.
     #[inline]
     fn least(&self, numbers: impl Fn(usize) -> Vec4) -> Option<(f32, usize)> {
         let mut values = [Vec4::INFINITY; BLOCKS];
@@ -267,8 +274,8 @@ impl Ball {
         [self.flat[0][k], self.flat[1][k]]
     }
 
-    /// Whether the direction of `k` lies strictly between those of `a` and `b`, which are less than half a turn apart,
-    /// counter-clockwise.
+    /// Whether the direction of `k` lies strictly between those of `a` and `b`, which are less than
+    /// half a turn apart, counter-clockwise.
     pub(super) fn is_between(&self, a: usize, k: usize, b: usize) -> bool {
         let cross = |[ax, ay]: [f32; 2], [bx, by]: [f32; 2]| ax * by - ay * bx;
         let middle = self.flat(k);

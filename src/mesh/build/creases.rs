@@ -1,4 +1,5 @@
-//! Particles on a surface with creases: each patch is a sheet of its own, which ends at its creases.
+//! Particles on a surface with creases: each patch is a sheet of its own, which ends at its
+//! creases.
 
 use crate::math::{sort_by_key, sort_few, sort_pairs};
 use crate::particles::{OppositeFaces, Particles};
@@ -50,8 +51,8 @@ impl Sheet {
     }
 }
 
-/// Repeats what lies on the lower of two opposite faces of a cell on the upper one: triangles and the loops around holes, by rows of
-/// particles on these patches.
+/// Repeats what lies on the lower of two opposite faces of a cell on the upper one: triangles and
+/// the loops around holes, by rows of particles on these patches.
 pub(super) fn repeat(
     triangles: &mut Vec<[u32; 3]>,
     unfilled: &mut Vec<Vec<u32>>,
@@ -68,12 +69,14 @@ pub(super) fn repeat(
     unfilled.extend(holes.into_iter().map(|hole| hole.into_iter().rev().map(image).collect()));
 }
 
-/// Turns chords between particles on creases that two patches have in common, by rows: each patch is joined by itself, and three
-/// particles that follow each other along a crease may become a triangle of either. The chord of the patch that it follows less is
-/// turned to the other diagonal of its two triangles, where that can be.
+/// Turns chords between particles on creases that two patches have in common, by rows: each patch
+/// is joined by itself, and three particles that follow each other along a crease may become a
+/// triangle of either. The chord of the patch that it follows less is turned to the other diagonal
+/// of its two triangles, where that can be.
 pub(super) fn separate(triangles: &mut [[u32; 3]], particles: &Particles) {
     let vertices = particles.joints();
-    // The ends of each side of a triangle between particles on creases, with the place at which it begins among all corners.
+    // The ends of each side of a triangle between particles on creases, with the place at which it
+    // begins among all corners.
     let mut sides: Vec<(u64, usize)> = Vec::new();
     for (triangle, rows) in triangles.iter().enumerate() {
         for corner in 0..3 {
@@ -106,13 +109,14 @@ pub(super) fn separate(triangles: &mut [[u32; 3]], particles: &Particles) {
 struct Chord {
     triangles: [usize; 2],
     rows: [u32; 4],
-    /// How closely its triangles follow the patch: the lesser of the cosines between their normals and those at their corners.
+    /// How closely its triangles follow the patch: the lesser of the cosines between their normals
+    /// and those at their corners.
     follows: f32,
 }
 
 impl Chord {
-    /// The chord that two sides of triangles are, which begin at these places, if they are those of one patch, and that is no face of
-    /// which another one is the image.
+    /// The chord that two sides of triangles are, which begin at these places, if they are those of
+    /// one patch, and that is no face of which another one is the image.
     fn between(sides: [usize; 2], triangles: &[[u32; 3]], particles: &Particles) -> Option<Self> {
         let [[a, b, c], [e, f, d]] = sides.map(|side| {
             let rows = triangles[side / 3];
@@ -125,7 +129,8 @@ impl Chord {
         ([e, f] == [b, a] && !is_face).then_some(Self { triangles, rows: [a, b, c, d], follows })
     }
 
-    /// Puts the other diagonal in its place, unless that is an edge of the mesh or its triangles turn away from the patch.
+    /// Puts the other diagonal in its place, unless that is an edge of the mesh or its triangles
+    /// turn away from the patch.
     fn turn(&self, triangles: &mut [[u32; 3]], particles: &Particles, vertices: &[u32]) -> bool {
         let [a, b, c, d] = self.rows;
         let turned = [[a, d, c], [d, b, c]];
@@ -143,7 +148,8 @@ impl Chord {
     }
 }
 
-/// Cosine of the angle between the normal of a triangle and the mean one at its corners; 0 for a triangle without an area.
+/// Cosine of the angle between the normal of a triangle and the mean one at its corners; 0 for a
+/// triangle without an area.
 fn follows(rows: [u32; 3], particles: &Particles) -> f32 {
     let [a, b, c] = rows.map(|row| particles.local[row as usize]);
     let mean: Vec3 = rows.iter().map(|&row| particles.normal[row as usize]).sum();

@@ -5,22 +5,26 @@ use super::rim::Rim;
 use crate::math::{Bounds, sort_few};
 use crate::slices::pause;
 
-/// Least cosine of the angle between the normal of a triangle and that of a point on it: that of 78°. The points are those that are set into
-/// the triangle, and the corners of one that fills a hole, or their mean where there is no other way. Half of it changes the holes of 3 of 46
+/// Least cosine of the angle between the normal of a triangle and that of a point on it: that of
+/// 78°. The points are those that are set into the triangle, and the corners of one that fills a
+/// hole, or their mean where there is no other way. Half of it changes the holes of 3 of 46
 /// unrelaxed random runs, twice as much of 4, by a few triangles.
 pub(super) const AGREEMENT: f64 = 0.2;
-/// A vertex is at the box if it is nearer to one of the faces than this many spacings. With twice as much 5 of 46 unrelaxed
-/// random runs have borders that were holes; half of it changes one.
+/// A vertex is at the box if it is nearer to one of the faces than this many spacings. With twice
+/// as much 5 of 46 unrelaxed random runs have borders that were holes; half of it changes one.
 const AT_BOX: f64 = 1.5;
-/// Rounds in which holes are filled and, where that fails, made larger by a vertex. One of 46 unrelaxed random runs takes more
-/// than six; with twice as many it has 11 particles fewer in triangles.
+/// Rounds in which holes are filled and, where that fails, made larger by a vertex. One of 46
+/// unrelaxed random runs takes more than six; with twice as many it has 11 particles fewer in
+/// triangles.
 const ROUNDS: u32 = 12;
-/// Largest number of edges of a hole that is filled. A longer loop is taken for a border of the surface. Half and double give the same
-/// meshes of 33 random runs. Where 40 % of the particles of 36 are taken out, half leaves 117 borders instead of 114 and double 108; but
-/// of 12 random surfaces that end at loops of 12 to 55 edges, double closes 10 instead of 2, and half one.
+/// Largest number of edges of a hole that is filled. A longer loop is taken for a border of the
+/// surface. Half and double give the same meshes of 33 random runs. Where 40 % of the particles of
+/// 36 are taken out, half leaves 117 borders instead of 114 and double 108; but of 12 random
+/// surfaces that end at loops of 12 to 55 edges, double closes 10 instead of 2, and half one.
 const LARGEST: usize = 24;
-/// Largest number of edges of a hole along a rim that is filled: the work grows with the cube of it, to some 10 ms at this number. Half
-/// and double give the same meshes of 53 unrelaxed random runs.
+/// Largest number of edges of a hole along a rim that is filled: the work grows with the cube of
+/// it, to some 10 ms at this number. Half and double give the same meshes of 53 unrelaxed random
+/// runs.
 const LARGEST_AT_RIM: usize = 96;
 
 /// Rule that tells a hole of the mesh from a border of the surface.
@@ -39,13 +43,15 @@ impl Borders<'_> {
         loops
     }
 
-    /// Whether the surface may as well end at a loop that cannot be filled: most of the vertices see nothing near on that side.
+    /// Whether the surface may as well end at a loop that cannot be filled: most of the vertices
+    /// see nothing near on that side.
     pub(super) fn is_open(&self, patch: &Patch, hole: &[u32]) -> bool {
         2 * hole.iter().filter(|&&v| patch.stars.is_open[v as usize]).count() > hole.len()
             && !self.rim.is_along(hole)
     }
 
-    /// Whether a loop is a border for certain: it is not beside the rim, and it is long or most of it lies at the box.
+    /// Whether a loop is a border for certain: it is not beside the rim, and it is long or most of
+    /// it lies at the box.
     fn is_border(&self, patch: &Patch, hole: &[u32]) -> bool {
         let at_box = |v: &u32| {
             let (p, reach) = (patch.place(*v), AT_BOX * patch.spacing(*v));
@@ -88,8 +94,8 @@ pub(super) async fn fill(patch: &mut Patch<'_>, borders: &Borders<'_>) {
     }
 }
 
-/// The borders of the triangles: closed loops of vertices with the hole on the left. Where there is a rim, they are those of what
-/// the triangles leave open on its left.
+/// The borders of the triangles: closed loops of vertices with the hole on the left. Where there is
+/// a rim, they are those of what the triangles leave open on its left.
 fn trace(patch: &Patch, rim: &Rim) -> Vec<Vec<u32>> {
     let mut gaps: Vec<Gap> = Vec::new();
     let mut first_of = Vec::with_capacity(patch.changed().len());
@@ -122,7 +128,8 @@ pub(super) fn faces_as_corners(patch: &Patch, triangle: [u32; 3]) -> bool {
     patch.agreement(triangle).0 >= AGREEMENT
 }
 
-/// Whether a triangle faces as its corners do in the mean: what can be had where neighbours' normals are far apart.
+/// Whether a triangle faces as its corners do in the mean: what can be had where neighbours'
+/// normals are far apart.
 fn faces_as_mean(patch: &Patch, triangle: [u32; 3]) -> bool {
     patch.agreement(triangle).1 >= AGREEMENT
 }
@@ -130,14 +137,16 @@ fn faces_as_mean(patch: &Patch, triangle: [u32; 3]) -> bool {
 /// Cuts polygons into triangles.
 #[derive(Default)]
 struct Cutter {
-    /// For each chord the least sum of circumradii on its left, and the vertex of the triangle at the chord.
+    /// For each chord the least sum of circumradii on its left, and the vertex of the triangle at
+    /// the chord.
     best: Vec<(f64, usize)>,
     triangles: Vec<[u32; 3]>,
 }
 
 impl Cutter {
-    /// Fills a hole with the triangles whose circumradii have the least sum, if there are any that are right and have no edge
-    /// of the mesh or of its rim but those of the hole; whether there were.
+    /// Fills a hole with the triangles whose circumradii have the least sum, if there are any that
+    /// are right and have no edge of the mesh or of its rim but those of the hole; whether there
+    /// were.
     fn cut(
         &mut self,
         patch: &mut Patch,
@@ -197,7 +206,8 @@ impl Cutter {
     }
 }
 
-/// Removes all fans but the largest at every vertex with several, so that the surface does not touch itself but where its rim does.
+/// Removes all fans but the largest at every vertex with several, so that the surface does not
+/// touch itself but where its rim does.
 pub(super) fn unpinch(patch: &mut Patch, rim: &Rim) {
     let mut open: Vec<u32> = patch.changed().to_vec();
     while let Some(v) = open.pop() {
@@ -235,8 +245,9 @@ mod tests {
         if last < 2 { 0.0 } else { (1..last).map(with_corner).fold(f64::INFINITY, f64::min) }
     }
 
-    /// Cuts the hole between convex corners, counter-clockwise in the plane, beside triangles that are there already and edges of a rim.
-    /// Numbers stand for corners, and those beyond for the other points.
+    /// Cuts the hole between convex corners, counter-clockwise in the plane, beside triangles that
+    /// are there already and edges of a rim. Numbers stand for corners, and those beyond for the
+    /// other points.
     fn cut(
         corners: &[Vec3],
         others: &[Vec3],
@@ -255,7 +266,8 @@ mod tests {
     #[test]
     fn a_fan_that_leads_back_into_itself_is_left() {
         let points = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::NEG_X];
-        // The second and the third triangle run in a ring around the first point, and so the first one enters it.
+        // The second and the third triangle run in a ring around the first point, and so the first
+        // one enters it.
         let gaps = with_plane(&points, &[[0, 1, 2], [0, 2, 3], [0, 3, 2]], |patch, _, in_tree| {
             let mut gaps = Vec::new();
             patch.gaps(in_tree[0], &mut gaps);

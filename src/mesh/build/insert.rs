@@ -6,14 +6,15 @@ use super::patch::Patch;
 use crate::math::unkey;
 use crate::spatial::tree::Tree;
 
-/// Number of nearest points among whose triangles the one below a point is searched for. Half and double give the same meshes of
-/// 46 unrelaxed random runs.
-const NEAR: usize = 32;
-/// Largest distance of a point outside a triangle that still counts as inside, as a share of the triangle's height. Half and
+/// Number of nearest points among whose triangles the one below a point is searched for. Half and
 /// double give the same meshes of 46 unrelaxed random runs.
+const NEAR: usize = 32;
+/// Largest distance of a point outside a triangle that still counts as inside, as a share of the
+/// triangle's height. Half and double give the same meshes of 46 unrelaxed random runs.
 const OUTSIDE: f64 = 0.25;
-/// Largest number of triangles that a point may replace. It then has 18 neighbours, three times as many as in a lattice. With half
-/// of it and without a limit the meshes of 53 unrelaxed random runs are the same.
+/// Largest number of triangles that a point may replace. It then has 18 neighbours, three times as
+/// many as in a lattice. With half of it and without a limit the meshes of 53 unrelaxed random runs
+/// are the same.
 const MOST: usize = 16;
 
 /// Inserts the point `v`, which is in no triangle, if there is one below it.
@@ -33,7 +34,8 @@ pub(super) fn insert(patch: &mut Patch, tree: &Tree, v: u32, keys: &mut Vec<u64>
     }
 }
 
-/// The least barycentric coordinate of a point above a triangle; −∞ if the point is not on its sheet.
+/// The least barycentric coordinate of a point above a triangle; −∞ if the point is not on its
+/// sheet.
 fn depth(patch: &Patch, id: u32, v: u32) -> f64 {
     let [a, b, c] = patch.triangle(id);
     let area = patch.area_vector([a, b, c]);
@@ -49,8 +51,8 @@ fn depth(patch: &Patch, id: u32, v: u32) -> f64 {
     share(a, b).min(share(b, c)).min(share(c, a))
 }
 
-/// Replaces a triangle, and those behind it whose circles hold the point, by the triangles of the point with their outline, unless
-/// one of these faces another way than its corners.
+/// Replaces a triangle, and those behind it whose circles hold the point, by the triangles of the
+/// point with their outline, unless one of these faces another way than its corners.
 fn replace(patch: &mut Patch, id: u32, v: u32) {
     let [a, b, c] = patch.triangle(id);
     let mut gone = vec![id];
@@ -93,7 +95,8 @@ mod tests {
     use super::*;
     use glam::{DVec2, Vec3};
 
-    /// The Delaunay triangles of points in the plane z = 0: those whose circles hold no other point.
+    /// The Delaunay triangles of points in the plane z = 0: those whose circles hold no other
+    /// point.
     fn delaunay(points: &[Vec3]) -> Vec<[u32; 3]> {
         let place = |v: u32| points[v as usize].as_dvec3().truncate();
         let count = points.len() as u32;
@@ -114,7 +117,8 @@ mod tests {
     #[test]
     fn a_point_put_into_a_delaunay_triangulation_makes_that_of_all_points() {
         for case in 0..20 {
-            // A Weyl sequence: well spread, and no four points are on a circle. The last one is amid the others.
+            // A Weyl sequence: well spread, and no four points are on a circle. The last one is
+            // amid the others.
             let spread =
                 |k: usize| (Vec3::new(0.754_877_7, 0.569_840_3, 0.0) * (k + 17 * case) as f32).fract();
             let mut points: Vec<Vec3> = (0..20).map(spread).collect();

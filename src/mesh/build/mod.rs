@@ -1,20 +1,25 @@
 //! Triangulation of any set of points with normals to one oriented manifold, closed or with border.
 //!
-//! 1. *Stars.* The natural neighbours of every point are found in its tangent plane, among the points of the same sheet.
-//! 2. *Agreement.* A triangle on which the stars of its three corners agree is kept. Every directed edge then belongs to one
-//!    triangle at most, and every triangle faces as its corners do.
-//! 3. *Disputes.* Four points near a circle may each prefer another diagonal, since each sees the others in its own tangent
-//!    plane. Triangles that fewer corners see are added where there is room.
-//! 4. *Rim.* Where it is known that the surface ends, the way for the edges there is cleared, and triangles beyond are removed. So the
-//!    patches of a surface with creases are joined one by one, and together are closed.
-//! 5. *Holes.* The borders of what is left are traced, and the polygons with few edges are cut into triangles. Where that fails, a
-//!    vertex is taken out, which makes the hole larger and its border simpler.
+//! 1. *Stars.* The natural neighbours of every point are found in its tangent plane, among the
+//!    points of the same sheet.
+//! 2. *Agreement.* A triangle on which the stars of its three corners agree is kept. Every directed
+//!    edge then belongs to one triangle at most, and every triangle faces as its corners do.
+//! 3. *Disputes.* Four points near a circle may each prefer another diagonal, since each sees the
+//!    others in its own tangent plane. Triangles that fewer corners see are added where there is
+//!    room.
+//! 4. *Rim.* Where it is known that the surface ends, the way for the edges there is cleared, and
+//!    triangles beyond are removed. So the patches of a surface with creases are joined one by one,
+//!    and together are closed.
+//! 5. *Holes.* The borders of what is left are traced, and the polygons with few edges are cut into
+//!    triangles. Where that fails, a vertex is taken out, which makes the hole larger and its
+//!    border simpler.
 //! 6. *Points left out* go into the triangle below them.
 //! 7. *Borders* are freed of vertices where the surface touches itself.
 //!
-//! The stars are those of Gopi, Krishnan and Silva, "Surface Reconstruction based on Lower Dimensional Localized Delaunay
-//! Triangulation", Computer Graphics Forum 19(3), 2000; holes are cut by the dynamic programme of Klincsek, "Minimal
-//! Triangulations of Polygonal Domains", Annals of Discrete Mathematics 9, 1980.
+//! The stars are those of Gopi, Krishnan and Silva, "Surface Reconstruction based on Lower
+//! Dimensional Localized Delaunay Triangulation", Computer Graphics Forum 19(3), 2000; holes are
+//! cut by the dynamic programme of Klincsek, "Minimal Triangulations of Polygonal Domains", Annals
+//! of Discrete Mathematics 9, 1980.
 
 mod ball;
 mod creases;
@@ -49,11 +54,11 @@ pub struct Triangulation {
     pub triangles: Vec<[u32; 3]>,
     /// Components, borders and Euler numbers, counted anew on the triangles.
     pub topology: Topology,
-    /// Short borders that are not at the box: places where no manifold could be had. Longer ones are where the surface ends.
-    /// Each starts at its smallest vertex and has the mesh on its left.
+    /// Short borders that are not at the box: places where no manifold could be had. Longer ones
+    /// are where the surface ends. Each starts at its smallest vertex and has the mesh on its left.
     pub unfilled: Vec<Vec<u32>>,
-    /// Points in no triangle, in ascending order: those without a finite position or a normal, those at the place of another
-    /// one, lone ones, and those that would spoil the manifold.
+    /// Points in no triangle, in ascending order: those without a finite position or a normal,
+    /// those at the place of another one, lone ones, and those that would spoil the manifold.
     pub left_out: Vec<u32>,
     /// Sign of f inside of the closed parts; none if there is no closed part.
     pub inside: Option<Inside>,
@@ -65,8 +70,8 @@ pub struct Triangulation {
 }
 
 impl Triangulation {
-    /// The triangulation that consists of `triangles` over the rows of particles, in slices of work. They must be an oriented manifold
-    /// whose borders are borders of the surface.
+    /// The triangulation that consists of `triangles` over the rows of particles, in slices of
+    /// work. They must be an oriented manifold whose borders are borders of the surface.
     pub(crate) async fn known(mut triangles: Vec<[u32; 3]>, particles: &Particles) -> Self {
         creases::separate(&mut triangles, particles);
         Joined { triangles, ..Joined::default() }.counted(particles).await
@@ -112,8 +117,8 @@ impl Triangulation {
         self.topology.encloses().then(|| self.triangles.iter().map(of).sum())
     }
 
-    /// Smallest angle of the triangles over these particles, in degrees, those at borders among them; 0 for one without an area. `None`
-    /// without triangles.
+    /// Smallest angle of the triangles over these particles, in degrees, those at borders among
+    /// them; 0 for one without an area. `None` without triangles.
     #[must_use]
     pub fn smallest_angle(&self, particles: &Particles) -> Option<f64> {
         // In a triangle the smallest angle has the largest cosine.
@@ -187,15 +192,19 @@ impl Joined {
     }
 }
 
-/// Joins particles to triangles of their rows; where the surface has creases, each patch by itself up to its creases, which are edges of the
-/// mesh. The topology is counted over particles, each once, so that it is that of the patches together.
+/// Joins particles to triangles of their rows; where the surface has creases, each patch by itself
+/// up to its creases, which are edges of the mesh. The topology is counted over particles, each
+/// once, so that it is that of the patches together.
 ///
-/// `bounds` is the box that cuts the surface: loops along its faces are borders, however short. Without it a small one may be filled.
+/// `bounds` is the box that cuts the surface: loops along its faces are borders, however short.
+/// Without it a small one may be filled.
 ///
-/// Positions and outward normals are enough, which need not have unit length. The particles should be dense enough that the normals of
-/// neighbours are well within 90° of each other and sheets are farther apart than neighbours; where they are not, holes remain and are
-/// listed. Cost: linear, below a microsecond per particle natively. Any input is met without a panic, and the work is bounded. The result
-/// depends on the particles alone and has the same bits natively and in WebAssembly.
+/// Positions and outward normals are enough, which need not have unit length. The particles should
+/// be dense enough that the normals of neighbours are well within 90° of each other and sheets are
+/// farther apart than neighbours; where they are not, holes remain and are listed. Cost: linear,
+/// below a microsecond per particle natively. Any input is met without a panic, and the work is
+/// bounded. The result depends on the particles alone and has the same bits natively and in
+/// WebAssembly.
 ///
 /// # Panics
 ///
@@ -205,7 +214,8 @@ pub fn triangulate(particles: &Particles, bounds: Option<&Bounds>) -> Triangulat
     slices::complete(in_slices(particles, bounds))
 }
 
-/// [`triangulate`] in slices of work. The last few look at all rows and triangles, for some 50 ns each.
+/// [`triangulate`] in slices of work. The last few look at all rows and triangles, for some 50 ns
+/// each.
 pub(crate) async fn in_slices(particles: &Particles, bounds: Option<&Bounds>) -> Triangulation {
     let Particles { local: position, normal, .. } = particles;
     if particles.patch.is_empty() {
@@ -236,10 +246,11 @@ pub(crate) async fn in_slices(particles: &Particles, bounds: Option<&Bounds>) ->
     whole.counted(particles).await
 }
 
-/// Joins points in the box that cuts their surface. The `rim` has the edges along which the surface is known to end, as pairs of indices with
-/// the surface on the left, seen from outside: no triangle lies beyond them, and what is open on their left is a hole. The points `tips`, in
-/// ascending order, are at the apex of a cone of the surface, each with the mean normal of the cone; several may be at one place if they face
-/// different ways.
+/// Joins points in the box that cuts their surface. The `rim` has the edges along which the surface
+/// is known to end, as pairs of indices with the surface on the left, seen from outside: no
+/// triangle lies beyond them, and what is open on their left is a hole. The points `tips`, in
+/// ascending order, are at the apex of a cone of the surface, each with the mean normal of the
+/// cone; several may be at one place if they face different ways.
 async fn join(
     position: &[Vec3],
     normal: &[Vec3],

@@ -8,8 +8,8 @@ use glam::{DVec3, Vec3};
 /// A triangle that has been removed.
 const REMOVED: [u32; 3] = [NONE; 3];
 
-/// Triangles that can be added and removed. Where nothing has changed yet, the triangles of a vertex are found through its
-/// star; a vertex where something changes gets a list of its own.
+/// Triangles that can be added and removed. Where nothing has changed yet, the triangles of a
+/// vertex are found through its star; a vertex where something changes gets a list of its own.
 pub(super) struct Patch<'a> {
     pub(super) position: &'a [Vec3],
     pub(super) normal: &'a [Vec3],
@@ -28,15 +28,16 @@ pub(super) struct Patch<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gap {
     pub(super) vertex: u32,
-    /// The last vertex of the fan before the gap: it follows `vertex` along the hole, which lies on the left.
+    /// The last vertex of the fan before the gap: it follows `vertex` along the hole, which lies on
+    /// the left.
     pub(super) to: u32,
     /// The first vertex of the fan after the gap: `vertex` follows it along the hole.
     pub(super) from: u32,
 }
 
 impl<'a> Patch<'a> {
-    /// The triangles that all their three corners see. No directed edge belongs to two of them, and each is counter-clockwise
-    /// in the tangent planes of its corners.
+    /// The triangles that all their three corners see. No directed edge belongs to two of them, and
+    /// each is counter-clockwise in the tangent planes of its corners.
     pub(super) async fn new(position: &'a [Vec3], normal: &'a [Vec3], stars: &'a Stars) -> Self {
         let mut patch = Self {
             position,
@@ -176,7 +177,8 @@ impl<'a> Patch<'a> {
         self.triangles[id as usize] == REMOVED
     }
 
-    /// The own list of `v`, which from now on has one, and so is looked at where holes are searched for.
+    /// The own list of `v`, which from now on has one, and so is looked at where holes are searched
+    /// for.
     pub(super) fn list(&mut self, v: u32) -> &mut Vec<u32> {
         if self.list_of[v as usize] == NONE {
             let list = self.around(v).collect();
@@ -218,7 +220,8 @@ impl<'a> Patch<'a> {
             if corners.clone().any(|(_, previous)| previous == first) {
                 continue;
             }
-            // A fan starts here; it is followed to its end. Where two triangles lie on one side of an edge, a fan may lead back into itself.
+            // A fan starts here; it is followed to its end. Where two triangles lie on one side of
+            // an edge, a fan may lead back into itself.
             let mut last = first;
             for _ in corners.clone() {
                 let Some((_, previous)) = corners.clone().find(|&(next, _)| next == last) else { break };
@@ -263,8 +266,8 @@ impl<'a> Patch<'a> {
         (self.place(b) - origin).cross(self.place(c) - origin)
     }
 
-    /// Cosines of the angles between the normal of a triangle and those of its corners: the least one, and that for the mean
-    /// of the three. Both −1 for a triangle without a normal.
+    /// Cosines of the angles between the normal of a triangle and those of its corners: the least
+    /// one, and that for the mean of the three. Both −1 for a triangle without a normal.
     pub(super) fn agreement(&self, triangle: [u32; 3]) -> (f64, f64) {
         let corners = triangle.map(|v| self.normal[v as usize].as_dvec3());
         let mean = (corners[0] + corners[1] + corners[2]).try_normalize();
@@ -295,8 +298,8 @@ pub(super) fn quarter_turns(x: f32, y: f32) -> f32 {
     }
 }
 
-/// Does something with the patch of these triangles, over points whose normals are those of the plane z = 0. It is handed the
-/// points' tree, and for each point its number there.
+/// Does something with the patch of these triangles, over points whose normals are those of the
+/// plane z = 0. It is handed the points' tree, and for each point its number there.
 #[cfg(test)]
 pub(super) fn with_plane<T>(
     points: &[Vec3],

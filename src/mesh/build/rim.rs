@@ -1,5 +1,5 @@
-//! The rim of a surface: edges along which it is known to end, such as the creases around a patch. Each of them becomes a side of a
-//! triangle on its left, and no triangle stays beyond.
+//! The rim of a surface: edges along which it is known to end, such as the creases around a patch.
+//! Each of them becomes a side of a triangle on its left, and no triangle stays beyond.
 
 use super::patch::{Gap, Patch, quarter_turns};
 use crate::math::{NONE, sort_by_key, sort_pairs, tangent_frame};
@@ -11,8 +11,8 @@ use glam::Vec3;
 pub(super) struct Rim {
     /// The edges, sorted.
     edges: Vec<[u32; 2]>,
-    /// The ways of the rim through its vertices, sorted: vertex, the one before it and the one after it, of which one is none at an end.
-    /// Where the rim meets itself a vertex has several.
+    /// The ways of the rim through its vertices, sorted: vertex, the one before it and the one
+    /// after it, of which one is none at an end. Where the rim meets itself a vertex has several.
     ways: Vec<[u32; 3]>,
 }
 
@@ -31,7 +31,8 @@ impl Rim {
             let turns = AnglesAround::new(position, normal, v);
             let mut after: Vec<u32> = at.iter().map(|end| end[2]).filter(|&w| w != NONE).collect();
             for before in at.iter().map(|end| end[1]).filter(|&u| u != NONE) {
-                // What lies beyond the rim is counter-clockwise from the way in to the next way out.
+                // What lies beyond the rim is counter-clockwise from the way in to the next way
+                // out.
                 let turn = |w: u32| turns.between(before, w);
                 let next = (0..after.len()).min_by(|&k, &l| turn(after[k]).total_cmp(&turn(after[l])));
                 ways.push([v, before, next.map_or(NONE, |k| after.swap_remove(k))]);
@@ -62,13 +63,14 @@ impl Rim {
         !self.ways(v).is_empty()
     }
 
-    /// Number of fans that a vertex may have: one, or one between every two ways of the rim that meet there.
+    /// Number of fans that a vertex may have: one, or one between every two ways of the rim that
+    /// meet there.
     pub(super) fn fans(&self, v: u32) -> usize {
         self.ways(v).len().max(1)
     }
 
-    /// Whether a loop around a hole, which lies on the left, has an edge of the rim and none of its ends: it is no border of the surface then,
-    /// since the rim ends where it comes to one.
+    /// Whether a loop around a hole, which lies on the left, has an edge of the rim and none of its
+    /// ends: it is no border of the surface then, since the rim ends where it comes to one.
     pub(super) fn is_along(&self, hole: &[u32]) -> bool {
         let is_end = |&v: &u32| self.ways(v).iter().any(|way| way[1..].contains(&NONE));
         (0..hole.len()).any(|k| self.has(hole[k], hole[(k + 1) % hole.len()])) && !hole.iter().any(is_end)
@@ -156,8 +158,8 @@ impl<'a> AnglesAround<'a> {
         if turn > 0.0 { turn } else { turn + 4.0 }
     }
 
-    /// Whether a gap holds what lies beyond a way of the rim: counter-clockwise from the vertex `before` to the one `after`, of which one
-    /// may be none.
+    /// Whether a gap holds what lies beyond a way of the rim: counter-clockwise from the vertex
+    /// `before` to the one `after`, of which one may be none.
     fn is_beyond(&self, Gap { to, from, .. }: Gap, before: u32, after: u32) -> bool {
         if to == before || from == after {
             return true;

@@ -1,8 +1,9 @@
 //! The natural neighbours of every point, counter-clockwise round its normal, in single precision.
 //!
-//! The points of the same sheet are unrolled to the tangent plane of a point, keeping their true distance. The point's
-//! neighbours in the Delaunay triangulation there are found one after the other, from the nearest one on: the next
-//! neighbour is the point to the left whose circle through the centre and the last neighbour is the smallest on that side.
+//! The points of the same sheet are unrolled to the tangent plane of a point, keeping their true
+//! distance. The point's neighbours in the Delaunay triangulation there are found one after the
+//! other, from the nearest one on: the next neighbour is the point to the left whose circle through
+//! the centre and the last neighbour is the smallest on that side.
 
 use super::ball::{Ball, BallPoints, MOST};
 use crate::math::sort_few;
@@ -11,13 +12,15 @@ use crate::spatial::tree::{Leaf, Tree};
 use core::ops::Range;
 use glam::Vec3;
 
-/// Largest circumradius of a triangle, in units of the spacing at the corner. With half of it 336 instead of 154 particles of 46
-/// unrelaxed random runs are in no triangle; with twice as much gaps of the surface are closed: 8 of 91 borders go.
+/// Largest circumradius of a triangle, in units of the spacing at the corner. With half of it 336
+/// instead of 154 particles of 46 unrelaxed random runs are in no triangle; with twice as much gaps
+/// of the surface are closed: 8 of 91 borders go.
 pub(super) const WIDEST: f32 = 2.0;
-/// Points nearer than this share of the ball's radius are one point. Half and double give the same meshes of 46 unrelaxed random
-/// runs.
+/// Points nearer than this share of the ball's radius are one point. Half and double give the same
+/// meshes of 46 unrelaxed random runs.
 const TWIN: f32 = 1e-5;
-/// Marks, in [`Stars::entry`], that the triangle with this neighbour and the next one is narrow enough to be one of the mesh.
+/// Marks, in [`Stars::entry`], that the triangle with this neighbour and the next one is narrow
+/// enough to be one of the mesh.
 const WEDGE: u32 = 1 << 31;
 
 /// Natural neighbours in tree order, all stars one after the other.
@@ -39,7 +42,8 @@ struct StarBuffers {
     star: Star,
 }
 
-/// A neighbour, and the square of the diameter of the circle through it, the centre and the next one.
+/// A neighbour, and the square of the diameter of the circle through it, the centre and the next
+/// one.
 #[derive(Clone, Copy)]
 struct Ray {
     point: usize,
@@ -62,8 +66,8 @@ struct StarPoints<'a> {
 }
 
 impl Stars {
-    /// The stars of the points of `tree` with the unit `normal`s (in tree order), of which `tips` are at the apex of a cone, in ascending
-    /// order.
+    /// The stars of the points of `tree` with the unit `normal`s (in tree order), of which `tips`
+    /// are at the apex of a cone, in ascending order.
     pub(super) async fn new(tree: &Tree, normal: &[Vec3], tips: &[u32]) -> Self {
         let n = tree.len();
         let mut stars = Self {
@@ -175,7 +179,8 @@ impl Stars {
 }
 
 impl Star {
-    /// Finds the neighbours of the centre among the points of the ball, which are given the tangent plane.
+    /// Finds the neighbours of the centre among the points of the ball, which are given the tangent
+    /// plane.
     fn make(&mut self, ball: &mut Ball, normal: Vec3, twin_sq: f32) {
         ball.unroll(normal, twin_sq);
         self.rays.clear();
@@ -217,7 +222,8 @@ impl Star {
         self.rays.iter().all(|ray| ray.width_sq <= known_sq)
     }
 
-    /// The square of the largest width of a wedge, in units of the median distance of the neighbours.
+    /// The square of the largest width of a wedge, in units of the median distance of the
+    /// neighbours.
     fn widest_sq(&self, ball: &Ball) -> f32 {
         let mut lengths_sq = [0.0; MOST];
         for (length_sq, ray) in lengths_sq.iter_mut().zip(&self.rays) {

@@ -4,9 +4,10 @@ use super::{HalfEdges, next};
 use crate::math::NONE;
 
 impl HalfEdges {
-    /// The surface of some triangles over `vertices` vertices, counter-clockwise seen from outside. Face `f` is triangle `f`. None if
-    /// they are not an oriented surface: a corner does not exist or is there twice, two triangles run along the same edge in the same
-    /// direction, or those at a vertex form more than one fan.
+    /// The surface of some triangles over `vertices` vertices, counter-clockwise seen from outside.
+    /// Face `f` is triangle `f`. None if they are not an oriented surface: a corner does not exist
+    /// or is there twice, two triangles run along the same edge in the same direction, or those at
+    /// a vertex form more than one fan.
     ///
     /// Vertices in no triangle have no half-edge. Edges of one triangle form the border.
     ///
@@ -29,8 +30,9 @@ impl HalfEdges {
         (mesh.pair() && mesh.choose_outgoing()).then_some(mesh)
     }
 
-    /// Finds the twins: the half-edges are sorted into one bucket for the smaller end of each, and within it by the larger. Whether no two
-    /// of them run between the same vertices in the same direction.
+    /// Finds the twins: the half-edges are sorted into one bucket for the smaller end of each, and
+    /// within it by the larger. Whether no two of them run between the same vertices in the same
+    /// direction.
     fn pair(&mut self) -> bool {
         let mut start = vec![0_u32; self.outgoing.len() + 1];
         let ends = |mesh: &Self, h: u32| {
@@ -84,7 +86,8 @@ impl HalfEdges {
         (0..).zip(faces_at).all(|(v, faces)| self.around(v).take(faces + 1).count() == faces)
     }
 
-    /// The first half-edge of the fan in which `h` is one that leaves a vertex: the one without a twin, or `h` itself.
+    /// The first half-edge of the fan in which `h` is one that leaves a vertex: the one without a
+    /// twin, or `h` itself.
     pub(super) fn first_of_fan(&self, h: u32) -> u32 {
         let mut at = h;
         loop {

@@ -4,7 +4,8 @@ use super::{Change, HalfEdges, next, previous};
 use crate::math::{NONE, grow};
 
 impl HalfEdges {
-    /// Begins a journal: every change from now on can be taken back by [`HalfEdges::undo`]. An earlier journal is dropped.
+    /// Begins a journal: every change from now on can be taken back by [`HalfEdges::undo`]. An
+    /// earlier journal is dropped.
     pub fn begin(&mut self) {
         self.journal.clear();
         self.is_recording = true;
@@ -16,7 +17,8 @@ impl HalfEdges {
         self.is_recording = false;
     }
 
-    /// Takes back every change since [`HalfEdges::begin`], to the last number, and ends the journal.
+    /// Takes back every change since [`HalfEdges::begin`], to the last number, and ends the
+    /// journal.
     pub fn undo(&mut self) {
         self.is_recording = false;
         while let Some(change) = self.journal.pop() {
@@ -43,8 +45,9 @@ impl HalfEdges {
         }
     }
 
-    /// Whether the edge of `h` can be flipped: it has two faces, and the vertices across are no neighbours yet. Both ends keep at
-    /// least three faces then, because around an inner vertex with three faces all neighbours are neighbours of each other.
+    /// Whether the edge of `h` can be flipped: it has two faces, and the vertices across are no
+    /// neighbours yet. Both ends keep at least three faces then, because around an inner vertex
+    /// with three faces all neighbours are neighbours of each other.
     #[must_use]
     pub fn can_flip(&self, h: u32) -> bool {
         let t = self.twin(h);
@@ -55,8 +58,8 @@ impl HalfEdges {
         c != d && !self.is_adjacent(c, d)
     }
 
-    /// Flips the edge of `h`: its two faces get the other diagonal of their quadrilateral. `h` then runs from the vertex across
-    /// its twin to the one across itself.
+    /// Flips the edge of `h`: its two faces get the other diagonal of their quadrilateral. `h` then
+    /// runs from the vertex across its twin to the one across itself.
     ///
     /// # Panics
     ///
@@ -88,7 +91,8 @@ impl HalfEdges {
         self.join(t2, bc);
     }
 
-    /// Puts a new vertex into the face of `h` and returns its number: three faces take the place of one.
+    /// Puts a new vertex into the face of `h` and returns its number: three faces take the place of
+    /// one.
     pub fn insert(&mut self, h: u32) -> u32 {
         let (h1, h2) = (next(h), previous(h));
         let (a, b, c) = (self.origin(h), self.origin(h1), self.origin(h2));
@@ -113,7 +117,8 @@ impl HalfEdges {
         v
     }
 
-    /// Splits the edge of `h` by a new vertex and returns its number; each face of the edge becomes two.
+    /// Splits the edge of `h` by a new vertex and returns its number; each face of the edge becomes
+    /// two.
     pub fn split(&mut self, h: u32) -> u32 {
         let t = self.twin(h);
         let (h1, h2) = (next(h), previous(h));
@@ -148,8 +153,9 @@ impl HalfEdges {
         m
     }
 
-    /// Whether the edge of `h` can be collapsed: the surface stays one of the same kind. The two ends have no common neighbour but
-    /// those across the edge, which keep at least three faces (one, at the border); and a border vertex goes only along the border.
+    /// Whether the edge of `h` can be collapsed: the surface stays one of the same kind. The two
+    /// ends have no common neighbour but those across the edge, which keep at least three faces
+    /// (one, at the border); and a border vertex goes only along the border.
     #[must_use]
     pub fn can_collapse(&self, h: u32) -> bool {
         let t = self.twin(h);
@@ -166,7 +172,8 @@ impl HalfEdges {
             let least = if self.is_border(v) { 2 } else { 4 };
             self.around(v).nth(least - 1).is_some()
         };
-        // Faces that the two ends need together, so that the one that is left has three, or one at the border.
+        // Faces that the two ends need together, so that the one that is left has three, or one at
+        // the border.
         let least = match (t, self.is_border(b)) {
             (NONE, _) => 3,
             (_, true) => 5,
@@ -175,8 +182,8 @@ impl HalfEdges {
         keeps(c) && (t == NONE || keeps(d)) && self.around(a).count() + self.around(b).count() >= least
     }
 
-    /// Removes the vertex at which `h` begins: its faces are handed to the one at which `h` ends, without the two at the edge.
-    /// Returns the vertex that is left.
+    /// Removes the vertex at which `h` begins: its faces are handed to the one at which `h` ends,
+    /// without the two at the edge. Returns the vertex that is left.
     ///
     /// The surface is only what it should be if [`HalfEdges::can_collapse`].
     pub fn collapse(&mut self, h: u32) -> u32 {
@@ -203,8 +210,8 @@ impl HalfEdges {
         b
     }
 
-    /// Removes the face of `h`, whose edge has no length any more, and joins its two other sides. Returns a half-edge that leaves
-    /// `b`, at the end of `h`.
+    /// Removes the face of `h`, whose edge has no length any more, and joins its two other sides.
+    /// Returns a half-edge that leaves `b`, at the end of `h`.
     fn close(&mut self, h: u32, b: u32) -> u32 {
         let (h1, h2) = (next(h), previous(h));
         let c = self.origin(h2);

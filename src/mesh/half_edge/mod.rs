@@ -1,22 +1,24 @@
 //! A triangle surface as half-edges: its connectivity, and the operations that change it.
 //!
-//! Face `f` has the half-edges `3f`, `3f + 1` and `3f + 2`, counter-clockwise seen from outside, so that the next and the
-//! previous one follow from the number alone. What is stored is where each half-edge begins, its twin in the face on the
-//! other side, and one half-edge that leaves each vertex. The surface knows no positions: whoever owns the particles decides
-//! what to change.
+//! Face `f` has the half-edges `3f`, `3f + 1` and `3f + 2`, counter-clockwise seen from outside, so
+//! that the next and the previous one follow from the number alone. What is stored is where each
+//! half-edge begins, its twin in the face on the other side, and one half-edge that leaves each
+//! vertex. The surface knows no positions: whoever owns the particles decides what to change.
 //!
 //! # Invariants
 //!
 //! A test holds every operation to these:
 //!
-//! * Twins are each other's twins and run between the same two vertices in opposite directions. A half-edge without a twin
-//!   lies on the border.
-//! * The faces at a vertex form one fan. At a border vertex the half-edge kept for the vertex is the first of the fan, the one
-//!   without a twin, so that a walk counter-clockwise meets every face.
+//! * Twins are each other's twins and run between the same two vertices in opposite directions. A
+//!   half-edge without a twin lies on the border.
+//! * The faces at a vertex form one fan. At a border vertex the half-edge kept for the vertex is
+//!   the first of the fan, the one without a twin, so that a walk counter-clockwise meets every
+//!   face.
 //! * No two half-edges run from the same vertex to the same other, and no face has a vertex twice.
 //!
-//! Source of the structure: the directed edges of S. Campagna, L. Kobbelt and H.-P. Seidel, "Directed Edges: A Scalable
-//! Representation for Triangle Meshes", Journal of Graphics Tools 3(4), 1998.
+//! Source of the structure: the directed edges of S. Campagna, L. Kobbelt and H.-P. Seidel,
+//! "Directed Edges: A Scalable Representation for Triangle Meshes", Journal of Graphics Tools
+//! 3(4), 1998.
 
 mod build;
 mod edit;
@@ -135,7 +137,8 @@ impl HalfEdges {
         self.twin[h as usize]
     }
 
-    /// A half-edge that leaves `v`, the first of the fan at a border vertex; [`NONE`] for a vertex without faces.
+    /// A half-edge that leaves `v`, the first of the fan at a border vertex; [`NONE`] for a vertex
+    /// without faces.
     #[inline]
     #[must_use]
     pub fn outgoing(&self, v: u32) -> u32 {
@@ -150,8 +153,8 @@ impl HalfEdges {
         h != NONE && self.twin(h) == NONE
     }
 
-    /// The half-edges that leave `v`, counter-clockwise, one for each of its faces. A border vertex has one neighbour more:
-    /// the origin of the half-edge before the last.
+    /// The half-edges that leave `v`, counter-clockwise, one for each of its faces. A border vertex
+    /// has one neighbour more: the origin of the half-edge before the last.
     #[inline]
     pub fn around(&self, v: u32) -> Around<'_> {
         let first = self.outgoing(v);
@@ -192,7 +195,8 @@ impl HalfEdges {
         self.neighbours(a).any(|other| other == b)
     }
 
-    /// The half-edges of all faces that are there, each edge once: by the half-edge of the smaller number, or by the one there is.
+    /// The half-edges of all faces that are there, each edge once: by the half-edge of the smaller
+    /// number, or by the one there is.
     pub fn edges(&self) -> impl Iterator<Item = u32> + '_ {
         // At the border the twin is the largest number.
         (0..self.origin.len() as u32).filter(|&h| self.has_half_edge(h) && h < self.twin(h))
@@ -211,7 +215,8 @@ impl HalfEdges {
         self.origin.chunks_exact(3).filter(|corners| corners[0] != NONE).map(|c| [c[0], c[1], c[2]])
     }
 
-    /// The vertices at which the half-edges begin, face by face, [`NONE`] for those of faces that were removed; all else is freed.
+    /// The vertices at which the half-edges begin, face by face, [`NONE`] for those of faces that
+    /// were removed; all else is freed.
     #[must_use]
     pub fn into_corners(self) -> Vec<u32> {
         self.origin

@@ -5,18 +5,20 @@ use crate::math::NONE;
 
 /// A subdivision under way: it can be left and gone on with.
 ///
-/// Old vertices keep their valence and new ones have six neighbours, four on the border: a subdivision adds no defect. A vertex is
-/// followed by the middles of those of its edges that no earlier vertex has, so that what is near on the surface stays near in
-/// memory, level after level.
+/// Old vertices keep their valence and new ones have six neighbours, four on the border: a
+/// subdivision adds no defect. A vertex is followed by the middles of those of its edges that no
+/// earlier vertex has, so that what is near on the surface stays near in memory, level after level.
 #[derive(Clone, Debug)]
 pub struct Subdivision {
     fine: HalfEdges,
     ends: Vec<[u32; 2]>,
     /// Vertex of the finer surface at each old one that is there.
     kept: Vec<u32>,
-    /// Vertex of the finer surface on the middle of each old half-edge; 0 before it is numbered, which is that of an old vertex.
+    /// Vertex of the finer surface on the middle of each old half-edge; 0 before it is numbered,
+    /// which is that of an old vertex.
     middle: Vec<u32>,
-    /// Place of each old face among those that are there, in the order in which the vertices come to them.
+    /// Place of each old face among those that are there, in the order in which the vertices come
+    /// to them.
     rank: Vec<u32>,
     ranked: u32,
     /// Number of vertices of the coarse surface, and of its faces after them, that are done.
@@ -29,9 +31,11 @@ impl Subdivision {
     pub fn new(coarse: &HalfEdges) -> Self {
         let (faces, vertices) = (coarse.faces(), coarse.vertex_slots());
         let slots = coarse.half_edge_slots();
-        // A closed surface has half as many edges as half-edges; a border adds a few, for which there is room to grow.
+        // A closed surface has half as many edges as half-edges; a border adds a few, for which
+        // there is room to grow.
         let expected = vertices + 3 * faces / 2;
-        // Zeros are had without touching the memory, which takes longer for the first time than what is then done with it.
+        // Zeros are had without touching the memory, which takes longer for the first time than
+        // what is then done with it.
         let fine = HalfEdges {
             origin: vec![0; 12 * faces],
             twin: vec![0; 12 * faces],
@@ -49,7 +53,8 @@ impl Subdivision {
         }
     }
 
-    /// Goes on with up to `budget` vertices or faces of `coarse`. Whether the subdivision is complete.
+    /// Goes on with up to `budget` vertices or faces of `coarse`. Whether the subdivision is
+    /// complete.
     pub fn step(&mut self, coarse: &HalfEdges, budget: u32) -> bool {
         let vertices = coarse.vertex_slots() as u32;
         let all = vertices + (coarse.half_edge_slots() / 3) as u32;
@@ -61,8 +66,8 @@ impl Subdivision {
         end == all
     }
 
-    /// The finer surface, once the subdivision is complete, and for each of its vertices the two ends of the edge that it halves;
-    /// `[v, NONE]` where it is the old vertex v.
+    /// The finer surface, once the subdivision is complete, and for each of its vertices the two
+    /// ends of the edge that it halves; `[v, NONE]` where it is the old vertex v.
     #[must_use]
     pub fn finish(self) -> (HalfEdges, Vec<[u32; 2]>) {
         (self.fine, self.ends)
@@ -101,8 +106,8 @@ impl Subdivision {
         3 * (4 * self.rank[h as usize / 3] + h % 3)
     }
 
-    /// Writes the four faces of the old face `f`: the face at a corner begins with the first half of the half-edge that leaves the
-    /// corner, and the last one lies in the middle.
+    /// Writes the four faces of the old face `f`: the face at a corner begins with the first half
+    /// of the half-edge that leaves the corner, and the last one lies in the middle.
     fn write(&mut self, coarse: &HalfEdges, f: u32) {
         if !coarse.has_half_edge(3 * f) {
             return;
@@ -113,7 +118,8 @@ impl Subdivision {
             let (here, before) = (self.corner(h) as usize, 3 * f + (k + 2) % 3);
             let (v, m) = (self.kept[coarse.origin(h) as usize], self.middle[h as usize]);
             self.fine.origin[here..here + 3].copy_from_slice(&[v, m, self.middle[before as usize]]);
-            // The inner face begins at the middle of half-edge 0; the edge that cuts corner k off ends there.
+            // The inner face begins at the middle of half-edge 0; the edge that cuts corner k off
+            // ends there.
             let across = inner + (k + 2) % 3;
             self.fine.origin[(inner + k) as usize] = m;
             self.fine.twin[here + 1] = across;

@@ -51,8 +51,8 @@ fn extension(name: &str) -> String {
     name.rsplit_once('.').map(|(_, extension)| extension.to_ascii_lowercase()).unwrap_or_default()
 }
 
-/// Number of bytes that decide between text and binary data. Numbers in binary have a control character within a few bytes, so a
-/// page is far more than enough.
+/// Number of bytes that decide between text and binary data. Numbers in binary have a control
+/// character within a few bytes, so a page is far more than enough.
 const LOOKED_AT: usize = 4096;
 
 /// Bytes of the header of a binary STL file, including the number of triangles.

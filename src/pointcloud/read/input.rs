@@ -4,11 +4,12 @@ use super::ReadError;
 use crate::slices::{MEDIUM, pause};
 use glam::DVec3;
 
-/// Largest magnitude of a coordinate. Areas and volumes computed from such coordinates do not overflow.
+/// Largest magnitude of a coordinate. Areas and volumes computed from such coordinates do not
+/// overflow.
 const LARGEST: f64 = 1e30;
 
-/// Maximum number of characters of a word that a message quotes: the longest number in double precision has 24, as
-/// -2.2250738585072014e-308.
+/// Maximum number of characters of a word that a message quotes: the longest number in double
+/// precision has 24, as -2.2250738585072014e-308.
 const SHOWN: usize = 24;
 
 /// Names of the components of a point and its normal, in headers and messages.
@@ -67,7 +68,8 @@ impl<'a> Input<'a> {
         self.bytes.len() - self.at
     }
 
-    /// Consumes a line, which ends with a line feed, a carriage return or both, and returns it without the end.
+    /// Consumes a line, which ends with a line feed, a carriage return or both, and returns it
+    /// without the end.
     pub(super) fn line(&mut self) -> Option<&'a [u8]> {
         let rest = &self.bytes[self.at..];
         if rest.is_empty() {
@@ -146,7 +148,8 @@ impl<'a> Input<'a> {
         }))
     }
 
-    /// Vector whose components are the next three of `words`. Error messages call them by these names.
+    /// Vector whose components are the next three of `words`. Error messages call them by these
+    /// names.
     pub(super) fn vector<'w>(
         &self,
         words: &mut impl Iterator<Item = &'w [u8]>,

@@ -9,8 +9,9 @@ use crate::slices::{MEDIUM, pause};
 use crate::topology::Topology;
 use glam::DVec3;
 
-/// Points on the faces of a mesh of large ones: five for each centre. With half of them the areas of four coarse balls are off by up to 4 %,
-/// with these and four times as many by 2 %; those of eight boxes and prisms differ by a tenth.
+/// Points on the faces of a mesh of large ones: five for each centre. With half of them the areas
+/// of four coarse balls are off by up to 4 %, with these and four times as many by 2 %; those of
+/// eight boxes and prisms differ by a tenth.
 const ON_FACES: f64 = 5.0 * DEFAULT_CENTRES as f64;
 
 /// Points and faces as they are in a file.
@@ -29,7 +30,8 @@ pub struct FileMesh {
 }
 
 impl FileMesh {
-    /// Appends a point with these components, the last three of which are its normal if it `has_normal`.
+    /// Appends a point with these components, the last three of which are its normal if it
+    /// `has_normal`.
     pub(super) fn add_point(
         &mut self,
         [x, y, z, nx, ny, nz]: [f64; 6],
@@ -105,10 +107,12 @@ impl FileMesh {
         push(&mut self.faces, end)
     }
 
-    /// The points with unit normals, and the warnings for the user. `tell` gets the fraction of the work done.
+    /// The points with unit normals, and the warnings for the user. `tell` gets the fraction of the
+    /// work done.
     ///
-    /// The normal of a point is the one in the file, or else the area-weighted mean of those of its faces. If only some
-    /// points have neither, these are left out; if none has any, all points are kept and the cloud has no normals.
+    /// The normal of a point is the one in the file, or else the area-weighted mean of those of its
+    /// faces. If only some points have neither, these are left out; if none has any, all points are
+    /// kept and the cloud has no normals.
     ///
     /// # Errors
     ///
@@ -145,11 +149,12 @@ impl FileMesh {
         Ok((cloud, self.warnings))
     }
 
-    /// Points inside of faces, evenly by their share of the `total` area, with the normals of the faces. A surface that the
-    /// corners alone decide need not follow a large face. A face with less than a thousandth of the area has none.
+    /// Points inside of faces, evenly by their share of the `total` area, with the normals of the
+    /// faces. A surface that the corners alone decide need not follow a large face. A face with
+    /// less than a thousandth of the area has none.
     pub async fn on_faces(&self, total: f64) -> Cloud {
-        /// Steps of the two coordinates of evenly spread points: 1/p and 1/p² with p³ = p + 1 (M. Roberts, "The unreasonable
-        /// effectiveness of quasirandom sequences", 2018).
+        /// Steps of the two coordinates of evenly spread points: 1/p and 1/p² with p³ = p + 1 (M.
+        /// Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
         const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
         let mut inside = Cloud { source: NormalSource::FromMesh, ..Cloud::default() };
         for (k, triangle) in self.triangles().enumerate() {
@@ -233,7 +238,8 @@ impl FileMesh {
         (b - a).cross(c - a)
     }
 
-    /// Twice the sum of the area vectors of the faces around each point; nothing where there are no faces.
+    /// Twice the sum of the area vectors of the faces around each point; nothing where there are no
+    /// faces.
     ///
     /// A polygon need not be planar: each of its corners gets the area vector of the whole.
     async fn areas(&self, tell: impl Fn(f64)) -> Result<Vec<DVec3>, ReadError> {

@@ -121,7 +121,8 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// Checks the size and detects the format. Only the extension of `name` is used, where the content is ambiguous.
+    /// Checks the size and detects the format. Only the extension of `name` is used, where the
+    /// content is ambiguous.
     ///
     /// # Errors
     ///

@@ -1,5 +1,5 @@
-//! Reader of OBJ files (Wavefront, "Object Files", appendix B1). It reads the statements `v`, `vn` and `f` and skips
-//! all others.
+//! Reader of OBJ files (Wavefront, "Object Files", appendix B1). It reads the statements `v`, `vn`
+//! and `f` and skips all others.
 
 use super::input::{COMPONENTS, Input, quoted, words};
 use super::mesh::FileMesh;
@@ -56,7 +56,8 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
     Ok(())
 }
 
-/// Index from 0 of the `word`, which counts from 1, or backwards from −1, among `count` items called `what`.
+/// Index from 0 of the `word`, which counts from 1, or backwards from −1, among `count` items
+/// called `what`.
 fn index(word: &[u8], count: usize, what: &str, input: &Input) -> Result<u32, ReadError> {
     let written = core::str::from_utf8(word).ok().and_then(|word| word.parse::<i64>().ok());
     let Some(written) = written else {

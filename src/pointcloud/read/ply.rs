@@ -1,4 +1,5 @@
-//! Reader of PLY files, with any elements and properties in any order, as text or binary in either byte order.
+//! Reader of PLY files, with any elements and properties in any order, as text or binary in either
+//! byte order.
 
 use super::ReadError;
 use super::input::{COMPONENTS, Input, number, quoted};

@@ -141,7 +141,8 @@ impl Element {
 ///
 /// # Errors
 ///
-/// If a line is wrong, if there are no vertices with x, y and z, or if the file is too small for the rows.
+/// If a line is wrong, if there are no vertices with x, y and z, or if the file is too small for
+/// the rows.
 pub(super) fn read(input: &mut Input) -> Result<(Encoding, Vec<Element>), ReadError> {
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
@@ -232,7 +233,8 @@ fn add(elements: &mut [Element], length: Option<&[u8]>, scalar: &[u8], name: &[u
     Ok(())
 }
 
-/// Compares the number of rows that the header claims with the bytes that follow, before memory is allocated.
+/// Compares the number of rows that the header claims with the bytes that follow, before memory is
+/// allocated.
 fn check_claims(encoding: Encoding, elements: &[Element], input: &Input) -> Result<(), ReadError> {
     let left = input.remaining() as u64;
     // The last line of a text needs no line end.

@@ -10,7 +10,8 @@ use glam::DVec3;
 
 /// Reads the text format, `facet … outer loop … vertex x y z … endloop … endfacet`.
 ///
-/// The normals of the facets are ignored: many programs write zeros, and the order of the corners gives them.
+/// The normals of the facets are ignored: many programs write zeros, and the order of the corners
+/// gives them.
 pub(super) async fn read_text(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(), ReadError> {
     let (mut table, mut corners) = (IndexTable::default(), Vec::new());
     while let Some(line) = input.line_with_text() {
@@ -43,8 +44,8 @@ pub(super) async fn read_text(input: &mut Input<'_>, mesh: &mut FileMesh) -> Res
     }
 }
 
-/// Reads the binary format: 80 arbitrary bytes, the number of triangles, and for each triangle a normal, three corners and two bytes
-/// of attributes.
+/// Reads the binary format: 80 arbitrary bytes, the number of triangles, and for each triangle a
+/// normal, three corners and two bytes of attributes.
 pub(super) async fn read_binary(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(), ReadError> {
     let claim = |element: &str, count, needed, left| {
         Err(ReadError::Claim { element: element.to_owned(), count, needed, left })

@@ -26,8 +26,8 @@ const FEW: usize = 8;
 /// opacity, and a normal.
 const LOOKED_AT: usize = 11;
 
-/// Component of a point and its normal that each column of a file holds, if it holds one. Bytes, because a line may have as many columns
-/// as half a file has bytes.
+/// Component of a point and its normal that each column of a file holds, if it holds one. Bytes,
+/// because a line may have as many columns as half a file has bytes.
 type XyzColumns = Vec<Option<u8>>;
 
 /// Columns by the words of a header; `None` if they do not name x, y and z.
@@ -83,10 +83,11 @@ fn split<'a>(line: &'a [u8], separator: Option<u8>, words: &mut Vec<&'a [u8]>) {
     }
 }
 
-/// Whether the commas of a line are decimal commas: at least three words are separated otherwise, and one has a comma
-/// between digits.
+/// Whether the commas of a line are decimal commas: at least three words are separated otherwise,
+/// and one has a comma between digits.
 fn has_decimal_commas(line: &[u8]) -> bool {
-    /// Number of words that are looked at. A point has three to six, with colours and other columns some more.
+    /// Number of words that are looked at. A point has three to six, with colours and other columns
+    /// some more.
     const LOOKED_AT: usize = 16;
     let by_others: Vec<&[u8]> = line
         .split(|byte| byte.is_ascii_whitespace() || *byte == b';')

@@ -1,7 +1,8 @@
 //! Opposite faces of a cell: what lies on the lower one is repeated on the upper one.
 //!
-//! The creases and corners on an upper face are replaced by those of the lower face before any particle is placed, so that the particles
-//! on them are the same but for the shift. The particles within a face are repeated once the run has placed them.
+//! The creases and corners on an upper face are replaced by those of the lower face before any
+//! particle is placed, so that the particles on them are the same but for the shift. The particles
+//! within a face are repeated once the run has placed them.
 
 use super::{Corner, Crease, Creases, ONE_END};
 use crate::field::UnitCell;
@@ -10,8 +11,9 @@ use crate::particles::{OppositeFaces, Particles};
 use crate::sampler::probe::Probe;
 use glam::{DVec3, Vec3};
 
-/// Largest difference of a branch between a point and its image, as a share of its gradient: rounding is far below it, another branch far
-/// above. From a millionth to a hundredth the particles of 32 random periodic solids are the same.
+/// Largest difference of a branch between a point and its image, as a share of its gradient:
+/// rounding is far below it, another branch far above. From a millionth to a hundredth the
+/// particles of 32 random periodic solids are the same.
 const SAME: f64 = 1e-4;
 
 /// Two opposite faces of a cell that the solid reaches.
@@ -56,8 +58,9 @@ impl FacePair {
 }
 
 impl Creases {
-    /// Replaces what lies on the upper faces of a cell by the images of what lies on the lower ones, along every axis that the cell
-    /// repeats. Creases are found at steps of this length. Where the creases of two faces differ, they stay as they are.
+    /// Replaces what lies on the upper faces of a cell by the images of what lies on the lower
+    /// ones, along every axis that the cell repeats. Creases are found at steps of this length.
+    /// Where the creases of two faces differ, they stay as they are.
     pub(super) fn repeat(&mut self, probe: &mut Probe, cell: &UnitCell, step: f64) {
         for axis in (0..3).filter(|&axis| cell.repeats[axis]) {
             if let Some(pair) = self.face_pair(probe, cell, axis, step)
@@ -87,7 +90,8 @@ impl Creases {
         Some(FacePair { axis, patches: [of(at[0], -1.0)?, of(at[1], 1.0)?], at })
     }
 
-    /// The creases with images in the place of those on the upper of two faces; none if the two faces differ.
+    /// The creases with images in the place of those on the upper of two faces; none if the two
+    /// faces differ.
     fn with_images(&self, probe: &mut Probe, pair: FacePair, step: f64) -> Option<Self> {
         let [lower, upper] = pair.patches;
         let mut faces = self.faces.clone();
@@ -175,9 +179,10 @@ impl Creases {
         p
     }
 
-    /// Puts images of the particles within the lower faces in the place of those within the upper ones, and says which rows of both belong
-    /// together. `corners` are those of the triangles over the rows, if there are any. Faces whose creases have different particles stay
-    /// as they are. Returns whether there are any others.
+    /// Puts images of the particles within the lower faces in the place of those within the upper
+    /// ones, and says which rows of both belong together. `corners` are those of the triangles over
+    /// the rows, if there are any. Faces whose creases have different particles stay as they are.
+    /// Returns whether there are any others.
     pub(in super::super) fn repeat_faces(&self, particles: &mut Particles, corners: &mut Vec<u32>) -> bool {
         particles.opposite.clear();
         let mut repeats = Vec::new();
@@ -263,7 +268,8 @@ fn is_same<'a>(probe: &mut Probe, branches: impl Iterator<Item = &'a u32>, p: DV
     })
 }
 
-/// The rows of particles on the creases of two opposite faces that belong together; none if the faces differ.
+/// The rows of particles on the creases of two opposite faces that belong together; none if the
+/// faces differ.
 fn crease_pairs(particles: &Particles, pair: &FacePair) -> Option<Vec<[u32; 2]>> {
     // The two coordinates in the face, by their bits.
     let place = |&row: &u32| {

@@ -1,7 +1,8 @@
 //! Creases that run to the box: they are followed beyond it, and cut where they pass its faces.
 //!
-//! A coarse front grows beyond the box and is clipped there. So that the creases fit its mesh on both sides of a face, one that passes the
-//! face has a corner on it, at the common point of both branches and the plane.
+//! A coarse front grows beyond the box and is clipped there. So that the creases fit its mesh on
+//! both sides of a face, one that passes the face has a corner on it, at the common point of both
+//! branches and the plane.
 
 use super::meeting::{Third, common_point};
 use super::{Crease, Creases, ONE_CORNER};
@@ -10,7 +11,8 @@ use crate::sampler::probe::Probe;
 use crate::slices::complete;
 
 impl Creases {
-    /// The creases in a `wide` box around `bounds`, cut at the faces of that; none if no crease runs to it.
+    /// The creases in a `wide` box around `bounds`, cut at the faces of that; none if no crease
+    /// runs to it.
     pub(in super::super) fn beyond(&self, probe: &mut Probe, bounds: &Bounds, wide: &Bounds) -> Option<Self> {
         self.at_box()?;
         let width = Self::width(wide);
@@ -47,7 +49,8 @@ impl Creases {
         self.add_pieces(curve, &cuts, slack);
     }
 
-    /// Adds the pieces of a curve that is divided at corners, each after the point of this number. What is shorter than `slack` is none.
+    /// Adds the pieces of a curve that is divided at corners, each after the point of this number.
+    /// What is shorter than `slack` is none.
     pub(super) fn add_pieces(&mut self, curve: Crease, cuts: &[(usize, usize)], slack: f64) {
         if cuts.is_empty() {
             self.curves.push(curve);

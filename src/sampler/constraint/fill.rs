@@ -23,11 +23,12 @@ pub(in super::super) struct CreaseParticle {
 }
 
 impl CreaseParticle {
-    /// The normal of the patch that is selected. Where it has none, as at the tip of a cone, that beside the particle, along the crease if
-    /// possible.
+    /// The normal of the patch that is selected. Where it has none, as at the tip of a cone, that
+    /// beside the particle, along the crease if possible.
     pub(super) fn normal(&self, probe: &mut Probe) -> Option<Vec3> {
         probe.gradient(self.position).1.try_normalize().or_else(|| {
-            // In double precision, which tells places apart that are this near each other however small the particle is.
+            // In double precision, which tells places apart that are this near each other however
+            // small the particle is.
             [self.tangent, -self.tangent, Vec3::X, Vec3::Y, Vec3::Z].into_iter().find_map(|way| {
                 let aside = ASIDE * f64::from(self.radius) * way.as_dvec3();
                 probe.count(1);
@@ -45,7 +46,8 @@ pub(in super::super) struct CreaseParticles {
     pub(in super::super) segments: Vec<[u32; 2]>,
     /// For each of them, the patches on its left and on its right.
     sides: Vec<Vec<[u32; 2]>>,
-    /// Points that divide every segment into 2ᵏ equal parts, segment by segment from its first end to its second.
+    /// Points that divide every segment into 2ᵏ equal parts, segment by segment from its first end
+    /// to its second.
     between: Vec<Vec3>,
 }
 
@@ -60,8 +62,9 @@ struct CurvePoint {
 }
 
 impl Creases {
-    /// Fills corners and curves with particles, whose radius at a point of a patch is that of `radius`: on each curve as many as come
-    /// nearest to it. The way between two of them is to be halved `halvings` times.
+    /// Fills corners and curves with particles, whose radius at a point of a patch is that of
+    /// `radius`: on each curve as many as come nearest to it. The way between two of them is to be
+    /// halved `halvings` times.
     pub(in super::super) fn fill(
         &self,
         probe: &mut Probe,
@@ -111,7 +114,8 @@ impl Creases {
         filled
     }
 
-    /// Repeats a curve with these particles on the opposite face of a cell. Returns the numbers of the images.
+    /// Repeats a curve with these particles on the opposite face of a cell. Returns the numbers of
+    /// the images.
     fn repeat_curve(
         &self,
         curve: &Crease,
@@ -148,7 +152,8 @@ impl Creases {
         images
     }
 
-    /// Fills a curve of these points, the last of which is the first one again if it is closed. Returns the numbers of its particles.
+    /// Fills a curve of these points, the last of which is the first one again if it is closed.
+    /// Returns the numbers of its particles.
     fn fill_curve(
         &self,
         probe: &mut Probe,
@@ -186,7 +191,8 @@ impl Creases {
             let share = ((target - a.room) / (b.room - a.room)).clamp(0.0, 1.0);
             let (place, radius) =
                 (a.position.lerp(b.position, share), a.radius + (b.radius - a.radius) * share);
-            // The chord is left for the curve. The ends of an open curve are exact already, and lie on the box.
+            // The chord is left for the curve. The ends of an open curve are exact already, and lie
+            // on the box.
             let reach = a.position.distance(b.position);
             let found = Meeting::of_branches(probe, curve.branches, place, reach, FADED).filter(|_| !is_end);
             let position = found.map_or(place, |meeting| meeting.position).as_vec3();
@@ -221,14 +227,15 @@ impl Creases {
 }
 
 impl CreaseParticles {
-    /// Adds the segments between particles that follow each other, with the patches on their left and on their right.
+    /// Adds the segments between particles that follow each other, with the patches on their left
+    /// and on their right.
     fn add_segments(&mut self, numbers: &[u32], sides: &[[u32; 2]]) {
         self.segments.extend(numbers.windows(2).map(|pair| [pair[0], pair[1]]));
         self.sides.resize(self.segments.len(), sides.to_vec());
     }
 
-    /// Adds a row for each patch of each particle, patch by patch, to columns that are empty. Returns a unit vector along the crease for
-    /// each row.
+    /// Adds a row for each patch of each particle, patch by patch, to columns that are empty.
+    /// Returns a unit vector along the crease for each row.
     pub(in super::super) fn add_rows(&self, probe: &mut Probe, particles: &mut Particles) -> Vec<Vec3> {
         let mut patches: Vec<u32> =
             self.list.iter().flat_map(|particle| particle.patches.iter().copied()).collect();
@@ -258,7 +265,8 @@ impl CreaseParticles {
         along
     }
 
-    /// The particles on creases at every level of a refinement that begins with rows of these; those in a box where creases run on beyond it.
+    /// The particles on creases at every level of a refinement that begins with rows of these;
+    /// those in a box where creases run on beyond it.
     pub(in super::super) fn into_ladder(self, rows: &Particles, bounds: Option<&Bounds>) -> CreaseLadder {
         CreaseLadder::new(rows, self.between, bounds)
     }

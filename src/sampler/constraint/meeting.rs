@@ -6,11 +6,13 @@ use crate::math::newton::{self, STEPS, StepLimits, step_to_corner, step_to_curve
 use crate::sampler::probe::Probe;
 use glam::DVec3;
 
-/// Sine of that angle down to which a crease is followed, where it fades out. At [`ASIDE`] the angle then still outweighs the bend of a
-/// branch, which is half of `ASIDE` squared where the radius of curvature is the reach.
+/// Sine of that angle down to which a crease is followed, where it fades out. At [`ASIDE`] the
+/// angle then still outweighs the bend of a branch, which is half of `ASIDE` squared where the
+/// radius of curvature is the reach.
 pub(super) const FADED: f64 = 10.0 * ASIDE;
-/// Distance from a crease, as a share of the reach, at which it is asked which branch gives f: by [`FADED`] times as much the branches
-/// differ there, which is far above rounding. Half and double change the particles of 4 of 24 random solids, but not their number.
+/// Distance from a crease, as a share of the reach, at which it is asked which branch gives f: by
+/// [`FADED`] times as much the branches differ there, which is far above rounding. Half and double
+/// change the particles of 4 of 24 random solids, but not their number.
 pub(super) const ASIDE: f64 = 1e-4;
 
 /// Distance outside of a sheet, as a share of the reach, at which it is asked which branch gives f:
@@ -18,8 +20,8 @@ pub(super) const ASIDE: f64 = 1e-4;
 /// other one counts, too, at [`ASIDE`].
 const OUTSIDE: f64 = 1e-11;
 
-/// Cosine of the largest turn of a crease in one step, 30°. A step that turns more is halved. Half of the angle and 45° give the same
-/// particles on 24 random solids.
+/// Cosine of the largest turn of a crease in one step, 30°. A step that turns more is halved. Half
+/// of the angle and 45° give the same particles on 24 random solids.
 pub(super) const MOST_TURN: f64 = 0.5 * SQRT_3;
 
 /// A point where two patches meet.
@@ -51,7 +53,8 @@ pub(super) fn is_on(probe: &mut Probe, b: u32, p: DVec3, slack: f64) -> bool {
     value.abs() <= slack * gradient.length()
 }
 
-/// The point on the surface near one where two branches touch without an angle, so that what is on one is on the other.
+/// The point on the surface near one where two branches touch without an angle, so that what is on
+/// one is on the other.
 pub(super) fn touching_point(probe: &mut Probe, [first, _]: [u32; 2], start: DVec3) -> DVec3 {
     let mut p = start;
     // Each step doubles the digits, of which the start has some.
@@ -62,8 +65,8 @@ pub(super) fn touching_point(probe: &mut Probe, [first, _]: [u32; 2], start: DVe
 }
 
 impl Meeting {
-    /// The point near `start`, within `reach`, where both branches are zero and meet at an angle of this sine at least, whichever
-    /// branch gives f there.
+    /// The point near `start`, within `reach`, where both branches are zero and meet at an angle of
+    /// this sine at least, whichever branch gives f there.
     pub(super) fn of_branches(
         probe: &mut Probe,
         branches: [u32; 2],
@@ -84,8 +87,9 @@ impl Meeting {
         Some(Self { position, branches, tangent: tangent / length, sine: length / scale_sq.sqrt() })
     }
 
-    /// Whether the patches of these branches are on the left of the crease, in the direction of its tangent and seen from outside. There is
-    /// no crease where one of the branches gives f on neither side, or on both.
+    /// Whether the patches of these branches are on the left of the crease, in the direction of its
+    /// tangent and seen from outside. There is no crease where one of the branches gives f on
+    /// neither side, or on both.
     pub(super) fn are_left(&self, probe: &mut Probe, branches: &[u32], reach: f64) -> Option<Vec<bool>> {
         let mut are_left = Vec::with_capacity(branches.len());
         for &b in branches {
@@ -98,8 +102,9 @@ impl Meeting {
         Some(are_left)
     }
 
-    /// Whether a branch gives f beside its sheet to the left of the tangent, and to the right; none if it has no sheet there. It is asked on
-    /// the outer side of the sheet: within a solid, where its bodies share a plane, each of two branches gives f on its inner side alone.
+    /// Whether a branch gives f beside its sheet to the left of the tangent, and to the right; none
+    /// if it has no sheet there. It is asked on the outer side of the sheet: within a solid, where
+    /// its bodies share a plane, each of two branches gives f on its inner side alone.
     fn gives(&self, probe: &mut Probe, b: u32, reach: f64) -> Option<[bool; 2]> {
         let (_, gradient) = branch(probe, b, self.position);
         let aside = gradient.cross(self.tangent).try_normalize()?;
@@ -127,7 +132,8 @@ impl Meeting {
         probe.is_bare_zero(self.position, reach)
     }
 
-    /// The patches that meet along the crease, in ascending order: those of its branches, and of the `others` that are zero on it.
+    /// The patches that meet along the crease, in ascending order: those of its branches, and of
+    /// the `others` that are zero on it.
     pub(super) fn patches(&self, probe: &mut Probe, others: &[u32], reach: f64) -> Vec<u32> {
         let mut patches = self.branches.to_vec();
         for &other in others.iter().filter(|other| !self.branches.contains(other)) {
@@ -143,7 +149,8 @@ impl Meeting {
     }
 }
 
-/// The point near `start`, within `reach`, where a plane and two branches, or three branches, are zero together.
+/// The point near `start`, within `reach`, where a plane and two branches, or three branches, are
+/// zero together.
 pub(super) fn common_point(
     probe: &mut Probe,
     branches: [u32; 2],

@@ -1,5 +1,5 @@
-//! What a particle may lie on besides the surface: the creases along which two smooth branches of f give way to each other, and the
-//! corners where more than two meet; and the [tips] of cones.
+//! What a particle may lie on besides the surface: the creases along which two smooth branches of f
+//! give way to each other, and the corners where more than two meet; and the [tips] of cones.
 //!
 //! A formula with maxima, minima and absolute values has a surface of *patches*. On each one smooth
 //! branch gives f ([`Patches::branch_at`](crate::field::Patches::branch_at)). Two patches meet
@@ -7,13 +7,15 @@
 //! runs back into itself. Where the factors of a product cross, four patches meet: each factor is
 //! two branches, one on either side of the other factor.
 //!
-//! 1. *Search.* The field says in which small cells of the box creases can be. There Newton's method looks for a point on each pair of
-//!    branches.
-//! 2. *Trace.* From such a point the curve is followed both ways, to where another branch takes over: that place is a corner. From there
-//!    the other creases of the corner are followed. A crease that passes a corner of others is divided there.
-//! 3. *Fill.* Particles are put on corners and along curves at equal distances, as many as fit best. They do not move any more:
-//!    fronts start from them, patch by patch, and end at them. For a refinement they are put there for every level at once, also beyond
-//!    the box where the creases run to it, and at its faces.
+//! 1. *Search.* The field says in which small cells of the box creases can be. There Newton's
+//!    method looks for a point on each pair of branches.
+//! 2. *Trace.* From such a point the curve is followed both ways, to where another branch takes
+//!    over: that place is a corner. From there the other creases of the corner are followed. A
+//!    crease that passes a corner of others is divided there.
+//! 3. *Fill.* Particles are put on corners and along curves at equal distances, as many as fit
+//!    best. They do not move any more: fronts start from them, patch by patch, and end at them. For
+//!    a refinement they are put there for every level at once, also beyond the box where the
+//!    creases run to it, and at its faces.
 
 mod cell;
 mod cut;
@@ -34,29 +36,34 @@ use glam::{DVec3, Vec3};
 pub(super) use ladder::CreaseLadder;
 use meeting::Meeting;
 
-/// Side of the smallest cells of the search, and about twice the step along a curve, as a share of the diagonal of the box. Half and
-/// double find as many creases and corners of 24 random solids.
+/// Side of the smallest cells of the search, and about twice the step along a curve, as a share of
+/// the diagonal of the box. Half and double find as many creases and corners of 24 random solids.
 const CELL: f64 = 1.0 / 128.0;
-/// Corners nearer to each other than this share of a step are one: the width of the smallest crease that is followed. So are a corner and
-/// a tip nearer than this share of a radius. Half and double give the same particles on 24 random solids.
+/// Corners nearer to each other than this share of a step are one: the width of the smallest crease
+/// that is followed. So are a corner and a tip nearer than this share of a radius. Half and double
+/// give the same particles on 24 random solids.
 const ONE_CORNER: f64 = 1e-3;
-/// Distance from a corner, in steps, at which the creases that end there are looked for: ten times the width of the smallest one.
+/// Distance from a corner, in steps, at which the creases that end there are looked for: ten times
+/// the width of the smallest one.
 const BESIDE: f64 = 10.0 * ONE_CORNER;
-/// Share of a step within which ends of creases that fade out are one corner, and corners on opposite faces images. Such ends are known
-/// less precisely than corners: a walk may end at an angle of [`meeting::FADED`], on three crossing cylinders a twentieth of a step before.
-/// Half and double give the same particles on 24 random solids.
+/// Share of a step within which ends of creases that fade out are one corner, and corners on
+/// opposite faces images. Such ends are known less precisely than corners: a walk may end at an
+/// angle of [`meeting::FADED`], on three crossing cylinders a twentieth of a step before. Half and
+/// double give the same particles on 24 random solids.
 const ONE_END: f64 = 0.1;
 
-/// Distance from the chord between two points of a curve, in steps, up to which a point lies on the curve: the chord of a curve that turns by
-/// 60° in two steps is a seventh of a step away. Half and double give the same particles on 24 random solids.
+/// Distance from the chord between two points of a curve, in steps, up to which a point lies on the
+/// curve: the chord of a curve that turns by 60° in two steps is a seventh of a step away. Half and
+/// double give the same particles on 24 random solids.
 const NEAR: f64 = 0.2;
 
 /// Length of a chord, in steps, that none exceeds: a step leads at most as far beyond its end, and
 /// its last one along the box as far again.
 const LONGEST: f64 = 4.0;
 
-/// A point is found when a step is shorter than this share of the reach: Newton's method squares the share, to below any rounding. With
-/// ten times and a tenth of it the particles of 24 random solids are the same.
+/// A point is found when a step is shorter than this share of the reach: Newton's method squares
+/// the share, to below any rounding. With ten times and a tenth of it the particles of 24 random
+/// solids are the same.
 const AT_REST: f64 = 1e-9;
 
 /// A curve along which patches meet: two, or four where two sheets cross.
@@ -128,7 +135,8 @@ pub struct Creases {
     unit_cell: Option<UnitCell>,
     /// Opposite faces of the cell with the same creases.
     faces: Vec<FacePair>,
-    /// A place where sheets cross along a curve and no patch ends, which is not followed: three planes through one line, say.
+    /// A place where sheets cross along a curve and no patch ends, which is not followed: three
+    /// planes through one line, say.
     pub(super) passed: Option<DVec3>,
     /// A place where branches are zero together and f is on a curve or at a point alone, as |x| +
     /// |y| is.
@@ -187,7 +195,8 @@ impl Creases {
         creases
     }
 
-    /// Follows the creases between patches that meet at a corner: one shorter than a cell is not always found from a cell.
+    /// Follows the creases between patches that meet at a corner: one shorter than a cell is not
+    /// always found from a cell.
     async fn follow_from_corners(&mut self, probe: &mut Probe<'_>, bounds: &Bounds, step: f64) {
         let mut next = 0;
         while let Some(Corner { position, patches, .. }) = self.corners.get(next).cloned() {
@@ -250,7 +259,8 @@ impl Creases {
         first
     }
 
-    /// Divides creases at the corners of other ones that lie on them. A corner keeps the patches that meet along its creases.
+    /// Divides creases at the corners of other ones that lie on them. A corner keeps the patches
+    /// that meet along its creases.
     fn divide(&mut self, probe: &mut Probe, step: f64) {
         for curve in core::mem::take(&mut self.curves) {
             let mut cuts = Vec::new();
@@ -268,7 +278,8 @@ impl Creases {
             }
             self.add_pieces(curve, &cuts, ONE_CORNER * step);
         }
-        // A corner may also lie on the sheet of a branch that gives f nowhere around it, and that has no patch there.
+        // A corner may also lie on the sheet of a branch that gives f nowhere around it, and that
+        // has no patch there.
         for (index, corner) in self.corners.iter_mut().enumerate() {
             let ending = self.curves.iter().filter(|curve| curve.corners.contains(&Some(index)));
             let patches: Vec<u32> = ending.flat_map(|curve| curve.patches.iter().copied()).collect();

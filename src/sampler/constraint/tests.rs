@@ -52,7 +52,8 @@ fn the_creases_of_solids_are_counted() {
         ("cylinder", "max(x^2+y^2-1,abs(z)-1)", 1.4, [2, 0]),
         ("union of spheres", "min((x-0.5)^2+y^2+z^2-1,(x+0.5)^2+y^2+z^2-1)", 1.7, [1, 0]),
         ("drilled block", "max(abs(x)-1,abs(y)-1,abs(z)-0.4,0.16-x^2-y^2)", 1.3, [14, 8]),
-        // Eight triples of cylinders meet on the diagonals of the cube, and six pairs where the third has its axis.
+        // Eight triples of cylinders meet on the diagonals of the cube, and six pairs where the
+        // third has its axis.
         ("three cylinders", "max(x^2+y^2,y^2+z^2,z^2+x^2)-1", 1.3, [24, 14]),
         ("wedge", "max(z,0.176327*x-z,abs(y)-1,-x-1.5)", 2.0, [9, 6]),
         // An edge of a cube touches the rim of a cone whose base stands in it, at a corner.

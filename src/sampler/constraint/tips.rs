@@ -1,9 +1,10 @@
 //! Tips: isolated points of the surface at which sheets end as cones, with one particle each.
 //!
-//! The *link* of a point is what a small sphere around it cuts out of the surface: around a smooth point one circle, around a tip a
-//! closed curve for each *nappe*, the sheets that meet there (J. Milnor, "Singular Points of Complex Hypersurfaces", §2, 1968). The
-//! particle of a tip has a row for each nappe. Around each nappe, on the link at the distance of neighbours, stands a ring of particles
-//! from which the front grows.
+//! The *link* of a point is what a small sphere around it cuts out of the surface: around a smooth
+//! point one circle, around a tip a closed curve for each *nappe*, the sheets that meet there (J.
+//! Milnor, "Singular Points of Complex Hypersurfaces", §2, 1968). The particle of a tip has a row
+//! for each nappe. Around each nappe, on the link at the distance of neighbours, stands a ring of
+//! particles from which the front grows.
 
 use super::{AT_REST, ONE_CORNER};
 use crate::math::newton::STEPS;
@@ -12,33 +13,37 @@ use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::probe::Probe;
 use glam::{DMat3, DVec3, Vec3};
 
-/// Divisions of the edge of an octahedron whose faces, thrown onto the sphere, show the link: the narrowest nappe is three of them wide. Half
-/// and double take 0.99 and 1.03 times the evaluations in 33 runs on 11 random surfaces with tips, with holes as
-/// wide within 1.3 %, and another number of components in two runs each.
+/// Divisions of the edge of an octahedron whose faces, thrown onto the sphere, show the link: the
+/// narrowest nappe is three of them wide. Half and double take 0.99 and 1.03 times the evaluations
+/// in 33 runs on 11 random surfaces with tips, with holes as wide within 1.3 %, and another number
+/// of components in two runs each.
 const DIVISIONS: i32 = 8;
-/// Radius of the sphere that tells how many nappes a tip has, in spacings of the survey. Rounded coefficients open a cone to a neck of
-/// a ten-thousandth of a spacing. Half and double give the same particles in 33 runs on 11 random surfaces with tips.
+/// Radius of the sphere that tells how many nappes a tip has, in spacings of the survey. Rounded
+/// coefficients open a cone to a neck of a ten-thousandth of a spacing. Half and double give the
+/// same particles in 33 runs on 11 random surfaces with tips.
 const SMALL: f64 = 1.0 / 32.0;
-/// Rounds in which the place of a tip is found, on spheres of which each is a quarter of the one before: the error falls with the
-/// square.
+/// Rounds in which the place of a tip is found, on spheres of which each is a quarter of the one
+/// before: the error falls with the square.
 const ROUNDS: u32 = 10;
-/// Determinant of the mean of nnᵀ over the normals n of a link below which the surface is smooth: a cone flatter than 3°. A tenth
-/// and ten times give the same particles on 20 random cones.
+/// Determinant of the mean of nnᵀ over the normals n of a link below which the surface is smooth: a
+/// cone flatter than 3°. A tenth and ten times give the same particles on 20 random cones.
 const SMOOTH: f64 = 1e-5;
-/// Least cosine of the angle between a nappe's normals and their mean. The rows of the tip on two nappes are told apart by it. Half
-/// and double give the same particles on 14 random surfaces with tips.
+/// Least cosine of the angle between a nappe's normals and their mean. The rows of the tip on two
+/// nappes are told apart by it. Half and double give the same particles on 14 random surfaces with
+/// tips.
 const LEAST_COSINE: f64 = 0.1;
-/// Cosine of the angle within which a nappe on a larger sphere is the one on the smaller: 45°. 70° and 26° give the same particles on
-/// 14 random surfaces with tips.
+/// Cosine of the angle within which a nappe on a larger sphere is the one on the smaller: 45°. 70°
+/// and 26° give the same particles on 14 random surfaces with tips.
 const ONE_NAPPE: f64 = 0.7;
-/// Least number of particles around a tip: three on a narrow cone would face away from each other. With five
-/// 0.8 % fewer of the particles of 20 random cones have six neighbours.
+/// Least number of particles around a tip: three on a narrow cone would face away from each other.
+/// With five 0.8 % fewer of the particles of 20 random cones have six neighbours.
 pub(in super::super) const LEAST_RING: u32 = 4;
-/// Largest distance of a ring from its tip, in spacings. A nappe narrower than 16° has none that is nearer. With 1.2 one of
-/// 20 random cones comes out differently, with 1.7 and 2.8 none.
+/// Largest distance of a ring from its tip, in spacings. A nappe narrower than 16° has none that is
+/// nearer. With 1.2 one of 20 random cones comes out differently, with 1.7 and 2.8 none.
 const FARTHEST: f64 = 1.4;
 
-/// A point of the surface, by the unit vector to it from the centre of a sphere, with its unit normal.
+/// A point of the surface, by the unit vector to it from the centre of a sphere, with its unit
+/// normal.
 #[derive(Clone, Copy, Debug)]
 struct LinkPoint {
     direction: DVec3,
@@ -61,8 +66,8 @@ pub(in super::super) struct Tip {
 }
 
 impl Tip {
-    /// The tip at a singular point of a patch, which is selected; none if the patch is smooth there or elsewhere, or its sheets are no cones
-    /// that face different ways.
+    /// The tip at a singular point of a patch, which is selected; none if the patch is smooth there
+    /// or elsewhere, or its sheets are no cones that face different ways.
     pub(in super::super) fn at(
         probe: &mut Probe,
         patch: Option<u32>,
@@ -89,15 +94,18 @@ impl Tip {
 
     /// Whether a curvature at a point is no larger than a cone with this tip would have there.
     pub(in super::super) fn explains(&self, point: Vec3, curvature: f64) -> bool {
-        /// The sheets bend by themselves as well. Half and double give the same particles on 14 random surfaces with tips.
+        /// The sheets bend by themselves as well. Half and double give the same particles on 14
+        /// random surfaces with tips.
         const MORE: f64 = 1.5;
         curvature * self.position.distance(point.as_dvec3()) <= MORE * self.bend
     }
 
-    /// Largest distance of a tip from the place near which it is looked for, in spacings: the steps are at most 2, 2/4, 2/16, …
+    /// Largest distance of a tip from the place near which it is looked for, in spacings: the steps
+    /// are at most 2, 2/4, 2/16, …
     pub(in super::super) const REACH: f64 = 8.0 / 3.0;
 
-    /// The tip of a patch, which is selected, near `start`: the point in which the tangent planes around it meet.
+    /// The tip of a patch, which is selected, near `start`: the point in which the tangent planes
+    /// around it meet.
     pub(in super::super) fn near(
         probe: &mut Probe,
         patch: Option<u32>,
@@ -122,7 +130,8 @@ impl Tip {
         Self::at(probe, patch, position, spacing)
     }
 
-    /// The nappes at a distance from the tip, in their order; none if the sphere of that radius shows others.
+    /// The nappes at a distance from the tip, in their order; none if the sphere of that radius
+    /// shows others.
     fn nappes(&self, probe: &mut Probe, distance: f64) -> Option<Vec<Loop>> {
         let mut open = link_on_patch(probe, self.patch, self.position, distance)?;
         if open.len() != self.nappes.len() {
@@ -135,7 +144,8 @@ impl Tip {
         self.nappes.iter().map(own).collect()
     }
 
-    /// A ring around each nappe, on the patch of the tip. The distances along and around the nappe are a spacing in the mean.
+    /// A ring around each nappe, on the patch of the tip. The distances along and around the nappe
+    /// are a spacing in the mean.
     fn rings(&self, probe: &mut Probe, spacing: f64) -> Option<Vec<Ring>> {
         let nappes = self.nappes(probe, spacing)?;
         let ring = |curve: &Loop| {
@@ -163,8 +173,9 @@ struct Ring {
     points: Vec<LinkPoint>,
 }
 
-/// Adds a particle for each tip to columns that hold nothing but particles on creases, and then a ring of particles around each nappe. A
-/// tip that has no room for its rings gets none; one in which patches meet has a particle already.
+/// Adds a particle for each tip to columns that hold nothing but particles on creases, and then a
+/// ring of particles around each nappe. A tip that has no room for its rings gets none; one in
+/// which patches meet has a particle already.
 pub(in super::super) fn add(
     probe: &mut Probe,
     tips: &[Tip],
@@ -232,7 +243,8 @@ fn mean(curve: &Loop, of: impl Fn(&LinkPoint) -> DVec3) -> DVec3 {
     weighted.sum::<DVec3>().normalize_or_zero()
 }
 
-/// Largest curvature of a nappe across its rays, times the distance from the tip: how fast the normal turns along the link.
+/// Largest curvature of a nappe across its rays, times the distance from the tip: how fast the
+/// normal turns along the link.
 fn bend(curve: &Loop) -> f64 {
     let turns = sides(curve).map(|[a, b]| a.normal.distance(b.normal) / a.direction.distance(b.direction));
     turns.fold(0.0, f64::max)
@@ -282,11 +294,12 @@ fn landed(probe: &mut Probe, centre: DVec3, radius: f64, direction: DVec3) -> Op
     None
 }
 
-/// The closed curves in which a sphere cuts the surface, as far as a grid of triangles on the sphere shows them; none where f is not
-/// defined, or no point of the surface is found.
+/// The closed curves in which a sphere cuts the surface, as far as a grid of triangles on the
+/// sphere shows them; none where f is not defined, or no point of the surface is found.
 fn link(probe: &mut Probe, centre: DVec3, radius: f64) -> Option<Vec<Loop>> {
     let mut values = vec![f64::INFINITY; (SIDE * SIDE * SIDE) as usize];
-    // The ways of the link through the triangles, each by the two sides that it crosses, from both ends.
+    // The ways of the link through the triangles, each by the two sides that it crosses, from both
+    // ends.
     let mut ways: Vec<[u32; 2]> = Vec::new();
     for triangle in triangles() {
         for v in triangle {
@@ -330,7 +343,8 @@ fn link(probe: &mut Probe, centre: DVec3, radius: f64) -> Option<Vec<Loop>> {
     Some(curves)
 }
 
-/// The curves of the link of a branch, which is selected, on which it gives f; none if it gives f on a part of one only.
+/// The curves of the link of a branch, which is selected, on which it gives f; none if it gives f
+/// on a part of one only.
 fn link_on_patch(probe: &mut Probe, patch: u32, centre: DVec3, radius: f64) -> Option<Vec<Loop>> {
     let mut link = link(probe, centre, radius)?;
     let mut is_cut = false;

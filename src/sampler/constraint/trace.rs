@@ -7,9 +7,11 @@ use crate::sampler::probe::Probe;
 use crate::slices::{Work, pause};
 use glam::DVec3;
 
-/// Times that a step is halved, at most: a closed crease as wide as a thousandth of the usual step, in twelve turns of 30°, is followed.
+/// Times that a step is halved, at most: a closed crease as wide as a thousandth of the usual step,
+/// in twelve turns of 30°, is followed.
 const HALVINGS: u32 = 12;
-/// Times that the way to the end of a crease is halved where it ends at no corner: it is found to a billionth of a step.
+/// Times that the way to the end of a crease is halved where it ends at no corner: it is found to a
+/// billionth of a step.
 const BISECTIONS: u32 = 30;
 /// Largest number of steps on one curve: 80 times the diagonal of the box. A longer one is divided,
 /// so that no walk is endless.
@@ -129,8 +131,8 @@ impl Walk<'_, '_> {
                 let end = creases.corners[corner].position;
                 return self.end_at(creases, [here, end], self.patches, ONE_CORNER, points);
             }
-            // Of the 1.2 the part above 1 allows for the turn of a step. Half and double of it give other places to the particles of 2 and 7 of 24
-            // random solids, and change no figure.
+            // Of the 1.2 the part above 1 allows for the turn of a step. Half and double of it give
+            // other places to the particles of 2 and 7 of 24 random solids, and change no figure.
             let to_start = origin - here;
             let is_back = to_start.dot(direction) > 0.0 && to_start.length() <= 1.2 * length;
             if left_start && is_back && next.position.distance(origin) <= length {
@@ -161,8 +163,8 @@ impl Walk<'_, '_> {
         None
     }
 
-    /// The point, between the last one of the walk and one behind it, where the angle between the branches changes its sign: the crease
-    /// fades out there, and another one may begin.
+    /// The point, between the last one of the walk and one behind it, where the angle between the
+    /// branches changes its sign: the crease fades out there, and another one may begin.
     fn turn(&mut self, mut before: Meeting, mut after: Meeting, direction: DVec3, is_forward: bool) -> DVec3 {
         let branches = self.start.branches;
         for _ in 0..BISECTIONS {
@@ -182,7 +184,8 @@ impl Walk<'_, '_> {
         before.position
     }
 
-    /// Ends the walk between its last point and one behind which other branches give f: at a corner, if a third branch is zero there.
+    /// Ends the walk between its last point and one behind which other branches give f: at a
+    /// corner, if a third branch is zero there.
     fn end_before(
         &mut self,
         creases: &mut Creases,
@@ -234,8 +237,9 @@ impl Walk<'_, '_> {
         self.end_at(creases, [here, active], self.patches, ONE_END, points)
     }
 
-    /// Ends the walk on its way from one point to another: at the corner of these patches there, which is that within a `share` of a step, or
-    /// at the box, if the corner lies beyond it by more than rounding.
+    /// Ends the walk on its way from one point to another: at the corner of these patches there,
+    /// which is that within a `share` of a step, or at the box, if the corner lies beyond it by
+    /// more than rounding.
     fn end_at(
         &mut self,
         creases: &mut Creases,

@@ -1,8 +1,9 @@
 //! The audit at the end of a run: whether a particle lies on the component of every witness.
 //!
-//! What a run says of its components must hold for the particles as they are, wherever the relaxation has moved them. So each
-//! witness is connected with a particle anew, by proof. Where that fails and no particle near it even seems to be on its sheet,
-//! the witness is named as [`Unsampled`], with the distance to which its component can be followed.
+//! What a run says of its components must hold for the particles as they are, wherever the
+//! relaxation has moved them. So each witness is connected with a particle anew, by proof. Where
+//! that fails and no particle near it even seems to be on its sheet, the witness is named as
+//! [`Unsampled`], with the distance to which its component can be followed.
 
 use crate::field::{Bounded, Enclosure};
 use crate::math::newton::step_to_surface;
@@ -16,20 +17,22 @@ use crate::sampler::sheet::{PointPair, SheetRule};
 use crate::spatial::tree::Tree;
 use glam::DVec3;
 
-/// Particles within this many of their radii of a witness are tried. A closed cover leaves no hole larger than 1.85. With half of it a
-/// component seems without particles on 29 of 59 random surfaces, with twice as much on 2 fewer.
+/// Particles within this many of their radii of a witness are tried. A closed cover leaves no hole
+/// larger than 1.85. With half of it a component seems without particles on 29 of 59 random
+/// surfaces, with twice as much on 2 fewer.
 const REACH: f32 = 2.5;
-/// Particles that are handed to the witnesses around them, for one unit of work: a search in a tree takes an eighth of the time in which
-/// a particle is placed.
+/// Particles that are handed to the witnesses around them, for one unit of work: a search in a tree
+/// takes an eighth of the time in which a particle is placed.
 const SCANNED: usize = 8;
-/// Units of work that a witness counts for. On seven random surfaces one takes 21,000 to 190,000 instructions as
-/// a seed and 87,000 to 410,000 in the audit, and a unit of the front 2,400 to 5,100.
+/// Units of work that a witness counts for. On seven random surfaces one takes 21,000 to 190,000
+/// instructions as a seed and 87,000 to 410,000 in the audit, and a unit of the front 2,400 to
+/// 5,100.
 pub(super) const UNITS: u32 = 32;
-/// Components that are named, and witnesses left open, after which the others are not looked at and count as open. Half and double
-/// give the same on 12 random surfaces of many components.
+/// Components that are named, and witnesses left open, after which the others are not looked at and
+/// count as open. Half and double give the same on 12 random surfaces of many components.
 const MOST_NAMED: usize = 256;
-/// Distance, in radii, to which a component without a particle is followed. One that reaches farther has room
-/// for a child, at two radii. Half and double give the same on 38 random surfaces.
+/// Distance, in radii, to which a component without a particle is followed. One that reaches
+/// farther has room for a child, at two radii. Half and double give the same on 38 random surfaces.
 pub(super) const FOLLOWED: f64 = 4.0;
 
 /// A particle near a witness.
@@ -195,8 +198,8 @@ impl Audit {
     }
 }
 
-/// The particles, of those near a witness, that lie on the factor of the field which vanishes there: the others are on other
-/// sheets.
+/// The particles, of those near a witness, that lie on the factor of the field which vanishes
+/// there: the others are on other sheets.
 fn on_factor(
     field: &mut dyn Bounded,
     factor: usize,
@@ -211,8 +214,9 @@ fn on_factor(
     let index_if_on = |(near, known): (&NearParticle, Enclosure)| {
         let p = particles.local[near.index].as_dvec3();
         let steepest = DVec3::from_array(known.gradient.map(Interval::magnitude)).length();
-        // As near as the particle is to its own sheet: that of another factor may be within the slack too. By the slack alone 1 of 200
-        // random surfaces has a component without particles that is not named.
+        // As near as the particle is to its own sheet: that of another factor may be within the
+        // slack too. By the slack alone 1 of 200 random surfaces has a component without particles
+        // that is not named.
         let (value, gradient) = field.value_and_gradient(p);
         let own = value.abs() / gradient.length() + ROUNDING * p.abs().max_element();
         (known.value.magnitude() <= 2.0 * own.min(slack) * steepest).then_some(near.index)
@@ -220,18 +224,22 @@ fn on_factor(
     near.iter().zip(known).filter_map(index_if_on).collect()
 }
 
-/// Follows the zero set of a factor of the field from the point `from` of it, to a distance of `most`: along its cuts with eight
-/// half-planes through the normal.
+/// Follows the zero set of a factor of the field from the point `from` of it, to a distance of
+/// `most`: along its cuts with eight half-planes through the normal.
 pub(crate) fn follow(field: &mut dyn Bounded, factor: usize, from: DVec3, most: f64) -> Unsampled {
-    /// Eight lanes. The reach of a path half-way between two axes of an ellipse is at least 0.92 of the longer one: cos 22.5°.
+    /// Eight lanes. The reach of a path half-way between two axes of an ellipse is at least 0.92 of
+    /// the longer one: cos 22.5°.
     const PATHS: usize = 8;
-    /// Steps of a path, of which a circle takes 32, and the long way around a spheroid with axes of 1 and 3 takes 200. With half as
-    /// many, 1 of 25 random surfaces of many small components counts one of them twice.
+    /// Steps of a path, of which a circle takes 32, and the long way around a spheroid with axes of
+    /// 1 and 3 takes 200. With half as many, 1 of 25 random surfaces of many small components
+    /// counts one of them twice.
     const STEPS: u32 = 256;
-    /// A step as a share of the radius of curvature: its sagitta is a fiftieth of that. With 0.4, 1 of those 25 takes another seed.
+    /// A step as a share of the radius of curvature: its sagitta is a fiftieth of that. With 0.4, 1
+    /// of those 25 takes another seed.
     const SHARE: f64 = 0.2;
-    /// Largest step as a share of `most`: what is flat at its start may bend farther on. Half and twice of it name the same pieces of the
-    /// same sizes on 80 random surfaces of spheres, tori and flat quartics.
+    /// Largest step as a share of `most`: what is flat at its start may bend farther on. Half and
+    /// twice of it name the same pieces of the same sizes on 80 random surfaces of spheres, tori
+    /// and flat quartics.
     const LARGEST: f64 = 1.0 / 16.0;
     let gradient = value_at(field, factor, from).1;
     let normal = gradient.try_normalize().unwrap_or(DVec3::Z);
@@ -289,7 +297,8 @@ pub(crate) fn follow(field: &mut dyn Bounded, factor: usize, from: DVec3, most: 
     Unsampled { position: from.to_array(), reach: reach_of(farthest), goes_on }
 }
 
-/// Whether one of the particles with these indices lies on the small piece around a seed that reaches so far.
+/// Whether one of the particles with these indices lies on the small piece around a seed that
+/// reaches so far.
 pub(crate) fn holds_any(
     field: &mut dyn Bounded,
     particles: &Particles,

@@ -1,14 +1,17 @@
-//! The cells of the [octree](super::octree) and of the quadtrees and binary trees on its boundary, and what bounds tell of one.
+//! The cells of the [octree](super::octree) and of the quadtrees and binary trees on its boundary,
+//! and what bounds tell of one.
 
 use crate::field::Enclosure;
 use crate::math::Bounds;
 use glam::DVec3;
 
-/// Position of the cut, and of the probe in the footprint of a decided cell, as a share of the side. It is not the middle, where
-/// symmetric surfaces have their highest points and cross themselves.
+/// Position of the cut, and of the probe in the footprint of a decided cell, as a share of the
+/// side. It is not the middle, where symmetric surfaces have their highest points and cross
+/// themselves.
 pub(super) const CUT: f64 = 0.4709;
 
-/// A cell of a stratum. A side has the length 0 where a face or an edge of the box fixes the coordinate.
+/// A cell of a stratum. A side has the length 0 where a face or an edge of the box fixes the
+/// coordinate.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {
     pub(super) bounds: Bounds,
@@ -78,9 +81,10 @@ pub(super) fn is_discarded(cell: &Cell, known: &Enclosure) -> bool {
         || cell.axes().sides.into_iter().flatten().any(|side| known.gradient[side].excludes_zero())
 }
 
-/// The most by which a surface that passes through a box rises or falls over its footprint, by bounds of the gradient over the
-/// box: the mean value theorem makes it Σ max|∂f/∂side| · width / min|∂f/∂up|. None where the surface may not be a graph over the
-/// footprint: where f jumps, is not defined, or is not monotone along up. An axis along which the box has no width is no side.
+/// The most by which a surface that passes through a box rises or falls over its footprint, by
+/// bounds of the gradient over the box: the mean value theorem makes it Σ max|∂f/∂side| · width /
+/// min|∂f/∂up|. None where the surface may not be a graph over the footprint: where f jumps, is not
+/// defined, or is not monotone along up. An axis along which the box has no width is no side.
 pub(super) fn rise(bounds: &Bounds, up: usize, known: &Enclosure) -> Option<f64> {
     let least = known.gradient[up].away_from_zero()?;
     let size = bounds.size();

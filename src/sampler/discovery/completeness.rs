@@ -2,11 +2,12 @@
 //!
 //! Three claims are made, each weaker than the next one sounds:
 //!
-//! * *Witnessed*: there is a point on every component. Interval arithmetic proves it, or it is only searched ([`Search`]).
-//! * *Sampled*: every witnessed component larger than a stated size holds particles ([`Sampled`]). The others are named, with
-//!   their places and sizes ([`Unsampled`]).
-//! * *At this radius*: components and Euler number of the report are those of the neighbour graph of the particles. A neck or a
-//!   needle thinner than a particle may join or divide them.
+//! * *Witnessed*: there is a point on every component. Interval arithmetic proves it, or it is only
+//!   searched ([`Search`]).
+//! * *Sampled*: every witnessed component larger than a stated size holds particles ([`Sampled`]).
+//!   The others are named, with their places and sizes ([`Unsampled`]).
+//! * *At this radius*: components and Euler number of the report are those of the neighbour graph
+//!   of the particles. A neck or a needle thinner than a particle may join or divide them.
 
 use serde::Serialize;
 
@@ -15,11 +16,11 @@ use serde::Serialize;
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Search {
-    /// Interval arithmetic proves that there is a witness on every component, and that each witness is on the component of a
-    /// particle or named among the [`Unsampled`].
+    /// Interval arithmetic proves that there is a witness on every component, and that each witness
+    /// is on the component of a particle or named among the [`Unsampled`].
     Proven,
-    /// The nodes of a grid were looked at, which can miss a component smaller than its cells; or the proof left cells or witnesses
-    /// open.
+    /// The nodes of a grid were looked at, which can miss a component smaller than its cells; or
+    /// the proof left cells or witnesses open.
     #[default]
     Searched,
 }
@@ -28,11 +29,12 @@ pub enum Search {
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Sampled {
-    /// Every witnessed component that reaches farther than this from its witness holds particles; 0 if all do. None where this
-    /// is not proven.
+    /// Every witnessed component that reaches farther than this from its witness holds particles; 0
+    /// if all do. None where this is not proven.
     pub above: Option<f64>,
-    /// Number of witnessed components without a particle; none where there was no search for witnesses. A component counts twice if
-    /// two of its witnesses could not be proven to be connected.
+    /// Number of witnessed components without a particle; none where there was no search for
+    /// witnesses. A component counts twice if two of its witnesses could not be proven to be
+    /// connected.
     pub missing: Option<usize>,
     /// A witness of each component without a particle: at most 256.
     pub without: Vec<Unsampled>,
@@ -78,7 +80,8 @@ pub enum Doubt {
         /// Length of the longest side of that cell.
         size: f64,
     },
-    /// There are witnesses of which it could not be proven whether a particle lies on their component.
+    /// There are witnesses of which it could not be proven whether a particle lies on their
+    /// component.
     Witnesses {
         /// Number of witnesses.
         count: u64,

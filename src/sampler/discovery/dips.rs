@@ -1,10 +1,12 @@
-//! Edges of the survey's grid that the surface may cross twice: f has one sign at both ends, and may have the other between them.
+//! Edges of the survey's grid that the surface may cross twice: f has one sign at both ends, and
+//! may have the other between them.
 
 use glam::Vec3;
 
-/// An edge is looked at between its ends if |f| there is expected to fall below this share of its larger value at them. Half and twice
-/// of it give the same particles on 75 random surfaces, and 0, where |f| has to be expected to vanish, others on one. To look at every
-/// edge costs 2 to 8 % more evaluations in all, and finds no more.
+/// An edge is looked at between its ends if |f| there is expected to fall below this share of its
+/// larger value at them. Half and twice of it give the same particles on 75 random surfaces, and 0,
+/// where |f| has to be expected to vanish, others on one. To look at every edge costs 2 to 8 % more
+/// evaluations in all, and finds no more.
 const SHARE: f32 = 0.1;
 
 /// An end of an edge.
@@ -42,7 +44,8 @@ pub(super) enum Bottom {
 }
 
 impl Dip {
-    /// Returns the dip of an edge along an axis, if the cubic through values and slopes at its ends has one that is deep enough.
+    /// Returns the dip of an edge along an axis, if the cubic through values and slopes at its ends
+    /// has one that is deep enough.
     pub(super) fn along(axis: usize, ends: [End; 2]) -> Option<Self> {
         let [from, to] = ends;
         let sign = from.value.signum();
@@ -55,7 +58,8 @@ impl Dip {
         // The cubic is a + falling t + square t² + cube t³.
         let cube = 2.0 * (a - b) + falling + rising;
         let square = 3.0 * (b - a) - 2.0 * falling - rising;
-        // Its slope changes its sign once on the edge. Of the two forms of the root the one without a difference is taken.
+        // Its slope changes its sign once on the edge. Of the two forms of the root the one without
+        // a difference is taken.
         let root = (square * square - 3.0 * cube * falling).sqrt();
         let t = if square >= 0.0 { -falling / (square + root) } else { (root - square) / (3.0 * cube) };
         let least = a + t * (falling + t * (square + t * cube));
@@ -67,7 +71,8 @@ impl Dip {
         self.ends[0].place.lerp(self.ends[1].place, self.t)
     }
 
-    /// Takes the value and the gradient of f at the bottom, and returns the crossings, or the part of the edge to look at next.
+    /// Takes the value and the gradient of f at the bottom, and returns the crossings, or the part
+    /// of the edge to look at next.
     pub(super) fn look(&self, value: f32, gradient: Vec3) -> Bottom {
         let bottom = End { place: self.bottom(), value, gradient };
         let [from, to] = self.ends;

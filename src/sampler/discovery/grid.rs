@@ -5,11 +5,13 @@ use crate::sampler::discovery::dips::End;
 use crate::sampler::probe::{BATCH, Probe};
 use glam::{DVec3, Vec3};
 
-/// Grid cells along the longest side of the box. 32³ evaluations are a few per cent of a run with 50,000 particles. Half as many leave a
-/// component without a particle on 3 of 38 random surfaces, and twice as many on 1.
+/// Grid cells along the longest side of the box. 32³ evaluations are a few per cent of a run with
+/// 50,000 particles. Half as many leave a component without a particle on 3 of 38 random surfaces,
+/// and twice as many on 1.
 pub(crate) const CELLS: f64 = 32.0;
-/// Grid cells along the longest side of the box for fields without bounds, of which only the grid shows the surface. It does not
-/// miss a sphere whose radius is 1.4 % of the box's longest side: half the diagonal of a cell.
+/// Grid cells along the longest side of the box for fields without bounds, of which only the grid
+/// shows the surface. It does not miss a sphere whose radius is 1.4 % of the box's longest side:
+/// half the diagonal of a cell.
 pub(crate) const DENSE_CELLS: u32 = 64;
 
 /// The regular grid at whose nodes the field is evaluated.
@@ -24,7 +26,8 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// The grid over a box, which has a whole number of blocks if it is to have so many `dense` cells.
+    /// The grid over a box, which has a whole number of blocks if it is to have so many `dense`
+    /// cells.
     pub(super) fn over(bounds: &Bounds, dense: Option<u32>) -> Self {
         let size = bounds.hi() - bounds.lo();
         let spacing = size.max_element() / dense.map_or(CELLS, f64::from);
@@ -85,8 +88,8 @@ impl GridLayer {
 
 /// The nodes of a dense grid, evaluated only where the surface can be.
 ///
-/// The box is cut into blocks of [`COARSEST`] grid cells to an edge, and those that may hold the surface are halved until
-/// they are grid cells. In the others only the sign of f is known.
+/// The box is cut into blocks of [`COARSEST`] grid cells to an edge, and those that may hold the
+/// surface are halved until they are grid cells. In the others only the sign of f is known.
 pub(super) struct Dense {
     value: Vec<f32>,
     gradient: Vec<Vec3>,
@@ -94,13 +97,15 @@ pub(super) struct Dense {
     pub(super) is_near: Vec<bool>,
 }
 
-/// Grid cells along the edge of the first blocks of a dense grid: a power of two. Each block costs its corners, of which there are 64
-/// times fewer than nodes. On 75 random surfaces blocks of 2 take 1.04 times the evaluations, of 8 as many, and the particles are the same.
+/// Grid cells along the edge of the first blocks of a dense grid: a power of two. Each block costs
+/// its corners, of which there are 64 times fewer than nodes. On 75 random surfaces blocks of 2
+/// take 1.04 times the evaluations, of 8 as many, and the particles are the same.
 const COARSEST: usize = 4;
-/// A block may hold the surface if at one of its corners |f| is no more than the largest |∇f| at them times so many
-/// diagonals. No point of a block is farther than half a diagonal from all corners; between them |∇f| may be somewhat larger. Half of it,
-/// which allows for no such thing, takes 0.8 times the evaluations on 75 random surfaces, twice as much 1.34 times, and the particles are
-/// the same.
+/// A block may hold the surface if at one of its corners |f| is no more than the largest |∇f| at
+/// them times so many diagonals. No point of a block is farther than half a diagonal from all
+/// corners; between them |∇f| may be somewhat larger. Half of it, which allows for no such thing,
+/// takes 0.8 times the evaluations on 75 random surfaces, twice as much 1.34 times, and the
+/// particles are the same.
 const REACH: f32 = 0.7;
 
 impl Dense {

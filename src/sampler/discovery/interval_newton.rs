@@ -1,22 +1,25 @@
 //! Narrows the part of a cell in which the highest point of a component of the surface can lie.
 //!
-//! At such a point p the function f and its derivatives along the sides vanish: as many equations as there are free axes. By
-//! Taylor's theorem from p to the middle m of the cell, with d = m − p,
+//! At such a point p the function f and its derivatives along the sides vanish: as many equations
+//! as there are free axes. By Taylor's theorem from p to the middle m of the cell, with d = m − p,
 //!
 //! f(m) = ∂f/∂up(p) · d_up + ½ dᵀ H d  and  ∂f/∂side(m) = (H d)_side,
 //!
-//! where H holds second derivatives at points between. The sides occur in the first equation only through H. Bounds of H over the
-//! cell make both equations linear with intervals for coefficients. They are solved for d axis by axis (Gauss–Seidel). Those of
-//! the sides are first multiplied by the inverse of their midpoint matrix, as Krawczyk's and Hansen's forms of the interval
-//! Newton method do (R. B. Kearfott, "Rigorous Global Search: Continuous Problems", 1996). Where no solution is left, the cell
-//! holds no such point; near one, the range shrinks with the square of the cell's width.
+//! where H holds second derivatives at points between. The sides occur in the first equation only
+//! through H. Bounds of H over the cell make both equations linear with intervals for coefficients.
+//! They are solved for d axis by axis (Gauss–Seidel). Those of the sides are first multiplied by
+//! the inverse of their midpoint matrix, as Krawczyk's and Hansen's forms of the interval Newton
+//! method do (R. B. Kearfott, "Rigorous Global Search: Continuous Problems", 1996). Where no
+//! solution is left, the cell holds no such point; near one, the range shrinks with the square of
+//! the cell's width.
 
 use crate::field::Enclosure;
 use crate::math::{Bounds, Interval, ROUNDING, Sym3};
 use crate::sampler::discovery::cell::{Axes, Cell};
 use glam::DVec3;
 
-/// Rounds of narrowing. Without any there are 1.3 to 1.5 times as many cells on random surfaces, with one or three 1.00 times.
+/// Rounds of narrowing. Without any there are 1.3 to 1.5 times as many cells on random surfaces,
+/// with one or three 1.00 times.
 const ROUNDS: u32 = 2;
 
 /// The part of `range` in which `slope` · d = `right` has a solution d; none if there is none.
@@ -31,8 +34,9 @@ fn solved(range: Interval, slope: Interval, right: Interval) -> Option<Interval>
     (reached.lo <= right.hi && reached.hi >= right.lo).then_some(range)
 }
 
-/// The part of a cell in which f and its derivatives along the free sides can vanish together; none if they cannot. `known` and
-/// `second` are bounds of f and of its second derivatives over the cell; `middle` are those of f at its middle.
+/// The part of a cell in which f and its derivatives along the free sides can vanish together; none
+/// if they cannot. `known` and `second` are bounds of f and of its second derivatives over the
+/// cell; `middle` are those of f at its middle.
 pub(crate) fn narrowed(
     cell: &Cell,
     known: &Enclosure,
@@ -82,8 +86,9 @@ pub(crate) fn narrowed(
                     let rest = -(coefficients[1 - k] * d[other]);
                     d[axis] = solved(d[axis], coefficients[k], combined(rights) + rest)?;
                 }
-                // Also without the inverse, which is of no use where the equations are nearly dependent: else 6 of 300 random surfaces
-                // are no longer proven, and those with cone points take 1.17 times the cells.
+                // Also without the inverse, which is of no use where the equations are nearly
+                // dependent: else 6 of 300 random surfaces are no longer proven, and those with
+                // cone points take 1.17 times the cells.
                 for (axis, other) in [(i, j), (j, i)] {
                     let rest = -(h(axis, other) * d[other]);
                     d[axis] = solved(d[axis], h(axis, axis), right(axis, &d) + rest)?;

@@ -1,28 +1,35 @@
-//! Distance to another sheet of the surface, in double precision: single precision may hold both at one place.
+//! Distance to another sheet of the surface, in double precision: single precision may hold both at
+//! one place.
 //!
-//! Beside another sheet at a distance g the field along the normal is about s t (1 − t/g), so that its second derivative is large
-//! against its slope s. One evaluation shows where that is not so, which is nearly everywhere. Elsewhere the sign of the field
-//! beyond decides, and bisection finds the distance.
+//! Beside another sheet at a distance g the field along the normal is about s t (1 − t/g), so that
+//! its second derivative is large against its slope s. One evaluation shows where that is not so,
+//! which is nearly everywhere. Elsewhere the sign of the field beyond decides, and bisection finds
+//! the distance.
 //!
-//! Sheets that near each other keep rules of their own ([`SheetRule`](crate::sampler::sheet::SheetRule)): precision is not what
-//! they lack. Of two and three spheres and planes 10⁻⁶ to 0.025 apart in a box of 3, at three kinds of sizes, 100 of 132 runs
-//! show all components and their Euler number by these rules and 74 without them; with f evaluated in double precision besides,
-//! 99 and 73. A child 2r away comes to whichever sheet is nearest to its circle, however precisely that is known.
+//! Sheets that near each other keep rules of their own
+//! ([`SheetRule`](crate::sampler::sheet::SheetRule)): precision is not what they lack. Of two and
+//! three spheres and planes 10⁻⁶ to 0.025 apart in a box of 3, at three kinds of sizes, 100 of 132
+//! runs show all components and their Euler number by these rules and 74 without them; with f
+//! evaluated in double precision besides, 99 and 73. A child 2r away comes to whichever sheet is
+//! nearest to its circle, however precisely that is known.
 
 use crate::field::Evaluator;
 use glam::DVec3;
 
-/// Sheets nearer than this many of the distances that single precision resolves are not told apart, in runs of one size and of
-/// many: a particle may be one such distance away from its sheet, and the lift of two particles has to be four times that (see
-/// [`SheetRule`](crate::sampler::sheet::SheetRule)). Of three concentric spheres, particles of one size have the right components
-/// and Euler number from 8 of them on, and particles of many sizes from 55 on, but not at 33.
+/// Sheets nearer than this many of the distances that single precision resolves are not told apart,
+/// in runs of one size and of many: a particle may be one such distance away from its sheet, and
+/// the lift of two particles has to be four times that (see
+/// [`SheetRule`](crate::sampler::sheet::SheetRule)). Of three concentric spheres, particles of one
+/// size have the right components and Euler number from 8 of them on, and particles of many sizes
+/// from 55 on, but not at 33.
 pub(crate) const UNRESOLVED: [f64; 2] = [16.0, 48.0];
-/// Distances, over that of the second zero of the quadratic, at which the sign is looked at. Of three sheets at equal distances
-/// the quadratic puts the second one at two thirds of its distance, of sixty at a fifth. Neighbours differ by √2 or so, so that between
-/// a second sheet and a third one twice as far there is one of them.
+/// Distances, over that of the second zero of the quadratic, at which the sign is looked at. Of
+/// three sheets at equal distances the quadratic puts the second one at two thirds of its distance,
+/// of sixty at a fifth. Neighbours differ by √2 or so, so that between a second sheet and a third
+/// one twice as far there is one of them.
 const LOOKS: [f64; 6] = [0.8, 1.2, 1.7, 2.4, 3.4, 4.8];
-/// Newton steps to a point: far from several sheets at once each step goes only a part of the way. With 24 or 96 of them the same
-/// sheets are found on 91 random surfaces.
+/// Newton steps to a point: far from several sheets at once each step goes only a part of the way.
+/// With 24 or 96 of them the same sheets are found on 91 random surfaces.
 pub(super) const STEPS: u32 = 48;
 
 /// Another sheet near a point of the surface.
@@ -46,10 +53,11 @@ struct Profile {
     bend: f64,
 }
 
-/// The profile of the point that Newton's method finds from `p`. None where another zero can be no nearer than `most`, and where
-/// there is no point.
+/// The profile of the point that Newton's method finds from `p`. None where another zero can be no
+/// nearer than `most`, and where there is no point.
 fn profile(field: &mut dyn Evaluator, mut p: DVec3, most: f64) -> Option<Profile> {
-    /// Length of a last step, over the distance of the other zero: Newton's method squares it, which leaves an error of 10⁻⁶ of it.
+    /// Length of a last step, over the distance of the other zero: Newton's method squares it,
+    /// which leaves an error of 10⁻⁶ of it.
     const LAST: f64 = 1e-3;
     let start = p;
     for _ in 0..STEPS {
@@ -58,7 +66,8 @@ fn profile(field: &mut dyn Evaluator, mut p: DVec3, most: f64) -> Option<Profile
         let normal = jet.gradient / slope;
         let bend = normal.dot(jet.hessian.apply(normal));
         let (step, other) = (jet.value / slope, 2.0 * slope / bend.abs());
-        // From a point off the surface the other zero seems nearer or farther by its distance. False for NaN.
+        // From a point off the surface the other zero seems nearer or farther by its distance.
+        // False for NaN.
         let is_near = other <= most + 4.0 * step.abs() && (p - start).length() <= 4.0 * most;
         if !is_near {
             return None;

@@ -1,49 +1,59 @@
-//! The search for a point on every connected component of the surface, with proof: interval arithmetic drives a subdivision of
-//! the box.
+//! The search for a point on every connected component of the surface, with proof: interval
+//! arithmetic drives a subdivision of the box.
 //!
 //! # The argument
 //!
-//! Let S be the zero set of f in the box and K a connected component of it. K is compact, so that it has a highest point: of
-//! its points with the largest z those with the largest y, of these the one with the largest x. Where that point q lies
-//! inside the box and f has a gradient there, no direction on the surface goes up from it: ∂f/∂x = ∂f/∂y = 0. Where it lies
-//! inside a face x = const., q is the highest point of K in the face, and ∂f/∂y = 0; inside a face y = const., ∂f/∂x = 0; and
-//! inside a face z = const. it is the point of the largest y there, and ∂f/∂x = 0. On an edge of the box nothing is asked.
-//! (Computing one point in every component from the critical points of a coordinate: F. Rouillier, M.-F. Roy, M. Safey El
-//! Din, "Finding at least one point in each connected component of a real algebraic set defined by a single equation",
-//! J. Complexity 16, 2000.) In each of these 1 + 6 + 12 *strata* of the box one coordinate is *up*, the other free ones are
-//! *sides*, and q satisfies as many equations as there are free coordinates: as a rule such points are isolated, and few.
+//! Let S be the zero set of f in the box and K a connected component of it. K is compact, so that
+//! it has a highest point: of its points with the largest z those with the largest y, of these the
+//! one with the largest x. Where that point q lies inside the box and f has a gradient there, no
+//! direction on the surface goes up from it: ∂f/∂x = ∂f/∂y = 0. Where it lies inside a face x =
+//! const., q is the highest point of K in the face, and ∂f/∂y = 0; inside a face y = const.,
+//! ∂f/∂x = 0; and inside a face z = const. it is the point of the largest y there, and ∂f/∂x = 0.
+//! On an edge of the box nothing is asked. (Computing one point in every component from the
+//! critical points of a coordinate: F. Rouillier, M.-F. Roy, M. Safey El Din, "Finding at least one
+//! point in each connected component of a real algebraic set defined by a single equation", J.
+//! Complexity 16, 2000.) In each of these 1 + 6 + 12 *strata* of the box one coordinate is *up*,
+//! the other free ones are *sides*, and q satisfies as many equations as there are free
+//! coordinates: as a rule such points are isolated, and few.
 //!
-//! Each stratum is therefore subdivided (an octree inside, quadtrees on the faces, binary trees on the edges). A cell is
-//! *discarded* if an interval shows that f, or the derivative along a side, vanishes nowhere in it. It is *decided* if f is
-//! monotone along up, not only in the cell C but in a taller one H on the same footprint, and H is so tall that the surface
-//! through any point of C cannot leave it over that footprint: by the mean value theorem it rises or falls by no more than t = Σ
-//! max|∂f/∂side| · width / min|∂f/∂up|, all over H. Then the surface in H is the graph of a function over the whole footprint,
-//! connected, and meets the line through any place of it in one point, the *witness*; or C holds no point of it. (Snyder,
-//! "Interval analysis for computer graphics", SIGGRAPH 1992, calls this global parametrisability; Plantinga & Vegter, "Isotopic
-//! approximation of implicit curves and surfaces", SGP 2004, ask for a small variation of the normal instead, of every cell that
-//! meets the surface, and obtain its topology; one point on each component is cheaper.) If the highest point of a component lies
-//! in C, the witness lies on that component: along the graph it never leaves through the top of the box, because nothing of the
+//! Each stratum is therefore subdivided (an octree inside, quadtrees on the faces, binary trees on
+//! the edges). A cell is *discarded* if an interval shows that f, or the derivative along a side,
+//! vanishes nowhere in it. It is *decided* if f is monotone along up, not only in the cell C but in
+//! a taller one H on the same footprint, and H is so tall that the surface through any point of C
+//! cannot leave it over that footprint: by the mean value theorem it rises or falls by no more than
+//! t = Σ max|∂f/∂side| · width / min|∂f/∂up|, all over H. Then the surface in H is the graph of a
+//! function over the whole footprint, connected, and meets the line through any place of it in one
+//! point, the *witness*; or C holds no point of it. (Snyder, "Interval analysis for computer
+//! graphics", SIGGRAPH 1992, calls this global parametrisability; Plantinga & Vegter, "Isotopic
+//! approximation of implicit curves and surfaces", SGP 2004, ask for a small variation of the
+//! normal instead, of every cell that meets the surface, and obtain its topology; one point on each
+//! component is cheaper.) If the highest point of a component lies in C, the witness lies on that
+//! component: along the graph it never leaves through the top of the box, because nothing of the
 //! component is higher, and a graph that might leave through the bottom is not accepted.
 //!
-//! The bounds are those of the expressions, and, since these are loose in all but small cells, also those of the mean value
-//! forms: g(C) ⊆ g(m) + g′(C)(C − m) with m the middle of C, for the derivatives (with bounds of the second derivatives) and for
-//! f itself. Their excess falls with the square of the width (Moore 1966). A product is searched factor by factor: near the zeros
-//! of one factor the others do not matter, and where two vanish together the product has no gradient but each factor has.
+//! The bounds are those of the expressions, and, since these are loose in all but small cells, also
+//! those of the mean value forms: g(C) ⊆ g(m) + g′(C)(C − m) with m the middle of C, for the
+//! derivatives (with bounds of the second derivatives) and for f itself. Their excess falls with
+//! the square of the width (Moore 1966). A product is searched factor by factor: near the zeros of
+//! one factor the others do not matter, and where two vanish together the product has no gradient
+//! but each factor has.
 //!
-//! Around a point where f has no gradient no cell can be decided. A [box](super::singular) around it through whose boundary every
-//! component in it passes is left out of the search, as if it did not belong to the box; its faces and edges are strata of the
-//! rest.
+//! Around a point where f has no gradient no cell can be decided. A [box](super::singular) around
+//! it through whose boundary every component in it passes is left out of the search, as if it did
+//! not belong to the box; its faces and edges are strata of the rest.
 //!
-//! A cell that is neither discarded nor decided is [narrowed](super::interval_newton) to the part that can hold a highest point.
-//! The rest is halved along its longer sides, down to [`DEPTH`]. Cells that are still open then are *undecided* and reported:
-//! where the gradient vanishes on the surface no interval decides.
+//! A cell that is neither discarded nor decided is [narrowed](super::interval_newton) to the part
+//! that can hold a highest point. The rest is halved along its longer sides, down to [`DEPTH`].
+//! Cells that are still open then are *undecided* and reported: where the gradient vanishes on the
+//! surface no interval decides.
 //!
 //! # What is proven
 //!
-//! If no cell is left undecided, every connected component of the surface in the box holds a witness; without a witness there is
-//! no surface. The box is enlarged by [`MARGIN`] for it, so that a surface that touches its box from inside is inside. At kinks
-//! the bounds hold the generalised gradient, for which both arguments are the same. Where f jumps, has a pole or is not defined
-//! the surface may end, and nothing is concluded from slopes.
+//! If no cell is left undecided, every connected component of the surface in the box holds a
+//! witness; without a witness there is no surface. The box is enlarged by [`MARGIN`] for it, so
+//! that a surface that touches its box from inside is inside. At kinks the bounds hold the
+//! generalised gradient, for which both arguments are the same. Where f jumps, has a pole or is not
+//! defined the surface may end, and nothing is concluded from slopes.
 
 use crate::field::{Bounded, Enclosure};
 use crate::math::{Bounds, Interval, Sym3, sort_by_key};
@@ -56,43 +66,49 @@ use crate::slices::HEAVY;
 use glam::{DVec3, Vec3};
 use std::collections::VecDeque;
 
-/// Halvings after which a cell is left undecided: 2⁻¹⁶ of the box, a sixth of the smallest particle allowed. With 8, 6 of 43 random
-/// surfaces are no longer proven; with 32 no more are, in 1.2 times the cells.
+/// Halvings after which a cell is left undecided: 2⁻¹⁶ of the box, a sixth of the smallest particle
+/// allowed. With 8, 6 of 43 random surfaces are no longer proven; with 32 no more are, in 1.2 times
+/// the cells.
 const DEPTH: u8 = 16;
-/// Halvings after which a cell is left undecided where f jumps or is not defined. Such cells lie along curves and faces, so there
-/// are many: with 4, 0.6 times the cells on 46 random surfaces, with 9, 1.2 times, and as many of them proven.
+/// Halvings after which a cell is left undecided where f jumps or is not defined. Such cells lie
+/// along curves and faces, so there are many: with 4, 0.6 times the cells on 46 random surfaces,
+/// with 9, 1.2 times, and as many of them proven.
 const IRREGULAR_DEPTH: u8 = 6;
-/// Largest number of cells visited, and how many more for every particle that is expected: a cell takes about as long as a third
-/// of a particle. Most smooth surfaces of the gallery take 100 to 8,000 cells, and two take 60,000 to 70,000. Sixteen cone points
-/// add none; Barth's sextic with fifty takes 36,000. With half of the first number 3 of 38 random surfaces are no longer proven, with double
-/// as many are; half and double of the second change nothing.
+/// Largest number of cells visited, and how many more for every particle that is expected: a cell
+/// takes about as long as a third of a particle. Most smooth surfaces of the gallery take 100 to
+/// 8,000 cells, and two take 60,000 to 70,000. Sixteen cone points add none; Barth's sextic with
+/// fifty takes 36,000. With half of the first number 3 of 38 random surfaces are no longer proven,
+/// with double as many are; half and double of the second change nothing.
 const MOST_CELLS: usize = 8_192;
 const CELLS_PER_PARTICLE: f64 = 0.5;
-/// Largest number of cells visited where each level has hardly more of them than the one before it: the search is then near its
-/// end. Without, 8 of 177 random surfaces are no longer proven; where a level may have 2.6 times as many, there are 3.4 times the cells, and
-/// no more are.
+/// Largest number of cells visited where each level has hardly more of them than the one before it:
+/// the search is then near its end. Without, 8 of 177 random surfaces are no longer proven; where a
+/// level may have 2.6 times as many, there are 3.4 times the cells, and no more are.
 const MOST_AT_THE_END: usize = 65_536;
 const HARDLY_MORE: f64 = 1.3;
-/// Halvings before singular points are searched in a cell, and halvings between two tries. One more or one fewer of either proves the
-/// same on 43 random surfaces.
+/// Halvings before singular points are searched in a cell, and halvings between two tries. One more
+/// or one fewer of either proves the same on 43 random surfaces.
 const SINGULAR_FROM: u8 = 3;
 const SINGULAR_EVERY: u8 = 2;
-/// Largest number of cells of a factor in which they are searched. There are more where they form a curve, of which half as many cells
-/// name half as many points.
+/// Largest number of cells of a factor in which they are searched. There are more where they form a
+/// curve, of which half as many cells name half as many points.
 const MOST_TRIED: usize = 512;
-/// Units of work that a cell counts for. On seven random surfaces one takes 8,000 to 30,000 instructions, and a unit of the front 2,400 to 5,100.
+/// Units of work that a cell counts for. On seven random surfaces one takes 8,000 to 30,000
+/// instructions, and a unit of the front 2,400 to 5,100.
 const UNITS: u32 = 8;
 /// The box is enlarged by this share of its longest side: the size of the smallest cell.
 const MARGIN: f64 = 1.0 / (1_u32 << DEPTH) as f64;
-/// A taller cell reaches this many times as far as the slopes of the cell itself require: half or twice as far takes 1.00 times the
-/// cells.
+/// A taller cell reaches this many times as far as the slopes of the cell itself require: half or
+/// twice as far takes 1.00 times the cells.
 const RISE_ROOM: f64 = 2.0;
-/// A taller cell reaches at least this share of its height, because it may be flat: without, the gallery takes 1.1 times the cells.
+/// A taller cell reaches at least this share of its height, because it may be flat: without, the
+/// gallery takes 1.1 times the cells.
 const LEAST_RISE: f64 = 0.02;
-/// A cell is halved along the sides that are longer than this share of the longest: those nearer to it than to its half. With all sides
-/// there are 1.2 times the cells.
+/// A cell is halved along the sides that are longer than this share of the longest: those nearer to
+/// it than to its half. With all sides there are 1.2 times the cells.
 const LONG: f64 = 0.7;
-/// Largest height difference between a witness and the surface, as a share of the rise over the footprint: the longer part of a side.
+/// Largest height difference between a witness and the surface, as a share of the rise over the
+/// footprint: the longer part of a side.
 const BESIDE: f64 = 1.0 - CUT;
 
 /// The state of the search.
@@ -176,8 +192,9 @@ struct FactorSearch {
     met: Vec<DVec3>,
 }
 
-/// The searches of the factors take turns, so that those that need few cells leave theirs to the others: in each round every search that is
-/// not at its end may visit an equal share of the cells that are left.
+/// The searches of the factors take turns, so that those that need few cells leave theirs to the
+/// others: in each round every search that is not at its end may visit an equal share of the cells
+/// that are left.
 #[derive(Clone, Debug, Default)]
 struct Turns {
     /// The searches that wait for a turn.
@@ -247,8 +264,8 @@ impl BoxBounds {
         field.enclose(factor, &self.boxes, &mut self.known[..n]);
     }
 
-    /// Bounds f and its gradient over the boxes, the mean value forms included; behind these bounds stand those in the middles
-    /// of the boxes.
+    /// Bounds f and its gradient over the boxes, the mean value forms included; behind these bounds
+    /// stand those in the middles of the boxes.
     fn refine(&mut self, field: &mut dyn Bounded, factor: usize) {
         let n = self.boxes.len();
         if n == 0 {
@@ -288,7 +305,8 @@ impl Octree {
         FactorSearch { factor, level, ..FactorSearch::default() }
     }
 
-    /// Gives the next search its turn. Those for which no cell is left end; the cells that are open then are undecided.
+    /// Gives the next search its turn. Those for which no cell is left end; the cells that are open
+    /// then are undecided.
     fn begin_turn(&mut self) {
         while let Some(next) = self.turns.waiting.pop_front() {
             if self.turns.left == 0 {
@@ -332,7 +350,8 @@ impl Octree {
         !matches!(self.state, SearchState::Ready | SearchState::Running)
     }
 
-    /// Does up to `budget` units of work, rounded up to whole chunks of cells, and returns what is left.
+    /// Does up to `budget` units of work, rounded up to whole chunks of cells, and returns what is
+    /// left.
     pub(crate) fn step(&mut self, field: &mut dyn Bounded, mut budget: u32) -> u32 {
         if self.state == SearchState::Ready {
             if bounds_say_something(field, &self.region.bounds) {
@@ -368,7 +387,8 @@ impl Octree {
         budget
     }
 
-    /// Visits the cells of the level in this range: each is discarded, made taller, left out or halved.
+    /// Visits the cells of the level in this range: each is discarded, made taller, left out or
+    /// halved.
     fn visit(&mut self, field: &mut dyn Bounded, range: core::ops::Range<usize>) {
         self.batch.open.clear();
         let searched =
@@ -421,8 +441,8 @@ impl Octree {
         }
     }
 
-    /// Whether the cell lies in a box that is left out of the search: one there is already, or a new one around a singular
-    /// point in or near the cell.
+    /// Whether the cell lies in a box that is left out of the search: one there is already, or a
+    /// new one around a singular point in or near the cell.
     fn is_isolated(&mut self, field: &mut dyn Bounded, cell: &Cell, known: &Enclosure) -> bool {
         if is_left_out(cell, &self.search.isolated) {
             return true;
@@ -455,7 +475,8 @@ impl Octree {
         point.is_alone && self.isolate(field, cell, at)
     }
 
-    /// Leaves out a box around a singular point that is known and in the cell, or within `room` of it; whether the cell lies in that box.
+    /// Leaves out a box around a singular point that is known and in the cell, or within `room` of
+    /// it; whether the cell lies in that box.
     fn isolate_tip(&mut self, field: &mut dyn Bounded, cell: &Cell, room: f64) -> bool {
         let around = cell.bounds.enlarged(room);
         let tip = self.singular.iter().map(|point| point.position).find(|&at| around.holds(at));
@@ -526,7 +547,8 @@ impl Octree {
         }
     }
 
-    /// Finds the zero of f on each of the lines, at whose ends f has different signs, by Newton's method safeguarded by bisection.
+    /// Finds the zero of f on each of the lines, at whose ends f has different signs, by Newton's
+    /// method safeguarded by bisection.
     fn find_roots(&mut self, field: &mut dyn Bounded) {
         let mut settled = self.batch.lines.is_empty();
         // As many steps as a number has digits: bisection alone gains one in each.
@@ -589,7 +611,8 @@ impl Octree {
     }
 }
 
-/// Intersects bounds over a box with the mean value forms around its middle; `half` is half its size.
+/// Intersects bounds over a box with the mean value forms around its middle; `half` is half its
+/// size.
 fn tighten(known: &mut Enclosure, middle: &Enclosure, second: &Sym3<Interval>, half: DVec3) {
     let swing = |slope: &dyn Fn(usize) -> Interval| -> f64 {
         (0..3).filter(|&k| half[k] > 0.0).map(|k| slope(k).magnitude() * half[k]).sum()
@@ -602,8 +625,9 @@ fn tighten(known: &mut Enclosure, middle: &Enclosure, second: &Sym3<Interval>, h
     known.value = known.value.cut_to(form);
 }
 
-/// Whether the field has finite bounds at all, tested on a small box that is not in the middle, where f may have a pole. With 27 boxes the
-/// same searches begin, on 52 random surfaces and for 16 formulas with poles or places without a value.
+/// Whether the field has finite bounds at all, tested on a small box that is not in the middle,
+/// where f may have a pole. With 27 boxes the same searches begin, on 52 random surfaces and for 16
+/// formulas with poles or places without a value.
 fn bounds_say_something(field: &mut dyn Bounded, bounds: &Bounds) -> bool {
     let boxes: Vec<Bounds> = bounds.spread(1).map(|p| Bounds::new(p, p + MARGIN * bounds.size())).collect();
     let mut known = [Enclosure::UNKNOWN];

@@ -1,5 +1,5 @@
-//! Whether single precision holds the values of a field. Where it does not, the field is to be evaluated in double precision,
-//! compressed to a scale that is found here.
+//! Whether single precision holds the values of a field. Where it does not, the field is to be
+//! evaluated in double precision, compressed to a scale that is found here.
 
 use super::grid::CELLS;
 use super::survey::{FEW, SAMPLES, ulps};
@@ -8,22 +8,26 @@ use crate::math::{Bounds, Interval, Sym3, median};
 use crate::particles::Particles;
 use glam::{DVec3, Vec3};
 
-/// Nodes along each side of the grid on which both precisions are compared: 729 in all, of which the share below is 15.
+/// Nodes along each side of the grid on which both precisions are compared: 729 in all, of which
+/// the share below is 15.
 const SIDE: usize = 9;
-/// Share of them that single precision may lose. Half and double decide the same on 22 random surfaces.
+/// Share of them that single precision may lose. Half and double decide the same on 22 random
+/// surfaces.
 const MOST_LOST: f64 = 0.02;
-/// Ratio of all nodes to those at which the distance is measured by which single precision moves the level set: a hundred do for a
-/// median, and as 7 does not divide [`SIDE`] they are in all rows.
+/// Ratio of all nodes to those at which the distance is measured by which single precision moves
+/// the level set: a hundred do for a median, and as 7 does not divide [`SIDE`] they are in all
+/// rows.
 const ONE_IN: usize = 7;
-/// Double precision is taken where the median of those distances is more than this times that by which coordinates in single precision
-/// are rounded. On the gallery's formulas it is at most 0.3 times that; from 1 to 16 of it decide
-/// the same on 17 random surfaces far from the origin.
+/// Double precision is taken where the median of those distances is more than this times that by
+/// which coordinates in single precision are rounded. On the gallery's formulas it is at most 0.3
+/// times that; from 1 to 16 of it decide the same on 17 random surfaces far from the origin.
 const MOST_BLUR: f64 = 4.0;
-/// Nodes along each side of the grid on which the gradient at the surface is looked for: 4,096, a tenth of those of the survey. With half and
-/// double the figures of 24 random surfaces that need double precision are the same within 0.01 %.
+/// Nodes along each side of the grid on which the gradient at the surface is looked for: 4,096, a
+/// tenth of those of the survey. With half and double the figures of 24 random surfaces that need
+/// double precision are the same within 0.01 %.
 const FINE_SIDE: usize = 16;
-/// Share of the distance between neighbours by which rounding may move a particle: a five-hundredth of the scatter of such distances on
-/// a relaxed surface.
+/// Share of the distance between neighbours by which rounding may move a particle: a five-hundredth
+/// of the scatter of such distances on a relaxed surface.
 const MOST_MOVED: f64 = 1e-4;
 
 /// Rounding of f at a particle.
@@ -35,9 +39,9 @@ pub(crate) struct Blur {
     pub(crate) distance: f64,
 }
 
-/// Of a selection of the particles, the one at which rounding in double precision moves the level set by most for its size; none if
-/// it does so by less than [`MOST_MOVED`], or f has no bounds to tell it by. The bounds of f at a single point are as wide as what
-/// rounding may do to it.
+/// Of a selection of the particles, the one at which rounding in double precision moves the level
+/// set by most for its size; none if it does so by less than [`MOST_MOVED`], or f has no bounds to
+/// tell it by. The bounds of f at a single point are as wide as what rounding may do to it.
 pub(crate) fn blur(field: &mut dyn Evaluator, particles: &Particles) -> Option<Blur> {
     let field = field.bounded()?;
     let mut most = (MOST_MOVED, None);
@@ -65,9 +69,10 @@ pub(crate) fn blur(field: &mut dyn Evaluator, particles: &Particles) -> Option<B
     most.1
 }
 
-/// The scale at which the field is to be compressed in double precision; none if single precision will do. It does if it has
-/// a value, beyond underflow, at nearly all places where double precision has one, and if its rounding moves level sets by hardly
-/// more than that of the coordinates does.
+/// The scale at which the field is to be compressed in double precision; none if single precision
+/// will do. It does if it has a value, beyond underflow, at nearly all places where double
+/// precision has one, and if its rounding moves level sets by hardly more than that of the
+/// coordinates does.
 pub(crate) fn double_scale(field: &mut dyn Evaluator, bounds: &Bounds) -> Option<f64> {
     let points: Vec<Vec3> = bounds.spread(SIDE).map(|p| p.as_vec3()).collect();
     let (mut value, mut gradient) = (vec![0.0; points.len()], vec![Vec3::ZERO; points.len()]);
@@ -85,8 +90,9 @@ pub(crate) fn double_scale(field: &mut dyn Evaluator, bounds: &Bounds) -> Option
     (is_lost || is_blurred(field, bounds, &points, &value)).then(|| scale(field, bounds))
 }
 
-/// Whether the rounding of `values`, which are in single precision, moves level sets by far more than the rounding of the coordinates
-/// does: f is small beside its terms, as cos(0.001 x) − 0.999999 is. A field without bounds has one precision only.
+/// Whether the rounding of `values`, which are in single precision, moves level sets by far more
+/// than the rounding of the coordinates does: f is small beside its terms, as cos(0.001 x) −
+/// 0.999999 is. A field without bounds has one precision only.
 fn is_blurred(field: &mut dyn Evaluator, bounds: &Bounds, points: &[Vec3], values: &[f32]) -> bool {
     if field.bounded().is_none() {
         return false;
@@ -112,7 +118,8 @@ pub(crate) fn varies(field: &mut dyn Evaluator, bounds: &Bounds) -> bool {
     values.next().is_some_and(|first| values.any(|value| value != first))
 }
 
-/// The usual |∇f| at the surface times the width of a cell of the survey; the usual |f| where no surface is seen.
+/// The usual |∇f| at the surface times the width of a cell of the survey; the usual |f| where no
+/// surface is seen.
 fn scale(field: &mut dyn Evaluator, bounds: &Bounds) -> f64 {
     let grid: Vec<DVec3> = bounds.spread(FINE_SIDE).collect();
     let value: Vec<f64> = grid.iter().map(|&p| field.jet(p).value).collect();

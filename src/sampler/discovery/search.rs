@@ -1,5 +1,5 @@
-//! The search for components as the sampler drives it: the [octree](super::octree), whose witnesses are seeds where the points of
-//! the survey are covered, and the [audit](super::audit) at the end.
+//! The search for components as the sampler drives it: the [octree](super::octree), whose witnesses
+//! are seeds where the points of the survey are covered, and the [audit](super::audit) at the end.
 
 use crate::field::descent::Descent;
 use crate::field::{Bounded, Evaluator};
@@ -72,7 +72,8 @@ impl ComponentSearch {
         self.octree.is_done()
     }
 
-    /// Does up to `budget` units of the search. Returns the rest of the budget, 0 until the search is complete.
+    /// Does up to `budget` units of the search. Returns the rest of the budget, 0 until the search
+    /// is complete.
     pub(crate) fn search(
         &mut self,
         probe: &mut Probe,
@@ -111,7 +112,8 @@ impl ComponentSearch {
 
     /// Projects the witnesses onto the surface as single precision computes it.
     fn project(&mut self, probe: &mut Probe, starts: &[Witness], bounds: &Bounds, tolerance: Tolerance) {
-        // Single precision may move the surface by more than the residual. From 1 to 32 of them 38 random surfaces are the same.
+        // Single precision may move the surface by more than the residual. From 1 to 32 of them 38
+        // random surfaces are the same.
         let reach = self.octree.region.margin as f32 + 16.0 * tolerance.residual;
         let limits = Descent { residual: tolerance.residual, reach, trust: 0.0 };
         let mut points: Vec<Vec3> = starts.iter().map(|start| start.position.as_vec3()).collect();
@@ -157,8 +159,9 @@ impl ComponentSearch {
         &self.points
     }
 
-    /// Whether the witness lies on the component of one of the particles `near` it, the nearest first. By proof; or, where the
-    /// bounds are too wide for one, by the field at a point between the two. The [audit](super::audit) asks again.
+    /// Whether the witness lies on the component of one of the particles `near` it, the nearest
+    /// first. By proof; or, where the bounds are too wide for one, by the field at a point between
+    /// the two. The [audit](super::audit) asks again.
     pub(crate) fn is_covered(
         &self,
         probe: &mut Probe,
@@ -194,7 +197,8 @@ impl ComponentSearch {
         (!piece.goes_on).then_some((seed, piece.reach))
     }
 
-    /// Does up to `budget` units of the audit of the finished run, and returns what is left: 0 until the audit is complete.
+    /// Does up to `budget` units of the audit of the finished run, and returns what is left: 0
+    /// until the audit is complete.
     pub(crate) fn audit(
         &mut self,
         probe: &mut Probe,
@@ -225,9 +229,9 @@ impl ComponentSearch {
         if self.unwitnessed() == Some(0) { Search::Proven } else { Search::Searched }
     }
 
-    /// The doubts that there is a witness on every component, or that each witness is on the component of a particle or named; empty
-    /// where both are proven. Sheets nearer than `least_gap` are not told apart, of which the survey may have
-    /// seen one.
+    /// The doubts that there is a witness on every component, or that each witness is on the
+    /// component of a particle or named; empty where both are proven. Sheets nearer than
+    /// `least_gap` are not told apart, of which the survey may have seen one.
     pub(crate) fn doubts(&self, surveyed: Option<Nearness>, least_gap: f64) -> Vec<Doubt> {
         let nearness = [surveyed, self.unresolved].into_iter().flatten();
         let nearest = nearness.min_by(|a, b| a.gap.total_cmp(&b.gap)).filter(|near| near.gap < least_gap);
@@ -261,7 +265,8 @@ impl ComponentSearch {
         doubts
     }
 
-    /// The components that hold particles, and those that do not; `is_proven` says whether there are no [doubts](Self::doubts).
+    /// The components that hold particles, and those that do not; `is_proven` says whether there
+    /// are no [doubts](Self::doubts).
     pub(crate) fn sampled(&self, is_proven: bool) -> Sampled {
         let without = self.audit.without.clone();
         let is_known = is_proven && !without.iter().any(|piece| piece.goes_on);
@@ -276,15 +281,15 @@ impl ComponentSearch {
             .then_some(self.octree.undecided.len() as u64 + self.lost)
     }
 
-    /// Cells left undecided, witnesses that were lost, and witnesses of which the audit does not know whether their component
-    /// holds particles; none without a search.
+    /// Cells left undecided, witnesses that were lost, and witnesses of which the audit does not
+    /// know whether their component holds particles; none without a search.
     pub(crate) fn open_questions(&self) -> Option<u64> {
         self.unwitnessed().map(|open| open + self.audit.open)
     }
 }
 
-/// The witnesses without those that are proven to be connected with others within the region: along a ridge of equal height there
-/// are many.
+/// The witnesses without those that are proven to be connected with others within the region: along
+/// a ridge of equal height there are many.
 fn thinned_out(prover: &mut Prover, witnesses: &[Witness]) -> Vec<Witness> {
     let region = prover.region.bounds;
     let mut kept: Vec<Witness> = Vec::new();

@@ -1,5 +1,5 @@
-//! Proves by bounds of the gradient that two points lie on one sheet: that the surface connects them. What only seems so is told
-//! by the rules of [`sheet`](crate::sampler::sheet).
+//! Proves by bounds of the gradient that two points lie on one sheet: that the surface connects
+//! them. What only seems so is told by the rules of [`sheet`](crate::sampler::sheet).
 
 use crate::field::{Bounded, Enclosure};
 use crate::math::newton::{self, StepLimits, step_to_surface};
@@ -8,8 +8,9 @@ use crate::sampler::discovery::cell::rise;
 use crate::sampler::discovery::octree::Region;
 use glam::DVec3;
 
-/// Largest number of segments that are tested in one call, and so of the nearest points to which a connection is tried. With 5 and with 20 the same
-/// 94 of 116 random runs are proven, in the same time within 2 %.
+/// Largest number of segments that are tested in one call, and so of the nearest points to which a
+/// connection is tried. With 5 and with 20 the same 94 of 116 random runs are proven, in the same
+/// time within 2 %.
 pub(crate) const TOGETHER: usize = 10;
 
 /// A point of the surface in double precision, and the unit normal there.
@@ -37,12 +38,13 @@ pub(crate) struct Prover<'a> {
 }
 
 impl Prover<'_> {
-    /// For each of at most [`TOGETHER`] segments, whether bounds of the gradient prove that the surface connects its ends, in the
-    /// box `within`, if there is one.
+    /// For each of at most [`TOGETHER`] segments, whether bounds of the gradient prove that the
+    /// surface connects its ends, in the box `within`, if there is one.
     ///
-    /// The proof is that of the [octree](super::octree), on a box around both points. f is monotone along the axis nearest the
-    /// normal, and the surface through the first point leaves the box through its sides only. So it is the graph of a function
-    /// over the rectangle between the two, and meets the line through the second point exactly once.
+    /// The proof is that of the [octree](super::octree), on a box around both points. f is monotone
+    /// along the axis nearest the normal, and the surface through the first point leaves the box
+    /// through its sides only. So it is the graph of a function over the rectangle between the two,
+    /// and meets the line through the second point exactly once.
     pub(crate) fn are_connected(
         &mut self,
         segments: &[Segment],
@@ -78,11 +80,13 @@ impl Prover<'_> {
         self.is_connected_by_segments(segment) || self.is_connected_around(segment)
     }
 
-    /// Whether the ends of a segment are connected by a chain of segments, each of which [is proven](Self::are_connected). Points
-    /// between which the surface bends too much for one box need more than one: a segment without a proof is halved, at a point
-    /// of the surface in the region.
+    /// Whether the ends of a segment are connected by a chain of segments, each of which
+    /// [is proven](Self::are_connected). Points between which the surface bends too much for one
+    /// box need more than one: a segment without a proof is halved, at a point of the surface in
+    /// the region.
     pub(crate) fn is_connected_by_segments(&mut self, whole: Segment) -> bool {
-        /// Largest number of rounds. With one more or one fewer each, 1 of 43 random surfaces has another seed.
+        /// Largest number of rounds. With one more or one fewer each, 1 of 43 random surfaces has
+        /// another seed.
         const MOST_ROUNDS: u32 = 8;
         let mut waiting = vec![whole];
         for _ in 0..MOST_ROUNDS {
@@ -93,8 +97,8 @@ impl Prover<'_> {
                 let chord = to - from.position;
                 let middle_of_chord = from.position + 0.5 * chord;
                 let Some(middle) = self.land_inside(middle_of_chord) else { return false };
-                // A point farther than half the chord from its middle does not lie between the two. Half and double of the distance prove the same
-                // on 38 random surfaces.
+                // A point farther than half the chord from its middle does not lie between the two.
+                // Half and double of the distance prove the same on 38 random surfaces.
                 let offset = middle.position - middle_of_chord;
                 if offset.length_squared() > 0.25 * chord.length_squared() {
                     return false;
@@ -109,8 +113,9 @@ impl Prover<'_> {
         false
     }
 
-    /// Whether the ends of a segment are connected by two such chains, by way of a point beside their chord. On a small piece the
-    /// middle of the chord between opposite points lies inside the piece, where no step leads to the surface.
+    /// Whether the ends of a segment are connected by two such chains, by way of a point beside
+    /// their chord. On a small piece the middle of the chord between opposite points lies inside
+    /// the piece, where no step leads to the surface.
     fn is_connected_around(&mut self, Segment { from, to }: Segment) -> bool {
         let chord = to - from.position;
         let Some(direction) = chord.try_normalize() else { return false };
@@ -125,14 +130,16 @@ impl Prover<'_> {
         })
     }
 
-    /// The point of the surface that Newton's method along the gradient finds from `p`, to the precision of a number.
+    /// The point of the surface that Newton's method along the gradient finds from `p`, to the
+    /// precision of a number.
     fn land(&mut self, p: DVec3) -> Option<ExactPoint> {
         let limits = StepLimits { share_at_rest: ROUNDING, ..StepLimits::steps(newton::STEPS) };
         let (position, gradient) = newton::land(p, limits, |p| Some(self.newton_step(p)))?;
         gradient.try_normalize().map(|normal| ExactPoint { position, normal })
     }
 
-    /// A point of the surface in the region, found from `p` by Newton's method: a point outside is moved inside.
+    /// A point of the surface in the region, found from `p` by Newton's method: a point outside is
+    /// moved inside.
     fn land_inside(&mut self, p: DVec3) -> Option<ExactPoint> {
         let landed = self.land(p)?;
         let bounds = self.region.bounds;
@@ -143,11 +150,13 @@ impl Prover<'_> {
         self.land(inside).filter(|landed| bounds.holds(landed.position))
     }
 
-    /// A point in a box, within a thousandth of the margin of the surface, near `p` in the margin outside: by turns to the nearest
-    /// point of the box without its margin and one step to the surface. None where the surface does not reach into the box there.
+    /// A point in a box, within a thousandth of the margin of the surface, near `p` in the margin
+    /// outside: by turns to the nearest point of the box without its margin and one step to the
+    /// surface. None where the surface does not reach into the box there.
     pub(crate) fn moved_inside(&mut self, mut p: DVec3, bounds: &Bounds) -> Option<DVec3> {
-        /// Each turn shortens the way by the cosine squared of the angle between surface and face: at 26° so many by a thousand. With a fourth
-        /// of them 1 of 22 random surfaces gets other particles.
+        /// Each turn shortens the way by the cosine squared of the angle between surface and face:
+        /// at 26° so many by a thousand. With a fourth of them 1 of 22 random surfaces gets other
+        /// particles.
         const MOST_TURNS: u32 = 32;
         let margin = self.region.margin;
         let inner = bounds.enlarged(-margin);
@@ -162,7 +171,8 @@ impl Prover<'_> {
         bounds.holds(p).then_some(p)
     }
 
-    /// The step of Newton's method along the gradient, to be subtracted from `p`, and the gradient at `p`.
+    /// The step of Newton's method along the gradient, to be subtracted from `p`, and the gradient
+    /// at `p`.
     fn newton_step(&mut self, p: DVec3) -> (DVec3, DVec3) {
         let slope = value_at(self.field, self.factor, p);
         (step_to_surface(slope), slope.1)
@@ -187,14 +197,14 @@ struct GraphBox {
 
 impl GraphBox {
     fn around(&Segment { from, to }: &Segment, slack: f64) -> Self {
-        /// Room above and below the ends, over the rise of the tangent plane between them. Of 43 random surfaces half of it proves
-        /// 8 fewer, and twice as much no more.
+        /// Room above and below the ends, over the rise of the tangent plane between them. Of 43
+        /// random surfaces half of it proves 8 fewer, and twice as much no more.
         const RISES: f64 = 1.5;
-        /// Room for what the surface bends, as a share of the longest side. Without it 1 of 59 random surfaces has more seeds, and
-        /// the proofs take a fifth longer.
+        /// Room for what the surface bends, as a share of the longest side. Without it 1 of 59
+        /// random surfaces has more seeds, and the proofs take a fifth longer.
         const BEND: f64 = 0.25;
-        /// Room for the slack: twice what the proof takes. With just that, on 4 of 25 random surfaces of many small components one of
-        /// them counts twice.
+        /// Room for the slack: twice what the proof takes. With just that, on 4 of 25 random
+        /// surfaces of many small components one of them counts twice.
         const SLACKS: f64 = 8.0;
         let size = from.normal.abs();
         let up = size.max_position();

@@ -1,16 +1,19 @@
-//! Points of the surface where f has no gradient: cone points, cusps, and the curves on which a surface crosses itself.
+//! Points of the surface where f has no gradient: cone points, cusps, and the curves on which a
+//! surface crosses itself.
 //!
 //! # Why a box around one can be left out of the search
 //!
-//! Let B be a box in the interior of which f has no local extremum. Then every connected component of the surface S in B reaches
-//! the boundary of B. For suppose that a component K does not. It has a neighbourhood U in B on whose boundary f is not 0; take
-//! the part of U that holds K, and with it the holes in it: an open set W with a connected boundary, on which f has one sign, say
-//! the positive one. Every neighbourhood of a point of K holds places where f is negative, else that point were a minimum. So f
-//! has a negative minimum in W: a local extremum.
+//! Let B be a box in the interior of which f has no local extremum. Then every connected component
+//! of the surface S in B reaches the boundary of B. For suppose that a component K does not. It has
+//! a neighbourhood U in B on whose boundary f is not 0; take the part of U that holds K, and with
+//! it the holes in it: an open set W with a connected boundary, on which f has one sign, say the
+//! positive one. Every neighbourhood of a point of K holds places where f is negative, else that
+//! point were a minimum. So f has a negative minimum in W: a local extremum.
 //!
-//! There is none where the second derivative of f along one fixed direction is positive throughout B, and along another one
-//! negative: at a minimum neither is negative, at a maximum neither positive. This is so around a cone point, whose tangent
-//! cone is that of an indefinite quadratic form, up to a size that bounds of the second derivatives tell.
+//! There is none where the second derivative of f along one fixed direction is positive throughout
+//! B, and along another one negative: at a minimum neither is negative, at a maximum neither
+//! positive. This is so around a cone point, whose tangent cone is that of an indefinite quadratic
+//! form, up to a size that bounds of the second derivatives tell.
 
 use crate::field::{Bounded, Enclosure, Evaluator};
 use crate::math::{Bounds, Forest, Interval, ROUNDING, Sym3, sort_few};
@@ -19,48 +22,58 @@ use crate::sampler::probe::BATCH;
 use crate::spatial::tree::Tree;
 use glam::{DMat3, DVec3, Vec3};
 
-/// Number of sizes of a box around a singular point that are tried: the longest side of the whole box, and each half the one before. Half of
-/// them leaves 0.01 % more cells undecided on 48 random surfaces, and double as many.
+/// Number of sizes of a box around a singular point that are tried: the longest side of the whole
+/// box, and each half the one before. Half of them leaves 0.01 % more cells undecided on 48 random
+/// surfaces, and double as many.
 const SIZES: usize = 10;
-/// Number of sizes, above the largest one that is proven as a whole, that are tried in sub-boxes. Without any, 7 of 150 random surfaces
-/// with cone points are no longer proven.
+/// Number of sizes, above the largest one that is proven as a whole, that are tried in sub-boxes.
+/// Without any, 7 of 150 random surfaces with cone points are no longer proven.
 const MOST_LARGER: usize = 2;
 /// Number of sub-boxes: three along each axis.
 const SUB_BOXES: usize = 27;
-/// Distances of the sides of a box around a singular point from the point, in units of its size. They differ, because in a symmetric box a symmetric
-/// surface has several of its highest points in one place, where they cannot be told apart.
+/// Distances of the sides of a box around a singular point from the point, in units of its size.
+/// They differ, because in a symmetric box a symmetric surface has several of its highest points in
+/// one place, where they cannot be told apart.
 const BELOW: DVec3 = DVec3::new(0.967, 0.983, 0.941);
 const ABOVE: DVec3 = DVec3::new(0.953, 0.929, 0.991);
 
-/// Largest number of Newton steps to a singular point: so many halvings, as at a cusp, lead to less than 10⁻⁷ of the way.
+/// Largest number of Newton steps to a singular point: so many halvings, as at a cusp, lead to less
+/// than 10⁻⁷ of the way.
 const MOST_STEPS: u32 = 24;
-/// Distance from an isolated singular point, and from another one, at which the steps have ended, over the search distance. At a
-/// cusp each step only halves the distance.
+/// Distance from an isolated singular point, and from another one, at which the steps have ended,
+/// over the search distance. At a cusp each step only halves the distance.
 const ENDS: [f64; 2] = [1e-12, 1e-7];
-/// Largest |f| that counts as zero at a saddle of f, in units of |H| d², where H is the Hessian and d the search distance. It
-/// is far above rounding: cone points open where coefficients are rounded. A hundredth of it finds none of the 29 points of 46
-/// random surfaces, a hundred times as much 77, some of them necks.
+/// Largest |f| that counts as zero at a saddle of f, in units of |H| d², where H is the Hessian and
+/// d the search distance. It is far above rounding: cone points open where coefficients are
+/// rounded. A hundredth of it finds none of the 29 points of 46 random surfaces, a hundred times as
+/// much 77, some of them necks.
 const LARGEST_VALUE: f64 = 1e-8;
-/// Largest |f|, in units of |H| d², at the middle of the narrow neck that a cone point leaves when it opens, which the search
-/// treats as a singular point. Without, 5 of 24 random surfaces whose cone points have opened are no longer proven; ten times as much
-/// changes nothing.
+/// Largest |f|, in units of |H| d², at the middle of the narrow neck that a cone point leaves when
+/// it opens, which the search treats as a singular point. Without, 5 of 24 random surfaces whose
+/// cone points have opened are no longer proven; ten times as much changes nothing.
 const LARGEST_NECK: f64 = 1e-3;
-/// A direction along which the second derivatives are smaller than this share of the largest is taken for that of a singular
-/// curve: the Newton step does not run along it. It is the root of the precision to which second derivatives are known.
+/// A direction along which the second derivatives are smaller than this share of the largest is
+/// taken for that of a singular curve: the Newton step does not run along it. It is the root of the
+/// precision to which second derivatives are known.
 const SMALL: f64 = 1e-6;
-/// Share in the place of [`SMALL`] where a Newton step leads too far: beside a curve of singular points the step runs along the curve. In 60
-/// runs on 30 random surfaces that cross themselves 124 places are found, with half 118, with double 136, and 166 without: curves in pieces.
+/// Share in the place of [`SMALL`] where a Newton step leads too far: beside a curve of singular
+/// points the step runs along the curve. In 60 runs on 30 random surfaces that cross themselves 124
+/// places are found, with half 118, with double 136, and 166 without: curves in pieces.
 const DAMPED: f64 = 0.1;
-/// Factors by which steps shrink where the first derivatives that do not vanish are of third to eighth order: (n − 2)/(n − 1). Such a
-/// step is lengthened to where the steps would end. Without, 5 of 50 random surfaces with cusps no longer show theirs.
+/// Factors by which steps shrink where the first derivatives that do not vanish are of third to
+/// eighth order: (n − 2)/(n − 1). Such a step is lengthened to where the steps would end. Without,
+/// 5 of 50 random surfaces with cusps no longer show theirs.
 const SLOW: core::ops::Range<f64> = 0.45..0.88;
-/// Two singular points count as one if they are nearer to each other than this share of the search distance: Newton's method ends at
-/// 10⁻¹² of it. A tenth and ten times give the same particles on 20 random cones. A tip as near to one is that point.
+/// Two singular points count as one if they are nearer to each other than this share of the search
+/// distance: Newton's method ends at 10⁻¹² of it. A tenth and ten times give the same particles on
+/// 20 random cones. A tip as near to one is that point.
 pub(crate) const SAME: f64 = 1e-6;
-/// Distance from a point of the survey within which a singular point is searched, in spacings of its grid: the diagonal of a cell.
+/// Distance from a point of the survey within which a singular point is searched, in spacings of
+/// its grid: the diagonal of a cell.
 const NEAR: f64 = 1.75;
-/// Extent of linked points that are no curve, as a share of the search distance: at a point where sheets touch, Newton's method ends
-/// within a hundredth of it. Half and double give the same particles on 20 random cones.
+/// Extent of linked points that are no curve, as a share of the search distance: at a point where
+/// sheets touch, Newton's method ends within a hundredth of it. Half and double give the same
+/// particles on 20 random cones.
 const ONE_PLACE: f64 = 0.25;
 
 /// A point where the gradient of f vanishes and f is 0, or nearly so.
@@ -69,10 +82,11 @@ pub(crate) struct Singular {
     pub(crate) position: DVec3,
     /// Distance within which the point was searched for.
     pub(crate) reach: f64,
-    /// Whether f is 0 at the point: up to rounding where f has a minimum or a maximum there, around which the surface is a small
-    /// sphere or tube, or nothing; at a saddle up to a small neck.
+    /// Whether f is 0 at the point: up to rounding where f has a minimum or a maximum there, around
+    /// which the surface is a small sphere or tube, or nothing; at a saddle up to a small neck.
     pub(crate) is_zero: bool,
-    /// Whether the point is isolated: the Hessian is regular, so the gradient vanishes nowhere else near it.
+    /// Whether the point is isolated: the Hessian is regular, so the gradient vanishes nowhere else
+    /// near it.
     pub(crate) is_alone: bool,
     /// Whether f has both signs on lines through the point, to second order.
     pub(crate) has_two_signs: bool,
@@ -81,7 +95,8 @@ pub(crate) struct Singular {
 }
 
 impl Singular {
-    /// Whether two points belong to one place: they are the same one, or on one curve, found by searches that overlap.
+    /// Whether two points belong to one place: they are the same one, or on one curve, found by
+    /// searches that overlap.
     fn is_linked(&self, other: &Self) -> bool {
         let share = if self.is_alone { SAME } else { 2.0 };
         let most = share * self.reach.min(other.reach);
@@ -114,7 +129,8 @@ pub(crate) struct SingularPlace {
 #[derive(Debug, Default)]
 pub(crate) struct NearSurvey {
     pub(crate) points: Vec<Singular>,
-    /// Points of the survey, far from each other, around which the surface bends sharply and there is no such point; the sharpest first.
+    /// Points of the survey, far from each other, around which the surface bends sharply and there
+    /// is no such point; the sharpest first.
     pub(crate) bends: Vec<Bend>,
 }
 
@@ -126,8 +142,8 @@ pub(crate) struct Bend {
     sharpness: f64,
 }
 
-/// The singular points near those of a survey, on a grid of this spacing: where the gradient vanishes within a distance d, it is no
-/// longer than the Hessian times d.
+/// The singular points near those of a survey, on a grid of this spacing: where the gradient
+/// vanishes within a distance d, it is no longer than the Hessian times d.
 pub(crate) fn near_survey(
     field: &mut dyn Evaluator,
     survey: &[Vec3],
@@ -241,7 +257,8 @@ fn has_two_signs(hessian: &Sym3<f64>) -> bool {
         .is_some_and(|[up, down]| up.dot(hessian.apply(up)) > least && down.dot(hessian.apply(down)) < -least)
 }
 
-/// Whether the gradient of f may jump on the surface in a box, as at the tip of a cone where f is a distance; not known where f has no bounds.
+/// Whether the gradient of f may jump on the surface in a box, as at the tip of a cone where f is a
+/// distance; not known where f has no bounds.
 pub(crate) fn may_be_rough(field: &mut dyn Evaluator, bounds: &Bounds) -> bool {
     let Some(field) = field.bounded() else { return true };
     (0..field.factors()).any(|factor| {
@@ -291,12 +308,13 @@ pub(crate) fn places(points: &[Singular]) -> Vec<SingularPlace> {
     places
 }
 
-/// Marks the particles within 2r of a singular point. The `points` of a curve are only some of it, so every particle near a curve
-/// searches for the point nearest to itself.
+/// Marks the particles within 2r of a singular point. The `points` of a curve are only some of it,
+/// so every particle near a curve searches for the point nearest to itself.
 pub(crate) fn mark(field: &mut dyn Evaluator, points: &[Singular], particles: &mut Particles) {
     let places: Vec<Vec3> = points.iter().map(|point| point.position.as_vec3()).collect();
     let tree = Tree::new(&places);
-    // The smallest search distance is the distance between the points that were found last, which are all along the curve.
+    // The smallest search distance is the distance between the points that were found last, which
+    // are all along the curve.
     let on_curves = points.iter().filter(|point| !point.is_alone).map(|point| point.reach);
     let apart = on_curves.reduce(f64::min).unwrap_or(0.0);
     let mut near = Vec::new();
@@ -328,8 +346,8 @@ fn size_sq(m: &DMat3) -> f64 {
     m.to_cols_array().iter().map(|entry| entry * entry).sum()
 }
 
-/// The largest of [`SIZES`] boxes around the singular point `at` in which one factor of the field has no local extremum. It lies
-/// inside the box `within` and meets none of the boxes `taken`.
+/// The largest of [`SIZES`] boxes around the singular point `at` in which one factor of the field
+/// has no local extremum. It lies inside the box `within` and meets none of the boxes `taken`.
 pub(crate) fn isolating_box(
     field: &mut dyn Bounded,
     factor: usize,
@@ -369,8 +387,8 @@ fn sub_boxes(whole: &Bounds) -> [Bounds; SUB_BOXES] {
     })
 }
 
-/// For each of some boxes, whether bounds show that there is no local extremum in it: the gradient vanishes nowhere, or the
-/// function [is a saddle](is_saddle) throughout.
+/// For each of some boxes, whether bounds show that there is no local extremum in it: the gradient
+/// vanishes nowhere, or the function [is a saddle](is_saddle) throughout.
 fn has_no_extremum(field: &mut dyn Bounded, factor: usize, boxes: &[Bounds], out: &mut [bool]) {
     let mut known = [Enclosure::UNKNOWN; SUB_BOXES];
     let mut second = [Sym3::splat(Interval::EVERYTHING); SUB_BOXES];
@@ -389,7 +407,8 @@ fn is_saddle(second: &Sym3<Interval>) -> bool {
         .is_some_and(|[up, down]| along(second, up).lo > 0.0 && along(second, down).hi < 0.0)
 }
 
-/// Directions along which the second derivative is about the largest and about the smallest, if these have different signs.
+/// Directions along which the second derivative is about the largest and about the smallest, if
+/// these have different signs.
 fn extreme_directions(second: &Sym3<f64>) -> Option<[DVec3; 2]> {
     /// Squarings of a matrix: enough to tell eigenvalues apart that differ by a tenth.
     const SQUARINGS: u32 = 7;
@@ -456,7 +475,8 @@ mod tests {
             // Along no direction in the first box is the second derivative of one sign.
             ("x^3 + y^3 + z^3", [false, true, true]),
             ("1 - y^2", [false, true, true]),
-            // Unbounded above at the plane that goes through the first box: not known to be continuous.
+            // Unbounded above at the plane that goes through the first box: not known to be
+            // continuous.
             ("x + 1/y", [false, true, true]),
         ] {
             let field = Formula::as_written(formula, &[]).expect("a formula");

@@ -1,5 +1,6 @@
-//! The survey of the field on a regular grid over the box. It finds a first point on every component that the grid resolves,
-//! and estimates the area of the surface and the precision with which single precision resolves it.
+//! The survey of the field on a regular grid over the box. It finds a first point on every
+//! component that the grid resolves, and estimates the area of the surface and the precision with
+//! which single precision resolves it.
 
 use crate::field::Evaluator;
 use crate::field::descent::Descent;
@@ -14,11 +15,13 @@ use crate::sampler::sheet::OrientedPoint;
 use glam::{DVec3, Vec3};
 use rand_core::Rng;
 
-/// Largest number of evaluations of f on an edge that look for two crossings. With one, a tenth of the area of two spheres 1e-4
-/// apart is missed; with two or four, 9 and 5 of 26 random surfaces of near sheets take other seeds.
+/// Largest number of evaluations of f on an edge that look for two crossings. With one, a tenth of
+/// the area of two spheres 1e-4 apart is missed; with two or four, 9 and 5 of 26 random surfaces of
+/// near sheets take other seeds.
 const LOOKS: usize = 3;
-/// Distance at which the size of f distinguishes a zero from a pole, in tolerances of the survey. With 1 rounding decides on 1 of 46
-/// random surfaces with poles, jumps and cones; with 40 the same is found.
+/// Distance at which the size of f distinguishes a zero from a pole, in tolerances of the survey.
+/// With 1 rounding decides on 1 of 46 random surfaces with poles, jumps and cones; with 40 the same
+/// is found.
 const POLE_PROBE: f32 = 4.0;
 
 /// The result of a survey.
@@ -28,7 +31,8 @@ pub(crate) struct Survey {
     pub(crate) position: Vec<Vec3>,
     /// Unit normals at these points.
     pub(crate) normal: Vec<Vec3>,
-    /// Area that each point stands for. The sum is about `area`. 0 for points that no crossing of the grid gave.
+    /// Area that each point stands for. The sum is about `area`. 0 for points that no crossing of
+    /// the grid gave.
     pub(crate) weight: Vec<f32>,
     /// Estimated area inside the box.
     pub(crate) area: f64,
@@ -36,10 +40,11 @@ pub(crate) struct Survey {
     pub(crate) gradient_scale: f32,
     /// Distance by which rounding can move the computed surface.
     pub(crate) resolution: f32,
-    /// Least distance, along the normal, of a point of the surface from another sheet beyond which there is a third one; infinite
-    /// where none was seen.
+    /// Least distance, along the normal, of a point of the surface from another sheet beyond which
+    /// there is a third one; infinite where none was seen.
     pub(crate) crowding: f32,
-    /// The nearest pair of sheets, where some are so near that a particle's usual tolerance could put it on the wrong one.
+    /// The nearest pair of sheets, where some are so near that a particle's usual tolerance could
+    /// put it on the wrong one.
     pub(crate) nearness: Option<Nearness>,
     /// Largest distance of a point from the surface.
     residual: f32,
@@ -118,8 +123,8 @@ impl Candidates {
         }
     }
 
-    /// Looks at layer number `z`, which is `lower`, and at its edges along the axes. `upper` is the layer above; the last layer
-    /// has none.
+    /// Looks at layer number `z`, which is `lower`, and at its edges along the axes. `upper` is the
+    /// layer above; the last layer has none.
     fn look_at(
         &mut self,
         grid: &Grid,
@@ -229,13 +234,15 @@ pub(crate) fn spacing(bounds: &Bounds) -> f64 {
 
 /// Surveys `field` over `bounds`, on a grid of so many `dense` cells if there is such a number.
 ///
-/// Three kinds of candidates are tried: grid edges whose ends differ in sign, edges between whose ends f has the other sign (two
-/// sheets within a cell), and nodes whose first-order distance |f|/|∇f| is below the spacing (surfaces that f touches without
-/// changing sign, and sheets that no edge crosses). Every candidate is moved onto the surface by Newton's method and kept if it
+/// Three kinds of candidates are tried: grid edges whose ends differ in sign, edges between whose
+/// ends f has the other sign (two sheets within a cell), and nodes whose first-order distance
+/// |f|/|∇f| is below the spacing (surfaces that f touches without changing sign, and sheets that no
+/// edge crosses). Every candidate is moved onto the surface by Newton's method and kept if it
 /// converges nearby, which it does at no pole.
 ///
-/// The area follows from the edges by Cauchy's formula: an edge along an axis crosses the surface once in s² of
-/// projected area, so each crossing stands for s²/(|n_x| + |n_y| + |n_z|) of true area.
+/// The area follows from the edges by Cauchy's formula: an edge along an axis crosses the surface
+/// once in s² of projected area, so each crossing stands for s²/(|n_x| + |n_y| + |n_z|) of true
+/// area.
 pub(crate) fn survey(probe: &mut Probe, bounds: &Bounds, dense: Option<u32>) -> Survey {
     let grid = Grid::over(bounds, dense);
     let dense = dense.map(|_| Dense::new(probe, &grid));
@@ -319,8 +326,9 @@ fn project(probe: &mut Probe, bounds: &Bounds, starts: Starts, spacing: f32, out
     }
 }
 
-/// Moves the candidates onto the surface by the branches that give f there, if there are several. Of the distance to a box,
-/// √(max(u, 0)² + …) + min(max(u, …), 0), the root has no gradient where it is zero, and that is on the surface.
+/// Moves the candidates onto the surface by the branches that give f there, if there are several.
+/// Of the distance to a box, √(max(u, 0)² + …) + min(max(u, …), 0), the root has no gradient where
+/// it is zero, and that is on the surface.
 fn project_on_branches(
     probe: &mut Probe,
     bounds: &Bounds,
@@ -397,8 +405,8 @@ pub(crate) fn bare_size(spacing: f64) -> f64 {
     f64::from(LARGEST) * spacing
 }
 
-/// The median |∇f| at the candidates where f changes its sign, or at all if it nowhere does. Where f is small beside its gradient
-/// without a change of sign, both may be of any size.
+/// The median |∇f| at the candidates where f changes its sign, or at all if it nowhere does. Where
+/// f is small beside its gradient without a change of sign, both may be of any size.
 fn gradient_scale(probe: &mut Probe, start: &[Vec3], areas: &[Option<f32>]) -> f32 {
     let by_crossings = areas.iter().any(Option::is_some);
     let mut slopes = Vec::new();
@@ -420,8 +428,9 @@ impl Survey {
 
     /// Limits for the residual of particles on this surface.
     pub(crate) fn residual_limits(&self) -> ResidualLimits {
-        /// Share of the crowding, which is the distance of the nearest other sheet or up to twice that: a particle stays within a
-        /// fifth of the way there. Twice as much changes the seeds of 3 of 26 random surfaces of near sheets, half of it those of 4.
+        /// Share of the crowding, which is the distance of the nearest other sheet or up to twice
+        /// that: a particle stays within a fifth of the way there. Twice as much changes the seeds
+        /// of 3 of 26 random surfaces of near sheets, half of it those of 4.
         const SHARE: f32 = 0.1;
         let gap = self.nearness.map_or(f32::INFINITY, |near| near.gap as f32);
         ResidualLimits { finest: self.resolution, coarsest: SHARE * self.crowding.min(gap) }
@@ -438,7 +447,8 @@ impl Survey {
         Tolerance { residual, ..tolerance(0.0, ResidualLimits::UNLIMITED, self.gradient_scale) }
     }
 
-    /// Takes over the points that another search has `found`, where the survey has none, or its proof that there are none.
+    /// Takes over the points that another search has `found`, where the survey has none, or its
+    /// proof that there are none.
     pub(crate) fn adopt(
         &mut self,
         field: &mut dyn Evaluator,
@@ -474,9 +484,10 @@ impl Survey {
         Some(OrientedPoint { position: *self.position.get(i)?, normal: self.normal[i] })
     }
 
-    /// A point at which a random line through the box meets the surface; none if many lines miss it. It is anywhere on the surface with equal
-    /// probability (L. A. Santaló, "Integral Geometry and Geometric Probability", §14.3, 1976), and moves little when the surface does, which
-    /// a point of the survey does not.
+    /// A point at which a random line through the box meets the surface; none if many lines miss
+    /// it. It is anywhere on the surface with equal probability (L. A. Santaló, "Integral Geometry
+    /// and Geometric Probability", §14.3, 1976), and moves little when the surface does, which a
+    /// point of the survey does not.
     pub(crate) fn on_random_line(
         &self,
         probe: &mut Probe,
@@ -485,8 +496,9 @@ impl Survey {
     ) -> Option<OrientedPoint> {
         /// Lines that are tried. A third of them meet a surface that its box fits.
         const LINES: u32 = 64;
-        /// Least cosine of the angle between line and normal: 60°. Where a line grazes the surface, the point moves more than that. With half
-        /// of it and with 0 holes are 0.6 % wider in 104 runs on 52 random surfaces.
+        /// Least cosine of the angle between line and normal: 60°. Where a line grazes the surface,
+        /// the point moves more than that. With half of it and with 0 holes are 0.6 % wider in 104
+        /// runs on 52 random surfaces.
         const LEAST_COSINE: f32 = 0.5;
         let Tolerance { residual, min_gradient, .. } = self.tolerance();
         // One more step from there.
@@ -518,8 +530,8 @@ impl Survey {
         None
     }
 
-    /// Whether f comes to zero at a point of the survey and not to a pole, where |f|/|∇f| vanishes too: |f| grows away from a
-    /// zero and falls away from a pole.
+    /// Whether f comes to zero at a point of the survey and not to a pole, where |f|/|∇f| vanishes
+    /// too: |f| grows away from a zero and falls away from a pole.
     pub(crate) fn is_zero(&self, probe: &mut Probe, point: OrientedPoint) -> bool {
         let OrientedPoint { position: p, normal: n } = point;
         let step = POLE_PROBE * self.residual.max(self.resolution);
@@ -529,16 +541,19 @@ impl Survey {
     }
 }
 
-/// Largest distance at which f is looked at on either side of a point, as a share of the grid's spacing: it halves from there. For
-/// surfaces that only touch zero a sixth of it tells the same on 223 random surfaces.
+/// Largest distance at which f is looked at on either side of a point, as a share of the grid's
+/// spacing: it halves from there. For surfaces that only touch zero a sixth of it tells the same on
+/// 223 random surfaces.
 const LARGEST: f32 = 0.125;
-/// Number of points at which a median or a quartile is taken, which then rests on 12 of them. Half and twice as many at which the
-/// resolution is measured change no particle on 43 random surfaces.
+/// Number of points at which a median or a quartile is taken, which then rests on 12 of them. Half
+/// and twice as many at which the resolution is measured change no particle on 43 random surfaces.
 pub(super) const FEW: usize = 48;
-/// Number of points or particles that are looked at, spread over all: a share of them is that of all to 3 %. Half as many at which near
-/// sheets are looked for give the same particles in 72 runs on 36 random surfaces, many of which have some, twice as many others on one.
+/// Number of points or particles that are looked at, spread over all: a share of them is that of
+/// all to 3 %. Half as many at which near sheets are looked for give the same particles in 72 runs
+/// on 36 random surfaces, many of which have some, twice as many others on one.
 pub(crate) const SAMPLES: usize = 256;
-/// Distance, in resolutions, below which rounding may decide the sign of f: that at which sheets are told apart.
+/// Distance, in resolutions, below which rounding may decide the sign of f: that at which sheets
+/// are told apart.
 const NOISE: f32 = UNRESOLVED[0] as f32;
 
 /// At most so many of some values, spread over all of them.
@@ -546,16 +561,19 @@ fn selection<T>(all: &[T], most: usize) -> impl Iterator<Item = &T> {
     all.iter().step_by(all.len().div_ceil(most).max(1))
 }
 
-/// Two units in the last place of the largest coordinate in a box; positions themselves are rounded to half of one.
+/// Two units in the last place of the largest coordinate in a box; positions themselves are rounded
+/// to half of one.
 pub(super) fn ulps(bounds: &Bounds) -> f32 {
     let reach = bounds.min.iter().chain(&bounds.max).fold(0.0_f64, |m, c| m.max(c.abs())) as f32;
     2.0 * f32::EPSILON * reach
 }
 
-/// Finds out how near the surface particles have to be: by rounding, by sheets near each other, and whether f only touches zero.
+/// Finds out how near the surface particles have to be: by rounding, by sheets near each other, and
+/// whether f only touches zero.
 fn measure_precision(probe: &mut Probe, bounds: &Bounds, spacing: f32, out: &mut Survey) {
     out.resolution = ulps(bounds).max(rounding(probe, &out.position));
-    // A field without bounds is one through points, whose sheets are as far from each other as the points. It bends at each.
+    // A field without bounds is one through points, whose sheets are as far from each other as the
+    // points. It bends at each.
     out.crowding = f32::INFINITY;
     let mut is_facing_another = false;
     if probe.field.bounded().is_some() {
@@ -568,10 +586,12 @@ fn measure_precision(probe: &mut Probe, bounds: &Bounds, spacing: f32, out: &mut
     out.touches = !is_facing_another && touches(probe, out, LARGEST * spacing);
 }
 
-/// Looks for near sheets in double precision at a selection of the points. Returns whether more than half of these have one.
+/// Looks for near sheets in double precision at a selection of the points. Returns whether more
+/// than half of these have one.
 fn look_for_near_sheets(field: &mut dyn Evaluator, out: &mut Survey, spacing: f32) -> bool {
-    /// Largest distance, in grid spacings, at which the tolerance of particles depends on another sheet: a hundred times that to which
-    /// the survey's points land. Half and double give the same particles in 72 runs on 36 random surfaces, many of which have some.
+    /// Largest distance, in grid spacings, at which the tolerance of particles depends on another
+    /// sheet: a hundred times that to which the survey's points land. Half and double give the same
+    /// particles in 72 runs on 36 random surfaces, many of which have some.
     const MOST: f32 = 0.01;
     let points: Vec<DVec3> = selection(&out.position, SAMPLES).map(|p| p.as_dvec3()).collect();
     let (found, count) = nearest(field, points.iter().copied(), f64::from(MOST * spacing));
@@ -600,8 +620,8 @@ fn land_anew(probe: &mut Probe, out: &mut Survey) {
     }
 }
 
-/// Whether f has the same sign on both sides of most of a selection of the points, at `distance` and nearer: farther away there
-/// may be another sheet.
+/// Whether f has the same sign on both sides of most of a selection of the points, at `distance`
+/// and nearer: farther away there may be another sheet.
 fn touches(probe: &mut Probe, survey: &Survey, distance: f32) -> bool {
     let (mut same, mut seen) = (0, 0);
     let normals = selection(&survey.normal, FEW);
@@ -623,16 +643,18 @@ fn touches(probe: &mut Probe, survey: &Survey, distance: f32) -> bool {
     2 * same > seen
 }
 
-/// Looks for [`Survey::crowding`] at a selection of the points: for the sign that f has beyond another sheet. Of a plate with two
-/// sides the normals tell the sheets apart; so f has to have that sign on both sides, or its own again beyond.
+/// Looks for [`Survey::crowding`] at a selection of the points: for the sign that f has beyond
+/// another sheet. Of a plate with two sides the normals tell the sheets apart; so f has to have
+/// that sign on both sides, or its own again beyond.
 fn crowding(probe: &mut Probe, survey: &Survey, spacing: f32) -> f32 {
-    /// Distances, each half the one before, down to 10⁻⁵ of the grid's spacing. One of them lies between any two sheets of which the
-    /// farther one is twice as far.
+    /// Distances, each half the one before, down to 10⁻⁵ of the grid's spacing. One of them lies
+    /// between any two sheets of which the farther one is twice as far.
     const DISTANCES: usize = 14;
     let distances: [f32; DISTANCES] = core::array::from_fn(|k| LARGEST * spacing / (1_u32 << k) as f32);
     let mut least = f32::INFINITY;
     let mut points: Vec<Vec3> = selection(&survey.position, SAMPLES).copied().collect();
-    // The points may be as far from their sheets as those are from each other. One that cannot come nearer tells nothing.
+    // The points may be as far from their sheets as those are from each other. One that cannot come
+    // nearer tells nothing.
     let limits = Descent { residual: 2.0 * survey.resolution, reach: survey.residual, trust: 0.0 };
     let landed = probe.land_all(&mut points, survey.tolerance().min_gradient, limits, newton::STEPS);
     for (p, normal) in points.into_iter().zip(landed) {

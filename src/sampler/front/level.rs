@@ -1,4 +1,5 @@
-//! The state of a generation level, which both kinds of front share, and the trait of the steps in which they differ.
+//! The state of a generation level, which both kinds of front share, and the trait of the steps in
+//! which they differ.
 
 use crate::differential::Curvature;
 use crate::math::{Bounds, tangent_frame};
@@ -30,7 +31,8 @@ impl<'a> FrontContext<'a, '_> {
         self.sizing.expect("an adaptive run begins with a radius field")
     }
 
-    /// Calls a function with the context in which f is the smooth function of a patch, if there is one.
+    /// Calls a function with the context in which f is the smooth function of a patch, if there is
+    /// one.
     pub(crate) fn on<R>(&mut self, patch: Option<u32>, call: impl FnOnce(&mut FrontContext) -> R) -> R {
         let Self { probe, sizing, neighbours, particles } = self;
         call(&mut FrontContext { probe: &mut probe.on(patch), sizing: *sizing, neighbours, particles })
@@ -82,7 +84,8 @@ pub(super) struct Child {
     /// The slot of its parent.
     pub(super) slot: u32,
     pub(super) handle: GridHandle,
-    /// Distance to the nearest place at which the child would have collided when it was predicted, as far as that is known.
+    /// Distance to the nearest place at which the child would have collided when it was predicted,
+    /// as far as that is known.
     pub(super) clearance: f32,
 }
 
@@ -91,7 +94,8 @@ pub(super) struct Child {
 pub(crate) struct FrontLevel {
     /// The parent or the child that is next.
     pub(super) next: usize,
-    /// Index that the first child of this level has while it is provisional, and that the first one placed keeps.
+    /// Index that the first child of this level has while it is provisional, and that the first one
+    /// placed keeps.
     pub(super) first_child: usize,
     /// Particles before this index are final. Provisional children stand from here on.
     pub(crate) settled: usize,
@@ -128,7 +132,8 @@ impl FrontLevel {
         is_done
     }
 
-    /// Finds the particles of a patch around a place: of each layer of radii those within `reach` of its largest one.
+    /// Finds the particles of a patch around a place: of each layer of radii those within `reach`
+    /// of its largest one.
     pub(super) fn gather(
         &mut self,
         particles: &Particles,
@@ -142,8 +147,9 @@ impl FrontLevel {
         }
     }
 
-    /// Removes the particles on another sheet that face the same way as `parent` from those found around it. They stay in the
-    /// neighbour lists of the relaxation, which tells sheets apart by the normals alone.
+    /// Removes the particles on another sheet that face the same way as `parent` from those found
+    /// around it. They stay in the neighbour lists of the relaxation, which tells sheets apart by
+    /// the normals alone.
     pub(super) fn drop_strangers(
         &mut self,
         probe: &mut Probe,
@@ -186,8 +192,8 @@ impl FrontLevel {
     }
 }
 
-/// Whether two points that face the same way, the first at `position`, lie on one sheet: the pair is not doubtful, or the field
-/// between them says so.
+/// Whether two points that face the same way, the first at `position`, lie on one sheet: the pair
+/// is not doubtful, or the field between them says so.
 pub(super) fn is_on_sheet(
     rule: SheetRule,
     probe: &mut Probe,
@@ -217,7 +223,8 @@ impl ProvisionalChildren {
     }
 }
 
-/// The steps of a level in which uniform and adaptive fronts differ. [`Front`](super::Front) does the steps that are the same for both.
+/// The steps of a level in which uniform and adaptive fronts differ. [`Front`](super::Front) does
+/// the steps that are the same for both.
 pub(super) trait Placing {
     /// Forgets an earlier run, and prepares the grids.
     fn reset(&mut self, level: &mut FrontLevel, setup: &FrontSetup);
@@ -225,7 +232,8 @@ pub(super) trait Placing {
     /// Number of parents in the level; none if the front has come to its end.
     fn parents(&self) -> usize;
 
-    /// Makes a particle at a place a parent of the level that is about to begin. Returns the radius that a particle has there.
+    /// Makes a particle at a place a parent of the level that is about to begin. Returns the radius
+    /// that a particle has there.
     fn add_parent(&mut self, context: &mut FrontContext, place: Vec3, particle: usize) -> f32;
 
     /// Finds the free slots of a parent of the level and enters a provisional child in each.
@@ -239,7 +247,8 @@ pub(super) trait Placing {
         children: Range<usize>,
     );
 
-    /// Whether a child has room at its final place; if so, it is about to become the next settled particle.
+    /// Whether a child has room at its final place; if so, it is about to become the next settled
+    /// particle.
     fn has_room(
         &mut self,
         level: &mut FrontLevel,
@@ -275,8 +284,8 @@ pub(crate) struct SlotFrame {
 }
 
 impl SlotFrame {
-    /// The frame of a particle. That of one on a crease has its first axis in the direction in `along`, which has an entry for each of
-    /// them.
+    /// The frame of a particle. That of one on a crease has its first axis in the direction in
+    /// `along`, which has an entry for each of them.
     pub(crate) fn of(particles: &Particles, particle: usize, along: &[Vec3]) -> Self {
         let (p, n) = (particles.local[particle], particles.normal[particle]);
         let parent = particles.parent[particle];

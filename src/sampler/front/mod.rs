@@ -1,10 +1,12 @@
-//! The front of a run: the uniform one of paper §4 or the adaptive one of §5, and what fills the gaps behind it.
+//! The front of a run: the uniform one of paper §4 or the adaptive one of §5, and what fills the
+//! gaps behind it.
 //!
-//! A front grows in generation levels (`methods::grow`). Every parent of a level predicts its children,
-//! which get provisional places in the particle columns. All children are projected onto the surface,
-//! a batch at a time: this is where the front differs from the paper, which projects them one by one.
-//! Their fates are then decided in the order of the queue, and those that are placed close up over
-//! those that are not. The two kinds of front differ in how they place children ([`Placing`]).
+//! A front grows in generation levels (`methods::grow`). Every parent of a level predicts its
+//! children, which get provisional places in the particle columns. All children are projected onto
+//! the surface, a batch at a time: this is where the front differs from the paper, which projects
+//! them one by one. Their fates are then decided in the order of the queue, and those that are
+//! placed close up over those that are not. The two kinds of front differ in how they place
+//! children ([`Placing`]).
 
 mod adaptive;
 mod level;
@@ -25,9 +27,9 @@ use crate::sampler::sheet::{OrientedPoint, UNCOVERED, is_cover};
 use crate::spatial::Neighbour;
 use glam::Vec3;
 
-/// Largest sine of the angle by which the way to a child is predicted to dip below the tangent plane, or to rise above it. Beyond
-/// it the radius does not resolve the curvature. With half of it holes are 3 % wider in 156 runs on 39 random surfaces, with
-/// 0.99 1 %.
+/// Largest sine of the angle by which the way to a child is predicted to dip below the tangent
+/// plane, or to rise above it. Beyond it the radius does not resolve the curvature. With half of it
+/// holes are 3 % wider in 156 runs on 39 random surfaces, with 0.99 1 %.
 const MAX_DIP: f32 = 0.9;
 
 /// Sine of 60°.
@@ -109,8 +111,8 @@ impl Front {
         self.level.has_reached(parents)
     }
 
-    /// Projects the children of the level onto the surface (paper §4.3), as far as `left` of a budget
-    /// allows. Says whether all are projected.
+    /// Projects the children of the level onto the surface (paper §4.3), as far as `left` of a
+    /// budget allows. Says whether all are projected.
     pub(crate) fn project_children(&mut self, context: &mut FrontContext, left: &mut u32) -> bool {
         let children = self.level.children.list.len();
         while self.level.next < children && *left > 0 {
@@ -164,7 +166,8 @@ impl Front {
         level.children.clear();
     }
 
-    /// Adds a seed on a patch, between two levels. Says whether it could: an adaptive one needs a curvature.
+    /// Adds a seed on a patch, between two levels. Says whether it could: an adaptive one needs a
+    /// curvature.
     pub(crate) fn add_seed(
         &mut self,
         context: &mut FrontContext,
@@ -188,8 +191,8 @@ impl Front {
         true
     }
 
-    /// Takes in the rows of the particles on creases, which are the only ones so far: they are the parents of the first level. Each
-    /// has a direction along its crease in `along`.
+    /// Takes in the rows of the particles on creases, which are the only ones so far: they are the
+    /// parents of the first level. Each has a direction along its crease in `along`.
     pub(crate) fn add_creases(&mut self, context: &mut FrontContext, along: &[Vec3]) {
         let (level, placing) = self.parts();
         level.along.extend_from_slice(along);
@@ -207,8 +210,8 @@ impl Front {
         level.begin();
     }
 
-    /// Whether the last seed stayed alone and touches another particle, of whatever sheet: it is the far side of something too small
-    /// for the radius.
+    /// Whether the last seed stayed alone and touches another particle, of whatever sheet: it is
+    /// the far side of something too small for the radius.
     pub(crate) fn has_lone_seed(&mut self, particles: &Particles) -> bool {
         let is_seed = particles.parent.last() == Some(&Particles::NO_PARENT);
         if !is_seed || particles.len() <= particles.twins.len() {
@@ -246,13 +249,15 @@ impl Front {
         found
     }
 
-    /// Collects the particles on the patch of a `point` that face the same way and are so near that no front need start there.
+    /// Collects the particles on the patch of a `point` that face the same way and are so near that
+    /// no front need start there.
     fn gather_cover(&mut self, particles: &Particles, point: OrientedPoint, patch: Option<u32>) {
         self.level.gather(particles, patch, point.position, |largest| UNCOVERED * largest);
         self.level.found.retain(|near| is_cover(particles, near, point.normal));
     }
 
-    /// Whether a particle of the sheet of a `point` is so near that no front need start there. `patch` is that of the point.
+    /// Whether a particle of the sheet of a `point` is so near that no front need start there.
+    /// `patch` is that of the point.
     pub(crate) fn is_covered(
         &mut self,
         probe: &mut Probe,
@@ -265,8 +270,8 @@ impl Front {
         self.level.rule.is_near_own(probe, particles, point, &self.level.found, spacing)
     }
 
-    /// The particles on the patch of a `point` that face the same way and are so near that no front need start there, the nearest
-    /// first.
+    /// The particles on the patch of a `point` that face the same way and are so near that no front
+    /// need start there, the nearest first.
     pub(crate) fn list_cover(
         &mut self,
         particles: &Particles,

@@ -1,5 +1,5 @@
-//! Grids for particles of different radii. Each range of radii has a layer with cells of its own size, so that a query
-//! among small particles does not read cells made for large ones.
+//! Grids for particles of different radii. Each range of radii has a layer with cells of its own
+//! size, so that a query among small particles does not read cells made for large ones.
 
 use crate::math::larger;
 use crate::sampler::neighbours::constants::CELL_PER_REACH;
@@ -7,12 +7,13 @@ use crate::spatial::chains::Chains;
 use crate::spatial::{CellGrid, CellHandle, Neighbour};
 use glam::Vec3;
 
-/// Ratio of the largest to the smallest radius of a layer. On a tanglecube with radii in the ratio 1 : 16 the front
-/// takes 2.7 µs per particle with 4, 2.75 µs with 2, and 4.5 µs with one grid for all radii.
+/// Ratio of the largest to the smallest radius of a layer. On a tanglecube with radii in the ratio
+/// 1 : 16 the front takes 2.7 µs per particle with 4, 2.75 µs with 2, and 4.5 µs with one grid for
+/// all radii.
 const RATIO: f32 = 4.0;
 
-/// Largest number of layers: 4⁶ is more than the ratio of the largest radius that is accepted to the smallest, 2,000. The last
-/// one holds all larger radii too.
+/// Largest number of layers: 4⁶ is more than the ratio of the largest radius that is accepted to
+/// the smallest, 2,000. The last one holds all larger radii too.
 const MAX_LAYERS: usize = 6;
 
 /// The radii of a set of particles.
@@ -65,7 +66,8 @@ impl Layers {
         layers
     }
 
-    /// Returns the sides of the cells of each layer, for queries that usually have the radius `reach` among particles of a radius.
+    /// Returns the sides of the cells of each layer, for queries that usually have the radius
+    /// `reach` among particles of a radius.
     fn sides(&self, reach: impl Fn(f32) -> f32) -> impl Iterator<Item = f32> {
         self.middle[..self.count].iter().map(move |&middle| CELL_PER_REACH * reach(middle))
     }
@@ -105,7 +107,8 @@ pub(crate) struct RadiusGrids {
 }
 
 impl RadiusGrids {
-    /// Empties the grids for particles with these radii; the usual query has the radius `reach` among particles of a radius.
+    /// Empties the grids for particles with these radii; the usual query has the radius `reach`
+    /// among particles of a radius.
     pub(crate) fn reset(&mut self, radii: RadiusRange, reach: impl Fn(f32) -> f32) {
         self.layers = Layers::between(radii);
         self.grids.truncate(self.layers.count);
@@ -139,7 +142,8 @@ impl RadiusGrids {
         self.grids[held.layer as usize].update(held.place, position, index);
     }
 
-    /// Replaces `found` by the particles near `centre`: in each layer those within `reach` of its largest radius.
+    /// Replaces `found` by the particles near `centre`: in each layer those within `reach` of its
+    /// largest radius.
     pub(crate) fn gather(&self, centre: Vec3, reach: impl Fn(f32) -> f32, found: &mut Vec<Neighbour>) {
         found.clear();
         for (grid, &largest) in self.grids.iter().zip(&self.layers.largest) {
@@ -152,7 +156,8 @@ impl RadiusGrids {
     }
 }
 
-/// Linked lists of particles by layer and cell. They hold indices alone; the particles stay in their columns.
+/// Linked lists of particles by layer and cell. They hold indices alone; the particles stay in
+/// their columns.
 #[derive(Clone, Default)]
 pub(crate) struct RadiusChains {
     chains: Chains,
@@ -160,7 +165,8 @@ pub(crate) struct RadiusChains {
 }
 
 impl RadiusChains {
-    /// Empties the lists for up to `particles` particles with these radii; the usual query reaches `reach` radii.
+    /// Empties the lists for up to `particles` particles with these radii; the usual query reaches
+    /// `reach` radii.
     pub(crate) fn reset(&mut self, radii: RadiusRange, reach: f32, particles: usize) {
         self.layers = Layers::between(radii);
         self.chains.reset(self.layers.sides(|radius| reach * radius), particles);
@@ -171,8 +177,8 @@ impl RadiusChains {
         self.chains.insert(layer, position, index);
     }
 
-    /// Returns the particles in the layer of `radius` that were put into the cell of `position`, are in it now and pass
-    /// `meant`.
+    /// Returns the particles in the layer of `radius` that were put into the cell of `position`,
+    /// are in it now and pass `meant`.
     pub(crate) fn beside(
         &self,
         positions: &[Vec3],
@@ -183,7 +189,8 @@ impl RadiusChains {
         self.chains.beside(positions, self.layers.of(radius), position, meant)
     }
 
-    /// Visits the particles near a box: in each layer all within `reach` of its largest radius, and some beyond.
+    /// Visits the particles near a box: in each layer all within `reach` of its largest radius, and
+    /// some beyond.
     pub(crate) fn visit(&mut self, bounds: [Vec3; 2], reach: impl Fn(f32) -> f32, visit: impl FnMut(u32)) {
         self.chains.visit(bounds, self.layers.largest.iter().map(|&largest| reach(largest)), visit);
     }

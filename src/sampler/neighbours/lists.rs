@@ -1,8 +1,8 @@
 //! Renewal of neighbour lists (Verlet lists): which of them are stale, and how they are made anew.
 //!
-//! A list reaches farther than the repulsion, by a *skin*. It holds every neighbour in range until its particle has
-//! travelled half of that skin; then it is *stale*. Stale lists are renewed for a group of particles in one cell at a
-//! time, because these share most of their neighbours.
+//! A list reaches farther than the repulsion, by a *skin*. It holds every neighbour in range until
+//! its particle has travelled half of that skin; then it is *stale*. Stale lists are renewed for a
+//! group of particles in one cell at a time, because these share most of their neighbours.
 
 use crate::math::{larger, refill};
 use crate::particles::Particles;
@@ -11,11 +11,12 @@ use crate::sampler::neighbours::grids::{RadiusChains, RadiusRange};
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use glam::{BVec4A, Vec4};
 
-/// Largest number of particles whose lists are renewed together. It limits the candidates of a list; half and double give the
-/// same particles.
+/// Largest number of particles whose lists are renewed together. It limits the candidates of a
+/// list; half and double give the same particles.
 const GROUP: usize = 32;
 
-/// Distance that a particle has travelled since its list was made, or one of two marks beyond all distances.
+/// Distance that a particle has travelled since its list was made, or one of two marks beyond all
+/// distances.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 struct Travel(f32);
 
@@ -43,7 +44,8 @@ pub(crate) struct NeighbourLists {
     grid: RadiusChains,
     /// Two particles are listed if their distance is at most this share of the sum of their radii.
     share: f32,
-    /// Largest distance that a particle can have travelled since it was put into the grid; infinite if none is in it.
+    /// Largest distance that a particle can have travelled since it was put into the grid; infinite
+    /// if none is in it.
     grid_travel: f32,
     /// Largest distance that a particle has travelled in the move under way.
     farthest: f32,
@@ -68,7 +70,8 @@ impl NeighbourLists {
         self.farthest = 0.0;
     }
 
-    /// Keeps the state of those particles that have a new row. Those that came after them have stale lists.
+    /// Keeps the state of those particles that have a new row. Those that came after them have
+    /// stale lists.
     pub(crate) fn keep(&mut self, rows: &[u32], none: u32) {
         let known = self.travel.len();
         self.has_stale |= rows.len() > known;
@@ -94,7 +97,8 @@ impl NeighbourLists {
         self.has_stale
     }
 
-    /// Adds to the travelled distance of particle `i`, and marks its list as stale if that exceeds `limit`.
+    /// Adds to the travelled distance of particle `i`, and marks its list as stale if that exceeds
+    /// `limit`.
     ///
     /// `distance` is what it has moved; `more` is what the growth of its radius counts for.
     pub(crate) fn add_travel(&mut self, i: usize, distance: f32, more: f32, limit: f32) {
@@ -105,14 +109,15 @@ impl NeighbourLists {
         self.travel[i] = if is_stale { Travel::STALE } else { Travel(travelled) };
     }
 
-    /// Ends a move of all particles. Returns whether none can have left its cell of the grid by more than `slack`.
+    /// Ends a move of all particles. Returns whether none can have left its cell of the grid by
+    /// more than `slack`.
     pub(crate) fn end_move(&mut self, slack: f32) -> bool {
         self.grid_travel += core::mem::take(&mut self.farthest);
         self.grid_travel < slack
     }
 
-    /// Empties the grid for this many particles. Those within `reach` mean radii will be listed, and before the grid is emptied
-    /// again they may move by `slack` more.
+    /// Empties the grid for this many particles. Those within `reach` mean radii will be listed,
+    /// and before the grid is emptied again they may move by `slack` more.
     pub(crate) fn empty_grid(&mut self, radii: RadiusRange, reach: f32, slack: f32, particles: usize) {
         self.grid.reset(radii, reach + slack, particles);
         self.share = 0.5 * reach;
@@ -129,11 +134,11 @@ impl NeighbourLists {
         pairs.drop_far(|i| self.is_stale(i));
     }
 
-    /// Renews the list of particle `i` and other stale lists in its cell. Returns the particles whose lists were
-    /// renewed.
+    /// Renews the list of particle `i` and other stale lists in its cell. Returns the particles
+    /// whose lists were renewed.
     ///
-    /// A list holds the particles of the same sheet and of a smaller index within the reach. Particles of a larger
-    /// index get `i` into their own lists.
+    /// A list holds the particles of the same sheet and of a smaller index within the reach.
+    /// Particles of a larger index get `i` into their own lists.
     pub(crate) fn renew(&mut self, pairs: &mut PackedNeighbours, particles: &Particles, i: usize) -> &[u32] {
         self.gather(particles, i);
         for k in 0..self.group.len() {
@@ -192,7 +197,8 @@ impl NeighbourLists {
                 if count == found.len() {
                     found.push(0);
                 }
-                // The index is written in any case: a branch is mispredicted for every other particle.
+                // The index is written in any case: a branch is mispredicted for every other
+                // particle.
                 found[count] = index;
                 count += usize::from(beyond.length_squared() <= reach * reach);
             },
@@ -215,7 +221,8 @@ impl NeighbourLists {
         self.found.resize(self.chunks.len() * CHUNK, 0);
     }
 
-    /// Finds the neighbours of particle `i` of the group, itself among them, in what [`Self::gather`] has collected.
+    /// Finds the neighbours of particle `i` of the group, itself among them, in what
+    /// [`Self::gather`] has collected.
     #[inline]
     fn find(&mut self, particles: &Particles, i: usize) {
         let (p, n, radius) = (particles.local[i], particles.normal[i], particles.radius[i]);

@@ -1,4 +1,5 @@
-//! Neighbour search among particles: grids for the fronts, and the neighbour lists of the relaxation.
+//! Neighbour search among particles: grids for the fronts, and the neighbour lists of the
+//! relaxation.
 
 pub(crate) mod constants;
 pub(crate) mod grids;

@@ -1,4 +1,5 @@
-//! Neighbour lists of the relaxation, 16 bytes for each particle: every pair is stored once, with the larger index.
+//! Neighbour lists of the relaxation, 16 bytes for each particle: every pair is stored once, with
+//! the larger index.
 
 use crate::math::push_gently;
 use crate::sampler::neighbours::constants::{FULL_COSINE, LISTED_COSINE};
@@ -6,23 +7,25 @@ use crate::sampler::probe::BATCH;
 use crate::spatial::Neighbour;
 use core::ops::Range;
 
-/// Neighbours that a list has room for. In a lattice a particle has 6 to 12 neighbours within the reach of the
-/// relaxation, half of them with a smaller index; one particle in a hundred has more than eight of these.
+/// Neighbours that a list has room for. In a lattice a particle has 6 to 12 neighbours within the
+/// reach of the relaxation, half of them with a smaller index; one particle in a hundred has more
+/// than eight of these.
 pub(crate) const ROOM: usize = 8;
 
 /// The neighbour lists of all particles.
 ///
-/// A neighbour is stored as the difference of the indices. The front numbers particles level by level, so neighbours
-/// are of the same level or of one shortly before, and the difference fits into 16 bits. Other pairs are *far* pairs
-/// and are stored with both indices.
+/// A neighbour is stored as the difference of the indices. The front numbers particles level by
+/// level, so neighbours are of the same level or of one shortly before, and the difference fits
+/// into 16 bits. Other pairs are *far* pairs and are stored with both indices.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PackedNeighbours {
     /// Differences of the indices to those of the neighbours; 0 after the last.
     near: Vec<[u16; ROOM]>,
-    /// Larger and smaller index of the far pairs: in crowds, whose lists are full, and where two fronts meet whose
-    /// indices are far apart.
+    /// Larger and smaller index of the far pairs: in crowds, whose lists are full, and where two
+    /// fronts meet whose indices are far apart.
     far: Vec<[u32; 2]>,
-    /// Whether a particle of each block may have a pair of a weight below 1: those of a block land in one batch.
+    /// Whether a particle of each block may have a pair of a weight below 1: those of a block land
+    /// in one batch.
     is_weighted: Vec<bool>,
 }
 
@@ -38,8 +41,8 @@ impl PackedNeighbours {
         self.near.reserve_exact(particles.saturating_sub(self.near.len()));
     }
 
-    /// Notes that particle `i` may have a pair of a weight below 1: its normal may differ from a neighbour's by more
-    /// than 60°.
+    /// Notes that particle `i` may have a pair of a weight below 1: its normal may differ from a
+    /// neighbour's by more than 60°.
     #[cold]
     pub(crate) fn note_weighted(&mut self, i: usize) {
         let block = i / BATCH;
@@ -71,8 +74,8 @@ impl PackedNeighbours {
         self.far.retain(|pair| (pair[0] as usize) < len);
     }
 
-    /// Keeps the lists of those particles that have a new row, and in them the particles that have one. The rows ascend; `none` marks a
-    /// particle without.
+    /// Keeps the lists of those particles that have a new row, and in them the particles that have
+    /// one. The rows ascend; `none` marks a particle without.
     pub(crate) fn keep(&mut self, rows: &[u32], none: u32) {
         let weighted = core::mem::take(&mut self.is_weighted);
         let mut kept = 0;
@@ -99,7 +102,8 @@ impl PackedNeighbours {
         self.near.resize(len.max(self.near.len()), [0; ROOM]);
     }
 
-    /// Appends the list of the next particle: the `candidates`, all of a smaller index, that are paired with `true`.
+    /// Appends the list of the next particle: the `candidates`, all of a smaller index, that are
+    /// paired with `true`.
     #[inline]
     pub(crate) fn push(&mut self, candidates: impl IntoIterator<Item = (u32, bool)>) {
         let i = self.near.len();
@@ -107,8 +111,9 @@ impl PackedNeighbours {
         self.fill(i, candidates);
     }
 
-    /// Appends the list of the next particle: those `found` of which `read` says that they are near and of a smaller index, and whose
-    /// normals do not face away. `read` gives the cosine of the two normals, too.
+    /// Appends the list of the next particle: those `found` of which `read` says that they are near
+    /// and of a smaller index, and whose normals do not face away. `read` gives the cosine of the
+    /// two normals, too.
     #[inline]
     pub(crate) fn list(&mut self, found: &[Neighbour], mut read: impl FnMut(&Neighbour) -> (bool, f32)) {
         let mut is_weighted = false;
@@ -123,8 +128,8 @@ impl PackedNeighbours {
         }
     }
 
-    /// Replaces the list of particle `i`, which must have no [far](Self::far) pairs, by the `candidates` that are
-    /// paired with `true`.
+    /// Replaces the list of particle `i`, which must have no [far](Self::far) pairs, by the
+    /// `candidates` that are paired with `true`.
     #[inline]
     pub(crate) fn fill(&mut self, i: usize, candidates: impl IntoIterator<Item = (u32, bool)>) {
         let mut list = [0; ROOM + 1];
@@ -143,8 +148,8 @@ impl PackedNeighbours {
         self.near[i].copy_from_slice(&list[..ROOM]);
     }
 
-    /// Adds `j` to the list of particle `i`, unless it is in it. The two must not be a [far](Self::far) pair: a renewal
-    /// drops those of `j` first.
+    /// Adds `j` to the list of particle `i`, unless it is in it. The two must not be a
+    /// [far](Self::far) pair: a renewal drops those of `j` first.
     pub(crate) fn insert(&mut self, i: usize, j: u32) {
         let back = i as u32 - j;
         if let Ok(back) = u16::try_from(back) {
@@ -162,7 +167,8 @@ impl PackedNeighbours {
         self.far.retain(|pair| !pair.iter().any(|&i| is_renewed(i as usize)));
     }
 
-    /// Returns the neighbours of particle `i` that have a smaller index, without those of far pairs.
+    /// Returns the neighbours of particle `i` that have a smaller index, without those of far
+    /// pairs.
     pub(crate) fn near(&self, i: usize) -> impl Iterator<Item = usize> {
         self.near[i].iter().take_while(|&&back| back != 0).map(move |&back| i - usize::from(back))
     }

@@ -15,25 +15,31 @@ use crate::sampler::constraint::CreaseLadder;
 use core::slice;
 use glam::Vec3;
 
-/// Match tolerance of a coarse front. It places fewer particles where grains meet than the paper's front does, whose relaxation
-/// cannot remove one. With the paper's 0.7 the figures of 180 random surfaces are the same within noise, but beside the tip of a narrow cone a
-/// particle stands 2.1 spacings from it.
+/// Match tolerance of a coarse front. It places fewer particles where grains meet than the paper's
+/// front does, whose relaxation cannot remove one. With the paper's 0.7 the figures of 180 random
+/// surfaces are the same within noise, but beside the tip of a narrow cone a particle stands 2.1
+/// spacings from it.
 pub(crate) const MATCH_TOLERANCE: f64 = 0.8;
 
-/// Radius of a coarse front over that of its share of the particles, of which it places fewer where its grains meet. What it is off by is made
-/// up for at the first level. With 1, 0.7 points fewer of the particles have six neighbours on 36 closed random surfaces and 1.1 on 36 that a box
-/// cuts; with 0.9 the closest pair on 36 solids is at 0.65 in place of 0.69.
+/// Radius of a coarse front over that of its share of the particles, of which it places fewer where
+/// its grains meet. What it is off by is made up for at the first level. With 1, 0.7 points fewer
+/// of the particles have six neighbours on 36 closed random surfaces and 1.1 on 36 that a box cuts;
+/// with 0.9 the closest pair on 36 solids is at 0.65 in place of 0.69.
 pub(crate) const FRONT_RADIUS: f64 = 0.95;
 
 /// Largest number of halvings: with it a million particles come from 240.
 const MAX_LEVELS: u32 = 6;
-/// Largest product of coarse spacing and curvature. On 40 closed random surfaces half of it makes the share of particles with six neighbours
-/// 0.3 points smaller and double 0.2 points larger; on 40 that a box cuts it is the other way, and with double angles are 0.2° smaller. With 3.2, a
-/// small ball beside a large one gets a seventh fewer particles than are due to it: so few do not know its area.
+/// Largest product of coarse spacing and curvature. On 40 closed random surfaces half of it makes
+/// the share of particles with six neighbours 0.3 points smaller and double 0.2 points larger; on
+/// 40 that a box cuts it is the other way, and with double angles are 0.2° smaller. With 3.2, a
+/// small ball beside a large one gets a seventh fewer particles than are due to it: so few do not
+/// know its area.
 const MAX_BEND: f64 = 0.9;
-/// Largest product of spacing and curvature for a front that is refined once, or healed at full resolution: beyond it an edge spans half a turn.
-/// With half of it the share of particles with six neighbours is 2.5 and 1.4 points smaller on 40 strongly bent random surfaces with 2,500 and
-/// 4,000 particles; with twice as much one more is refined, with an Euler number that is not the front's.
+/// Largest product of spacing and curvature for a front that is refined once, or healed at full
+/// resolution: beyond it an edge spans half a turn. With half of it the share of particles with six
+/// neighbours is 2.5 and 1.4 points smaller on 40 strongly bent random surfaces with 2,500 and
+/// 4,000 particles; with twice as much one more is refined, with an Euler number that is not the
+/// front's.
 const MAX_BEND_LEAST: f64 = 3.2;
 
 /// Largest curvature at each of some points of the surface; infinite where there is none.
@@ -51,8 +57,9 @@ pub(crate) fn largest_curvatures(field: &mut dyn Evaluator, points: &[Vec3]) -> 
     curvature.iter().map(largest).collect()
 }
 
-/// Number of times that a front can be refined that has `count` particles in the end, where the spacing times the largest curvature
-/// is `bend`; 0 if order is made at full resolution, and `None` if it cannot be made.
+/// Number of times that a front can be refined that has `count` particles in the end, where the
+/// spacing times the largest curvature is `bend`; 0 if order is made at full resolution, and `None`
+/// if it cannot be made.
 pub(crate) fn halvings(bend: f64, count: f64) -> Option<u32> {
     let particles = |halvings: u32| count / f64::from(1_u32 << (2 * halvings));
     let is_large = |halvings: &u32| particles(*halvings) >= f64::from(LEAST_PARTICLES);
@@ -73,13 +80,15 @@ pub(super) fn triangles(particles: &Particles, bounds: &Bounds) -> Result<Vec<[u
 
 /// A part of a front that is refined by itself: a component of the surface, or a patch of it.
 pub(super) struct FrontPart<'a> {
-    /// The particles; where the surface has creases those on them come first, and `twins` has their numbers.
+    /// The particles; where the surface has creases those on them come first, and `twins` has their
+    /// numbers.
     pub(super) particles: &'a Particles,
     pub(super) triangles: &'a [[u32; 3]],
     pub(super) patch: Option<u32>,
 }
 
-/// The surface between the particles of a part of a front, clipped by the box. Particles in no triangle are left out.
+/// The surface between the particles of a part of a front, clipped by the box. Particles in no
+/// triangle are left out.
 pub(super) fn join(ground: &mut Ground, part: &FrontPart, surface: &SurfaceFacts) -> Result<Net, Refusal> {
     let &FrontPart { particles, triangles, .. } = part;
     let &SurfaceFacts { ref bounds, ladder, .. } = surface;
@@ -106,8 +115,9 @@ pub(super) fn join(ground: &mut Ground, part: &FrontPart, surface: &SurfaceFacts
     Ok(net)
 }
 
-/// Gives a particle on a crease a vertex for each of the fans of triangles around it: where a patch touches itself there are several.
-/// Returns the row of each vertex, which for the first ones is their own number.
+/// Gives a particle on a crease a vertex for each of the fans of triangles around it: where a patch
+/// touches itself there are several. Returns the row of each vertex, which for the first ones is
+/// their own number.
 fn split_fans(triangles: &mut [[u32; 3]], particles: &Particles) -> Vec<u32> {
     let mut rows: Vec<u32> = (0..particles.len() as u32).collect();
     let on_creases = particles.twins.len();
@@ -162,7 +172,8 @@ fn judge_triangles(joined: &Triangulation, particles: &Particles, bounds: &Bound
     if let Some(v) = joined.unfilled.iter().flatten().copied().find(is_inside) {
         return Err(doubtful(particles, v));
     }
-    // The only particle of a component, say. Without this 19 of 60 random solids beside a small ball lose the ball.
+    // The only particle of a component, say. Without this 19 of 60 random solids beside a small
+    // ball lose the ball.
     let is_seed = |&v: &u32| particles.parent[v as usize] == Particles::NO_PARENT;
     if let Some(v) = left_out.find(is_seed) {
         return Err(doubtful(particles, v));

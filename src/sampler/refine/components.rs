@@ -1,12 +1,15 @@
-//! The components of a surface, each of which is refined as often as its own curvature and size allow.
+//! The components of a surface, each of which is refined as often as its own curvature and size
+//! allow.
 //!
-//! A first front covers all of them, with the radius at which each comes out well: the one that bends most, or is smallest,
-//! decides. For each component that may be coarser another front grows from one of its particles. The components are then refined
-//! level by level, the coarsest first. Without those fronts 2.3 points fewer of the particles of 40 random bodies beside a small ball have six
-//! neighbours, and where sizes differ 15 of 40 are refused.
+//! A first front covers all of them, with the radius at which each comes out well: the one that
+//! bends most, or is smallest, decides. For each component that may be coarser another front grows
+//! from one of its particles. The components are then refined level by level, the coarsest first.
+//! Without those fronts 2.3 points fewer of the particles of 40 random bodies beside a small ball
+//! have six neighbours, and where sizes differ 15 of 40 are refused.
 //!
-//! Where the surface has creases, each patch takes the place of a component. All are refined equally often, and have their particles on
-//! creases from one [`CreaseLadder`], so that they fit together at every level.
+//! Where the surface has creases, each patch takes the place of a component. All are refined
+//! equally often, and have their particles on creases from one [`CreaseLadder`], so that they fit
+//! together at every level.
 
 use super::coarse::{self, FrontPart, halvings, largest_curvatures};
 use super::refusal::Refusal;
@@ -26,8 +29,8 @@ struct AcceptedComponent {
     refinement: Refinement,
     /// Share of the particles that the component should have, relative to the other components.
     weight: f64,
-    /// The particles of the last finished level, or of the front. Those on creases come first, and `twins` has their numbers in the
-    /// [`CreaseLadder`].
+    /// The particles of the last finished level, or of the front. Those on creases come first, and
+    /// `twins` has their numbers in the [`CreaseLadder`].
     particles: Particles,
 }
 
@@ -48,8 +51,8 @@ pub(crate) struct SurfaceFacts<'a> {
     pub(crate) ladder: Option<&'a CreaseLadder>,
     /// Point of the surface with the largest curvature.
     pub(crate) bend: Vec3,
-    /// Number of refinements that could not go on. Each takes one level from every component that is tried anew, so that there is
-    /// an end to the attempts.
+    /// Number of refinements that could not go on. Each takes one level from every component that
+    /// is tried anew, so that there is an end to the attempts.
     pub(crate) failures: u32,
 }
 
@@ -80,8 +83,8 @@ pub(crate) enum Next {
 }
 
 impl CoarseFronts {
-    /// The particles known of the component that the next front covers alone, from the first of which it grows; none if it covers all
-    /// components.
+    /// The particles known of the component that the next front covers alone, from the first of
+    /// which it grows; none if it covers all components.
     pub(crate) fn known(&self) -> Option<&Particles> {
         self.candidates.last().map(|candidate| &self.components[candidate.component].particles)
     }
@@ -93,8 +96,8 @@ impl CoarseFronts {
         (!first.is_empty()).then_some(first)
     }
 
-    /// Takes in a front that has ended. `target` says how it is to be refined. When no front is left to try, `particles` become
-    /// those of the first front again.
+    /// Takes in a front that has ended. `target` says how it is to be refined. When no front is
+    /// left to try, `particles` become those of the first front again.
     ///
     /// # Errors
     ///
@@ -113,7 +116,8 @@ impl CoarseFronts {
         if let Some(candidate) = self.candidates.last() {
             return Ok(Next::Front(candidate.halvings));
         }
-        // Sizes that differ are healed at full resolution beside coarser components only: alone, pairs and holes may come out worse.
+        // Sizes that differ are healed at full resolution beside coarser components only: alone,
+        // pairs and holes may come out worse.
         let is_whole = |component: &AcceptedComponent| component.refinement.target.halvings == 0;
         if surface.sizing.is_some() && self.components.iter().all(is_whole) {
             return Err(surface.bent());
@@ -276,7 +280,8 @@ struct Parts {
     place: Vec<u32>,
 }
 
-/// Gathers the particles of each part, in their order; those on creases keep their first rows of all particles.
+/// Gathers the particles of each part, in their order; those on creases keep their first rows of
+/// all particles.
 fn gather(particles: &Particles, part_of: impl Iterator<Item = usize>) -> Parts {
     let mut parts = Parts { particles: Vec::new(), place: Vec::with_capacity(particles.len()) };
     for (i, part) in part_of.enumerate() {
@@ -404,7 +409,8 @@ impl Components {
     }
 }
 
-/// Places of the rows of a component among those of all: `crease` is that of its first row on a crease, `inner` of its first other row.
+/// Places of the rows of a component among those of all: `crease` is that of its first row on a
+/// crease, `inner` of its first other row.
 #[derive(Clone, Copy, Debug)]
 struct RowPlaces {
     on_creases: u32,
@@ -431,8 +437,8 @@ impl RowPlaces {
     }
 }
 
-/// The particles of all components in one set of columns, for a level with so many to come: first those on creases of all patches, then
-/// the others.
+/// The particles of all components in one set of columns, for a level with so many to come: first
+/// those on creases of all patches, then the others.
 fn joined(components: &[AcceptedComponent], to_come: u32, ladder: Option<&CreaseLadder>) -> Particles {
     let places = RowPlaces::of(components);
     let (mut joint, mut patches) = (Particles::default(), Vec::new());
@@ -459,7 +465,8 @@ fn joined(components: &[AcceptedComponent], to_come: u32, ladder: Option<&Crease
     joint
 }
 
-/// Names the first row of every particle on a crease in place of its number, and the pairs of rows that follow each other at this level.
+/// Names the first row of every particle on a crease in place of its number, and the pairs of rows
+/// that follow each other at this level.
 fn join_creases(particles: &mut Particles, to_come: u32, ladder: &CreaseLadder) {
     let mut first = vec![NONE; ladder.len()];
     for (row, twin) in (0..).zip(&mut particles.twins) {

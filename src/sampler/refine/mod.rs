@@ -1,22 +1,26 @@
-//! The refinement of a coarse front: order is made where particles are few, and kept where they are many.
+//! The refinement of a coarse front: order is made where particles are few, and kept where they are
+//! many.
 //!
-//! A front freezes the seams in where its grains meet, and no relaxation of all its particles mends them. But dividing every face
-//! of a mesh into four adds no defect: old particles keep their neighbours, and those on the middles of edges have six. So the
-//! front marches with a radius 2ᵏ times as large, is joined to a mesh and brought into order there, where a few hundred particles
+//! A front freezes the seams in where its grains meet, and no relaxation of all its particles mends
+//! them. But dividing every face of a mesh into four adds no defect: old particles keep their
+//! neighbours, and those on the middles of edges have six. So the front marches with a radius 2ᵏ
+//! times as large, is joined to a mesh and brought into order there, where a few hundred particles
 //! cost next to nothing; and then every edge is halved, k times, with a few sweeps at each level.
 //!
-//! * *Sweeps* move every particle by the springs to its neighbours, in the manner of Gauss and Seidel, and edges are flipped to
-//!   those of Delaunay.
-//! * *Surgery* tries one particle more or one fewer beside a defect. On a curved surface an even lattice has scars, lines of
-//!   particles with five and seven neighbours in turn, that grow as the spacing shrinks: M. J. Bowick, D. R. Nelson and A.
-//!   Travesset, "Interacting topological defects on frozen topographies", Physical Review B 62, 2000. Surgery makes and removes
-//!   them where that lowers the energy. Early rounds also accept a loss, so that a scar can leave a bad place: G. Dueck and T.
-//!   Scheuer, "Threshold accepting", Journal of Computational Physics 90, 1990.
-//! * *Lloyd's method*, at the last level of one size and near defects only, evens out the cells that the springs leave too small at fives and
-//!   too large at sevens: Q. Du, V. Faber and M. Gunzburger, "Centroidal Voronoi Tessellations", SIAM Review 41(4), 1999.
+//! * *Sweeps* move every particle by the springs to its neighbours, in the manner of Gauss and
+//!   Seidel, and edges are flipped to those of Delaunay.
+//! * *Surgery* tries one particle more or one fewer beside a defect. On a curved surface an even
+//!   lattice has scars, lines of particles with five and seven neighbours in turn, that grow as the
+//!   spacing shrinks: M. J. Bowick, D. R. Nelson and A. Travesset, "Interacting topological defects
+//!   on frozen topographies", Physical Review B 62, 2000. Surgery makes and removes them where that
+//!   lowers the energy. Early rounds also accept a loss, so that a scar can leave a bad place: G.
+//!   Dueck and T. Scheuer, "Threshold accepting", Journal of Computational Physics 90, 1990.
+//! * *Lloyd's method*, at the last level of one size and near defects only, evens out the cells
+//!   that the springs leave too small at fives and too large at sevens: Q. Du, V. Faber and M.
+//!   Gunzburger, "Centroidal Voronoi Tessellations", SIAM Review 41(4), 1999.
 //!
-//! Everything is in single precision and in a fixed order: the same bits natively and in WebAssembly, however a run is cut into
-//! steps.
+//! Everything is in single precision and in a fixed order: the same bits natively and in
+//! WebAssembly, however a run is cut into steps.
 
 mod border;
 mod coarse;
@@ -49,18 +53,21 @@ use rings::Rings;
 use surgery::{Aim, Surgeon};
 use tally::Tally;
 
-/// Rounds in which the spacing and the number of edges on the border are found from each other. Each leaves of the error half the share
-/// that edges of the border have among the faces: with one in ten, four leave 10⁻⁵ of it.
+/// Rounds in which the spacing and the number of edges on the border are found from each other.
+/// Each leaves of the error half the share that edges of the border have among the faces: with one
+/// in ten, four leave 10⁻⁵ of it.
 const BORDER_ROUNDS: u32 = 4;
 
-/// Units that a trial of surgery counts for. On random surfaces one takes 83,000 to 89,000 instructions, and a unit of the front
-/// 2,400 to 5,100.
+/// Units that a trial of surgery counts for. On random surfaces one takes 83,000 to 89,000
+/// instructions, and a unit of the front 2,400 to 5,100.
 const TRIAL_UNITS: u32 = 32;
-/// Half-edges looked at for a unit. An edge takes 120 instructions, a particle of a sweep 1,500, and a face that is measured 1,600.
+/// Half-edges looked at for a unit. An edge takes 120 instructions, a particle of a sweep 1,500,
+/// and a face that is measured 1,600.
 const HALF_EDGES_PER_UNIT: u32 = 12;
 
-/// Fewest particles of a coarse front. With half of it, those of 180 runs on random bodies that change have 0.9 % more particles with six
-/// neighbours, and angles 0.3° smaller; with twice as many 1 % fewer, and 1.5 % where sizes differ, in 1.1 times the time.
+/// Fewest particles of a coarse front. With half of it, those of 180 runs on random bodies that
+/// change have 0.9 % more particles with six neighbours, and angles 0.3° smaller; with twice as
+/// many 1 % fewer, and 1.5 % where sizes differ, in 1.1 times the time.
 const LEAST_PARTICLES: u32 = 180;
 
 /// The number of levels, the radius and the count that a refinement is to reach.
@@ -68,8 +75,8 @@ const LEAST_PARTICLES: u32 = 180;
 pub(crate) struct Target {
     /// Number of levels after the coarse one, k.
     pub(crate) halvings: u32,
-    /// Repulsion radius r of the particles of the last level; of sizes that differ, the one at which as many of one size would
-    /// cover the surface.
+    /// Repulsion radius r of the particles of the last level; of sizes that differ, the one at
+    /// which as many of one size would cover the surface.
     pub(crate) radius: f32,
     /// Largest slope of the radius, where sizes differ.
     pub(crate) grading: Option<f32>,
@@ -86,7 +93,8 @@ pub(crate) enum Count {
     PerCell(f64),
 }
 
-/// A refinement of one component or patch under way, or of components that are told apart by no front.
+/// A refinement of one component or patch under way, or of components that are told apart by no
+/// front.
 #[derive(Clone, Debug)]
 struct Refinement {
     target: Target,
@@ -116,7 +124,8 @@ struct Shape {
     wanted: f64,
 }
 
-/// The part of the particles of a mesh at which surgery looks in a frame: part number `at` of `of`, in the order in which they came.
+/// The part of the particles of a mesh at which surgery looks in a frame: part number `at` of `of`,
+/// in the order in which they came.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turn {
     pub(crate) at: u32,
@@ -126,7 +135,8 @@ pub(crate) struct Turn {
 /// Goals of the level under way, and the recipe that leads to them.
 #[derive(Clone, Debug)]
 struct Goals {
-    /// Whether it is the level of the front, where order is made. At full resolution the goals of a last level follow on it.
+    /// Whether it is the level of the front, where order is made. At full resolution the goals of a
+    /// last level follow on it.
     is_first: bool,
     /// The turn of surgery, if it is no level but a frame of a mesh that follows a moving surface.
     turn: Option<Turn>,
@@ -151,14 +161,15 @@ struct Memory {
 /// The task under way in a refinement, with its state.
 #[derive(Clone, Debug)]
 enum Task {
-    /// A pass of the recipe over the particles, half-edges or faces below `end`. The next one is `next`.
+    /// A pass of the recipe over the particles, half-edges or faces below `end`. The next one is
+    /// `next`.
     Pass { pass: usize, next: u32, end: u32 },
     /// The finished level is handed on.
     Show,
     /// Every face is divided into four.
     Divide(Box<Subdivision>),
-    /// The particles of the finer level are put onto the surface and into the columns of the net, in the order of `ends`. `defects`
-    /// counts the particles so far that have a defect.
+    /// The particles of the finer level are put onto the surface and into the columns of the net,
+    /// in the order of `ends`. `defects` counts the particles so far that have a defect.
     Lift { coarse: Box<Net>, ends: Vec<[u32; 2]>, defects: u32 },
     /// All levels are finished and handed on.
     Done,
@@ -230,7 +241,8 @@ impl Refinement {
         refinement
     }
 
-    /// Share of the particles that is due to it: its area, or ∫ dA / r² where the radius r differs, in units that all components share.
+    /// Share of the particles that is due to it: its area, or ∫ dA / r² where the radius r differs,
+    /// in units that all components share.
     fn weight(&mut self, probe: &mut Probe, sizing: Option<&Sizing>) -> f64 {
         let Some(sizing) = sizing else { return self.area() };
         let probe = &mut probe.on(self.patch);
@@ -288,8 +300,9 @@ impl Refinement {
         coarse_share(self.level.to_come) * (1.0 + 3.0 * at)
     }
 
-    /// Does `budget` units of work, or as many more as end a block. A level that is finished is put into `particles` and stays
-    /// there until the next one is. Returns the units done and whether `particles` has changed.
+    /// Does `budget` units of work, or as many more as end a block. A level that is finished is put
+    /// into `particles` and stays there until the next one is. Returns the units done and whether
+    /// `particles` has changed.
     ///
     /// # Errors
     ///
@@ -333,7 +346,8 @@ impl Refinement {
             };
         }
         let share = f64::from(1_u32 << (2 * self.level.to_come));
-        // Half of the faces at a crease are those of the other patch, so that a patch has two for each of its particles.
+        // Half of the faces at a crease are those of the other patch, so that a patch has two for
+        // each of its particles.
         let euler = if self.shape.is_creased { 0.0 } else { self.shape.euler as f64 };
         let is_graded = self.net.is_graded();
         // A closed surface has 2 (N − χ) faces, and a division makes four of each.
@@ -350,7 +364,8 @@ impl Refinement {
         };
         let mut faces = closed;
         if tally.border > 0.0 {
-            // With a border there are as many fewer as there are edges on it, and a division makes two of each of those.
+            // With a border there are as many fewer as there are edges on it, and a division makes
+            // two of each of those.
             for _ in 0..BORDER_ROUNDS {
                 faces = (closed - tally.border / (spacing(faces) * share.sqrt())).max(1.0);
             }
@@ -453,7 +468,8 @@ impl Refinement {
                 }
             }
             Pass::Find => {
-                // Where the box cuts the surface, the springs leave fives alone better: Lloyd's method there costs 0.5° of the mean angle.
+                // Where the box cuts the surface, the springs leave fives alone better: Lloyd's
+                // method there costs 0.5° of the mean angle.
                 let is_cut = self.shape.has_border && !self.shape.is_creased;
                 let is_defect = |&v: &u32| {
                     net.mesh.has_vertex(v)
@@ -517,7 +533,8 @@ impl Refinement {
         Ok(())
     }
 
-    /// Hands the finished level on, whole, so that a run that is cancelled has all of its particles.
+    /// Hands the finished level on, whole, so that a run that is cancelled has all of its
+    /// particles.
     fn show(&mut self, particles: &mut Particles) -> (Task, u32) {
         if self.level.to_come == 0 {
             // The walk that orders the particles takes as much.
@@ -527,8 +544,8 @@ impl Refinement {
         let task = if self.level.to_come > 0 {
             Task::Divide(Box::new(Subdivision::new(&self.net.mesh)))
         } else {
-            // Of the net nothing else is needed any more. Surgery, which removes faces, may have been at work on a last level that is the
-            // first one too.
+            // Of the net nothing else is needed any more. Surgery, which removes faces, may have
+            // been at work on a last level that is the first one too.
             let corners = core::mem::take(&mut self.net).mesh.into_corners();
             self.corners = corners.into_iter().filter_map(|v| rings.place(v)).collect();
             Task::Done
@@ -574,8 +591,8 @@ impl Refinement {
     }
 }
 
-/// Share of the work that is done when a front is placed that has so many levels to come, each of which takes four times as
-/// long as the one before.
+/// Share of the work that is done when a front is placed that has so many levels to come, each of
+/// which takes four times as long as the one before.
 pub(crate) fn coarse_share(halvings: u32) -> f64 {
     1.0 / f64::from(1_u32 << (2 * (halvings + 1)))
 }

@@ -1,12 +1,14 @@
 //! The mesh of a refined run that follows a surface while it moves, frame by frame.
 //!
-//! Newton's method brings the particles to the new surface, the springs and flips of a level keep the lattice even, and surgery lets
-//! particles be born and die where that costs least order: M. Botsch and L. Kobbelt, "A Remeshing Approach to Multiresolution Modeling",
-//! Symposium on Geometry Processing 2004, with the trials of this module in place of splits and collapses by length. Where sizes differ, those
-//! of the radius field are found anew at the new places, in every frame.
+//! Newton's method brings the particles to the new surface, the springs and flips of a level keep
+//! the lattice even, and surgery lets particles be born and die where that costs least order: M.
+//! Botsch and L. Kobbelt, "A Remeshing Approach to Multiresolution Modeling", Symposium on Geometry
+//! Processing 2004, with the trials of this module in place of splits and collapses by length.
+//! Where sizes differ, those of the radius field are found anew at the new places, in every frame.
 //!
-//! Where a particle does not come to the surface, or a face looks against it, the surface has torn or joined. The mesh is given up then,
-//! and the particles go on without it: [`Flow`](crate::sampler::flow::Flow).
+//! Where a particle does not come to the surface, or a face looks against it, the surface has torn
+//! or joined. The mesh is given up then, and the particles go on without it:
+//! [`Flow`](crate::sampler::flow::Flow).
 
 use super::net::{Ground, MovedBlock, Net};
 use super::recipe::Recipe;
@@ -28,8 +30,9 @@ pub(crate) struct MovingMesh {
 }
 
 impl MovingMesh {
-    /// Begins a frame with the particles of the frame before, and the mesh between them by its `corners`. Particles are born and die among
-    /// those whose `turn` it is. None if the mesh does not end at the box.
+    /// Begins a frame with the particles of the frame before, and the mesh between them by its
+    /// `corners`. Particles are born and die among those whose `turn` it is. None if the mesh does
+    /// not end at the box.
     pub(crate) fn new(
         particles: &Particles,
         corners: &[u32],
@@ -96,12 +99,14 @@ impl MovingMesh {
         budget: u32,
     ) -> Result<u32, Refusal> {
         let facts = SurfaceFacts { bounds: *bounds, sizing, ladder: None, bend: Vec3::ZERO, failures: 0 };
-        // The columns are filled in the end: a frame that is cancelled leaves those of the frame before.
+        // The columns are filled in the end: a frame that is cancelled leaves those of the frame
+        // before.
         let (units, _) = self.refinement.step(probe, &facts, &mut Particles::default(), budget)?;
         Ok(units)
     }
 
-    /// Puts the particles of the finished frame into the columns of the frame before, those that were born last, and the mesh into `corners`.
+    /// Puts the particles of the finished frame into the columns of the frame before, those that
+    /// were born last, and the mesh into `corners`.
     pub(crate) fn hand_on(self, radius: f32, particles: &mut Particles, corners: &mut Vec<u32>) {
         let net = self.refinement.net;
         let (old, born): (Vec<u32>, Vec<u32>) = (0..net.position.len() as u32)
@@ -133,7 +138,8 @@ impl MovingMesh {
 }
 
 impl Net {
-    /// The net of particles with these triangles between them, with sizes in units of the radius of the target. None if that is no manifold.
+    /// The net of particles with these triangles between them, with sizes in units of the radius of
+    /// the target. None if that is no manifold.
     fn over(
         particles: &Particles,
         triangles: &[[u32; 3]],
@@ -158,7 +164,8 @@ impl Net {
         })
     }
 
-    /// Lets the particles of the border stay on the planes of the box on which they lie. Returns whether each of them lies on one.
+    /// Lets the particles of the border stay on the planes of the box on which they lie. Returns
+    /// whether each of them lies on one.
     fn hold_border(&mut self) -> bool {
         for v in 0..self.position.len() as u32 {
             if !self.mesh.has_vertex(v) || !self.mesh.is_border(v) {

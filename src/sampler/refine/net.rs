@@ -1,4 +1,5 @@
-//! The particles of one level and the surface between them: sweeps, flips and the way back onto the surface.
+//! The particles of one level and the surface between them: sweeps, flips and the way back onto the
+//! surface.
 
 use super::walls::{Planes, Site, Walls};
 use crate::differential::Curvature;
@@ -9,40 +10,49 @@ use crate::sampler::constraint::{CreaseLadder, tips::LEAST_RING};
 use crate::sampler::probe::{BATCH, Probe};
 use glam::Vec3;
 
-/// Particles that are moved before they are brought back onto the surface together. With half and double of it the figures of 35 random surfaces
-/// are the same within 0.1 %.
+/// Particles that are moved before they are brought back onto the surface together. With half and
+/// double of it the figures of 35 random surfaces are the same within 0.1 %.
 pub(super) const BLOCK: usize = 64;
 
-/// No move is longer than this share of the spacing. Of 40 random wedges of 6° to 25° eight are refused; without a limit 20 are, with twice as
-/// much 17, with half 3. On smooth surfaces and other solids nothing changes beyond noise.
+/// No move is longer than this share of the spacing. Of 40 random wedges of 6° to 25° eight are
+/// refused; without a limit 20 are, with twice as much 17, with half 3. On smooth surfaces and
+/// other solids nothing changes beyond noise.
 const MAX_MOVE: f32 = 0.3;
-/// A particle whose correction is longer than this share of the spacing has left the surface; it goes back to where it was. With twice as
-/// much four of 360 runs on random surfaces change: three more are refined, one of them with an Euler number that the surface has not.
+/// A particle whose correction is longer than this share of the spacing has left the surface; it
+/// goes back to where it was. With twice as much four of 360 runs on random surfaces change: three
+/// more are refined, one of them with an Euler number that the surface has not.
 const MAX_CORRECTION: f32 = 0.5;
-/// No step to a surface that has moved is longer than this share of the spacing. Particles without a mesh are followed as far.
+/// No step to a surface that has moved is longer than this share of the spacing. Particles without
+/// a mesh are followed as far.
 const LONGEST_WAY: f32 = 1.0;
-/// An edge is flipped only if its angles exceed π by so much that rounding cannot flip it back. Without it none of 24 random surfaces changes,
-/// and one of the 44 of the gallery, which is symmetric.
+/// An edge is flipped only if its angles exceed π by so much that rounding cannot flip it back.
+/// Without it none of 24 random surfaces changes, and one of the 44 of the gallery, which is
+/// symmetric.
 const FLIP_SLACK: f32 = 1e-5;
 
-/// Neighbours nearer to each other than this share of the spacing move apart in Lloyd's method. On 45 random surfaces the closest pair is
-/// 0.014 farther apart with it and the smallest angle 0.2° larger, in the mean; with 0.84 0.011 and 0.1°.
+/// Neighbours nearer to each other than this share of the spacing move apart in Lloyd's method. On
+/// 45 random surfaces the closest pair is 0.014 farther apart with it and the smallest angle 0.2°
+/// larger, in the mean; with 0.84 0.011 and 0.1°.
 const SHORT: f32 = 0.86;
-/// Share of what is missing by which each of the two moves: as several edges of a particle are short, half of it would be too much.
-/// With half of what is missing the closest pair of 24 random surfaces is 2 % nearer in the mean, and with a sixth 1 %.
+/// Share of what is missing by which each of the two moves: as several edges of a particle are
+/// short, half of it would be too much. With half of what is missing the closest pair of 24 random
+/// surfaces is 2 % nearer in the mean, and with a sixth 1 %.
 const PUSH: f32 = 1.0 / 3.0;
 
 /// The springs between neighbours: their energy is Σ (l − θa)² over the edges.
 ///
-/// At θ = 1 the rest length is the spacing of the lattice. Below it the springs pull against a surface that cannot shrink, which
-/// makes the lattice stiffer in shear: its bulk modulus over its shear modulus is 2θ/(4 − 3θ).
+/// At θ = 1 the rest length is the spacing of the lattice. Below it the springs pull against a
+/// surface that cannot shrink, which makes the lattice stiffer in shear: its bulk modulus over its
+/// shear modulus is 2θ/(4 − 3θ).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Springs {
-    /// Spacing a of the hexagonal lattice with the wanted number of particles, where the size of a particle is 1.
+    /// Spacing a of the hexagonal lattice with the wanted number of particles, where the size of a
+    /// particle is 1.
     pub(super) spacing: f32,
     /// Rest length over spacing, θ.
     pub(super) theta: f32,
-    /// Over-relaxation factor ω. With 1 a particle moves to where its springs would be at rest if all others were held.
+    /// Over-relaxation factor ω. With 1 a particle moves to where its springs would be at rest if
+    /// all others were held.
     pub(super) omega: f32,
 }
 
@@ -85,7 +95,8 @@ impl MovedBlock {
     }
 }
 
-/// Particles and the surface between them. Vertex `v` of the surface is particle `v` of every column.
+/// Particles and the surface between them. Vertex `v` of the surface is particle `v` of every
+/// column.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Net {
     pub(super) mesh: HalfEdges,
@@ -93,11 +104,13 @@ pub(super) struct Net {
     pub(super) normal: Vec<Vec3>,
     /// Fates of the slots of the particles that the front placed; undecided for all others.
     pub(super) slots: Vec<Slots>,
-    /// Wanted spacing at each particle, in units of that of the springs. Empty where it is the same everywhere.
+    /// Wanted spacing at each particle, in units of that of the springs. Empty where it is the same
+    /// everywhere.
     pub(super) size: Vec<f32>,
     /// The box, and the planes of it on which the particles lie.
     pub(super) walls: Walls,
-    /// The number of each particle on a crease or a tip: see [`CreaseLadder`]. [`NONE`] for the others; empty where the surface has neither.
+    /// The number of each particle on a crease or a tip: see [`CreaseLadder`]. [`NONE`] for the
+    /// others; empty where the surface has neither.
     pub(super) on_crease: Vec<u32>,
     /// Whether each particle was born since the surface moved. Empty where no surface moves.
     pub(super) is_born: Vec<bool>,
@@ -134,8 +147,8 @@ impl Net {
 
     /// Moves each particle by its springs, and then brings them back onto the surface together.
     ///
-    /// A particle sees the new places of those before it, as in the method of Gauss and Seidel. That these are not yet
-    /// back on the surface changes a distance in second order only.
+    /// A particle sees the new places of those before it, as in the method of Gauss and Seidel.
+    /// That these are not yet back on the surface changes a distance in second order only.
     #[inline]
     pub(super) fn relax(
         &mut self,
@@ -146,7 +159,8 @@ impl Net {
         self.shift(ground, springs.spacing, particles, |net, v| net.pull(springs, v));
     }
 
-    /// Moves each particle by its springs along its tangent plane, and does not bring it back onto the surface.
+    /// Moves each particle by its springs along its tangent plane, and does not bring it back onto
+    /// the surface.
     pub(super) fn drift(&mut self, springs: Springs, particles: impl Iterator<Item = u32>) {
         for v in particles.filter(|&v| self.mesh.has_vertex(v)) {
             self.position[v as usize] = self.moved(v, springs.spacing, self.pull(springs, v));
@@ -181,8 +195,9 @@ impl Net {
         sum / degree
     }
 
-    /// Moves each particle to the centre of its Voronoi cell, with the over-relaxation of the springs, and away from neighbours that are
-    /// too near: Lloyd's method keeps short the edges of a five, and the edge across a face from a seven.
+    /// Moves each particle to the centre of its Voronoi cell, with the over-relaxation of the
+    /// springs, and away from neighbours that are too near: Lloyd's method keeps short the edges of
+    /// a five, and the edge across a face from a seven.
     pub(super) fn centre(
         &mut self,
         ground: &mut Ground,
@@ -210,7 +225,8 @@ impl Net {
         step
     }
 
-    /// Vector from `v` to the centre of its Voronoi cell, whose corners are the circumcentres of the faces around it.
+    /// Vector from `v` to the centre of its Voronoi cell, whose corners are the circumcentres of
+    /// the faces around it.
     fn way_to_centre(&self, v: u32) -> Vec3 {
         let (p, n) = (self.position[v as usize], self.normal[v as usize]);
         let circumcentre = |h: u32| {
@@ -237,7 +253,8 @@ impl Net {
         moment / (3.0 * area)
     }
 
-    /// Moves each particle by the tangential part of `step`, one after the other, and brings all back onto the surface.
+    /// Moves each particle by the tangential part of `step`, one after the other, and brings all
+    /// back onto the surface.
     #[inline]
     fn shift(
         &mut self,
@@ -259,7 +276,8 @@ impl Net {
         self.settle(ground, spacing, false);
     }
 
-    /// The position of a particle after the tangential part of a step, which is no longer than a share of the spacing.
+    /// The position of a particle after the tangential part of a step, which is no longer than a
+    /// share of the spacing.
     #[inline]
     fn moved(&self, v: u32, spacing: f32, step: Vec3) -> Vec3 {
         let (p, n) = (self.position[v as usize], self.normal[v as usize]);
@@ -275,8 +293,8 @@ impl Net {
         if step.is_finite() { p + step } else { p }
     }
 
-    /// Brings particles that were put near the surface onto it, or those of a surface that has moved to it: out of the box if they
-    /// `may_leave` it.
+    /// Brings particles that were put near the surface onto it, or those of a surface that has
+    /// moved to it: out of the box if they `may_leave` it.
     pub(super) fn land(
         &mut self,
         ground: &mut Ground,
@@ -292,8 +310,9 @@ impl Net {
         self.settle(ground, spacing, may_leave);
     }
 
-    /// Brings the particles of the block back onto the surface, by one step of Newton's method along the gradient, and onto the
-    /// planes of the box on which they lie, out of the box if they `may_leave` it. Those that could not be go back to where they were.
+    /// Brings the particles of the block back onto the surface, by one step of Newton's method
+    /// along the gradient, and onto the planes of the box on which they lie, out of the box if they
+    /// `may_leave` it. Those that could not be go back to where they were.
     fn settle(&mut self, ground: &mut Ground, spacing: f32, may_leave: bool) {
         let MovedBlock { which, before, points, refused, .. } = &mut *ground.block;
         refused.clear();
@@ -313,7 +332,8 @@ impl Net {
         }
     }
 
-    /// The position of a particle at `p` after one step of Newton's method, and the normal there; none if it cannot be brought back.
+    /// The position of a particle at `p` after one step of Newton's method, and the normal there;
+    /// none if it cannot be brought back.
     #[inline]
     fn landing(
         &self,
@@ -338,8 +358,8 @@ impl Net {
         position.map(|position| (position, normal))
     }
 
-    /// Whether the two angles under which the edge of `h` is seen add up to more than π, so that the other diagonal of its
-    /// quadrilateral is Delaunay's, and the flip is allowed.
+    /// Whether the two angles under which the edge of `h` is seen add up to more than π, so that
+    /// the other diagonal of its quadrilateral is Delaunay's, and the flip is allowed.
     #[inline]
     pub(super) fn wants_flip(&self, h: u32) -> bool {
         let t = self.mesh.twin(h);
@@ -389,8 +409,9 @@ impl Net {
         (self.position[b as usize] - a).cross(self.position[c as usize] - a)
     }
 
-    /// Whether a face with this [area vector](Self::area_vector) faces as the surface does at its corner `v`: the cosine of the angle between them
-    /// is above `least`. Any face does at a tip, where the surface has no normal.
+    /// Whether a face with this [area vector](Self::area_vector) faces as the surface does at its
+    /// corner `v`: the cosine of the angle between them is above `least`. Any face does at a tip,
+    /// where the surface has no normal.
     pub(super) fn faces_as(&self, area: Vec3, v: u32, least: f32) -> bool {
         // Written so that NaN does not.
         area.dot(self.normal[v as usize]) > least * area.length() || self.is_tip(v)
@@ -419,13 +440,15 @@ impl Net {
         (n + m).normalize_or(n)
     }
 
-    /// The normals at two neighbours. At a tip there is none: along a ray of a cone it is everywhere that of the other end.
+    /// The normals at two neighbours. At a tip there is none: along a ray of a cone it is
+    /// everywhere that of the other end.
     fn normals(&self, a: u32, b: u32) -> [Vec3; 2] {
         let own = |v: u32, other: u32| self.normal[if self.is_tip(v) { other } else { v } as usize];
         [own(a, b), own(b, a)]
     }
 
-    /// The middle of the edge between two particles, lifted to the circle through them with their normals.
+    /// The middle of the edge between two particles, lifted to the circle through them with their
+    /// normals.
     pub(super) fn middle(&self, a: u32, b: u32) -> Vec3 {
         let [p, q] = [a, b].map(|v| self.position[v as usize]);
         let [n, m] = self.normals(a, b);
@@ -438,7 +461,8 @@ impl Net {
         Site::smooth(self.middle(a, b), self.normal_between(a, b), self.planes_between(a, b))
     }
 
-    /// Whether a particle stays where it is, with the normal that it has: creases end there, or it is a tip, where f has no gradient.
+    /// Whether a particle stays where it is, with the normal that it has: creases end there, or it
+    /// is a tip, where f has no gradient.
     #[inline]
     fn is_pinned(&self, v: u32) -> bool {
         self.walls.planes(v).is_crease_end()
@@ -450,13 +474,15 @@ impl Net {
         self.is_pinned(v) && !self.mesh.is_border(v)
     }
 
-    /// Whether a particle is a tip that can spare no neighbour: three faces around it would face away from each other.
+    /// Whether a particle is a tip that can spare no neighbour: three faces around it would face
+    /// away from each other.
     fn is_narrow_tip(&self, v: u32) -> bool {
         self.is_tip(v) && self.mesh.valence(v) <= LEAST_RING as usize
     }
 
-    /// Difference between a particle's valence and that of a particle without a defect: six, and four on the border, where three
-    /// triangles of 60° fill the half-plane. Where creases end and at tips every valence is as good.
+    /// Difference between a particle's valence and that of a particle without a defect: six, and
+    /// four on the border, where three triangles of 60° fill the half-plane. Where creases end and
+    /// at tips every valence is as good.
     #[inline]
     pub(super) fn excess(&self, v: u32) -> i32 {
         if self.is_pinned(v) {
@@ -466,13 +492,15 @@ impl Net {
         self.mesh.valence(v) as i32 - wanted
     }
 
-    /// The site of the one of two particles that is bound to more planes, that of `b` if they are bound to as many.
+    /// The site of the one of two particles that is bound to more planes, that of `b` if they are
+    /// bound to as many.
     pub(super) fn more_bound(&self, a: u32, b: u32) -> Site {
         let [first, second] = [a, b].map(|v| self.site(v));
         if first.planes.count() > second.planes.count() { first } else { second }
     }
 
-    /// Gives every column that is filled so many rows: those that are new are to be [put](Self::put_new) somewhere.
+    /// Gives every column that is filled so many rows: those that are new are to be
+    /// [put](Self::put_new) somewhere.
     pub(super) fn resize(&mut self, rows: usize) {
         fn resize<T: Copy>(column: &mut Vec<T>, rows: usize, value: T) {
             if !column.is_empty() {
@@ -488,7 +516,8 @@ impl Net {
         resize(&mut self.is_born, rows, true);
     }
 
-    /// Puts a new particle of this size to a site. Its number is the next one, or that of one which was merged into another.
+    /// Puts a new particle of this size to a site. Its number is the next one, or that of one which
+    /// was merged into another.
     pub(super) fn put_new(&mut self, v: u32, site: Site, size: f32) {
         self.resize(self.position.len().max(v as usize + 1));
         self.put(v, site);
@@ -533,15 +562,17 @@ impl Net {
         self.on_crease.iter().zip(0..).any(|(&number, v)| number != NONE && is_at_end(v))
     }
 
-    /// The number and the position of the particle that halves an edge along a crease; none for other edges.
+    /// The number and the position of the particle that halves an edge along a crease; none for
+    /// other edges.
     pub(super) fn middle_on_crease(&self, ladder: &CreaseLadder, a: u32, b: u32) -> Option<(u32, Vec3)> {
         let [m, n] = [a, b].map(|v| self.on_crease[v as usize]);
         let is_between = m != NONE && n != NONE && self.is_border_edge(a, b);
         if is_between { ladder.middle(m, n) } else { None }
     }
 
-    /// Adds the next particle of a level finer than `coarse`: the one that halves an edge between two particles of that, or the old
-    /// one v where the ends are `[v, NONE]`. On creases it is that of the ladder.
+    /// Adds the next particle of a level finer than `coarse`: the one that halves an edge between
+    /// two particles of that, or the old one v where the ends are `[v, NONE]`. On creases it is
+    /// that of the ladder.
     pub(super) fn push_from(&mut self, coarse: &Self, ends: [u32; 2], ladder: Option<&CreaseLadder>) {
         let (mut site, slots, size) = match ends {
             [old, NONE] => (coarse.site(old), coarse.slots[old as usize], coarse.size_of(old)),
@@ -563,8 +594,9 @@ impl Net {
         self.walls.planes.extend(coarse.walls.is_near().then_some(site.planes));
     }
 
-    /// Whether the two ends of a half-edge can be merged: the mesh stays one of the same kind, corners stay, and a particle on the
-    /// border is merged along the border only. One on a crease stays, and takes in one beside it on a face of the box.
+    /// Whether the two ends of a half-edge can be merged: the mesh stays one of the same kind,
+    /// corners stay, and a particle on the border is merged along the border only. One on a crease
+    /// stays, and takes in one beside it on a face of the box.
     pub(super) fn can_merge(&self, h: u32) -> bool {
         let [m, n] = [self.mesh.origin(h), self.mesh.target(h)].map(|v| self.walls.planes(v));
         let is_along_box = self.mesh.twin(h) == NONE && !m.common(n).of_box().is_inner();

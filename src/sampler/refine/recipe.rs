@@ -3,7 +3,8 @@
 /// A pass over the particles, the half-edges or the faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Pass {
-    /// Takes the sizes from the radius field or, if not `is_whole`, their square roots: half-way from one size to those of the field.
+    /// Takes the sizes from the radius field or, if not `is_whole`, their square roots: half-way
+    /// from one size to those of the field.
     Size { is_whole: bool },
     /// Limits the slope of the sizes, from the first particle to the last one or back.
     Limit { back: bool },
@@ -13,7 +14,8 @@ pub(super) enum Pass {
     Sweep,
     /// Flips the edges that are not Delaunay's.
     Flip,
-    /// A round of surgery, which also keeps trials that lose up to `loss`, in units of the spacing squared.
+    /// A round of surgery, which also keeps trials that lose up to `loss`, in units of the spacing
+    /// squared.
     Mend { loss: f32 },
     /// Finds the particles near defects.
     Find,
@@ -21,9 +23,11 @@ pub(super) enum Pass {
     Centre,
     /// Takes out one of each pair of particles that crowd at the border.
     Thin,
-    /// A step of Newton's method for every particle, so that positions and normals are those of the surface.
+    /// A step of Newton's method for every particle, so that positions and normals are those of the
+    /// surface.
     Land,
-    /// A step of Newton's method to a surface that has moved for every particle, out of the box if it leads there.
+    /// A step of Newton's method to a surface that has moved for every particle, out of the box if
+    /// it leads there.
     Follow,
     /// Cuts away what lies beyond the box.
     Clip,
@@ -39,7 +43,8 @@ pub(super) struct Recipe {
     pub(super) theta: f32,
     /// Price of a defect, in units of the spacing squared.
     pub(super) delta: f32,
-    /// Share by which the edges of a particle without a defect are too short or too long on average where surgery is tried on it as well.
+    /// Share by which the edges of a particle without a defect are too short or too long on average
+    /// where surgery is tried on it as well.
     pub(super) stretch: f32,
 }
 
@@ -60,24 +65,31 @@ pub(super) struct Tuning {
     first: Plan,
     /// Plan of the levels between, where order is kept while scars grow.
     between: Plan,
-    /// Plan of the last level, where the lattice comes to rest. With one size surgery would add more defects there than it removes.
+    /// Plan of the last level, where the lattice comes to rest. With one size surgery would add
+    /// more defects there than it removes.
     last: Plan,
-    /// Rounds of surgery at every level before the last one, with a sweep after each. The first half of them is left out where they cost most: on the
-    /// last level but one, and on a first level at full resolution, which then comes to rest by the plan of the last one.
+    /// Rounds of surgery at every level before the last one, with a sweep after each. The first
+    /// half of them is left out where they cost most: on the last level but one, and on a first
+    /// level at full resolution, which then comes to rest by the plan of the last one.
     rounds: usize,
-    /// Share by which edges are too short or too long where surgery is tried on a particle without a defect.
+    /// Share by which edges are too short or too long where surgery is tried on a particle without
+    /// a defect.
     stretch: f32,
-    /// Share by which edges are too short or too long where surgery is tried on a particle without a defect in a frame of a moving mesh, and at
-    /// the last level of sizes that differ. There order is to be kept.
+    /// Share by which edges are too short or too long where surgery is tried on a particle without
+    /// a defect in a frame of a moving mesh, and at the last level of sizes that differ. There
+    /// order is to be kept.
     kept_stretch: f32,
-    /// Least gain of a trial in a frame of a moving mesh, and at the last level of sizes that differ, in units of the spacing squared.
+    /// Least gain of a trial in a frame of a moving mesh, and at the last level of sizes that
+    /// differ, in units of the spacing squared.
     least_gain: f32,
-    /// Loss that the first round of surgery accepts, in units of the spacing squared. It falls to 0 in the last one.
+    /// Loss that the first round of surgery accepts, in units of the spacing squared. It falls to 0
+    /// in the last one.
     loss: f32,
     /// Over-relaxation of the sweeps.
     pub(super) omega: f32,
-    /// Decrease of the rest length of the last level per share of particles with a defect: the more defects there are, the more the
-    /// lattice between them is strained, and the stiffer in shear it has to be.
+    /// Decrease of the rest length of the last level per share of particles with a defect: the more
+    /// defects there are, the more the lattice between them is strained, and the stiffer in shear
+    /// it has to be.
     theta_per_defect: f32,
     /// Shortest rest length of the last level.
     least_theta: f32,
@@ -85,50 +97,61 @@ pub(super) struct Tuning {
     most_theta: f32,
     /// Steps of Lloyd's method near the defects of the last level.
     lloyd: usize,
-    /// Rounds of surgery at the sizes half-way from one size to those of the radius field, at which the other rounds of the first level follow; and
-    /// as many rounds at the last level of sizes that differ, the first one at which they may be as steep as they are wanted.
+    /// Rounds of surgery at the sizes half-way from one size to those of the radius field, at which
+    /// the other rounds of the first level follow; and as many rounds at the last level of sizes
+    /// that differ, the first one at which they may be as steep as they are wanted.
     graded_rounds: usize,
 }
 
-/// The values, chosen on random surfaces that no test or table names: blends of ellipsoids and tori, bumpy ellipsoids, quartics, sums of
-/// waves, and surfaces cut by random boxes, with 1,500 to 40,000 particles. Angles are means of the smallest angle of a triangle, holes
-/// and pairs the largest and the closest over those of the hexagonal lattice.
+/// The values, chosen on random surfaces that no test or table names: blends of ellipsoids and
+/// tori, bumpy ellipsoids, quartics, sums of waves, and surfaces cut by random boxes, with 1,500 to
+/// 40,000 particles. Angles are means of the smallest angle of a triangle, holes and pairs the
+/// largest and the closest over those of the hexagonal lattice.
 pub(super) const TUNING: Tuning = Tuning {
-    // With half the δ the share of particles with six neighbours is 0.15 points smaller. With half and double the sweeps of any plan all figures
-    // of 80 surfaces of one size are the same within 0.2 %; with 6 at first, two more of 36 are refused where sizes differ.
+    // With half the δ the share of particles with six neighbours is 0.15 points smaller. With half
+    // and double the sweeps of any plan all figures of 80 surfaces of one size are the same within
+    // 0.2 %; with 6 at first, two more of 36 are refused where sizes differ.
     first: Plan { sweeps: 10, theta: 0.8, delta: 0.045 },
     // With θ = 0.8 and half the δ holes are 1 % wider.
     between: Plan { sweeps: 4, theta: 0.9, delta: 0.015 },
     // θ without a defect, before the limits below.
     last: Plan { sweeps: 6, theta: 1.3, delta: 0.0 },
-    // With 16 rounds at the first level, and two or three sweeps after each, no figure is better beyond noise. At full resolution the second half
-    // of them heals 2.3 points more of the particles than two rounds without a loss, in 23 runs, and all ten no more than that half.
+    // With 16 rounds at the first level, and two or three sweeps after each, no figure is better
+    // beyond noise. At full resolution the second half of them heals 2.3 points more of the
+    // particles than two rounds without a loss, in 23 runs, and all ten no more than that half.
     rounds: 10,
     // Without it the count is 0.03 % farther off on 43 random surfaces, and holes are 1.5 % wider.
     stretch: 0.04,
-    // On twelve motions and eight of random surfaces holes are up to 2.0 without it, and with 0.04 a frame takes 1.3 times as long for the same
-    // figures.
+    // On twelve motions and eight of random surfaces holes are up to 2.0 without it, and with 0.04
+    // a frame takes 1.3 times as long for the same figures.
     kept_stretch: 0.2,
-    // 83 % of the first particles live to the end there, and as many have six neighbours as with 0, where it is 77 %. With 0.5 it is 86 %, and
-    // holes are wider.
+    // 83 % of the first particles live to the end there, and as many have six neighbours as with 0,
+    // where it is 77 %. With 0.5 it is 86 %, and holes are wider.
     least_gain: 0.2,
-    // With half of it holes are 0.8 % wider on 40 closed surfaces; with twice as much the share of particles with six neighbours is 0.25 points
-    // smaller on 40 that a box cuts. Whether it falls to 0 over a third of the rounds or all of them changes nothing beyond noise.
+    // With half of it holes are 0.8 % wider on 40 closed surfaces; with twice as much the share of
+    // particles with six neighbours is 0.25 points smaller on 40 that a box cuts. Whether it falls
+    // to 0 over a third of the rounds or all of them changes nothing beyond noise.
     loss: 0.1,
     // Half-way from 1, where sweeps are slow, to 2, where those of a quadratic energy diverge.
     omega: 1.5,
-    // The limits below then hold for one defect in a hundred particles and for one in forty. With half of it the closest pairs of 56 runs on 28
-    // random surfaces are 2.1 % farther apart and angles 0.7 % smaller, with double 0.6 % nearer and 0.2 % larger.
+    // The limits below then hold for one defect in a hundred particles and for one in forty. With
+    // half of it the closest pairs of 56 runs on 28 random surfaces are 2.1 % farther apart and
+    // angles 0.7 % smaller, with double 0.6 % nearer and 0.2 % larger.
     theta_per_defect: 30.0,
-    // With half of it the largest holes of those runs are 4.6 % wider where sizes differ, with 0.8 angles are 0.7 % smaller.
+    // With half of it the largest holes of those runs are 4.6 % wider where sizes differ, with 0.8
+    // angles are 0.7 % smaller.
     least_theta: 0.6,
-    // Pairs are at 0.81 and angles of 56.8° with this everywhere on closed surfaces, at 0.79 and of 57.2° with 0.7.
+    // Pairs are at 0.81 and angles of 56.8° with this everywhere on closed surfaces, at 0.79 and of
+    // 57.2° with 0.7.
     most_theta: 0.98,
-    // Three bring pairs from 0.79 to 0.81 at θ = 0.9, for 0.2°; the third makes the smallest angle of all 0.4° smaller.
+    // Three bring pairs from 0.79 to 0.81 at θ = 0.9, for 0.2°; the third makes the smallest angle
+    // of all 0.4° smaller.
     lloyd: 2,
-    // Four steps of two rounds each instead of two steps make angles 0.2° smaller. Without rounds at the last level the largest hole of 58 runs on
-    // random surfaces is 1.38 times that of the local lattice in place of 1.33, and three times as many are wider than 1.4; 0.6 points more of
-    // the particles have six neighbours. With one round the largest hole is 1.34 times it, with three 1.32.
+    // Four steps of two rounds each instead of two steps make angles 0.2° smaller. Without rounds
+    // at the last level the largest hole of 58 runs on random surfaces is 1.38 times that of the
+    // local lattice in place of 1.33, and three times as many are wider than 1.4; 0.6 points more
+    // of the particles have six neighbours. With one round the largest hole is 1.34 times it, with
+    // three 1.32.
     graded_rounds: 2,
 };
 
@@ -176,7 +199,8 @@ impl Recipe {
         } else {
             recipe.rounds(plan, &losses, is_graded);
         }
-        // Lloyd's method is for one size: it would draw small particles and large ones to one distance.
+        // Lloyd's method is for one size: it would draw small particles and large ones to one
+        // distance.
         if is_last && !is_graded {
             recipe.passes.push(Pass::Find);
             recipe.passes.extend([Pass::Centre].repeat(TUNING.lloyd));
@@ -194,7 +218,8 @@ impl Recipe {
         recipe
     }
 
-    /// The passes of a frame of a mesh that follows a moving surface, by the plan of the levels between.
+    /// The passes of a frame of a mesh that follows a moving surface, by the plan of the levels
+    /// between.
     pub(super) fn of_frame(is_graded: bool, has_border: bool) -> Self {
         let Plan { theta, delta, .. } = TUNING.between;
         let mend = Pass::Mend { loss: -TUNING.least_gain };
@@ -213,7 +238,8 @@ impl Recipe {
         recipe
     }
 
-    /// The sweeps of a plan, and rounds of surgery with a sweep after each. Sizes that differ are found anew before each round.
+    /// The sweeps of a plan, and rounds of surgery with a sweep after each. Sizes that differ are
+    /// found anew before each round.
     fn rounds(&mut self, plan: Plan, losses: &[f32], is_graded: bool) {
         if is_graded {
             self.size(true);
@@ -228,7 +254,8 @@ impl Recipe {
         }
     }
 
-    /// The first level of sizes that differ: it is brought to rest with one size, and led to the others in two steps.
+    /// The first level of sizes that differ: it is brought to rest with one size, and led to the
+    /// others in two steps.
     fn blend(&mut self, plan: Plan, losses: &[f32]) {
         let (half, whole) = losses.split_at(TUNING.graded_rounds);
         self.sweep(plan.sweeps);
@@ -247,7 +274,8 @@ impl Recipe {
     }
 
     fn size(&mut self, is_whole: bool) {
-        // There and back: what is far in that order is near on the surface at one of the two, since the order is breadth first.
+        // There and back: what is far in that order is near on the surface at one of the two, since
+        // the order is breadth first.
         self.passes.extend([
             Pass::Size { is_whole },
             Pass::Limit { back: false },

@@ -94,7 +94,8 @@ impl fmt::Display for Spot {
 }
 
 impl Refusal {
-    /// Returns the refusal with its place in the coordinates of the formula, from one whose place is relative to `origin`.
+    /// Returns the refusal with its place in the coordinates of the formula, from one whose place
+    /// is relative to `origin`.
     #[must_use]
     pub(crate) fn counted_from_zero(mut self, origin: DVec3) -> Self {
         if let Some(at) = self.at() {

@@ -6,9 +6,10 @@ use crate::particles::Particles;
 
 /// A breadth-first walk over the surface that fills the columns.
 ///
-/// The generation level of a particle is its distance, in edges, from the first particle of its component, or from the creases around
-/// its patch, and its parent is the neighbour from which the walk came to it. Particles on creases come first; their numbers stand in
-/// place of their first rows.
+/// The generation level of a particle is its distance, in edges, from the first particle of its
+/// component, or from the creases around its patch, and its parent is the neighbour from which the
+/// walk came to it. Particles on creases come first; their numbers stand in place of their first
+/// rows.
 #[derive(Clone, Debug)]
 pub(super) struct Rings {
     /// Vertices in the order in which they were met.
@@ -30,7 +31,8 @@ impl Rings {
         let mut met = vec![NONE; last.map_or(0, |&last| last as usize + 1)];
         let is_held = |&(v, &number): &(u32, &u32)| number != NONE && net.mesh.has_vertex(v);
         for (v, &number) in (0..).zip(&net.on_crease).filter(is_held) {
-            // Where a patch touches itself, a particle has a vertex for each of its fans. The nappes at a tip keep rows of their own.
+            // Where a patch touches itself, a particle has a vertex for each of its fans. The
+            // nappes at a tip keep rows of their own.
             let new = rings.order.len() as u32;
             let first = &mut met[number as usize];
             if !net.is_tip(v) {

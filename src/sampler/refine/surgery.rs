@@ -1,4 +1,5 @@
-//! Surgery: trials with one particle more or one fewer beside a defect, of which those are kept that pay.
+//! Surgery: trials with one particle more or one fewer beside a defect, of which those are kept
+//! that pay.
 
 use super::net::{Ground, Net, Springs};
 use super::walls::{Planes, Site};
@@ -7,27 +8,33 @@ use crate::mesh::half_edge::{HalfEdges, next, previous};
 use core::cmp::Ordering;
 use glam::Vec3;
 
-/// Rings around a defect that a trial moves. On 57 random surfaces one ring makes the mean smallest angle 0.2° smaller, three make it 0.1°
-/// larger in 1.4 times the time; with none all are refused.
+/// Rings around a defect that a trial moves. On 57 random surfaces one ring makes the mean smallest
+/// angle 0.2° smaller, three make it 0.1° larger in 1.4 times the time; with none all are refused.
 const RINGS: u32 = 2;
-/// Sweeps over the patch of a trial. With four of them the figures of 43 random surfaces are the same within their noise.
+/// Sweeps over the patch of a trial. With four of them the figures of 43 random surfaces are the
+/// same within their noise.
 const SWEEPS: u32 = 2;
-/// Over-relaxation of the steps of surgery: less than in sweeps over all particles, since the patch must come to rest within a few. With 1 and
-/// with 1.7 the share of particles with six neighbours is 0.4 and 0.3 % smaller in 56 runs on 28 random surfaces, with 1.5 holes are
-/// 0.9 % wider where sizes differ.
+/// Over-relaxation of the steps of surgery: less than in sweeps over all particles, since the patch
+/// must come to rest within a few. With 1 and with 1.7 the share of particles with six neighbours
+/// is 0.4 and 0.3 % smaller in 56 runs on 28 random surfaces, with 1.5 holes are 0.9 % wider where
+/// sizes differ.
 const OMEGA: f32 = 1.3;
-/// A trial ends early if the gain of its last sweep, times this, would not be enough. In 19 of 20 trials a sweep gains no more than 0.35 of
-/// what the one before it did, and so all that follow no more than 0.54 of it. On 80 random surfaces the figures are the same within 1 % with
-/// none of it and with double.
+/// A trial ends early if the gain of its last sweep, times this, would not be enough. In 19 of 20
+/// trials a sweep gains no more than 0.35 of what the one before it did, and so all that follow no
+/// more than 0.54 of it. On 80 random surfaces the figures are the same within 1 % with none of it
+/// and with double.
 const STILL_TO_GAIN: f32 = 0.5;
-/// Price of a particle, in units of the spacing squared, over the share by which the faces exceed the wanted number. On 57 random surfaces
-/// the count is 0.10 % off; without a price it is 0.61 % off, with half 0.13 %, and with twice as much 0.08 %, where the share of particles
-/// with six neighbours is 0.15 points smaller.
+/// Price of a particle, in units of the spacing squared, over the share by which the faces exceed
+/// the wanted number. On 57 random surfaces the count is 0.10 % off; without a price it is 0.61 %
+/// off, with half 0.13 %, and with twice as much 0.08 %, where the share of particles with six
+/// neighbours is 0.15 points smaller.
 const COUNT_PRICE: f32 = 20.0;
 
-/// Least cosine of the angle between the normal of a face that a trial leaves and that of the surface at its corners: that of 60°. In 128 runs on a
-/// body with two thin ears, seven lose an ear without this rule, and none with 0 or more; with 0.4 to 0.6, 69 to 71 of them are refined once, with 0
-/// to 0.2 only 35 to 40. The figures of 180 runs on random bodies are the same within their scatter with 0 to 0.7.
+/// Least cosine of the angle between the normal of a face that a trial leaves and that of the
+/// surface at its corners: that of 60°. In 128 runs on a body with two thin ears, seven lose an ear
+/// without this rule, and none with 0 or more; with 0.4 to 0.6, 69 to 71 of them are refined once,
+/// with 0 to 0.2 only 35 to 40. The figures of 180 runs on random bodies are the same within their
+/// scatter with 0 to 0.7.
 const LEAST_AGREEMENT: f32 = 0.5;
 
 /// Parameters of a round of surgery.
@@ -40,7 +47,8 @@ pub(super) struct Aim {
     pub(super) faces: f32,
     /// Loss that a trial may make and still be kept, in units of the spacing squared.
     pub(super) loss: f32,
-    /// Share by which the edges of a particle without a defect are too short or too long on average where it is tried as well.
+    /// Share by which the edges of a particle without a defect are too short or too long on average
+    /// where it is tried as well.
     pub(super) stretch: f32,
 }
 
@@ -73,7 +81,8 @@ pub(super) struct Surgeon {
     /// Trial in which a particle was last in the patch.
     stamp: Vec<u32>,
     trial: u32,
-    /// Number of neighbours that a particle had when it was last tried, in vain; 0 if what is around it has changed since.
+    /// Number of neighbours that a particle had when it was last tried, in vain; 0 if what is
+    /// around it has changed since.
     tried: Vec<u32>,
     /// Whether a trial was kept.
     has_kept: bool,
@@ -84,9 +93,10 @@ pub(super) struct Surgeon {
 }
 
 impl Surgeon {
-    /// Tries to mend `v`, if it has not six neighbours or if its edges are too short or too long: with too few neighbours it is merged
-    /// with the nearest of them, with too many another one is inserted into the widest of its faces. What has failed is tried again
-    /// only when something around it has changed. Returns whether it was tried.
+    /// Tries to mend `v`, if it has not six neighbours or if its edges are too short or too long:
+    /// with too few neighbours it is merged with the nearest of them, with too many another one is
+    /// inserted into the widest of its faces. What has failed is tried again only when something
+    /// around it has changed. Returns whether it was tried.
     pub(super) fn mend(&mut self, net: &mut Net, ground: &mut Ground, aim: Aim, v: u32) -> bool {
         if !net.mesh.has_vertex(v) || self.tried.get(v as usize) == Some(&(net.mesh.valence(v) as u32)) {
             return false;
@@ -119,11 +129,11 @@ impl Surgeon {
         self.tried.clear();
     }
 
-    /// Does the operation and relaxes the particles around it, and undoes both unless they lower the energy enough. Returns whether they
-    /// stand. `size` is the size of the particles there.
+    /// Does the operation and relaxes the particles around it, and undoes both unless they lower
+    /// the energy enough. Returns whether they stand. `size` is the size of the particles there.
     ///
-    /// The particles move in their tangent planes, which changes a distance in second order only; those of a trial that is kept are
-    /// brought back onto the surface in the end.
+    /// The particles move in their tangent planes, which changes a distance in second order only;
+    /// those of a trial that is kept are brought back onto the surface in the end.
     fn attempt(
         &mut self,
         net: &mut Net,
@@ -146,7 +156,8 @@ impl Surgeon {
         defects += self.flip(net);
         // Half-way through the operation, so that it and its opposite cost the same.
         let excess = net.mesh.faces() as f32 - added - aim.faces;
-        // On a surface of fixed area, a particle more lowers the energy of the springs by the first term.
+        // On a surface of fixed area, a particle more lowers the energy of the springs by the first
+        // term.
         let theta = aim.springs.theta;
         let potential = 3.0 * theta * (1.0 - theta) + COUNT_PRICE * excess / aim.faces;
         let gain_of = |surgeon: &Self, net: &Net, defects: i32| {
@@ -297,8 +308,9 @@ impl Surgeon {
         }
     }
 
-    /// Whether each face around a particle of the patch is within 60° of the surface there. Without this rule trials shorten a thin part of the
-    /// surface from its rim on: each of them leaves a narrow face across the rim, between the two sides.
+    /// Whether each face around a particle of the patch is within 60° of the surface there. Without
+    /// this rule trials shorten a thin part of the surface from its rim on: each of them leaves a
+    /// narrow face across the rim, between the two sides.
     fn lies_on_surface(&self, net: &Net) -> bool {
         let area_of = |h: u32| net.area_vector([h, next(h), previous(h)].map(|h| net.mesh.origin(h)));
         let mut patch = self.patch.iter().copied().filter(|&v| net.mesh.has_vertex(v));
@@ -324,8 +336,8 @@ impl Surgeon {
         }
     }
 
-    /// Flips the edges of the patch that are not Delaunay's; returns the change of Σ (valence − wanted)². An edge must keep an end
-    /// in the patch, else its energy would be lost.
+    /// Flips the edges of the patch that are not Delaunay's; returns the change of Σ (valence −
+    /// wanted)². An edge must keep an end in the patch, else its energy would be lost.
     fn flip(&mut self, net: &mut Net) -> i32 {
         let mut change = 0;
         for &h in &self.edges {
@@ -358,8 +370,9 @@ fn badness(net: &Net, particles: &[u32]) -> i32 {
         .sum()
 }
 
-/// The operation that may mend a particle inside, if there is one: with too few neighbours it is merged with the nearest of them, with
-/// too many another one is inserted into the widest of its faces. With as many as wanted, the lengths of its edges decide.
+/// The operation that may mend a particle inside, if there is one: with too few neighbours it is
+/// merged with the nearest of them, with too many another one is inserted into the widest of its
+/// faces. With as many as wanted, the lengths of its edges decide.
 fn operation(net: &Net, aim: Aim, v: u32) -> Option<Operation> {
     let mesh = &net.mesh;
     let p = net.position[v as usize];

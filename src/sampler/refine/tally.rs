@@ -10,7 +10,8 @@ use glam::Vec3;
 pub(super) struct Tally {
     /// Twice the area of the faces.
     coarse: f64,
-    /// Twice the area of the four faces that each would be divided into, with lifted middles of edges.
+    /// Twice the area of the four faces that each would be divided into, with lifted middles of
+    /// edges.
     fine: f64,
     /// Area of the faces in units of the faces that are wanted where they are.
     cells: f64,
@@ -22,11 +23,13 @@ pub(super) struct Tally {
     pub(super) stretched: Option<Vec3>,
 }
 
-/// A face is stretched if its circumcircle is wider than this, over that of the lattice's faces. The front that would stand in its place has
-/// holes of 1.25 to 1.4. Of 150 strongly bent random surfaces twelve are refused for a stretched face, ten of which have another Euler number
-/// than their front.
+/// A face is stretched if its circumcircle is wider than this, over that of the lattice's faces.
+/// The front that would stand in its place has holes of 1.25 to 1.4. Of 150 strongly bent random
+/// surfaces twelve are refused for a stretched face, ten of which have another Euler number than
+/// their front.
 const WIDEST: f32 = 1.33;
-/// A face is stretched if it has an angle with a larger cosine, that of 30°. The front has angles of 31° to 35°.
+/// A face is stretched if it has an angle with a larger cosine, that of 30°. The front has angles
+/// of 31° to 35°.
 const LARGEST_COS: f32 = 0.866;
 
 impl Tally {
@@ -79,13 +82,15 @@ impl Tally {
         }
     }
 
-    /// Area of the surface, by Richardson's extrapolation. That of the faces alone gives small components too few particles: the largest hole of
-    /// 40 random pairs of bodies is 1.19 with it, in place of 1.15.
+    /// Area of the surface, by Richardson's extrapolation. That of the faces alone gives small
+    /// components too few particles: the largest hole of 40 random pairs of bodies is 1.19 with it,
+    /// in place of 1.15.
     pub(super) fn area(&self) -> f64 {
         0.5 * (4.0 * self.fine - self.coarse) / 3.0
     }
 
-    /// Number of equilateral faces of the wanted sizes that cover the surface, where the spacing is 1.
+    /// Number of equilateral faces of the wanted sizes that cover the surface, where the spacing
+    /// is 1.
     pub(super) fn cells(&self) -> f64 {
         self.cells * self.area() / (0.5 * self.coarse)
     }

@@ -4,13 +4,15 @@ use crate::field::descent;
 use crate::math::{Bounds, NONE};
 use glam::Vec3;
 
-/// A step of Newton's method along the border that is shorter than this share of its reach is the last one: the next one would be shorter
-/// than the square of it, which single precision does not tell from none. A particle may be beyond a plane by as large a share of the
-/// spacing, as such a step moves one that touches the box. Half and double give the same particles in 56 runs on 28 random surfaces.
+/// A step of Newton's method along the border that is shorter than this share of its reach is the
+/// last one: the next one would be shorter than the square of it, which single precision does not
+/// tell from none. A particle may be beyond a plane by as large a share of the spacing, as such a
+/// step moves one that touches the box. Half and double give the same particles in 56 runs on 28
+/// random surfaces.
 pub(super) const AT_REST: f32 = 1e-4;
 
-/// The constraints of a particle besides the surface: bit 2k for the lower plane of axis k of the box, bit 2k + 1 for the upper one, bit 6 for a
-/// crease, and bit 7 for an end of creases.
+/// The constraints of a particle besides the surface: bit 2k for the lower plane of axis k of the
+/// box, bit 2k + 1 for the upper one, bit 6 for a crease, and bit 7 for an end of creases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Planes(u8);
 
@@ -85,7 +87,8 @@ pub(super) struct Site {
     pub(super) normal: Vec3,
     /// The planes of the box on which the particle lies.
     pub(super) planes: Planes,
-    /// Number of the particle on a crease, if it lies on one: see [`Net::on_crease`](super::net::Net::on_crease).
+    /// Number of the particle on a crease, if it lies on one: see
+    /// [`Net::on_crease`](super::net::Net::on_crease).
     pub(super) number: u32,
 }
 
@@ -109,8 +112,8 @@ pub(super) struct Walls {
 }
 
 impl Walls {
-    /// The walls around particles none of which lies on a plane yet. They have no effect if no particle is within a `spacing`
-    /// of a plane, or beyond it.
+    /// The walls around particles none of which lies on a plane yet. They have no effect if no
+    /// particle is within a `spacing` of a plane, or beyond it.
     pub(super) fn new(bounds: &Bounds, position: &[Vec3], spacing: f32) -> Self {
         let [lo, hi] = bounds.single();
         let farthest = lo.abs().max(hi.abs()).max_element();
@@ -166,15 +169,17 @@ impl Walls {
         p
     }
 
-    /// The part of a step that a particle with the normal `n` can make: along the surface and the planes on which it lies.
+    /// The part of a step that a particle with the normal `n` can make: along the surface and the
+    /// planes on which it lies.
     pub(super) fn along(&self, planes: Planes, n: Vec3, step: Vec3) -> Vec3 {
         let (step, n) = (step * planes.free(), n * planes.free());
         let slide = step - n * (step.dot(n) / n.length_squared());
         if planes.is_corner() || planes.is_crease() || !slide.is_finite() { Vec3::ZERO } else { slide }
     }
 
-    /// The position of a particle at `p` after one step of Newton's method on its planes. The position is on the planes to the last bit,
-    /// and in the box unless it `may_leave` it. None if the step is longer than `longest` or leads out of the box.
+    /// The position of a particle at `p` after one step of Newton's method on its planes. The
+    /// position is on the planes to the last bit, and in the box unless it `may_leave` it. None if
+    /// the step is longer than `longest` or leads out of the box.
     pub(super) fn landing(
         &self,
         planes: Planes,

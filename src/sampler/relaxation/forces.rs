@@ -8,15 +8,16 @@ use crate::sampler::sheet::repulsion_weight;
 use core::ops::Range;
 use glam::{Mat4, Vec3, Vec4};
 
-/// Particles whose pairs are evaluated in one batch: the pairs take 8 kB, a quarter of a small first-level cache.
+/// Particles whose pairs are evaluated in one batch: the pairs take 8 kB, a quarter of a small
+/// first-level cache.
 pub(super) const BATCH_PARTICLES: usize = 32;
 /// Largest number of pairs in a batch.
 const MOST_PAIRS: usize = BATCH_PARTICLES * ROOM;
 
 /// The pairs of a few particles, one particle after the other.
 ///
-/// The pairs are collected first and evaluated four at a time, without a branch on the distance: such a branch is
-/// mispredicted for every other pair.
+/// The pairs are collected first and evaluated four at a time, without a branch on the distance:
+/// such a branch is mispredicted for every other pair.
 #[derive(Clone, Debug)]
 struct PairBatch {
     /// Position of the particle less that of its neighbour.
@@ -33,8 +34,8 @@ struct PairBatch {
 /// The force on every particle.
 #[derive(Clone)]
 pub(super) struct Forces {
-    /// Sum of `offset * weight` over the pairs of a particle, in x, y and z; w is 0. Four lanes are added in one
-    /// instruction.
+    /// Sum of `offset * weight` over the pairs of a particle, in x, y and z; w is 0. Four lanes are
+    /// added in one instruction.
     force: Vec<Vec4>,
     batch: Box<PairBatch>,
 }
@@ -63,8 +64,8 @@ impl Forces {
         core::mem::take(&mut self.force[i]).truncate()
     }
 
-    /// Adds the forces between the particles of `range`, at most [`BATCH_PARTICLES`], and their near neighbours to the
-    /// forces on both, and the energies of these pairs to `energy`.
+    /// Adds the forces between the particles of `range`, at most [`BATCH_PARTICLES`], and their
+    /// near neighbours to the forces on both, and the energies of these pairs to `energy`.
     pub(super) fn add_near<L: Repulsion>(
         &mut self,
         law: &L,
@@ -119,7 +120,8 @@ impl Forces {
 }
 
 impl PairBatch {
-    /// Collects the near pairs of the particles of `range`. Returns, for each, the end of its pairs in the batch.
+    /// Collects the near pairs of the particles of `range`. Returns, for each, the end of its pairs
+    /// in the batch.
     fn collect<L: Repulsion>(
         &mut self,
         pairs: &PackedNeighbours,
@@ -131,8 +133,8 @@ impl PairBatch {
         for (end, i) in ends.iter_mut().zip(range) {
             let p = particles.local[i].extend(0.0);
             for j in pairs.near(i) {
-                // A list holds at most ROOM neighbours, so the remainder is the count itself; it spares the bounds
-                // checks.
+                // A list holds at most ROOM neighbours, so the remainder is the count itself; it
+                // spares the bounds checks.
                 let k = count % MOST_PAIRS;
                 self.offset[k] = p - particles.local[j].extend(0.0);
                 self.other[k] = j as u32;

@@ -1,19 +1,22 @@
-//! Relaxation: every particle moves against the repulsion of its neighbours in the tangent plane and is brought back
-//! onto the surface, a given number of times (paper §4.5 and the end of §5).
+//! Relaxation: every particle moves against the repulsion of its neighbours in the tangent plane
+//! and is brought back onto the surface, a given number of times (paper §4.5 and the end of §5).
 //!
-//! The repulsion is a law for pairs of particles ([`Repulsion`]): a Gaussian for particles of one size, the overlap of
-//! discs for particles of many. Steps, neighbour lists and the return to the surface are the same for both.
+//! The repulsion is a law for pairs of particles ([`Repulsion`]): a Gaussian for particles of one
+//! size, the overlap of discs for particles of many. Steps, neighbour lists and the return to the
+//! surface are the same for both.
 //!
-//! A relaxation is a sequence of [sweeps](Sweep) over all particles; `methods::relax` has the order.
+//! A relaxation is a sequence of [sweeps](Sweep) over all particles; `methods::relax` has the
+//! order.
 //!
 //! # Differs from the paper
 //!
-//! * The step size is not fixed but as large as stays stable. A step that does not lower the energy is taken back and
-//!   the step size is halved, so the energy falls at every step that stands. This holds because the energy is one
-//!   function of positions and normals: no pair within range is missing from the lists, and each counts with the weight
-//!   of its present normals ([`sheet::repulsion_weight`]). Where nearly every particle has a neighbour across a
-//!   bend that the radius does not resolve, no step along these forces may lower the energy further; the relaxation
-//!   then ends before its last step.
+//! * The step size is not fixed but as large as stays stable. A step that does not lower the energy
+//!   is taken back and the step size is halved, so the energy falls at every step that stands. This
+//!   holds because the energy is one function of positions and normals: no pair within range is
+//!   missing from the lists, and each counts with the weight of its present normals
+//!   ([`sheet::repulsion_weight`]). Where nearly every particle has a neighbour across a bend that
+//!   the radius does not resolve, no step along these forces may lower the energy further; the
+//!   relaxation then ends before its last step.
 
 mod forces;
 mod grading;
@@ -33,7 +36,8 @@ use crate::sampler::sheet;
 use crate::sampler::sizing::Sizing;
 use core::ops::Range;
 
-/// Units of work that the renewal of a list counts for: it takes ten times as long as the forces on a particle.
+/// Units of work that the renewal of a list counts for: it takes ten times as long as the forces on
+/// a particle.
 const RENEWAL_UNITS: u32 = 10;
 
 /// What is done for each particle in turn.
@@ -135,11 +139,13 @@ pub(crate) struct Swept {
     pub(crate) is_done: bool,
 }
 
-/// Largest distance, in radii, that a particle is transported: that of its neighbours. A surface that has moved farther is sampled anew.
+/// Largest distance, in radii, that a particle is transported: that of its neighbours. A surface
+/// that has moved farther is sampled anew.
 pub(crate) const TRANSPORT_REACH: f32 = 2.0;
 
-/// A Newton correction shorter than this, in radii, ends the transport: what it leaves is far below the step that follows, which lands
-/// particles as closely as any. With a tenth, half and double of it the figures of 16 random motions are the same within 1 %.
+/// A Newton correction shorter than this, in radii, ends the transport: what it leaves is far below
+/// the step that follows, which lands particles as closely as any. With a tenth, half and double of
+/// it the figures of 16 random motions are the same within 1 %.
 const TRANSPORT_TRUST: f32 = 0.1;
 
 impl Relaxation {
@@ -148,8 +154,9 @@ impl Relaxation {
         self.stepper.clear();
     }
 
-    /// Goes on until `target` steps are done in all. `pairs` are the lists of the front, if it was not cut short. Where the
-    /// largest lift is finite, particles of different sheets that face the same way do not repel each other.
+    /// Goes on until `target` steps are done in all. `pairs` are the lists of the front, if it was
+    /// not cut short. Where the largest lift is finite, particles of different sheets that face the
+    /// same way do not repel each other.
     pub(crate) fn begin(
         &mut self,
         law: RepulsionLaw,
@@ -168,7 +175,8 @@ impl Relaxation {
         self.target = target;
         (self.sweep, self.grid_serves) = (None, false);
         self.is_steep = false;
-        // A first step that was cancelled has moved particles, so the lists of the front no longer hold.
+        // A first step that was cancelled has moved particles, so the lists of the front no longer
+        // hold.
         let is_first = self.stepper.energy().is_empty();
         self.stepper.begin(limits, particles, law.first_step(), law.resizes());
         self.lists.reset(particles);
@@ -181,8 +189,8 @@ impl Relaxation {
         }
     }
 
-    /// Brings the particles to the surface of a field that has changed. `are_listed` says whether the lists were those of these particles
-    /// before.
+    /// Brings the particles to the surface of a field that has changed. `are_listed` says whether
+    /// the lists were those of these particles before.
     pub(crate) fn begin_transport(
         &mut self,
         law: RepulsionLaw,
@@ -200,8 +208,8 @@ impl Relaxation {
         self.lost.clear();
     }
 
-    /// Keeps the lists of those particles that have a new row, [`Particles::NO_PARENT`] for one that is gone. Those that came after the listed
-    /// ones are listed in the next step.
+    /// Keeps the lists of those particles that have a new row, [`Particles::NO_PARENT`] for one
+    /// that is gone. Those that came after the listed ones are listed in the next step.
     pub(crate) fn keep(&mut self, rows: &[u32], particles: &Particles, pairs: &mut PackedNeighbours) {
         pairs.extend_to(rows.len());
         pairs.keep(rows, Particles::NO_PARENT);
@@ -266,8 +274,8 @@ impl Relaxation {
         self.grid_serves = false;
     }
 
-    /// Has all lists made anew. The grading is a promise about all pairs: none may be missing that the
-    /// front or a change of radii has left out.
+    /// Has all lists made anew. The grading is a promise about all pairs: none may be missing that
+    /// the front or a change of radii has left out.
     pub(crate) fn distrust_lists(&mut self) -> bool {
         if self.law.resizes() {
             self.lists.make_all_stale();
@@ -300,8 +308,8 @@ impl Relaxation {
     }
 
     /// Goes on with a sweep over all particles, as far as `left` of a budget allows: one unit a
-    /// particle, more for a costly one. Returns whether particles moved, once it has come to the end.
-    /// Particles of many radii need the radius field `sizing` of their run.
+    /// particle, more for a costly one. Returns whether particles moved, once it has come to the
+    /// end. Particles of many radii need the radius field `sizing` of their run.
     ///
     /// # Panics
     ///
@@ -396,8 +404,8 @@ impl Relaxation {
         }
     }
 
-    /// The particles that a sweep comes through with what is `left` of a budget, which pays for them:
-    /// the last one may go beyond it.
+    /// The particles that a sweep comes through with what is `left` of a budget, which pays for
+    /// them: the last one may go beyond it.
     fn affordable(&self, sweep: Sweep, left: &mut u32, n: usize) -> Range<usize> {
         let cost = |i: usize| match sweep {
             Sweep::RenewLists if self.lists.is_stale(i) => RENEWAL_UNITS,
@@ -450,8 +458,8 @@ impl Relaxation {
             next = range.end;
             let probe = &mut probe.on(particles.patch_of(range.start));
             let is_checked = pairs.any_weighted(&range) || stepper.may_stray();
-            // Near a bend the energy depends on the normal, which is therefore evaluated at the final position; and near another
-            // sheet a short correction may lead far away.
+            // Near a bend the energy depends on the normal, which is therefore evaluated at the
+            // final position; and near another sheet a short correction may lead far away.
             landing.trust = if is_checked { 0.0 } else { TRUSTED_CORRECTION };
             match sweep {
                 Sweep::Move => stepper.advance(law, particles, range.clone(), &mut landing),

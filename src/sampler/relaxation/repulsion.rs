@@ -1,5 +1,5 @@
-//! Laws of repulsion: a Gaussian for particles of one size (paper §4.5), the overlap of discs for particles of many
-//! (§5).
+//! Laws of repulsion: a Gaussian for particles of one size (paper §4.5), the overlap of discs for
+//! particles of many (§5).
 
 use crate::differential::{Curvature, curvatures_of};
 use crate::field::Evaluator;
@@ -13,12 +13,12 @@ use crate::sampler::projection::{ResidualLimits, Tolerance};
 use crate::sampler::sizing::Sizing;
 use glam::{Vec3, Vec4};
 
-/// Largest number of evaluations to bring a particle back onto the surface. Three are enough on smooth random formulas; where a
-/// field through points takes more than six, the particle stays.
+/// Largest number of evaluations to bring a particle back onto the surface. Three are enough on
+/// smooth random formulas; where a field through points takes more than six, the particle stays.
 const MAX_NEWTON: u32 = 6;
 
-/// Largest distance that a particle moves in one step, in radii: it stays far from the next one, at 2. Half of it and twice as
-/// much give the same figures on random surfaces within 0.5 %.
+/// Largest distance that a particle moves in one step, in radii: it stays far from the next one,
+/// at 2. Half of it and twice as much give the same figures on random surfaces within 0.5 %.
 pub(crate) const MAX_MOVE: f32 = 0.35;
 
 /// A batch of particles that return to the surface.
@@ -57,15 +57,19 @@ impl LandingBatch {
     }
 }
 
-/// A law of repulsion between two particles. Lengths are in mean radii of the pair unless stated otherwise.
+/// A law of repulsion between two particles. Lengths are in mean radii of the pair unless stated
+/// otherwise.
 pub(crate) trait Repulsion {
     /// Distance beyond which two particles do not repel each other.
     const RANGE: f32;
-    /// Verlet skin: how much farther than the range the neighbour lists reach, so that they serve while particles move.
+    /// Verlet skin: how much farther than the range the neighbour lists reach, so that they serve
+    /// while particles move.
     const SKIN: f32;
-    /// Distance that particles may travel until the grid from which lists are renewed is filled again.
+    /// Distance that particles may travel until the grid from which lists are renewed is filled
+    /// again.
     const SLACK: f32;
-    /// First step size, and the largest: a particle moves by it times the sum of `offset * weight` over its pairs.
+    /// First step size, and the largest: a particle moves by it times the sum of `offset * weight`
+    /// over its pairs.
     const STEP: f32;
     /// Whether the radii change as particles move.
     const RESIZES: bool;
@@ -79,24 +83,26 @@ pub(crate) trait Repulsion {
     /// Returns the smallest and the largest radius of the particles.
     fn extent(&self, particles: &Particles) -> RadiusRange;
 
-    /// Returns force over offset, and energy, of four pairs with these squared distances and mean radii, both in units
-    /// of length.
+    /// Returns force over offset, and energy, of four pairs with these squared distances and mean
+    /// radii, both in units of length.
     fn pairs(&self, distance_sq: Vec4, mean: Vec4) -> (Vec4, Vec4);
 
-    /// Moves the particles of `landing` onto the surface and writes their normals. Brings radii up to date: of the
-    /// particles that have travelled far since that was done last, or of all.
+    /// Moves the particles of `landing` onto the surface and writes their normals. Brings radii up
+    /// to date: of the particles that have travelled far since that was done last, or of all.
     fn land(&self, probe: &mut Probe, landing: &mut LandingBatch);
 }
 
-/// Gaussian repulsion after Witkin and Heckbert 1994, §4, without fission and death, and with one radius.
+/// Gaussian repulsion after Witkin and Heckbert 1994, §4, without fission and death, and with one
+/// radius.
 ///
-/// A pair at distance d has the energy exp(−d²/2σ²) with σ = r, and every particle moves against the gradient of the
-/// sum. The hexagonal lattice of spacing 2r is then close to equilibrium, which is at 2.017 r.
+/// A pair at distance d has the energy exp(−d²/2σ²) with σ = r, and every particle moves against
+/// the gradient of the sum. The hexagonal lattice of spacing 2r is then close to equilibrium, which
+/// is at 2.017 r.
 ///
 /// # Differs from the paper
 ///
-/// The pair energy is cut off at 3σ and shifted so that it is zero there, which keeps the sum continuous in the
-/// positions.
+/// The pair energy is cut off at 3σ and shifted so that it is zero there, which keeps the sum
+/// continuous in the positions.
 pub(crate) struct Gaussian {
     radius: f32,
     tolerance: Tolerance,
@@ -113,11 +119,12 @@ impl Gaussian {
 impl Repulsion for Gaussian {
     const RANGE: f32 = GAUSSIAN_RANGE;
     const SKIN: f32 = GAUSSIAN_SKIN;
-    /// Half of it takes 0 to 1.2 % more instructions in runs on six random surfaces, double of it as many within 0.3 %.
+    /// Half of it takes 0 to 1.2 % more instructions in runs on six random surfaces, double of it
+    /// as many within 0.3 %.
     const SLACK: f32 = 0.5;
-    /// The unit is σ². The stiffest mode of the hexagonal lattice at spacing 2σ has the eigenvalue 2.2 / σ², so steps
-    /// below 0.9 are stable there, and steps below 0.7 where rows are squeezed to 1.7σ. Longer steps reach no lower
-    /// energy in ten steps, and the squeezed rows oscillate.
+    /// The unit is σ². The stiffest mode of the hexagonal lattice at spacing 2σ has the eigenvalue
+    /// 2.2 / σ², so steps below 0.9 are stable there, and steps below 0.7 where rows are squeezed
+    /// to 1.7σ. Longer steps reach no lower energy in ten steps, and the squeezed rows oscillate.
     const STEP: f32 = 0.6;
     const RESIZES: bool = false;
 
@@ -161,9 +168,11 @@ impl Repulsion for Gaussian {
 /// Energy of a pair at the cut-off, exp(−RANGE²/2).
 pub(crate) const END_ENERGY: f32 = 0.011_108_997;
 
-/// Returns exp(−x) for 0 ≤ x ≤ 4.5, with a relative error below 2·10⁻⁵. The result has no meaning outside that range.
+/// Returns exp(−x) for 0 ≤ x ≤ 4.5, with a relative error below 2·10⁻⁵. The result has no meaning
+/// outside that range.
 ///
-/// The result is computed as exp(−x/16)¹⁶ by the Taylor polynomial of degree 5, whose error at x/16 = 0.28 is 7·10⁻⁷.
+/// The result is computed as exp(−x/16)¹⁶ by the Taylor polynomial of degree 5, whose error at
+/// x/16 = 0.28 is 7·10⁻⁷.
 pub(crate) fn gaussian(x: Vec4) -> Vec4 {
     let y = x * (-1.0 / 16.0);
     let e = 1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y * (1.0 / 120.0)))));
@@ -173,25 +182,26 @@ pub(crate) fn gaussian(x: Vec4) -> Vec4 {
     e8 * e8
 }
 
-/// Returns the energy of a pair by the [`Gaussian`] repulsion, whose squared distance is given in squared mean radii, up to the square of
-/// the range.
+/// Returns the energy of a pair by the [`Gaussian`] repulsion, whose squared distance is given in
+/// squared mean radii, up to the square of the range.
 pub(crate) fn pair_energy(distance_sq: f32) -> f32 {
     gaussian(Vec4::splat(0.5 * distance_sq)).x - END_ENERGY
 }
 
-/// Forces between discs of different radii (paper §5, "a relaxation scheme based on a computation of forces"): two
-/// particles push each other apart by the overlap of their discs.
+/// Forces between discs of different radii (paper §5, "a relaxation scheme based on a computation
+/// of forces"): two particles push each other apart by the overlap of their discs.
 ///
-/// The stiffness is the same for all pairs, so discs of all sizes are compressed by the same length where the forces
-/// balance. The energy is that of the relative overlaps, Σ (overlap / mean radius)². To first order the same forces
-/// descend it, if the change of the radii with the position is counted: the radius falls towards smaller neighbours,
-/// which pushes a particle as much as the unequal forces of large and small neighbours do.
+/// The stiffness is the same for all pairs, so discs of all sizes are compressed by the same length
+/// where the forces balance. The energy is that of the relative overlaps, Σ (overlap / mean
+/// radius)². To first order the same forces descend it, if the change of the radii with the
+/// position is counted: the radius falls towards smaller neighbours, which pushes a particle as
+/// much as the unequal forces of large and small neighbours do.
 ///
 /// # Differs from the paper
 ///
-/// * The paper gives no formulas. The discs count as 1.15 times as large as their radii: discs that barely touch would
-///   not push into gaps. Of factors from 1.0 to 1.5, 1.15 gives the most even sizes after ten steps on ellipsoid, torus
-///   and tanglecube.
+/// * The paper gives no formulas. The discs count as 1.15 times as large as their radii: discs that
+///   barely touch would not push into gaps. Of factors from 1.0 to 1.5, 1.15 gives the most even
+///   sizes after ten steps on ellipsoid, torus and tanglecube.
 /// * A radius is brought up to date once its particle has travelled a tenth of it, and at the end.
 pub(crate) struct Overlap<'a> {
     pub(crate) sizing: &'a Sizing,
@@ -206,8 +216,9 @@ impl Repulsion for Overlap<'_> {
     const SKIN: f32 = OVERLAP_SKIN;
     /// The grid is filled again each time: it is arranged by radii, which change.
     const SLACK: f32 = 0.0;
-    /// The stiffest mode of the hexagonal lattice has the eigenvalue 6 (1 − c), where c is the share by which the
-    /// lattice is compressed, so steps below 0.36 are stable. Shorter steps mend less in ten.
+    /// The stiffest mode of the hexagonal lattice has the eigenvalue 6 (1 − c), where c is the
+    /// share by which the lattice is compressed, so steps below 0.36 are stable. Shorter steps mend
+    /// less in ten.
     const STEP: f32 = 0.33;
     const RESIZES: bool = true;
 
@@ -284,9 +295,10 @@ impl Repulsion for Overlap<'_> {
     }
 }
 
-/// A radius is brought up to date once its particle has travelled this share of it. Until then the law has changed by
-/// less than this share of the slope, a few thousandths on most surfaces, and a Hessian costs two to three gradients. With half and
-/// double the figures of 25 random surfaces are the same within 0.3 %.
+/// A radius is brought up to date once its particle has travelled this share of it. Until then the
+/// law has changed by less than this share of the slope, a few thousandths on most surfaces, and a
+/// Hessian costs two to three gradients. With half and double the figures of 25 random surfaces are
+/// the same within 0.3 %.
 const RADIUS_LASTS: f32 = 0.1;
 
 /// A batch of descents to the surface that notes the curvature at each evaluation.

@@ -1,4 +1,5 @@
-//! Steps of the relaxation: how long they are, whether they stand, and how particles move and return to the surface.
+//! Steps of the relaxation: how long they are, whether they stand, and how particles move and
+//! return to the surface.
 
 use crate::math::{larger, refill};
 use crate::particles::Particles;
@@ -12,14 +13,16 @@ use crate::sampler::sheet::OrientedPoint;
 use core::ops::Range;
 use glam::Vec3;
 
-/// Factor by which the step size grows after a step that stands; it is halved after one that does not. Ten steps without growth
-/// end within 0.1 % of the same figures; in longer runs the size recovers in 14 steps.
+/// Factor by which the step size grows after a step that stands; it is halved after one that does
+/// not. Ten steps without growth end within 0.1 % of the same figures; in longer runs the size
+/// recovers in 14 steps.
 const GROWTH: f32 = 1.05;
-/// Times that the way of a particle that has come to another sheet is halved. Half and double give the same particles on 46 random
-/// surfaces.
+/// Times that the way of a particle that has come to another sheet is halved. Half and double give
+/// the same particles on 46 random surfaces.
 const HALVINGS: u32 = 4;
-/// The configuration counts as being at its minimum after more than this many rejected steps in a row: the step is then shorter
-/// than a hundredth of the first. Ten steps on random surfaces, creased ones too, reject no more than three in a row.
+/// The configuration counts as being at its minimum after more than this many rejected steps in a
+/// row: the step is then shorter than a hundredth of the first. Ten steps on random surfaces,
+/// creased ones too, reject no more than three in a row.
 const MAX_FAILURES: u32 = 6;
 
 /// The step size and the state of every particle that a step changes.
@@ -31,8 +34,8 @@ pub(super) struct Stepper {
     previous: Vec<Vec3>,
     /// Radii before that step; empty where radii do not change.
     previous_radius: Vec<f32>,
-    /// Distance that each particle has travelled since its radius was brought up to date; empty where radii do not
-    /// change.
+    /// Distance that each particle has travelled since its radius was brought up to date; empty
+    /// where radii do not change.
     radius_travel: Vec<f32>,
     step_size: f32,
     /// Rejected steps in a row.
@@ -57,12 +60,14 @@ impl Stepper {
         if self.done == 0 {
             self.step_size = first_size;
         }
-        // After a stop the particles may be where no energy was measured, and after a run they have been polished.
+        // After a stop the particles may be where no energy was measured, and after a run they have
+        // been polished.
         self.energy.truncate(self.done as usize);
         self.resize(particles, resizes);
     }
 
-    /// Prepares for particles on a surface that moves: there are no judgements, and all steps have one size.
+    /// Prepares for particles on a surface that moves: there are no judgements, and all steps have
+    /// one size.
     pub(super) fn follow(&mut self, limits: MoveLimits, size: f32) {
         self.clear();
         (self.limits, self.step_size) = (limits, size);
@@ -102,9 +107,9 @@ impl Stepper {
         }
     }
 
-    /// Accepts or rejects the last step by the energy per particle after it. Returns whether it stands: whether it has
-    /// lowered the energy. The next step is a little longer then, and otherwise half as long, but never longer than
-    /// `longest`.
+    /// Accepts or rejects the last step by the energy per particle after it. Returns whether it
+    /// stands: whether it has lowered the energy. The next step is a little longer then, and
+    /// otherwise half as long, but never longer than `longest`.
     pub(super) fn judge(&mut self, energy: f64, longest: f32) -> bool {
         if self.energy.last().is_some_and(|&before| energy >= before) {
             self.step_size *= 0.5;
@@ -123,7 +128,8 @@ impl Stepper {
         self.failures > MAX_FAILURES
     }
 
-    /// Writes where the forces move the particles of `range`, in their tangent planes, to `landing`.
+    /// Writes where the forces move the particles of `range`, in their tangent planes, to
+    /// `landing`.
     pub(super) fn advance<L: Repulsion>(
         &mut self,
         law: &L,
@@ -145,8 +151,9 @@ impl Stepper {
         }
     }
 
-    /// Puts the particles of `range` back where they were before the step, and writes their positions to `landing`.
-    /// The particles are not yet landed: their normals are still those of the positions that they have left.
+    /// Puts the particles of `range` back where they were before the step, and writes their
+    /// positions to `landing`. The particles are not yet landed: their normals are still those of
+    /// the positions that they have left.
     pub(super) fn take_back<L: Repulsion>(
         &mut self,
         law: &L,
@@ -176,11 +183,13 @@ impl Stepper {
         }
     }
 
-    /// Moves the particles of `range` to where the positions in `landing` come to the surface, and gives them the
-    /// normals and radii there. Those that have come there are the ones that are `ok` in `landing` then.
+    /// Moves the particles of `range` to where the positions in `landing` come to the surface, and
+    /// gives them the normals and radii there. Those that have come there are the ones that are
+    /// `ok` in `landing` then.
     ///
-    /// A particle stays where it is if it lies on a crease, or cannot go: beyond the border of the box or of its patch, where
-    /// the field ends, at a fold, across which its normal would turn by more than 90°, and where only another sheet is near.
+    /// A particle stays where it is if it lies on a crease, or cannot go: beyond the border of the
+    /// box or of its patch, where the field ends, at a fold, across which its normal would turn by
+    /// more than 90°, and where only another sheet is near.
     pub(super) fn land<L: Repulsion>(
         &mut self,
         law: &L,
@@ -213,7 +222,8 @@ impl Stepper {
                 && cosine > 0.0
                 && probe.is_on_patch(position, normal, law.radius(particles, i), particles.patch_of(i));
             if landing.ok[k] {
-                // A turn of the normal counts as a move: the turn that makes a list stale as the distance that does.
+                // A turn of the normal counts as a move: the turn that makes a list stale as the
+                // distance that does.
                 let turn_sq = 2.0 - 2.0 * cosine;
                 let per_turn = 0.5 * L::SKIN / STALE_TURN * law.radius(particles, i);
                 let distance_sq = (position - particles.local[i]).length_squared();
@@ -231,8 +241,9 @@ impl Stepper {
         }
     }
 
-    /// Lands the particles of the batch that missed the surface, or came to another sheet of it, anew: nearer to where they were,
-    /// on the way to the `goal`. `first` is the index of the first of the batch. Those that fail each time are not ok.
+    /// Lands the particles of the batch that missed the surface, or came to another sheet of it,
+    /// anew: nearer to where they were, on the way to the `goal`. `first` is the index of the first
+    /// of the batch. Those that fail each time are not ok.
     fn land_nearer<L: Repulsion>(
         &self,
         law: &L,
@@ -280,10 +291,11 @@ impl Stepper {
     }
 }
 
-/// Notes in the `lists` that particle `i` has moved by `distance` and that its radius has grown by `grown`.
+/// Notes in the `lists` that particle `i` has moved by `distance` and that its radius has grown by
+/// `grown`.
 ///
-/// A list serves until its particle has used up half of the skin: two such particles may have come within range without
-/// being listed.
+/// A list serves until its particle has used up half of the skin: two such particles may have come
+/// within range without being listed.
 #[inline]
 fn add_travel<L: Repulsion>(
     law: &L,
@@ -297,7 +309,8 @@ fn add_travel<L: Repulsion>(
     lists.add_travel(i, distance, more, 0.5 * L::SKIN * law.radius(particles, i));
 }
 
-/// The first part of a range of particles, up to where a batch of the projection ends or the `patch` changes.
+/// The first part of a range of particles, up to where a batch of the projection ends or the
+/// `patch` changes.
 pub(super) fn batch(range: Range<usize>, patch: &[u32]) -> Range<usize> {
     let last = range.end.min((range.start / BATCH + 1) * BATCH);
     let is_other = |&i: &usize| patch.get(i) != patch.get(range.start);

@@ -1,14 +1,17 @@
-//! The envelope of the radius: the largest function of a given slope below some radii at points of the surface.
+//! The envelope of the radius: the largest function of a given slope below some radii at points of
+//! the surface.
 
 use crate::math::{Bounds, SQRT_3};
 use crate::sampler::discovery::grid::CELLS;
 use glam::Vec3;
 
-/// Largest number of passes forwards and backwards over the nodes. One would be enough on a full grid; in a thin band of nodes
-/// the shortest path may turn back around a bend. One and three give the same radii on 22 random surfaces.
+/// Largest number of passes forwards and backwards over the nodes. One would be enough on a full
+/// grid; in a thin band of nodes the shortest path may turn back around a bend. One and three give
+/// the same radii on 22 random surfaces.
 const ROUNDS: usize = 2;
 
-/// A function on the nodes of a regular grid. Only the nodes near the surface, the *active* ones, have a meaning.
+/// A function on the nodes of a regular grid. Only the nodes near the surface, the *active* ones,
+/// have a meaning.
 #[derive(Clone, Debug)]
 pub(super) struct Envelope {
     /// Position of the first node.
@@ -17,23 +20,25 @@ pub(super) struct Envelope {
     pub(super) cell: f32,
     /// Last position in the box that is in a cell, in units of cells.
     last: Vec3,
-    /// Number of nodes along each axis. The outermost ones are never active, so an active node has all its neighbours.
+    /// Number of nodes along each axis. The outermost ones are never active, so an active node has
+    /// all its neighbours.
     nodes: [usize; 3],
     value: Vec<f32>,
     /// Indices of the active nodes, in ascending order.
     active: Vec<u32>,
 }
 
-/// Cells of the grid beyond the box on each side: an active node lies within two cells of a point in the box.
+/// Cells of the grid beyond the box on each side: an active node lies within two cells of a point
+/// in the box.
 const MARGIN: usize = 2;
 
-/// Distance of the last position in the box from its last node, in cells, which puts that position into the last cell: far above
-/// the last digit of a coordinate of 37 cells in single precision.
+/// Distance of the last position in the box from its last node, in cells, which puts that position
+/// into the last cell: far above the last digit of a coordinate of 37 cells in single precision.
 const LAST_CELL: f32 = 1e-4;
 
 impl Envelope {
-    /// Makes the grid for a box, with as many cells as that of the survey, so that a cell that the surface meets holds some of its
-    /// points. The nodes near the `points` are active.
+    /// Makes the grid for a box, with as many cells as that of the survey, so that a cell that the
+    /// surface meets holds some of its points. The nodes near the `points` are active.
     pub(super) fn new(bounds: &Bounds, points: impl Iterator<Item = Vec3>) -> Self {
         let size = (bounds.hi() - bounds.lo()).as_vec3();
         let cell = size.max_element() / CELLS as f32;
@@ -66,8 +71,8 @@ impl Envelope {
         [1, self.nodes[0], self.nodes[0] * self.nodes[1]]
     }
 
-    /// Returns the first node of the cell that holds `p`, or of the nearest cell in the box, and the position in that
-    /// cell, from 0 to 1 along each axis.
+    /// Returns the first node of the cell that holds `p`, or of the nearest cell in the box, and
+    /// the position in that cell, from 0 to 1 along each axis.
     fn locate(&self, p: Vec3) -> (usize, Vec3) {
         // NaN becomes the first position.
         let position = ((p - self.lo) * self.inverse_cell).max(Vec3::splat(MARGIN as f32)).min(self.last);
@@ -84,7 +89,8 @@ impl Envelope {
         self.value.fill(value);
     }
 
-    /// Lowers the nodes of the cell around `p` to at most `radius` plus `slope` times their distance from `p`.
+    /// Lowers the nodes of the cell around `p` to at most `radius` plus `slope` times their
+    /// distance from `p`.
     pub(super) fn lower(&mut self, p: Vec3, radius: f32, slope: f32) {
         let (first, t) = self.locate(p);
         let [_, row, layer] = self.strides();
@@ -96,7 +102,8 @@ impl Envelope {
         }
     }
 
-    /// Lowers every active node to what the others allow at this slope, with distances along paths over active nodes.
+    /// Lowers every active node to what the others allow at this slope, with distances along paths
+    /// over active nodes.
     pub(super) fn spread(&mut self, slope: f32) {
         let steps = [1.0, core::f32::consts::SQRT_2, SQRT_3 as f32].map(|length| slope * length * self.cell);
         for _ in 0..ROUNDS {
@@ -115,9 +122,9 @@ impl Envelope {
         }
     }
 
-    /// Lowers node `n` to what thirteen of its neighbours allow: those before it or those after it in the order of the
-    /// nodes. `steps` are the rises to a neighbour across a face, an edge and a corner. Returns whether the node was
-    /// lowered.
+    /// Lowers node `n` to what thirteen of its neighbours allow: those before it or those after it
+    /// in the order of the nodes. `steps` are the rises to a neighbour across a face, an edge and a
+    /// corner. Returns whether the node was lowered.
     fn lower_node(&mut self, n: usize, steps: [f32; 3], at: impl Fn(usize) -> usize) -> bool {
         let [_, row, layer] = self.strides();
         let least = |a: f32, b: f32| if b < a { b } else { a };

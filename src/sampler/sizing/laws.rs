@@ -1,22 +1,24 @@
 //! Radius laws: the radius of a particle as a function of the curvature of the surface (paper §5).
 //!
-//! A law gives a radius from 0 to ∞; [`SizingLaw`] clamps it to the smallest and largest radius of the run. Where the
-//! curvature is undefined (see [`Curvature::is_defined`]: cone points, creases, the border of the domain of f) every
-//! law gives the smallest radius, which is also the limit if the curvature grows towards such a point.
+//! A law gives a radius from 0 to ∞; [`SizingLaw`] clamps it to the smallest and largest radius of
+//! the run. Where the curvature is undefined (see [`Curvature::is_defined`]: cone points, creases,
+//! the border of the domain of f) every law gives the smallest radius, which is also the limit if
+//! the curvature grows towards such a point.
 
 use crate::differential::Curvature;
 use crate::sampler::settings::{LawKind, Settings};
 
-/// Returns the radius that a law gives where the surface has a curvature. `size` is the chord error ε of the law by it, a length; of the
-/// others it is the factor s, a pure number.
+/// Returns the radius that a law gives where the surface has a curvature. `size` is the chord error
+/// ε of the law by it, a length; of the others it is the factor s, a pure number.
 ///
-/// * Chord error: the middle of an equilateral triangle of side h, inscribed in a sphere of radius R, is ε away from the sphere if h =
-///   √(6εR − 3ε²). With R = 1/max(|κ₁|, |κ₂|) and neighbours 2r apart, r = h/2: infinite on a plane, 0 where R is below ε/2. This law
-///   is the default, since its parameter is the easiest to understand.
-/// * Largest curvature: r = s / max(|κ₁|, |κ₂|), infinite on a plane. The normals of neighbours differ by about 2s radians in the
-///   direction of the largest curvature.
-/// * Sum of curvatures: r = s / |κ₁ + κ₂|, the paper's law (§5, "we define the curvature at a point to be κ = κ₁ + κ₂"). The sum
-///   vanishes on symmetric saddles, where the radius is infinite.
+/// * Chord error: the middle of an equilateral triangle of side h, inscribed in a sphere of radius
+///   R, is ε away from the sphere if h = √(6εR − 3ε²). With R = 1/max(|κ₁|, |κ₂|) and neighbours 2r
+///   apart, r = h/2: infinite on a plane, 0 where R is below ε/2. This law is the default, since
+///   its parameter is the easiest to understand.
+/// * Largest curvature: r = s / max(|κ₁|, |κ₂|), infinite on a plane. The normals of neighbours
+///   differ by about 2s radians in the direction of the largest curvature.
+/// * Sum of curvatures: r = s / |κ₁ + κ₂|, the paper's law (§5, "we define the curvature at a point
+///   to be κ = κ₁ + κ₂"). The sum vanishes on symmetric saddles, where the radius is infinite.
 fn law_radius(law: LawKind, size: f32, curvature: &Curvature) -> f32 {
     match law {
         LawKind::ChordError => {
@@ -104,7 +106,8 @@ mod tests {
                 error as f32,
                 &curved(1.0 / bend_radius as f32, 0.0),
             ));
-            // A side of 2r puts the corners at circumradius 2r/√3 from the foot of the sphere's centre.
+            // A side of 2r puts the corners at circumradius 2r/√3 from the foot of the sphere's
+            // centre.
             let corner_sq = 4.0 * radius * radius / 3.0;
             let gap = bend_radius - (bend_radius * bend_radius - corner_sq).sqrt();
             assert!(

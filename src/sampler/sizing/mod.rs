@@ -1,9 +1,11 @@
-//! The radius field of adaptive sampling: a law gives the radius from the curvature, and its slope is limited.
+//! The radius field of adaptive sampling: a law gives the radius from the curvature, and its slope
+//! is limited.
 //!
-//! r(x) = min(law(κ(x)), envelope(x)). The envelope is the minimum over the points y of the survey and of the creases of law(κ(y)) +
-//! L |x − y|: the largest function of slope L that is not above the law at these points. So the radius grows no faster than this
-//! away from a bend, also away from a crease beside a patch so small that no point of the survey lies on it. The envelope is stored on the
-//! nodes of a grid near the surface and interpolated between them.
+//! r(x) = min(law(κ(x)), envelope(x)). The envelope is the minimum over the points y of the survey
+//! and of the creases of law(κ(y)) + L |x − y|: the largest function of slope L that is not above
+//! the law at these points. So the radius grows no faster than this away from a bend, also away
+//! from a crease beside a patch so small that no point of the survey lies on it. The envelope is
+//! stored on the nodes of a grid near the surface and interpolated between them.
 
 mod envelope;
 mod laws;
@@ -19,11 +21,12 @@ use crate::sampler::sizing::envelope::Envelope;
 use crate::sampler::sizing::laws::SizingLaw;
 use glam::Vec3;
 
-/// Rounds towards a predicted count. Each scales the radii by the square root of the ratio of the counts; more than one is
-/// necessary only because of the clamps and the slope. Five and seven give the same radii on 22 random surfaces.
+/// Rounds towards a predicted count. Each scales the radii by the square root of the ratio of the
+/// counts; more than one is necessary only because of the clamps and the slope. Five and seven give
+/// the same radii on 22 random surfaces.
 const MAX_ROUNDS: u32 = 6;
-/// Relative error at which a predicted count counts as met; the prediction itself is not more accurate. Half of it gives the same
-/// radii on 22 random surfaces, twice as much others on 3.
+/// Relative error at which a predicted count counts as met; the prediction itself is not more
+/// accurate. Half of it gives the same radii on 22 random surfaces, twice as much others on 3.
 const PREDICTION_TOLERANCE: f64 = 2e-3;
 
 /// The radius field of a run.
@@ -50,8 +53,8 @@ struct SurfaceSample {
 }
 
 impl Sizing {
-    /// Makes the radius field that `settings` ask for. This evaluates a Hessian at every point of the survey, and on every patch at each
-    /// of the `creases`.
+    /// Makes the radius field that `settings` ask for. This evaluates a Hessian at every point of
+    /// the survey, and on every patch at each of the `creases`.
     pub(crate) fn new(
         probe: &mut Probe,
         bounds: &Bounds,
@@ -90,14 +93,15 @@ impl Sizing {
         sizing
     }
 
-    /// Returns the repulsion radius of a particle at a point of the surface with this curvature; the smallest radius if
-    /// the curvature is undefined.
+    /// Returns the repulsion radius of a particle at a point of the surface with this curvature;
+    /// the smallest radius if the curvature is undefined.
     #[inline]
     pub(crate) fn radius(&self, position: Vec3, curvature: &Curvature) -> f32 {
         self.law.radius(curvature).min(self.envelope.at(position))
     }
 
-    /// Returns the repulsion radius of a particle at a point of the surface. This evaluates a Hessian, which is not counted.
+    /// Returns the repulsion radius of a particle at a point of the surface. This evaluates a
+    /// Hessian, which is not counted.
     pub(crate) fn radius_at(&self, field: &mut dyn Evaluator, position: Vec3) -> f32 {
         let mut curvature = [Curvature::default()];
         curvatures(field, &[position], &mut curvature);
@@ -105,8 +109,8 @@ impl Sizing {
     }
 
     #[cfg(test)]
-    /// Returns an upper bound of the radius at `position`, without a Hessian. It is not close where the surface bends
-    /// more than at the nearest points of the survey.
+    /// Returns an upper bound of the radius at `position`, without a Hessian. It is not close where
+    /// the surface bends more than at the nearest points of the survey.
     #[inline]
     pub(crate) fn envelope(&self, position: Vec3) -> f32 {
         self.envelope.at(position)
@@ -145,7 +149,8 @@ impl Sizing {
         self
     }
 
-    /// The radius field with another largest slope, and with the law and its clamp multiplied by `factor`.
+    /// The radius field with another largest slope, and with the law and its clamp multiplied by
+    /// `factor`.
     pub(crate) fn graded(mut self, slope: f64, factor: f64) -> Self {
         self.slope = slope as f32;
         self.scale(factor);
@@ -185,7 +190,8 @@ impl Sizing {
             self.largest = self.largest.max(radius);
         }
         if self.samples.is_empty() {
-            // The survey has found no surface. Components that the search may still find get the largest radius.
+            // The survey has found no surface. Components that the search may still find get the
+            // largest radius.
             (self.smallest, self.largest) = (self.law.greatest(), self.law.greatest());
         }
     }

@@ -1,5 +1,5 @@
-// The numbers by which the page reads the columns of the core. Written from the Rust constants by a test:
-// UPDATE_GOLDEN=1 cargo test --lib page_types
+// The numbers by which the page reads the columns of the core. Written from the Rust constants by a
+// test: UPDATE_GOLDEN=1 cargo test --lib page_types
 
 /** Parent index of a seed. */
 export const NO_PARENT = 4294967295;

@@ -1,5 +1,5 @@
-// The types of what the core, the solver for points and the lesson say and are told. Written from the Rust types by a test:
-// UPDATE_GOLDEN=1 cargo test --lib page_types
+// The types of what the core, the solver for points and the lesson say and are told. Written from
+// the Rust types by a test: UPDATE_GOLDEN=1 cargo test --lib page_types
 
 /** What a command is answered: the fields of the value, or the error. */
 export type Answer<T, E> = ({ ok: true } & T) | { ok: false; error: E };
@@ -129,7 +129,8 @@ export type Fault = {
   kind: FaultKind,
   /** The error as a sentence for the user, in plain text. */
   message: string,
-  /** Start of the mistake in the formula, in UTF-16 code units, as the selection of a text field counts. */
+  /** Start of the mistake in the formula, in UTF-16 code units, as the selection of a text field
+  * counts. */
   start: number,
   /** End of the mistake in the formula, in UTF-16 code units. */
   end: number,
@@ -160,15 +161,18 @@ export type FieldAnswer = {
   parameters: Array<Parameter>,
   /** Parameters that were not declared but found in the formula. */
   auto: Array<string>,
-  /** Clip box, whose faces close the solid where they are to; before [`Session::fit`] or a start it may be that of the formula before. */
+  /** Clip box, whose faces close the solid where they are to; before [`Session::fit`] or a start
+  * it may be that of the formula before. */
   bounds: Bounds,
   /** Whether the surface, closed by no box, is bounded, if the box was fitted to it. */
   reach: Reach | null,
-  /** Period of the surface along each axis: 0 if it does not change along it, none if it is not known to be periodic. */
+  /** Period of the surface along each axis: 0 if it does not change along it, none if it is not
+  * known to be periodic. */
   periods: [number | null, number | null, number | null],
   /** The formula as MathML; none if there is no formula. */
   mathml: MathNode | null,
-  /** What has become of the surface that was to pass through the pins of the request; none without pins. */
+  /** What has become of the surface that was to pass through the pins of the request; none
+  * without pins. */
   grip: Grip | null,
 };
 
@@ -184,20 +188,23 @@ export type FieldRequest = {
   declare: Array<Parameter>,
   /** Clip box. Without one it is that of the surface, or fitted (see [`Session::fit`]). */
   bounds: Bounds | null,
-  /** Points that the surface is to pass through: the parameters change for it ([`Formula::pass_through`]). */
+  /** Points that the surface is to pass through: the parameters change for it
+  * ([`Formula::pass_through`]). */
   pins: Array<[number, number, number]>,
   /** Pulls on the surface of a model from points, one after the other. */
   pulls: Array<Pull>,
 };
 
-/** The figures of a set of particles, one number per property; NaN (null in JSON) where undefined. Lengths are over d_hex
-* unless said otherwise. JSON has all figures side by side. */
+/** The figures of a set of particles, one number per property; NaN (null in JSON) where undefined.
+* Lengths are over d_hex unless said otherwise. JSON has all figures side by side. */
 export type Figures = {
-  /** Spacing of a perfect hexagonal lattice of as many points on the same area, √(2A/(√3 N)), in the field's units. */
+  /** Spacing of a perfect hexagonal lattice of as many points on the same area, √(2A/(√3 N)), in
+  * the field's units. */
   d_hex: number,
   /** Area, as given or of the triangles found, in the field's units. */
   area: number,
-  /** Points that differ from an earlier one by no more than rounding; dropped before the triangulation. */
+  /** Points that differ from an earlier one by no more than rounding; dropped before the
+  * triangulation. */
   dup: number,
   /** Points with a non-finite coordinate; left out of everything. */
   not_finite: number,
@@ -225,23 +232,25 @@ export type Figures = {
   rho: number,
   /** First percentile of the nearest-neighbour distance. */
   rho_1: number,
-  /** Pairs of points nearer than 0.75: over d_hex, as `nn_min`, or of natural neighbours over the sum of
-  * their wanted radii, as `overlap_min`, where those are known. A duplicate is a pair with the point that it equals. None where
-  * there are no distances. */
+  /** Pairs of points nearer than 0.75: over d_hex, as `nn_min`, or of natural neighbours over the
+  * sum of their wanted radii, as `overlap_min`, where those are known. A duplicate is a pair
+  * with the point that it equals. None where there are no distances. */
   crowded: number | null,
   /** Radius of the largest hole over d_hex/√3, that of the perfect lattice: 1 is ideal. */
   cover: number,
-  /** Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius there, which is the mean of the
-  * wanted radii of the points around the hole. One factor scales all wanted radii so that their cells have the surface's area.
-  * 1 is ideal. With equal radii this is `cover`. */
+  /** Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius
+  * there, which is the mean of the wanted radii of the points around the hole. One factor
+  * scales all wanted radii so that their cells have the surface's area. 1 is ideal. With equal
+  * radii this is `cover`. */
   cover_local: number,
-  /** Mean squared distance from the surface to the nearest point over that of the perfect lattice: 1 is ideal. */
+  /** Mean squared distance from the surface to the nearest point over that of the perfect
+  * lattice: 1 is ideal. */
   quant: number,
-  /** Share of the surface that no disc of a point around it covers, where the discs are known: 1 - π/(2√3) = 0.093 in a lattice
-  * whose discs touch. */
+  /** Share of the surface that no disc of a point around it covers, where the discs are known:
+  * 1 - π/(2√3) = 0.093 in a lattice whose discs touch. */
   uncovered: number,
-  /** Holes wider than 1.4, as `cover`, or as `cover_local` where wanted radii are known: empty discs of which
-  * none has its middle in a wider one. None where `cover` is undefined. */
+  /** Holes wider than 1.4, as `cover`, or as `cover_local` where wanted radii are known: empty
+  * discs of which none has its middle in a wider one. None where `cover` is undefined. */
   wide_holes: number | null,
   /** Fraction of the points with exactly six natural neighbours. */
   six: number,
@@ -257,18 +266,20 @@ export type Figures = {
   edge_cv: number,
   /** Standard deviation over mean of edge length over the sum of the wanted radii. */
   size_cv: number,
-  /** Smallest distance of natural neighbours over the sum of their wanted radii: 1 where particles just touch, 0 for
-  * duplicates. */
+  /** Smallest distance of natural neighbours over the sum of their wanted radii: 1 where
+  * particles just touch, 0 for duplicates. */
   overlap_min: number,
-  /** Kept triangles over 2N − 2χ: 1 for a closed manifold. On a clipped surface, the share of the sectors around
-  * points away from the border that a kept triangle fills. */
+  /** Kept triangles over 2N − 2χ: 1 for a closed manifold. On a clipped surface, the share of the
+  * sectors around points away from the border that a kept triangle fills. */
   tri_ok: number,
-  /** Fraction of the triangles (away from the border) that belong to the natural-neighbour stars of all three corners. */
+  /** Fraction of the triangles (away from the border) that belong to the natural-neighbour stars
+  * of all three corners. */
   agree: number,
-  /** Euler number of the kept triangles: those on which at least two of their three corners agree. */
+  /** Euler number of the kept triangles: those on which at least two of their three corners
+  * agree. */
   euler: number,
-  /** Number of components of the surface, by natural neighbours: components of the kept triangles, and groups of points far from
-  * all of them. */
+  /** Number of components of the surface, by natural neighbours: components of the kept
+  * triangles, and groups of points far from all of them. */
   components: number,
   /** Smallest angle of any triangle, in degrees. */
   ang_min: number,
@@ -284,7 +295,8 @@ export type Figures = {
   a_gt90: number,
 };
 
-/** The record of a file, from which the same particles can be made again. Files carry it as JSON ([`export::RecordText`]). */
+/** The record of a file, from which the same particles can be made again. Files carry it as JSON
+* ([`export::RecordText`]). */
 export type FileRecord = {
   /** Version of the program. */
   version: string,
@@ -343,8 +355,8 @@ export type FunctionInfo = {
 export type GivenMesh = {
   /** Area of all faces, in the units of the file. */
   area: number,
-  /** Components, Euler number and border loops, if every edge has one or two faces of equal orientation. Corners that coincide in single
-  * precision are one. */
+  /** Components, Euler number and border loops, if every edge has one or two faces of equal
+  * orientation. Corners that coincide in single precision are one. */
   topology: GivenTopology | null,
 };
 
@@ -360,9 +372,11 @@ export type GivenTopology = {
 
 /** What has become of a surface that is to pass through points. */
 export type Grip = {
-  /** Whether the surface passes through all points. Otherwise it has come as near as the ranges of the parameters allow. */
+  /** Whether the surface passes through all points. Otherwise it has come as near as the ranges
+  * of the parameters allow. */
   holds: boolean,
-  /** For each point, one of the surface that is nearest to it, found down the gradient; the point itself if none is found. */
+  /** For each point, one of the surface that is nearest to it, found down the gradient; the point
+  * itself if none is found. */
   places: Array<[number, number, number]>,
   /** The parameters that have changed, with their values. */
   changed: { [key in string]: number },
@@ -370,8 +384,8 @@ export type Grip = {
   idle: Array<string>,
 };
 
-/** Histogram of the nearest-neighbour distances over the ideal ones: d_hex, or twice the particle's wanted radius where one is given.
-* Bins are equal, and values outside fall into the outermost. */
+/** Histogram of the nearest-neighbour distances over the ideal ones: d_hex, or twice the particle's
+* wanted radius where one is given. Bins are equal, and values outside fall into the outermost. */
 export type Histogram = {
   /** Lower end of the first bin. */
   min: number,
@@ -387,7 +401,8 @@ export type Hole = {
   position: [number, number, number],
   /** Distance to the nearest particle, in the field's units. */
   radius: number,
-  /** Radius over that of the perfect lattice or, where there are wanted radii, of the lattice with those around it. */
+  /** Radius over that of the perfect lattice or, where there are wanted radii, of the lattice
+  * with those around it. */
   ratio: number,
 };
 
@@ -406,7 +421,8 @@ export type LessonChapter = {
   after: number,
   /** Number of proposed children by fate. */
   fates: FateCounts,
-  /** Energy per particle when a relaxation step ends, or when an iteration of a particle system begins. */
+  /** Energy per particle when a relaxation step ends, or when an iteration of a particle system
+  * begins. */
   energy: number | null,
   /** Longest move, in radii, of relaxation steps and iterations. */
   largest_move: number | null,
@@ -431,8 +447,8 @@ export type LessonChapter = {
   /** Number of the iteration, from 1. */
   iteration: number, });
 
-/** An event. [`Event::Seed`], [`Event::Added`], [`Event::Fate`], [`Event::Done`], [`Event::Moved`], [`Event::Divided`] and
-* [`Event::Died`] change the particles; the others tell why. */
+/** An event. [`Event::Seed`], [`Event::Added`], [`Event::Fate`], [`Event::Done`], [`Event::Moved`],
+* [`Event::Divided`] and [`Event::Died`] change the particles; the others tell why. */
 export type LessonEvent = { "type": "seed",
 /** Index of the seed. */
 particle: number,
@@ -498,7 +514,8 @@ parent: number,
 slot: number,
 /** Position at which the child was compared: the predicted one, or that of the landing. */
 position: [number, number, number],
-/** The nearest particle; none if none is near, or if it is a child that still has to be projected. */
+/** The nearest particle; none if none is near, or if it is a child that still has to be
+* projected. */
 against: number | null,
 /** Distance to the nearest; none if nothing is near. */
 distance: number | null,
@@ -542,7 +559,8 @@ angles_rad: [number, number], } | { "type": "start",
 parent: number,
 /** Number of the slot. */
 slot: number,
-/** The point I of Fig. 7c, on the circle of the child before it; none for the first child of a seed. */
+/** The point I of Fig. 7c, on the circle of the child before it; none for the first child
+* of a seed. */
 tangent: [number, number, number] | null,
 /** The point s, in the tangent plane. */
 position: [number, number, number],
@@ -564,7 +582,8 @@ slot: number,
 position: [number, number, number],
 /** Repulsion radius at `position`. */
 radius: number,
-/** Largest overlap with another particle, as a share of r_i + r_j; negative if there is none. */
+/** Largest overlap with another particle, as a share of r_i + r_j; negative if there is
+* none. */
 overlap: number, } | { "type": "room",
 /** The particle that places the child. */
 parent: number,
@@ -590,7 +609,8 @@ energy: number, } | { "type": "moved",
 particle: number,
 /** Sum of the repulsion, in the tangent plane; the step size times it is the move. */
 force: [number, number, number],
-/** Target of the move, in the tangent plane; in Witkin and Heckbert's system with the way back to the surface. */
+/** Target of the move, in the tangent plane; in Witkin and Heckbert's system with the way
+* back to the surface. */
 target: [number, number, number],
 /** The place on the surface. */
 position: [number, number, number],
@@ -598,7 +618,8 @@ position: [number, number, number],
 normal: [number, number, number],
 /** Repulsion radius at `position`. */
 radius: number,
-/** Whether the particle stayed where it was, because the move leads out of the box, off the surface or around a fold. */
+/** Whether the particle stayed where it was, because the move leads out of the box, off the
+* surface or around a fold. */
 is_kept: boolean, } | { "type": "step_ends",
 /** Number of the step, from 1. */
 step: number,
@@ -630,7 +651,8 @@ iteration: number,
 particles: number,
 /** Longest move, in radii. */
 largest_move: number,
-/** Mean move, in radii: the system has settled once this is small and nothing divides or dies for a while. */
+/** Mean move, in radii: the system has settled once this is small and nothing divides or
+* dies for a while. */
 mean_move: number, };
 
 /** A surface given by a formula, as the page knows it. */
@@ -663,7 +685,8 @@ export type LessonLife = {
   done: number | null,
 };
 
-/** Whether a particle with which a child was identified stays among the neighbours of the parent (§4.4). */
+/** Whether a particle with which a child was identified stays among the neighbours of the parent
+* (§4.4). */
 export type LessonMatched = "leave" | "stay";
 
 /** Method that covers the surface. */
@@ -680,7 +703,8 @@ export type LessonNearby = {
 /** The order in which the particles that are not done are treated (§4.4). */
 export type LessonOrder = "queue" | "stack";
 
-/** A particle: position p, normal N̂ and repulsion radius r (§4.2), with its parent, level, front and slots. */
+/** A particle: position p, normal N̂ and repulsion radius r (§4.2), with its parent, level, front
+* and slots. */
 export type LessonParticle = {
   /** Position on the surface. */
   position: [number, number, number],
@@ -688,7 +712,8 @@ export type LessonParticle = {
   normal: [number, number, number],
   /** Repulsion radius. */
   radius: number,
-  /** The particle that placed this one; none for a seed and in particle systems, where no index lasts. */
+  /** The particle that placed this one; none for a seed and in particle systems, where no index
+  * lasts. */
   parent: number | null,
   /** Generation level; in a particle system the number of fissions since the first particle. */
   level: number,
@@ -736,30 +761,34 @@ export type LessonPush = {
   distance: number,
 };
 
-/** The choices of a run. `Default` gives those of the paper; where it names no value, those of the fast sampler. */
+/** The choices of a run. `Default` gives those of the paper; where it names no value, those of the
+* fast sampler. */
 export type LessonSettings = {
-  /** Method that covers the surface. Of the settings below, the two particle systems use those of the sizes, the seeds,
-  * `residual`, `max_iterations` and `max_particles`. */
+  /** Method that covers the surface. Of the settings below, the two particle systems use those of
+  * the sizes, the seeds, `residual`, `max_iterations` and `max_particles`. */
   method: LessonMethod,
   /** Whether all particles have one radius (§4), or one that follows the curvature (§5). */
   sampling: 'uniform' | 'adaptive',
-  /** Repulsion radius r of every particle of uniform sampling, a length in the field's coordinates. */
+  /** Repulsion radius r of every particle of uniform sampling, a length in the field's
+  * coordinates. */
   radius: number,
   /** Law for the radius of an adaptive particle, given the curvature. */
   law: 'chord_error' | 'max_curvature' | 'sum_of_curvatures',
-  /** The number that the law scales: for `chord_error` the gap between the surface and a triangle of neighbours, a length; for
-  * the other two the radius over the radius of curvature. */
+  /** The number that the law scales: for `chord_error` the gap between the surface and a triangle
+  * of neighbours, a length; for the other two the radius over the radius of curvature. */
   law_scale: number,
   /** Smallest radius of an adaptive particle, a length. */
   radius_min: number,
-  /** Largest radius of an adaptive particle, a length. In Witkin and Heckbert's system half of the surface's diameter, a radius
-  * at which a particle divides whatever its energy; 0 has it measured. */
+  /** Largest radius of an adaptive particle, a length. In Witkin and Heckbert's system half of
+  * the surface's diameter, a radius at which a particle divides whatever its energy; 0 has it
+  * measured. */
   radius_max: number,
-  /** An adaptive child is added if the free angle τ is at least this share of φ, the angle that it takes. The paper compares
-  * them as they are, which is 1: on a lattice, where the two are equal, rounding then decides. */
+  /** An adaptive child is added if the free angle τ is at least this share of φ, the angle that
+  * it takes. The paper compares them as they are, which is 1: on a lattice, where the two are
+  * equal, rounding then decides. */
   fit: number,
-  /** Points near the surface at which fronts begin, in this order, each when the one before it has closed. Other seeds are looked for only
-  * if none are given. */
+  /** Points near the surface at which fronts begin, in this order, each when the one before it
+  * has closed. Other seeds are looked for only if none are given. */
   seeds: Array<[number, number, number]>,
   /** Seed of the random choice of the first seed point, where no seed points are given. */
   seed: number,
@@ -781,7 +810,8 @@ export type LessonSettings = {
   residual: number,
   /** Relaxation steps. */
   relax_steps: number,
-  /** Size of a relaxation step. If it is not given: 0.6 σ² with σ = r in uniform sampling, 0.33 of the overlap in adaptive. */
+  /** Size of a relaxation step. If it is not given: 0.6 σ² with σ = r in uniform sampling, 0.33
+  * of the overlap in adaptive. */
   step_size: number | null,
   /** A particle system that has not come to rest after so many iterations ends all the same. */
   max_iterations: number,
@@ -838,9 +868,11 @@ export type MathToken = "mi" | "mn" | "mo";
 export type Measures = {
   /** Quality of the present particles; none if there are none, or where they were not measured. */
   quality: Figures | null,
-  /** Quality of the particles after the front, before the relaxation; none where nothing was relaxed. */
+  /** Quality of the particles after the front, before the relaxation; none where nothing was
+  * relaxed. */
   quality_before: Figures | null,
-  /** Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of the particles. */
+  /** Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of
+  * the particles. */
   nearest_histogram: Histogram,
   /** The crowded pairs and wide holes of the present particles. */
   places: Places,
@@ -860,17 +892,21 @@ export type MeshAnswer = {
   triangles: number,
   /** Connected components, in the order of their first particles. */
   components: Array<MeshComponent>,
-  /** Number of border loops where no manifold could be had, other than those where the surface ends. */
+  /** Number of border loops where no manifold could be had, other than those where the surface
+  * ends. */
   unfilled: number,
   /** Number of particles in no triangle. */
   left_out: number,
   /** [Volume](Triangulation::volume) that the mesh encloses; none where it is open. */
   volume: number | null,
-  /** Sign of f inside of the closed parts; none if there is no closed part. All face outward in files. */
+  /** Sign of f inside of the closed parts; none if there is no closed part. All face outward in
+  * files. */
   inside: Inside | null,
-  /** [Smallest angle](Triangulation::smallest_angle) of any triangle, in degrees; none without triangles. */
+  /** [Smallest angle](Triangulation::smallest_angle) of any triangle, in degrees; none without
+  * triangles. */
   smallest_angle: number | null,
-  /** Border loops: rows of particles in order. Those where no manifold could be had come first, then the longest. */
+  /** Border loops: rows of particles in order. Those where no manifold could be had come first,
+  * then the longest. */
   loops: Array<Array<number>>,
 };
 
@@ -906,13 +942,14 @@ export type ModelInfo = {
   credit: string,
   /** Number of points read. */
   points: number,
-  /** Number of centres of the function. If every point is one, the surface goes through all of them. */
+  /** Number of centres of the function. If every point is one, the surface goes through all of
+  * them. */
   centres: number,
   /** Estimated condition number of the system. */
   condition: number,
-  /** Mean residual |f|/|∇f| of all distinct points read, as a share of the diagonal of their box: their distance from the surface
-  * to first order (G. Taubin, "Estimation of Planar Curves, Surfaces, and Nonplanar Space Curves Defined by Implicit
-  * Equations", 1991). */
+  /** Mean residual |f|/|∇f| of all distinct points read, as a share of the diagonal of their box:
+  * their distance from the surface to first order (G. Taubin, "Estimation of Planar Curves,
+  * Surfaces, and Nonplanar Space Curves Defined by Implicit Equations", 1991). */
   residual_mean: number,
   /** Residual that 95 % of them do not exceed, as a share of that diagonal. */
   residual_95: number,
@@ -924,7 +961,8 @@ export type ModelInfo = {
   mesh: GivenMesh | null,
   /** Origin of the normals. */
   normals: NormalSource,
-  /** Warnings for the user, as sentences: they go from the bundle that fits a model to the one that samples it. */
+  /** Warnings for the user, as sentences: they go from the bundle that fits a model to the one
+  * that samples it. */
   warnings: Array<string>,
 };
 
@@ -962,15 +1000,17 @@ export type Phase = "idle" | "seeding" | "generation" | "refinement" | "search" 
 export type Placement = {
   /** Length of a unit of the formula, in the unit of the file; positive. */
   scale: number,
-  /** Unit of the file. 3MF names it, and GLB is in metres, to which lengths are converted; other formats have no place for it. Without
-  * one, numbers stay what they are: metres in GLB, millimetres in 3MF. */
+  /** Unit of the file. 3MF names it, and GLB is in metres, to which lengths are converted; other
+  * formats have no place for it. Without one, numbers stay what they are: metres in GLB,
+  * millimetres in 3MF. */
   unit: Unit | null,
-  /** Axis of the formula that points up in the file: along z, but in GLB along y, as its specification has it. */
+  /** Axis of the formula that points up in the file: along z, but in GLB along y, as its
+  * specification has it. */
   up: UpAxis,
 };
 
-/** The worst places, the worst first, at most 64 of each kind: the crowded pairs and the wide holes or, if there are none, the
-* closest pair and the largest hole. */
+/** The worst places, the worst first, at most 64 of each kind: the crowded pairs and the wide holes
+* or, if there are none, the closest pair and the largest hole. */
 export type Places = {
   /** Crowded pairs. */
   pairs: Array<Pair>,
@@ -994,7 +1034,8 @@ export type Progress = {
   phase: Phase,
   /** Particles in the columns that will stay, each counted once. */
   particles: number,
-  /** Rows of the columns that will stay: one for each particle, or one on each side for those on creases. */
+  /** Rows of the columns that will stay: one for each particle, or one on each side for those on
+  * creases. */
   rows: number,
   /** Generation level under way. */
   level: number,
@@ -1006,15 +1047,17 @@ export type Progress = {
   relax_step: number,
   /** Relaxation steps asked for. */
   relax_steps: number,
-  /** Points at which the survey and all phases have evaluated the field so far, whatever derivatives they asked for. A function is called
-  * more often: several times for each derivative by differences ([`FnField`](crate::FnField)), and for the box, the set-up and the proof,
-  * which are not counted. */
+  /** Points at which the survey and all phases have evaluated the field so far, whatever
+  * derivatives they asked for. A function is called more often: several times for each
+  * derivative by differences ([`FnField`](crate::FnField)), and for the box, the set-up and the
+  * proof, which are not counted. */
   evaluations: number,
   /** Estimated share of the work done. It does not go back before more is asked for. */
   fraction: number,
   /** Set once the run has ended. */
   stop_reason: StopReason | null,
-  /** A sentence for the user where the reason needs one. It may name places, which the reason does not hold. */
+  /** A sentence for the user where the reason needs one. It may name places, which the reason
+  * does not hold. */
   message: string | null,
   /** Repulsion radius. */
   radius: number,
@@ -1028,27 +1071,34 @@ export type Pull = {
   at: [number, number, number],
   /** The vector by which it is pulled. */
   by: [number, number, number],
-  /** Distance from where the place comes to, from which on nothing moves. It is at least twice the length of `by`. */
+  /** Distance from where the place comes to, from which on nothing moves. It is at least twice
+  * the length of `by`. */
   reach: number,
 };
 
 /** Whether a surface is bounded. */
 export type Reach = "bounded" | "endless" | "nowhere" | "unknown";
 
-/** Report on a run: its particles, how they were placed, the proof of completeness, quality and warnings. */
+/** Report on a run: its particles, how they were placed, the proof of completeness, quality and
+* warnings. */
 export type Report = {
   /** Number of particles. */
   count: number,
-  /** Volume that the mesh encloses to which [`Run::join`] has joined the particles; none where it is open, or they were not joined. */
+  /** Volume that the mesh encloses to which [`Run::join`] has joined the particles; none where it
+  * is open, or they were not joined. */
   volume: number | null,
-  /** Sign of f inside of the closed parts of the surface, by that mesh if the particles were joined, else by the triangles of natural
-  * neighbours; none where no part is closed, or nothing was measured. */
+  /** Sign of f inside of the closed parts of the surface, by that mesh if the particles were
+  * joined, else by the triangles of natural neighbours; none where no part is closed, or
+  * nothing was measured. */
   inside: Inside | null,
-  /** Smallest angle of the triangles of that mesh in degrees, those at its border among them; none where the particles were not joined. */
+  /** Smallest angle of the triangles of that mesh in degrees, those at its border among them;
+  * none where the particles were not joined. */
   smallest_angle: number | null,
-  /** Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none where no faces are the same. */
+  /** Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none where no
+  * faces are the same. */
   pairs: number | null,
-  /** Particles with a child that fell outside of the box; of those that have followed a moving surface, with place for one there. */
+  /** Particles with a child that fell outside of the box; of those that have followed a moving
+  * surface, with place for one there. */
   border: number,
   /** Why particles lie at the border of the box. */
   cut: Cut | null,
@@ -1058,8 +1108,8 @@ export type Report = {
   warnings: Array<string>,
   /** Digest of the particles, 16 hexadecimal digits. */
   digest: string,
-  /** Repulsion radius of the run; with adaptive sampling the one at which as many particles of equal radius would cover the
-  * surface. */
+  /** Repulsion radius of the run; with adaptive sampling the one at which as many particles of
+  * equal radius would cover the surface. */
   radius: number,
   /** Repulsion radius of the smallest particle; 0 without particles. */
   radius_min: number,
@@ -1075,36 +1125,42 @@ export type Report = {
   gaps_filled: number,
   /** Number of proposed children by fate. */
   fates: FateCounts,
-  /** Field evaluations of the whole run, counted as [`Progress::evaluations`](crate::Progress::evaluations). */
+  /** Field evaluations of the whole run, counted as
+  * [`Progress::evaluations`](crate::Progress::evaluations). */
   evaluations: number,
   /** Field evaluations of the front per particle. */
   evaluations_per_particle: number,
   /** Times that a coarse front was refined; none where it was not, or the front stands. */
   refined_levels: number | null,
-  /** Energy per particle before the first relaxation step and after each; none where nothing was relaxed. */
+  /** Energy per particle before the first relaxation step and after each; none where nothing was
+  * relaxed. */
   energy: Array<number> | null,
-  /** Number of components at this radius: those of the graph of natural neighbours of the particles. 0, and null in JSON, without
-  * particles or where they were not measured. */
+  /** Number of components at this radius: those of the graph of natural neighbours of the
+  * particles. 0, and null in JSON, without particles or where they were not measured. */
   components: number | null,
-  /** Whether it is proven that there is a witness on every component of the surface, and of each witness that it is on the
-  * component of a particle or named in `sampled`. */
+  /** Whether it is proven that there is a witness on every component of the surface, and of each
+  * witness that it is on the component of a particle or named in `sampled`. */
   search: Search,
   /** The witnessed components that hold particles, and those that do not. */
   sampled: Sampled,
-  /** Cells of the box in which the proof could not decide, and witnesses of which it could not; none where no proof was
-  * attempted. */
+  /** Cells of the box in which the proof could not decide, and witnesses of which it could not;
+  * none where no proof was attempted. */
   undecided_cells: number | null,
-  /** Places where f has no gradient on the surface, a curve of them counted as one; none where they were not looked for. */
+  /** Places where f has no gradient on the surface, a curve of them counted as one; none where
+  * they were not looked for. */
   singular_points: number | null,
-  /** Curves along which particles lie on creases, from corner to corner or closed; none where the surface has no creases. */
+  /** Curves along which particles lie on creases, from corner to corner or closed; none where the
+  * surface has no creases. */
   creases: number | null,
   /** Particles at which creases meet or end; none where the surface has no creases. */
   corners: number | null,
   /** Quality of the present particles; none if there are none, or where they were not measured. */
   quality: Figures | null,
-  /** Quality of the particles after the front, before the relaxation; none where nothing was relaxed. */
+  /** Quality of the particles after the front, before the relaxation; none where nothing was
+  * relaxed. */
   quality_before: Figures | null,
-  /** Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of the particles. */
+  /** Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of
+  * the particles. */
   nearest_histogram: Histogram,
   /** The crowded pairs and wide holes of the present particles. */
   places: Places,
@@ -1116,8 +1172,8 @@ export type ReportRow = {
   key: string,
   /** Path of the upper end, if the row is a range that begins at `key`. */
   to: string | null,
-  /** Path of the figure that replaces this one where the report has it: a figure that is relative to the lattice of one size does not
-  * apply to particles of many sizes. */
+  /** Path of the figure that replaces this one where the report has it: a figure that is relative
+  * to the lattice of one size does not apply to particles of many sizes. */
   unless: string | null,
   /** Name for a person. */
   label: string,
@@ -1139,11 +1195,12 @@ export type ReportRow = {
 
 /** The witnessed components that hold particles, and those that do not. */
 export type Sampled = {
-  /** Every witnessed component that reaches farther than this from its witness holds particles; 0 if all do. None where this
-  * is not proven. */
+  /** Every witnessed component that reaches farther than this from its witness holds particles; 0
+  * if all do. None where this is not proven. */
   above: number | null,
-  /** Number of witnessed components without a particle; none where there was no search for witnesses. A component counts twice if
-  * two of its witnesses could not be proven to be connected. */
+  /** Number of witnessed components without a particle; none where there was no search for
+  * witnesses. A component counts twice if two of its witnesses could not be proven to be
+  * connected. */
   missing: number | null,
   /** A witness of each component without a particle: at most 256. */
   without: Array<Unsampled>,
@@ -1194,8 +1251,8 @@ export type SettingScale = "linear" | "log";
 /** The value of a setting. */
 export type SettingValue = number | number | string;
 
-/** Fate of a slot around a particle. Slots are in the order of their angles: six in a hexagon (paper §4.4), up to ten
-* where radii vary (§5). */
+/** Fate of a slot around a particle. Slots are in the order of their angles: six in a hexagon
+* (paper §4.4), up to ten where radii vary (§5). */
 export type SlotFate = "open" | "parent" | "added" | "matched" | "not_converged" | "outside" | "undefined" | "capped";
 
 /** Report and box that accompany a solved system to the session that samples it. */
@@ -1262,7 +1319,8 @@ export type Unsampled = {
 /** Axis of the formula's coordinates. */
 export type UpAxis = "x" | "y" | "z";
 
-/** How particles become vertices of a mesh file. It makes a difference on sharp edges, where a particle has a normal for each side. */
+/** How particles become vertices of a mesh file. It makes a difference on sharp edges, where a
+* particle has a normal for each side. */
 export type Vertices = "joined" | "split" | "columns";
 
 /** A way to write vertices, as an interface shows it. */

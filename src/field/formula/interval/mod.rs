@@ -1,10 +1,11 @@
 //! Interval arithmetic over the graph: bounds of f and ∇f over boxes, a few boxes at a time.
 //!
-//! The bounds hold at every point of a box. Every operation rounds outward (R. E. Moore, "Interval Analysis", 1966): by
-//! at least one unit in the last place where IEEE arithmetic rounds correctly, by several where the value comes from a
-//! mathematical library with an error of up to two. The bounds of the gradient are those of the derivative expressions.
-//! At a kink (abs, min, max) they contain every slope between the one-sided ones (F. H. Clarke's generalised gradient,
-//! 1975), so that the mean value theorem holds there too.
+//! The bounds hold at every point of a box. Every operation rounds outward (R. E. Moore, "Interval
+//! Analysis", 1966): by at least one unit in the last place where IEEE arithmetic rounds correctly,
+//! by several where the value comes from a mathematical library with an error of up to two. The
+//! bounds of the gradient are those of the derivative expressions. At a kink (abs, min, max) they
+//! contain every slope between the one-sided ones (F. H. Clarke's generalised gradient, 1975), so
+//! that the mean value theorem holds there too.
 
 mod flags;
 mod range;
@@ -20,8 +21,9 @@ pub(super) use range::Range;
 pub(super) use rows::Row;
 use std::sync::Arc;
 
-/// Number of boxes whose bounds are computed together. Most calls have eight boxes or fewer. With 8 runs on a gyroid, on linked rings and
-/// on a torus take 6, 4 and 1 % more instructions, with a single one two of them 7 and 13 %, and a scan for a box up to 30 %.
+/// Number of boxes whose bounds are computed together. Most calls have eight boxes or fewer. With 8
+/// runs on a gyroid, on linked rings and on a torus take 6, 4 and 1 % more instructions, with a
+/// single one two of them 7 and 13 %, and a scan for a box up to 30 %.
 const BOXES: usize = 4;
 
 /// A graph compiled for boxes.
@@ -36,18 +38,21 @@ pub(super) struct BoxProgram {
     outputs: Vec<Id>,
 }
 
-/// Memory of one [`BoxProgram`], with the bounds of each node over the boxes at hand. It begins empty.
+/// Memory of one [`BoxProgram`], with the bounds of each node over the boxes at hand. It begins
+/// empty.
 #[derive(Debug, Default)]
 pub(super) struct BoxRows(Vec<Row<BOXES>>);
 
 impl BoxProgram {
-    /// Compiles the nodes `outputs` of `graph`. Bounds may be asked for once [`BoxProgram::set_parameters`] is called.
+    /// Compiles the nodes `outputs` of `graph`. Bounds may be asked for once
+    /// [`BoxProgram::set_parameters`] is called.
     pub(super) fn compile(graph: &Graph, outputs: &[Id]) -> Self {
         let (graph, outputs) = graph.rewritten(outputs, Graph::intern);
         Self { uniforms: vec![Row::ZERO; graph.len()], graph: Arc::new(graph), outputs }
     }
 
-    /// Recomputes the bounds of the nodes that depend on no coordinate from the values of the parameters.
+    /// Recomputes the bounds of the nodes that depend on no coordinate from the values of the
+    /// parameters.
     pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
         for (id, &node) in (0..).zip(self.graph.nodes()).filter(|&(id, _)| self.graph.is_uniform(id)) {
             let none = |_| unreachable!("a coordinate varies");
@@ -61,8 +66,8 @@ impl BoxProgram {
         (0..self.graph.len() as Id).filter(|&id| !self.graph.is_uniform(id)).count()
     }
 
-    /// The operand and the number of a product with an exact number, which takes half the time of other products: with it runs on
-    /// products of coordinates take up to 4 % fewer instructions.
+    /// The operand and the number of a product with an exact number, which takes half the time of
+    /// other products: with it runs on products of coordinates take up to 4 % fewer instructions.
     fn scaled(&self, node: Node) -> Option<(Id, f64)> {
         let Node::Binary(Binary::Mul, a, b) = node else { return None };
         let factor = self.uniforms[b as usize].at(0);
@@ -70,7 +75,8 @@ impl BoxProgram {
         (self.graph.is_uniform(b) && lo == hi && !factor.is_empty()).then_some((a, lo))
     }
 
-    /// Calls `take` with the index of each box and a function that gives the bounds of result `n` over it.
+    /// Calls `take` with the index of each box and a function that gives the bounds of result `n`
+    /// over it.
     fn run(
         &self,
         rows: &mut BoxRows,
@@ -98,8 +104,8 @@ impl BoxProgram {
         }
     }
 
-    /// Bounds of results 0 … 3, a function and its gradient. Result 4 tells where the whole field is defined and
-    /// continuous.
+    /// Bounds of results 0 … 3, a function and its gradient. Result 4 tells where the whole field
+    /// is defined and continuous.
     pub(super) fn enclose(&self, rows: &mut BoxRows, boxes: &[Bounds], out: &mut [Enclosure]) {
         self.run(rows, boxes, |i, result| out[i] = enclosure([0, 1, 2, 3, 4].map(result)));
     }
@@ -113,7 +119,8 @@ impl BoxProgram {
     }
 }
 
-/// Bounds of a node over the first `n` boxes of a row, from those of the coordinates and of its operands.
+/// Bounds of a node over the first `n` boxes of a row, from those of the coordinates and of its
+/// operands.
 fn row_of<'a, const N: usize>(
     node: Node,
     n: usize,
@@ -169,7 +176,8 @@ fn row_of<'a, const N: usize>(
     }
 }
 
-/// Bounds of `nodes` over a box: `rows` gets those of each at its index. The operands of each have to be among them.
+/// Bounds of `nodes` over a box: `rows` gets those of each at its index. The operands of each have
+/// to be among them.
 pub(super) fn bounds(
     graph: &Graph,
     nodes: &[Id],
@@ -210,7 +218,8 @@ fn enclosure([f, x, y, z, whole]: [Range; 5]) -> Enclosure {
 pub(super) struct FactorProgram {
     /// The factor and its gradient, with the whole field as result 4.
     pub(super) first: BoxProgram,
-    /// The second derivatives of the factor; `None`, and unbounded, if they take more operations than a formula may have.
+    /// The second derivatives of the factor; `None`, and unbounded, if they take more operations
+    /// than a formula may have.
     pub(super) second: Option<BoxProgram>,
 }
 
@@ -224,13 +233,14 @@ impl FactorProgram {
     }
 }
 
-/// Maximum number of factors. A product of more is taken as one function: each program holds the whole product too, for its domain, so
-/// that all of them grow with the square of the number. With 4, 16 and 32 products of 8, 14, 18 and 24 random planes take as long to
-/// 40 %, and have as many particles to 1 %.
+/// Maximum number of factors. A product of more is taken as one function: each program holds the
+/// whole product too, for its domain, so that all of them grow with the square of the number. With
+/// 4, 16 and 32 products of 8, 14, 18 and 24 random planes take as long to 40 %, and have as many
+/// particles to 1 %.
 const MAX_FACTORS: usize = 16;
 
-/// Programs for the [factors](Graph::factors) of `root`, or for `root` alone. A factor is simpler than the product, and it has a gradient
-/// where two factors vanish together.
+/// Programs for the [factors](Graph::factors) of `root`, or for `root` alone. A factor is simpler
+/// than the product, and it has a gradient where two factors vanish together.
 pub(super) fn factors(graph: &mut Graph, root: Id, gradient: [Id; 3]) -> Vec<FactorProgram> {
     let mut factors = graph.factors(root);
     if factors.is_empty() || factors.len() > MAX_FACTORS {

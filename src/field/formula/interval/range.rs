@@ -12,19 +12,22 @@ pub(in crate::field::formula) struct Range {
     pub(super) flags: u8,
 }
 
-/// Relative widening of a bound that `libm` computed. Its functions err by less than two units in the last place.
+/// Relative widening of a bound that `libm` computed. Its functions err by less than two units in
+/// the last place.
 const LIBRARY_ERROR: f64 = 8.0 * f64::EPSILON;
 
-/// Largest argument of tangent whose position relative to the poles is trusted. Nothing is known of larger ones. Its
-/// rounding there may be a millionth of the way between two poles.
+/// Largest argument of tangent whose position relative to the poles is trusted. Nothing is known of
+/// larger ones. Its rounding there may be a millionth of the way between two poles.
 const LARGEST_TANGENT: f64 = 1e9;
 
 /// The empty range.
 const NOTHING: Range = Range { bounds: Interval::NOTHING, flags: EMPTY };
 
-/// Lower bound of a result that IEEE arithmetic rounded to `value`, at least one unit in the last place below it.
+/// Lower bound of a result that IEEE arithmetic rounded to `value`, at least one unit in the last
+/// place below it.
 ///
-/// Subnormal results, which are below 2⁻¹⁰²² and have fewer digits, are taken for exact. NaN, from ∞ − ∞, becomes −∞.
+/// Subnormal results, which are below 2⁻¹⁰²² and have fewer digits, are taken for exact. NaN, from
+/// ∞ − ∞, becomes −∞.
 pub(super) fn down(value: f64) -> f64 {
     widened(value, -f64::EPSILON, f64::NEG_INFINITY)
 }
@@ -76,7 +79,8 @@ impl Range {
         Self { bounds: Interval::new(down(bounds.lo), up(bounds.hi)), flags }
     }
 
-    /// The range whose ends a library function rounded to the least and the greatest of these values.
+    /// The range whose ends a library function rounded to the least and the greatest of these
+    /// values.
     fn among(corners: [f64; 4], flags: u8) -> Self {
         let lo = corners.into_iter().fold(f64::INFINITY, f64::min);
         let hi = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
@@ -107,7 +111,8 @@ impl Range {
         self.flags & (NONZERO | EMPTY) != 0 || self.bounds.excludes_zero()
     }
 
-    /// Intersection with `lo … hi`. If that is smaller, the operation is not defined everywhere in the box.
+    /// Intersection with `lo … hi`. If that is smaller, the operation is not defined everywhere in
+    /// the box.
     fn cut(self, lo: f64, hi: f64) -> Self {
         let bounds = self.bounds.cut_to(Interval::new(lo, hi));
         if bounds.lo > bounds.hi {
@@ -144,7 +149,8 @@ impl Range {
         if self.bounds.excludes_zero() {
             return Self::rounded(inverse, flags);
         }
-        // There is a pole. On one side of it the values keep their sign; on both sides they are still not 0.
+        // There is a pole. On one side of it the values keep their sign; on both sides they are
+        // still not 0.
         let flags = flags & EMPTY | NONZERO;
         if lo == 0.0 && hi > 0.0 {
             Self { bounds: Interval::new(down(inverse.lo), f64::INFINITY), flags }
@@ -250,13 +256,14 @@ impl Range {
         let Interval { lo: least, hi: greatest } = exponent.bounds;
         let has_negative = self.bounds.lo < 0.0;
         if has_negative && least == greatest && least == libm::trunc(least) {
-            // An integer exponent whose value comes from the parameters. The power is monotone in |x|, and the parity
-            // of the exponent gives its sign.
+            // An integer exponent whose value comes from the parameters. The power is monotone in
+            // |x|, and the parity of the exponent gives its sign.
             let size = self.abs().real_power(exponent);
             let symmetric = Self { bounds: Interval::symmetric(size.bounds.hi), ..size };
             return if libm::fmod(least, 2.0) == 0.0 { size } else { symmetric };
         }
-        // Negative numbers have powers for integer exponents only, which may be positive or negative.
+        // Negative numbers have powers for integer exponents only, which may be positive or
+        // negative.
         let base = self.cut(0.0, f64::INFINITY);
         if has_negative && least < greatest {
             return Self::everything(0);
@@ -319,7 +326,8 @@ impl Range {
         Self::new(well_below(lo), well_above(hi), flags)
     }
 
-    /// Range of a choice: `value` where a ≤ b and 0 elsewhere, or the reverse if not `where_at_most`.
+    /// Range of a choice: `value` where a ≤ b and 0 elsewhere, or the reverse if not
+    /// `where_at_most`.
     pub(super) fn choice(a: Self, b: Self, value: Self, where_at_most: bool) -> Self {
         if a.is_empty() || b.is_empty() || value.is_empty() {
             return NOTHING;

@@ -1,6 +1,8 @@
-//! Interval arithmetic over a few boxes at once, in arrays that the compiler vectorises, or over a single one.
+//! Interval arithmetic over a few boxes at once, in arrays that the compiler vectorises, or over a
+//! single one.
 //!
-//! Only the most frequent operations are written out here. The others go through [`Range`], box by box.
+//! Only the most frequent operations are written out here. The others go through [`Range`], box by
+//! box.
 
 use super::flags::{CONTINUOUS, DEFINED, EMPTY, NONZERO, REGULAR, joined};
 use super::range::{Range, absolute, down, greatest, least, up, widened};
@@ -122,7 +124,8 @@ impl<const N: usize> Row<N> {
         let base = if n.is_multiple_of(2) { self.abs() } else { *self };
         let ends = |ends: [f64; N]| whole_power(Ends([1.0; N]), Ends(ends), n).0;
         let (lo, hi) = (ends(base.lo), ends(base.hi));
-        // There are at most 2 log₂ n products, each with an error of half a unit; squaring doubles a relative error.
+        // There are at most 2 log₂ n products, each with an error of half a unit; squaring doubles
+        // a relative error.
         let error = 2.0 * f64::from(n) * f64::EPSILON;
         Self::bounds(
             |k| (widened(lo[k], -error, f64::NEG_INFINITY), widened(hi[k], error, f64::INFINITY)),
@@ -160,7 +163,8 @@ impl<const N: usize> Row<N> {
         out
     }
 
-    /// Sign, as the derivative of the absolute value: between −1 and 1 where the argument changes its sign.
+    /// Sign, as the derivative of the absolute value: between −1 and 1 where the argument changes
+    /// its sign.
     pub(super) fn sign(&self) -> Self {
         let mut out = Self::bounds(|k| (sign(self.lo[k]), sign(self.hi[k])), self.flags);
         for k in 0..N {
@@ -170,9 +174,9 @@ impl<const N: usize> Row<N> {
         out
     }
 
-    /// Sine or cosine of arguments with midpoint m and half-width h. The bounds follow from sin(m + t) = sin m cos t +
-    /// cos m sin t with 1 − h²/2 ≤ cos t ≤ 1 and |sin t| ≤ h. They are wider than the range by a term of second order
-    /// in h.
+    /// Sine or cosine of arguments with midpoint m and half-width h. The bounds follow from sin(m +
+    /// t) = sin m cos t + cos m sin t with 1 − h²/2 ≤ cos t ≤ 1 and |sin t| ≤ h. They are wider
+    /// than the range by a term of second order in h.
     pub(super) fn sine(&self, cosine: bool) -> Self {
         let flags = core::array::from_fn(|k| joined(self.flags[k], self.flags[k]));
         Self::bounds(
@@ -196,17 +200,20 @@ impl<const N: usize> Row<N> {
     }
 }
 
-/// Bound of the rounding error of [`Row::sine`], and more than twice that: sine and cosine err by less than 10⁻¹⁵ each, as the test below
-/// shows, and neither factor of theirs is above 1; six operations on numbers up to 2 err by 2⁻⁵² each.
+/// Bound of the rounding error of [`Row::sine`], and more than twice that: sine and cosine err by
+/// less than 10⁻¹⁵ each, as the test below shows, and neither factor of theirs is above 1; six
+/// operations on numbers up to 2 err by 2⁻⁵² each.
 const SINE_SLACK: f64 = 1e-14;
 
-/// Largest angle for which [`sine_cosine`] is accurate to [`SINE_SLACK`]: it has less than 2¹⁶ quadrants.
+/// Largest angle for which [`sine_cosine`] is accurate to [`SINE_SLACK`]: it has less than 2¹⁶
+/// quadrants.
 const LARGEST_SINE: f64 = 1e5;
 
 /// Sine and cosine for |x| ≤ 10⁵ with an error of a few 10⁻¹⁶.
 ///
-/// The nearest multiple of π/2 is subtracted in two parts (W. J. Cody & W. Waite, "Software Manual for the Elementary
-/// Functions", 1980). The Taylor series follows; its first omitted terms are below 10⁻¹⁷ for |r| ≤ π/4.
+/// The nearest multiple of π/2 is subtracted in two parts (W. J. Cody & W. Waite, "Software Manual
+/// for the Elementary Functions", 1980). The Taylor series follows; its first omitted terms are
+/// below 10⁻¹⁷ for |r| ≤ π/4.
 #[inline]
 fn sine_cosine(x: f64) -> (f64, f64) {
     let shifted = x * core::f64::consts::FRAC_2_PI + ROUNDER_F64;

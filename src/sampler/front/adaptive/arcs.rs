@@ -1,17 +1,22 @@
-//! The free arcs around a parent between the particles that are there, and the children that fit into them: paper §5.3.
+//! The free arcs around a parent between the particles that are there, and the children that fit
+//! into them: paper §5.3.
 //!
-//! A child of radius r_c touches its parent, so its centre lies on a circle of radius D = r_p + r_c around it. A particle
-//! at distance d, of radius r_j, blocks such a child within an angle β of its own direction. β follows from the law of cosines
-//! in the triangle with the sides D, d and r_c + r_j. The angles that no particle blocks form the free arcs.
+//! A child of radius r_c touches its parent, so its centre lies on a circle of radius D = r_p + r_c
+//! around it. A particle at distance d, of radius r_j, blocks such a child within an angle β of its
+//! own direction. β follows from the law of cosines in the triangle with the sides D, d and r_c +
+//! r_j. The angles that no particle blocks form the free arcs.
 //!
-//! In each arc the free circumference τ is compared with φ, the angle that the child's own diameter takes (Figs 7g and 8):
-//! a child has room if τ ≥ φ, and gets in, pressing its neighbours aside, if τ ≥ [`FIT`] φ.
+//! In each arc the free circumference τ is compared with φ, the angle that the child's own diameter
+//! takes (Figs 7g and 8): a child has room if τ ≥ φ, and gets in, pressing its neighbours aside, if
+//! τ ≥ [`FIT`] φ.
 //!
 //! # Differs from the paper
 //!
-//! * The angles are those of the curved surface, not of the tangent plane: both legs of the triangle dip below the plane.
+//! * The angles are those of the curved surface, not of the tangent plane: both legs of the
+//!   triangle dip below the plane.
 //! * Particles that do not touch the parent but would overlap a child count too.
-//! * A child is placed although τ is a little less than φ. On a perfect lattice τ equals φ, and rounding would decide.
+//! * A child is placed although τ is a little less than φ. On a perfect lattice τ equals φ, and
+//!   rounding would decide.
 
 use crate::math::functions::{acos, asin, atan2, cos, sin};
 use crate::math::{LANES, Lanes};
@@ -21,18 +26,20 @@ use crate::sampler::front::{MAX_DIP, SIN_60};
 use core::f32::consts::TAU;
 use glam::{Vec2, Vec3};
 
-/// A child has room if the free angle τ is at least this share of φ. At ½ its distance from either neighbour is
-/// 0.77 (r_i + r_j). With 0.4 random surfaces have larger overlaps, with 0.63 larger holes.
+/// A child has room if the free angle τ is at least this share of φ. At ½ its distance from either
+/// neighbour is 0.77 (r_i + r_j). With 0.4 random surfaces have larger overlaps, with 0.63 larger
+/// holes.
 const FIT: f32 = 0.5;
 
-/// An arc takes another child if it has room for this share of it. On random surfaces 89 in 100 particles have six neighbours so,
-/// with a quarter of it and with a whole 86.
+/// An arc takes another child if it has room for this share of it. On random surfaces 89 in 100
+/// particles have six neighbours so, with a quarter of it and with a whole 86.
 const CROWDING: f32 = 0.5;
 
 /// Stands for no angle: an interval that ends this far from its middle is empty.
 const NOWHERE: f32 = -100.0;
 
-/// The tangent plane of a parent, with the second fundamental form and the gradient of the radius there.
+/// The tangent plane of a parent, with the second fundamental form and the gradient of the radius
+/// there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ParentFrame {
     /// Radius of the parent.
@@ -67,7 +74,8 @@ impl ParentFrame {
         self.radius * (1.0 + slope) / (1.0 - slope)
     }
 
-    /// Sine of the angle by which a chord of length `distance` dips below the tangent plane, negative below.
+    /// Sine of the angle by which a chord of length `distance` dips below the tangent plane,
+    /// negative below.
     fn dip(&self, x: f32, y: f32, distance: f32) -> f32 {
         limited(-0.5 * self.curvature_along(x, y) * distance, MAX_DIP)
     }
@@ -107,15 +115,16 @@ impl ParentFrame {
     }
 }
 
-/// Angle in the tangent plane between two chords of lengths `d` and `e`, whose ends are `apart`, with the sines `s` and
-/// `t` of their dips.
+/// Angle in the tangent plane between two chords of lengths `d` and `e`, whose ends are `apart`,
+/// with the sines `s` and `t` of their dips.
 fn wedge(d: f32, e: f32, apart: f32, s: f32, t: f32) -> f32 {
     let cosine = (d * d + e * e - apart * apart) / (2.0 * d * e);
     let flat = (cosine - s * t) / ((1.0 - s * s) * (1.0 - t * t)).sqrt();
     acos(limited(flat, 1.0))
 }
 
-/// The number nearest to `x` from −`most` to `most`; `most` for NaN. In lanes this is faster than `clamp`.
+/// The number nearest to `x` from −`most` to `most`; `most` for NaN. In lanes this is faster than
+/// `clamp`.
 #[inline]
 fn limited(x: f32, most: f32) -> f32 {
     let x = if x < most { x } else { most };
@@ -145,12 +154,14 @@ pub(crate) struct PredictedChild {
     pub(crate) clearance: f32,
 }
 
-/// A free arc of the circle around a parent, between the particle before it and the particle behind it.
+/// A free arc of the circle around a parent, between the particle before it and the particle behind
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arc {
     /// Angle at which a child touches the particle before the arc.
     pub(crate) from: f32,
-    /// Angle at which a child touches the particle behind the arc; less than `from` where it does not fit between them.
+    /// Angle at which a child touches the particle behind the arc; less than `from` where it does
+    /// not fit between them.
     pub(crate) to: f32,
     /// Smallest angle at which a child has room.
     pub(crate) start: f32,
@@ -205,7 +216,8 @@ pub(crate) struct ParentRing {
 }
 
 impl NeighbourLanes {
-    /// Finds, of each particle, the angle to its direction and how far before and behind it no child fits.
+    /// Finds, of each particle, the angle to its direction and how far before and behind it no
+    /// child fits.
     fn find_closed(&mut self, frame: &ParentFrame) {
         let p = frame.radius;
         for lane in 0..LANES {
@@ -248,7 +260,8 @@ impl ParentRing {
         self.len
     }
 
-    /// Adds a neighbour by its offset from the parent. `counts` says whether its radius is exact and enters the fit.
+    /// Adds a neighbour by its offset from the parent. `counts` says whether its radius is exact
+    /// and enters the fit.
     pub(crate) fn push(&mut self, offset: Vec3, radius: f32, counts: bool) {
         let (chunk, lane) = (self.len / LANES, self.len % LANES);
         if chunk == self.chunks.len() {
@@ -271,8 +284,8 @@ impl ParentRing {
         self.chunks[i / LANES].angle.0[i % LANES]
     }
 
-    /// Gradient of the radius in the plane (u, w), fitted to the neighbours whose radius is exact; what they leave open is as
-    /// `inherited`.
+    /// Gradient of the radius in the plane (u, w), fitted to the neighbours whose radius is exact;
+    /// what they leave open is as `inherited`.
     pub(crate) fn slope(&self, u: Vec3, w: Vec3, radius: f32, inherited: Vec2) -> Vec2 {
         let mut sums = [Lanes::splat(0.0); 5];
         for chunk in &self.chunks[..self.len.div_ceil(LANES)] {
@@ -339,7 +352,8 @@ impl ParentRing {
         }
     }
 
-    /// Returns the arc that begins at `start` and is `length` long, with the angles between which a child touches nothing.
+    /// Returns the arc that begins at `start` and is `length` long, with the angles between which a
+    /// child touches nothing.
     fn between(&self, start: f32, length: f32) -> Arc {
         let mut from = Lanes::splat(0.0);
         let mut to = Lanes::splat(length);
@@ -361,7 +375,8 @@ impl ParentRing {
         Arc { from: start + most, to: start + least, start, whole: false }
     }
 
-    /// Returns the angles of the children of an arc: as many as fit, evenly spread, so that all gaps are equally wide.
+    /// Returns the angles of the children of an arc: as many as fit, evenly spread, so that all
+    /// gaps are equally wide.
     pub(crate) fn spread(&mut self, frame: &ParentFrame, arc: Arc) -> &[f32] {
         /// First guess of the angle between two children, in radians: about 60°.
         const SIXTY: f32 = 1.05;
@@ -392,9 +407,10 @@ impl ParentRing {
         &self.children
     }
 
-    /// Returns two limits that the neighbours set to a particle at `offset` with the radius `radius`: the least distance beyond
-    /// `share` (r_i + r_j), negative where one is nearer, and the largest radius that the slope `grading` allows beside those whose
-    /// radius is exact. A predicted one may be far too small: a limit by it would be handed on from child to child.
+    /// Returns two limits that the neighbours set to a particle at `offset` with the radius
+    /// `radius`: the least distance beyond `share` (r_i + r_j), negative where one is nearer, and
+    /// the largest radius that the slope `grading` allows beside those whose radius is exact. A
+    /// predicted one may be far too small: a limit by it would be handed on from child to child.
     pub(crate) fn limits(&self, offset: Vec3, radius: f32, share: f32, grading: f32) -> (f32, f32) {
         let [ox, oy, oz] = offset.to_array().map(Lanes::splat);
         let mut room = Lanes::splat(f32::INFINITY);
@@ -416,6 +432,6 @@ impl ParentRing {
     }
 }
 
-/// Ridge parameter of the fit of the radius's gradient, as a share of the squared distances. Half of it and twice as much give
-/// the same figures on random surfaces within 2 %, to either side.
+/// Ridge parameter of the fit of the radius's gradient, as a share of the squared distances. Half
+/// of it and twice as much give the same figures on random surfaces within 2 %, to either side.
 const SLOPE_PULL: f32 = 0.02;

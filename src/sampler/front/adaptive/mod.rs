@@ -1,14 +1,17 @@
-//! Adaptive sampling, paper §5: a front of particles of different radii. Each places its children in the free arcs between
-//! the particles around it, so that they touch it, generation level by generation level.
+//! Adaptive sampling, paper §5: a front of particles of different radii. Each places its children
+//! in the free arcs between the particles around it, so that they touch it, generation level by
+//! generation level.
 //!
 //! # Differs from the paper
 //!
 //! * As in the uniform front, a queue takes the place of the stack.
-//! * The children of a whole level are first placed by prediction: on the surface by the parent's curvature, with the
-//!   radius that the gradient of the neighbours' radii predicts. They are then projected together. Their fates are decided one
-//!   by one in the order of the queue, at their final places.
+//! * The children of a whole level are first placed by prediction: on the surface by the parent's
+//!   curvature, with the radius that the gradient of the neighbours' radii predicts. They are then
+//!   projected together. Their fates are decided one by one in the order of the queue, at their
+//!   final places.
 //! * The children of an arc share its slack evenly; in the paper the last one gets it all.
-//! * A particle whose child collided with another one places children a second time once the front is done.
+//! * A particle whose child collided with another one places children a second time once the front
+//!   is done.
 
 mod arcs;
 mod parents;
@@ -31,31 +34,34 @@ use crate::sampler::sheet::{PointPair, is_level};
 use core::ops::Range;
 use glam::{Vec2, Vec3};
 
-/// Radius of the query around a parent, in its radii: it covers every collision of a child of usual size, 2 + 2 × 0.7, and some
-/// more. The second ring of a lattice is at 3.46. With 3.4 the particles of 25 random surfaces are the same, with 4.4 their figures within
-/// 0.4 %.
+/// Radius of the query around a parent, in its radii: it covers every collision of a child of usual
+/// size, 2 + 2 × 0.7, and some more. The second ring of a lattice is at 3.46. With 3.4 the
+/// particles of 25 random surfaces are the same, with 4.4 their figures within 0.4 %.
 const REACH: f32 = 3.7;
 
 /// Particles within this share of r_i + r_j enter each other's neighbour lists for the relaxation.
 const LISTED: f32 = 0.5 * (OVERLAP_RANGE + OVERLAP_SKIN);
 
-/// Neighbours within this share of r_i + r_j count as touching: they get one of the parent's slots. It moves no particle.
+/// Neighbours within this share of r_i + r_j count as touching: they get one of the parent's slots.
+/// It moves no particle.
 const TOUCHING: f32 = 1.25;
 
-/// Neighbours within this many radii enter the fit of the radius's gradient: those between the rings of a lattice, which are at 2
-/// and at 3.46. From 2.2 to 3.5 the figures of random surfaces are the same within 2 %.
+/// Neighbours within this many radii enter the fit of the radius's gradient: those between the
+/// rings of a lattice, which are at 2 and at 3.46. From 2.2 to 3.5 the figures of random surfaces
+/// are the same within 2 %.
 const RING: f32 = 2.8;
 
-/// A child and its parent take part in the filling if the child's radius differs from the prediction by more than this share:
-/// the radii around them are known by then. On creased surfaces the holes beside small particles are 1 % narrower so.
+/// A child and its parent take part in the filling if the child's radius differs from the
+/// prediction by more than this share: the radii around them are known by then. On creased surfaces
+/// the holes beside small particles are 1 % narrower so.
 const SURPRISE: f32 = 0.1;
 
-/// Largest number of rounds of filling. On creased surfaces the largest hole is 3 % narrower with them. Two place as many
-/// particles on most, but not on all; eight place no more.
+/// Largest number of rounds of filling. On creased surfaces the largest hole is 3 % narrower with
+/// them. Two place as many particles on most, but not on all; eight place no more.
 const MAX_FILLS: u32 = 4;
 
-/// Bound for the slope of the radius along the way to a child, above the steepest grading that a run may ask for: only where the
-/// law jumps is the slope so large.
+/// Bound for the slope of the radius along the way to a child, above the steepest grading that a
+/// run may ask for: only where the law jumps is the slope so large.
 const MAX_SLOPE: f32 = 0.7;
 
 /// The settings of a run and what its survey found, as far as the front needs them.
@@ -101,7 +107,8 @@ impl AdaptivePlacing {
         self.parents = Parents::default();
     }
 
-    /// Whether a settled particle of the same sheet is nearer to a place on a patch than the match tolerance allows.
+    /// Whether a settled particle of the same sheet is nearer to a place on a patch than the match
+    /// tolerance allows.
     fn collides(
         &self,
         level: &mut FrontLevel,

@@ -1,5 +1,6 @@
-//! The parents of a level of the adaptive front, with the curvature and the gradient of the radius at each. These are kept for
-//! the level under way, for its children and for the parents of a later filling, not for the particles behind the front.
+//! The parents of a level of the adaptive front, with the curvature and the gradient of the radius
+//! at each. These are kept for the level under way, for its children and for the parents of a later
+//! filling, not for the particles behind the front.
 
 use crate::differential::Curvature;
 use crate::math::sort_by_key;
@@ -9,7 +10,8 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LocalShape {
     pub(crate) curvature: Curvature,
-    /// Gradient of the radius along the surface. Until the particle places its children it is the parent's.
+    /// Gradient of the radius along the surface. Until the particle places its children it is the
+    /// parent's.
     pub(crate) slope: Vec3,
 }
 
@@ -29,7 +31,8 @@ pub(crate) struct Parents {
     pub(crate) level: Vec<Parent>,
     /// The local shapes at the children placed in this level, in their order.
     pub(crate) born: Vec<LocalShape>,
-    /// Parents of the next filling: a child of theirs collided, or a radius differed much from its prediction.
+    /// Parents of the next filling: a child of theirs collided, or a radius differed much from its
+    /// prediction.
     seams: Vec<Parent>,
 }
 
@@ -69,7 +72,8 @@ impl Parents {
     pub(crate) fn fill(&mut self) -> bool {
         core::mem::swap(&mut self.level, &mut self.seams);
         self.seams.clear();
-        // The local shape from the time when a particle placed its children is newer than the one from its own placement.
+        // The local shape from the time when a particle placed its children is newer than the one
+        // from its own placement.
         sort_by_key(&mut self.level, |parent| {
             u64::from(parent.particle) << 1 | u64::from(!parent.has_placed)
         });

@@ -1,4 +1,5 @@
-//! Direct placement of children, the paper's "way to directly place the children even for the non-uniform sampling" (§7):
+//! Direct placement of children, the paper's "way to directly place the children even for the
+//! non-uniform sampling" (§7):
 //! |c − p| = r_p + r(c) with c on the surface, solved for the angle on the circle and the distance at once, a batch at a
 //! time.
 
@@ -13,30 +14,34 @@ use crate::sampler::projection::{
 use crate::sampler::sizing::Sizing;
 use glam::Vec3;
 
-/// Largest difference between the distance from the parent and r_p + r_c, as a share of r_c. With half and with double the figures of 24 random
-/// surfaces are the same within 0.3 %.
+/// Largest difference between the distance from the parent and r_p + r_c, as a share of r_c. With
+/// half and with double the figures of 24 random surfaces are the same within 0.3 %.
 pub(crate) const TOUCH: f32 = 2e-3;
 
-/// A correction of the distance shorter than this share of r_c is accepted without another evaluation. The error that remains
-/// is the change of the radius beyond its slope. From half to five times as much the figures of 24 random surfaces are the same within their
-/// scatter, and half of it takes 0.5 % more evaluations.
+/// A correction of the distance shorter than this share of r_c is accepted without another
+/// evaluation. The error that remains is the change of the radius beyond its slope. From half to
+/// five times as much the figures of 24 random surfaces are the same within their scatter, and half
+/// of it takes 0.5 % more evaluations.
 const TRUSTED_PULL: f32 = 0.02;
 
-/// Largest number of evaluations of Newton's method. A good guess takes one or two; where it has not come to its end by then, the
-/// search goes on in brackets. Twice as many give the same particles on 39 random surfaces, half of them others on one.
+/// Largest number of evaluations of Newton's method. A good guess takes one or two; where it has
+/// not come to its end by then, the search goes on in brackets. Twice as many give the same
+/// particles on 39 random surfaces, half of them others on one.
 const MAX_STEPS: u32 = 8;
 
-/// Largest change of the distance in a step, as a share of the distance: it stays positive. Only creased surfaces meet the bound;
-/// half of it and twice as much give the same figures there within 2.5 %.
+/// Largest change of the distance in a step, as a share of the distance: it stays positive. Only
+/// creased surfaces meet the bound; half of it and twice as much give the same figures there within
+/// 2.5 %.
 const MAX_PULL: f32 = 0.3;
 
-/// Rounds of the safeguarded search, of which each finds a root on the circle and then corrects the distance. Children take some where the
-/// surface bends within a particle, and where f ends: on 20 of the gallery's 40 surfaces, and on 2 of 80 random ones. Three and twelve give the
-/// same figures on creased surfaces within 3 %.
+/// Rounds of the safeguarded search, of which each finds a root on the circle and then corrects the
+/// distance. Children take some where the surface bends within a particle, and where f ends: on 20
+/// of the gallery's 40 surfaces, and on 2 of 80 random ones. Three and twelve give the same figures
+/// on creased surfaces within 3 %.
 const MAX_ROUNDS: u32 = 6;
 
-/// Where the radius jumps, no distance fits exactly. A child is accepted if it misses by at most this share of its radius. Half
-/// of it gives the same particles on creased surfaces.
+/// Where the radius jumps, no distance fits exactly. A child is accepted if it misses by at most
+/// this share of its radius. Half of it gives the same particles on creased surfaces.
 const LOOSE_TOUCH: f32 = 0.5;
 
 /// A child to be placed: the data of the problem |c − p| = r_p + r(c).
@@ -55,8 +60,8 @@ pub(crate) struct Proposal {
 }
 
 impl Proposal {
-    /// Limits the radius that the sizing law gives to what the particles around allow: never less than `least`, the smallest
-    /// radius of the law.
+    /// Limits the radius that the sizing law gives to what the particles around allow: never less
+    /// than `least`, the smallest radius of the law.
     fn graded(&self, radius: f32, least: f32) -> f32 {
         let largest = if self.largest > least { self.largest } else { least };
         // NaN stays.
@@ -109,8 +114,9 @@ impl DirectPlacement {
         SurfacePoint { position, normal: self.gradient[0] / self.gradient[0].length(), radius, curvature }
     }
 
-    /// Solves at most [`BATCH`] proposals: Newton's method in the angle and a secant in the distance, together; a bracketed
-    /// search on the circle, by turns with the distance, where those do not settle. `landed[i]` belongs to `proposals[i]`.
+    /// Solves at most [`BATCH`] proposals: Newton's method in the angle and a secant in the
+    /// distance, together; a bracketed search on the circle, by turns with the distance, where
+    /// those do not settle. `landed[i]` belongs to `proposals[i]`.
     pub(crate) fn land(
         &mut self,
         probe: &mut Probe,
@@ -200,8 +206,8 @@ impl DirectPlacement {
         }
         a.last = [a.distance, radius];
         let circle = ChildCircle { radius: a.distance, ..proposal.circle };
-        // The limits are constants, in shares of the distance: with others `clamp` can panic, and its message would have to be
-        // linked.
+        // The limits are constants, in shares of the distance: with others `clamp` can panic, and
+        // its message would have to be linked.
         let pull = (-touch / ((1.0 - a.slope) * a.distance)).clamp(-MAX_PULL, MAX_PULL) * a.distance;
         let radial = (position - circle.centre) / a.distance;
         let derivative = gradient.dot(circle.tangent(a.turn));
@@ -209,7 +215,8 @@ impl DirectPlacement {
         a.turn = turned(a.turn, half);
         a.distance += pull;
         a.steps += 1;
-        // The Hessian predicts f at the corrected place. If that is within the tolerance, no evaluation is needed there.
+        // The Hessian predicts f at the corrected place. If that is within the tolerance, no
+        // evaluation is needed there.
         let corrected = ChildCircle { radius: a.distance, ..proposal.circle }.point(a.turn);
         let moved = corrected - position;
         let corrected_gradient = gradient + hessian.apply(moved);
@@ -299,9 +306,9 @@ impl DirectPlacement {
     }
 }
 
-/// A correction shorter than this share of the radius is accepted without another evaluation: the third-order term that the
-/// Hessian leaves out is then below a thousandth of the radius. Half and double change the particles of 7 and 3 of 25 random surfaces,
-/// and no figure.
+/// A correction shorter than this share of the radius is accepted without another evaluation: the
+/// third-order term that the Hessian leaves out is then below a thousandth of the radius. Half and
+/// double change the particles of 7 and 3 of 25 random surfaces, and no figure.
 const TRUSTED_MOVE: f32 = 0.06;
 
 /// The outcome of a step of Newton's method.

@@ -1,5 +1,5 @@
-//! Prediction of the children of a parent: how many each free arc takes, which slots they get, and where they stand until they
-//! are projected.
+//! Prediction of the children of a parent: how many each free arc takes, which slots they get, and
+//! where they stand until they are projected.
 
 use super::AdaptivePlacing;
 use crate::differential::Curvature;
@@ -34,8 +34,8 @@ impl AdaptivePlacing {
         }
     }
 
-    /// Predicts the child at an angle, no larger than its neighbours allow; and the room beyond the match tolerance that they
-    /// leave it, negative if it is in their way.
+    /// Predicts the child at an angle, no larger than its neighbours allow; and the room beyond the
+    /// match tolerance that they leave it, negative if it is in their way.
     fn predict_child(&self, frame: &ParentFrame, angle: f32) -> (PredictedChild, f32) {
         let limits = |child: &PredictedChild| {
             let (share, grading) = (self.rules.match_tolerance, self.rules.grading);
@@ -51,8 +51,9 @@ impl AdaptivePlacing {
         (child, room)
     }
 
-    /// Gives every occupant of the circle around parent `which` of the level a slot, and the children a provisional place. A
-    /// parent that places children `again` keeps the slots that it has filled.
+    /// Gives every occupant of the circle around parent `which` of the level a slot, and the
+    /// children a provisional place. A parent that places children `again` keeps the slots that it
+    /// has filled.
     pub(super) fn fill_slots(
         &mut self,
         level: &mut FrontLevel,

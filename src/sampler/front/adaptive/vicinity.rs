@@ -1,4 +1,5 @@
-//! The vicinity of a parent: the particles near it, and the arcs of directions that they and its children occupy.
+//! The vicinity of a parent: the particles near it, and the arcs of directions that they and its
+//! children occupy.
 
 use super::{FrontRules, LISTED, RING, TOUCHING};
 use crate::particles::Particles;
@@ -14,7 +15,8 @@ use core::f32::consts::TAU;
 pub(super) struct Occupant {
     /// Direction in the tangent plane, from 0 to 2π.
     pub(super) angle: f32,
-    /// A child to be projected; none for a particle that was there, or a child that matched such a one.
+    /// A child to be projected; none for a particle that was there, or a child that matched such a
+    /// one.
     pub(super) child: Option<PredictedChild>,
 }
 
@@ -30,9 +32,10 @@ pub(super) struct Vicinity {
 }
 
 impl Vicinity {
-    /// Reads the particles that were found around `parent`: into the ring those that its children may collide with, and into the
-    /// neighbour `lists`, if it has none there yet, those before it that repel it. The ones before it are final, and so is its
-    /// list. Settled particles have their exact radius. Says whether all that were found are of the parent's sheet.
+    /// Reads the particles that were found around `parent`: into the ring those that its children
+    /// may collide with, and into the neighbour `lists`, if it has none there yet, those before it
+    /// that repel it. The ones before it are final, and so is its list. Settled particles have
+    /// their exact radius. Says whether all that were found are of the parent's sheet.
     pub(super) fn read(
         &mut self,
         level: &FrontLevel,

@@ -1,10 +1,11 @@
 //! Gaps are filled that fronts leave along their seams. The paper's front stops there.
 //!
-//! Six slots per particle cover the plane without gaps as long as one lattice grows. Where two fronts meet out of step, a
-//! gap can be too narrow for every slot around it and still wide enough for a particle. The pass visits each particle with a
-//! slot that is matched by a particle far from the slot. It finds the widest empty circle through this particle and two of its
-//! neighbours (a Delaunay triangle in the tangent plane), and places a particle at the centre if that is far enough from all
-//! others.
+//! Six slots per particle cover the plane without gaps as long as one lattice grows. Where two
+//! fronts meet out of step, a gap can be too narrow for every slot around it and still wide enough
+//! for a particle. The pass visits each particle with a slot that is matched by a particle far from
+//! the slot. It finds the widest empty circle through this particle and two of its neighbours (a
+//! Delaunay triangle in the tangent plane), and places a particle at the centre if that is far
+//! enough from all others.
 
 use super::UniformPlacing;
 use crate::math::tangent_frame;
@@ -16,21 +17,23 @@ use crate::sampler::sheet::face_one_way;
 use crate::spatial::Neighbour;
 use glam::Vec2;
 
-/// A slot lies on a seam if the particle that matches it is farther away than this share of 2r. Inside a lattice the distance
-/// is below 0.2. With half of it random surfaces come out the same; with twice as much the gaps stay.
+/// A slot lies on a seam if the particle that matches it is farther away than this share of 2r.
+/// Inside a lattice the distance is below 0.2. With half of it random surfaces come out the same;
+/// with twice as much the gaps stay.
 pub(crate) const SEAM: f32 = 0.35;
 
-/// A gap is filled if its centre is at least this far from every particle, in 2r. The triangles of a lattice have 0.577; a
-/// hole of 1.45 times the ideal size has 0.84. On 24 random surfaces the largest hole is 1.24 in the mean with 0.7, 1.29 with 0.8 and 1.30 with
-/// 0.9, and the mean smallest angle of a triangle 54.2°, 54.5° and 54.5°.
+/// A gap is filled if its centre is at least this far from every particle, in 2r. The triangles of
+/// a lattice have 0.577; a hole of 1.45 times the ideal size has 0.84. On 24 random surfaces the
+/// largest hole is 1.24 in the mean with 0.7, 1.29 with 0.8 and 1.30 with 0.9, and the mean
+/// smallest angle of a triangle 54.2°, 54.5° and 54.5°.
 const GAP: f32 = 0.8;
 
-/// A circle of a larger radius, in 2r, lies at the border of the surface and is no gap. Twice the bound changes
-/// nothing on closed random surfaces.
+/// A circle of a larger radius, in 2r, lies at the border of the surface and is no gap. Twice the
+/// bound changes nothing on closed random surfaces.
 const WIDEST: f32 = 1.25;
 
-/// Largest number of neighbours considered. The two rings of a lattice have 18. With 18 and 48 the particles of 24 random surfaces are the same,
-/// with 12 those of half of them are others.
+/// Largest number of neighbours considered. The two rings of a lattice have 18. With 18 and 48 the
+/// particles of 24 random surfaces are the same, with 12 those of half of them are others.
 const CAPACITY: usize = 24;
 
 impl UniformPlacing {
@@ -60,8 +63,8 @@ impl UniformPlacing {
         let spacing = 2.0 * self.radius;
         let reach = (GAUSSIAN_RANGE + GAUSSIAN_SKIN) * self.radius;
         level.gather(particles, patch, p, |_| reach);
-        // The neighbours of the sheet are mapped to the tangent plane: they keep their direction there and their distance in
-        // space. The unit is 2r.
+        // The neighbours of the sheet are mapped to the tangent plane: they keep their direction
+        // there and their distance in space. The unit is 2r.
         let (u, w) = tangent_frame(n);
         let mut plane = [Vec2::ZERO; CAPACITY];
         let mut count = 0;
@@ -104,7 +107,8 @@ impl UniformPlacing {
     }
 }
 
-/// Returns the centre of the widest empty circle through the origin and two of the `points`, if its radius is above `least`.
+/// Returns the centre of the widest empty circle through the origin and two of the `points`, if its
+/// radius is above `least`.
 pub(crate) fn widest_gap(points: &[Vec2], least: f32) -> Option<Vec2> {
     let mut widest = least;
     let mut found = None;
@@ -115,7 +119,8 @@ pub(crate) fn widest_gap(points: &[Vec2], least: f32) -> Option<Vec2> {
             let centre = Vec2::new(q.y * pp - p.y * qq, p.x * qq - q.x * pp) / (2.0 * twice_area);
             let width = centre.length();
             if width > widest && width < WIDEST {
-                // Rounding may put the three points themselves inside. With a tenth of this room 38 random surfaces are the same.
+                // Rounding may put the three points themselves inside. With a tenth of this room 38
+                // random surfaces are the same.
                 let inside = width * width * (1.0 - 1e-4);
                 if points.iter().all(|r| (*r - centre).length_squared() >= inside) {
                     widest = width;

@@ -1,15 +1,18 @@
-//! Uniform sampling, paper §4: a front of particles that places six children around each, 60° apart in the tangent
-//! plane and 2r away on the surface, generation level by generation level.
+//! Uniform sampling, paper §4: a front of particles that places six children around each, 60° apart
+//! in the tangent plane and 2r away on the surface, generation level by generation level.
 //!
 //! # Differs from the paper
 //!
-//! * The paper speaks of a stack of untreated particles; its rings (Fig. 11) are those of a queue, used here.
-//! * "If an existing particle corresponds": a child corresponds when a particle of the same sheet is within the match
-//!   radius, a share of 2r. The paper takes a matched particle out of the neighbours, so that two children cannot match
-//!   it; here it stays, which makes the match radius a lower bound on all distances.
-//! * A child is first placed on the circle by the curvature of the particles around its parent, without evaluating the
-//!   field, and compared with the particles there at that place. Only a free child is projected, at about two
-//!   evaluations, and then compared again at its final place. All free children of a level are projected together.
+//! * The paper speaks of a stack of untreated particles; its rings (Fig. 11) are those of a queue,
+//!   used here.
+//! * "If an existing particle corresponds": a child corresponds when a particle of the same sheet
+//!   is within the match radius, a share of 2r. The paper takes a matched particle out of the
+//!   neighbours, so that two children cannot match it; here it stays, which makes the match radius
+//!   a lower bound on all distances.
+//! * A child is first placed on the circle by the curvature of the particles around its parent,
+//!   without evaluating the field, and compared with the particles there at that place. Only a free
+//!   child is projected, at about two evaluations, and then compared again at its final place. All
+//!   free children of a level are projected together.
 
 pub(super) mod gaps;
 mod surroundings;
@@ -35,9 +38,9 @@ use glam::Vec3;
 const SLOT_DIRECTION: [[f32; 2]; 6] =
     [[1.0, 0.0], [0.5, SIN_60], [-0.5, SIN_60], [-1.0, 0.0], [-0.5, -SIN_60], [0.5, -SIN_60]];
 
-/// Allowance for the distance between a provisional and a final place, in r. Children of smooth surfaces move by a hundredth
-/// of it; those that move farther are compared again. With half and double the figures of 38 random surfaces
-/// are the same.
+/// Allowance for the distance between a provisional and a final place, in r. Children of smooth
+/// surfaces move by a hundredth of it; those that move farther are compared again. With half and
+/// double the figures of 38 random surfaces are the same.
 const DRIFT_ROOM: f32 = 0.2;
 
 /// A predicted child, on the circle around its parent.
@@ -69,7 +72,8 @@ pub(super) struct UniformPlacing {
 }
 
 impl UniformPlacing {
-    /// Radius of the query around a parent: it covers every collision of a child and every neighbour that repels the parent.
+    /// Radius of the query around a parent: it covers every collision of a child and every
+    /// neighbour that repels the parent.
     fn reach(&self) -> f32 {
         self.collision_reach().max((GAUSSIAN_RANGE + GAUSSIAN_SKIN) * self.radius)
     }
@@ -79,13 +83,14 @@ impl UniformPlacing {
         2.0 * self.radius + self.known_reach()
     }
 
-    /// Distance around a provisional place within which every particle is known: the match radius, and the distance that a child
-    /// and its neighbours may move when they are projected.
+    /// Distance around a provisional place within which every particle is known: the match radius,
+    /// and the distance that a child and its neighbours may move when they are projected.
     fn known_reach(&self) -> f32 {
         self.match_radius + DRIFT_ROOM * self.radius
     }
 
-    /// Predicts the child of a parent in the direction (cos, sin) of its frame, on the circle of radius 2r around it.
+    /// Predicts the child of a parent in the direction (cos, sin) of its frame, on the circle of
+    /// radius 2r around it.
     fn predict(&self, frame: &SlotFrame, form: &SecondForm, [cos, sin]: [f32; 2]) -> Prediction {
         let &SlotFrame { n, u, w, .. } = frame;
         let distance = 2.0 * self.radius;
@@ -100,9 +105,9 @@ impl UniformPlacing {
         Prediction { offset, normal, turn: [cos_theta, sin_theta] }
     }
 
-    /// Copies the particles that were found around `parent` to the surroundings, and those before it that repel it to its neighbour
-    /// list. All of the latter are final, so the list is complete. Returns whether some may be on another sheet that faces the same
-    /// way.
+    /// Copies the particles that were found around `parent` to the surroundings, and those before
+    /// it that repel it to its neighbour list. All of the latter are final, so the list is
+    /// complete. Returns whether some may be on another sheet that faces the same way.
     fn read_surroundings(
         &mut self,
         level: &FrontLevel,
@@ -151,8 +156,8 @@ impl UniformPlacing {
         level.rule.is_near_own(probe, particles, point, &level.found, |_| spacing)
     }
 
-    /// The place of a child on a circle, if the search there has led to its own sheet: the circle may meet the far side of a rim or of
-    /// a thin sheet, which is no place for a child.
+    /// The place of a child on a circle, if the search there has led to its own sheet: the circle
+    /// may meet the far side of a rim or of a thin sheet, which is no place for a child.
     fn on_own_sheet(
         &self,
         level: &FrontLevel,
@@ -295,8 +300,9 @@ impl Placing for UniformPlacing {
         let &SurfacePoint { position, normal, .. } = spot;
         let provisional = level.first_child + child;
         let moved = (position - particles.local[provisional]).length();
-        // No particle is nearer than the clearance minus the distances that both have moved. The clearance counts all sheets, because
-        // the final normal may belong to another sheet than the provisional one.
+        // No particle is nearer than the clearance minus the distances that both have moved. The
+        // clearance counts all sheets, because the final normal may belong to another sheet than
+        // the provisional one.
         let is_clear =
             level.children.list[child].clearance - moved - level.children.drift > self.match_radius;
         let patch = particles.patch_of(provisional);

@@ -1,19 +1,21 @@
-//! The particles around a parent of the uniform front, processed four at a time: second fundamental form, nearest particle,
-//! sheet test.
+//! The particles around a parent of the uniform front, processed four at a time: second fundamental
+//! form, nearest particle, sheet test.
 
 use crate::sampler::neighbours::constants::CHUNK;
 use crate::sampler::sheet::{MAX_LIFT, MAX_RISE_SQ};
 use glam::{Vec3, Vec4};
 
-/// Particles within this many radii of a parent enter the fit of its curvature. The six ideal neighbours are at 2, the next ring
-/// at 3.46; from 2.1 to 3.2 random surfaces come out the same.
+/// Particles within this many radii of a parent enter the fit of its curvature. The six ideal
+/// neighbours are at 2, the next ring at 3.46; from 2.1 to 3.2 random surfaces come out the same.
 const RING: f32 = 2.6;
 
-/// Weight of the prior "equal curvature in all directions" in the fit. It decides where the neighbours determine no curvature;
-/// half of it and twice as much change the evaluations of random surfaces by 0.01 %, and no figure.
+/// Weight of the prior "equal curvature in all directions" in the fit. It decides where the
+/// neighbours determine no curvature; half of it and twice as much change the evaluations of random
+/// surfaces by 0.01 %, and no figure.
 const ISOTROPY: f32 = 0.005;
 
-/// The particles around a parent: offset x, y, z from the parent, normal x, y, z, and whether the particle is final.
+/// The particles around a parent: offset x, y, z from the parent, normal x, y, z, and whether the
+/// particle is final.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Surroundings {
     len: usize,
@@ -58,8 +60,8 @@ impl Surroundings {
         self.chunks[..self.len.div_ceil(CHUNK)].iter().map(|chunk| chunk.map(Vec4::from_array))
     }
 
-    /// Whether any of the particles is [doubtful](crate::sampler::sheet::SheetRule::is_doubtful) for a parent with the unit normal
-    /// `normal`.
+    /// Whether any of the particles is [doubtful](crate::sampler::sheet::SheetRule::is_doubtful)
+    /// for a parent with the unit normal `normal`.
     pub(crate) fn are_doubtful(&self, normal: Vec3, spacing: f32) -> bool {
         let unit = 1.0 / (spacing * spacing);
         // The lift is half of what is summed here.
@@ -74,15 +76,15 @@ impl Surroundings {
         })
     }
 
-    /// Least-squares fit of the second fundamental form to the normals of the final particles within [`RING`] radii of the
-    /// parent, whose normal is `n`.
+    /// Least-squares fit of the second fundamental form to the normals of the final particles
+    /// within [`RING`] radii of the parent, whose normal is `n`.
     pub(crate) fn fit_second_form(&self, radius: f32, n: Vec3, u: Vec3, w: Vec3) -> SecondForm {
         let reach_sq = Vec4::splat((RING * radius) * (RING * radius));
         let [mut xx, mut xy, mut yy, mut xp, mut yp, mut xq, mut yq] = [Vec4::ZERO; 7];
         for [x, y, z, mx, my, mz, tells] in self.chunks() {
             let (tx, ty, tz) = (mx - n.x, my - n.y, mz - n.z);
-            // A normal that differs by more than 60° belongs to another sheet or lies beyond a crease: it says nothing about the
-            // curvature.
+            // A normal that differs by more than 60° belongs to another sheet or lies beyond a
+            // crease: it says nothing about the curvature.
             let is_told = tells.cmpgt(Vec4::ZERO)
                 & (x * x + y * y + z * z).cmple(reach_sq)
                 & (tx * tx + ty * ty + tz * tz).cmple(Vec4::ONE);
@@ -100,7 +102,8 @@ impl Surroundings {
         let [xx, xy, yy, xp, yp, xq, yq] =
             [xx, xy, yy, xp, yp, xq, yq].map(|sum| (sum.x + sum.y) + (sum.z + sum.w));
         let prior = ISOTROPY * (xx + yy);
-        // Normal equations of a x + b y = p, b x + c y = q with the prior (a − c)² + b², solved by Cramer's rule.
+        // Normal equations of a x + b y = p, b x + c y = q with the prior (a − c)² + b², solved by
+        // Cramer's rule.
         let (m11, m12, m13) = (xx + prior, xy, -prior);
         let (m22, m23, m33) = (xx + yy + prior, xy, yy + prior);
         let (r1, r2, r3) = (xp, yp + xq, yq);
@@ -120,8 +123,8 @@ impl Surroundings {
         }
     }
 
-    /// Squared distance from `offset` to the nearest particle on the sheet of a point whose normal has the direction of
-    /// `normal`, of whatever length; and to the nearest of any sheet.
+    /// Squared distance from `offset` to the nearest particle on the sheet of a point whose normal
+    /// has the direction of `normal`, of whatever length; and to the nearest of any sheet.
     pub(crate) fn nearest_sq(&self, offset: Vec3, normal: Vec3, slack_sq: f32) -> (f32, f32) {
         let max_rise_sq = MAX_RISE_SQ * normal.length_squared();
         let far = Vec4::splat(f32::INFINITY);

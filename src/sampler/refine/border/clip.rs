@@ -1,8 +1,9 @@
 //! Clips a coarse mesh that reaches beyond the box.
 //!
-//! Every edge that crosses a plane of the box is split where the surface, the plane and, for an edge of the border, the plane on which
-//! it runs meet. Faces of the mesh with a vertex beyond the box are then dropped. Since no edge crosses any more, what is left is a
-//! manifold with every border vertex on the box. Its short edges, which the cuts have made, are collapsed.
+//! Every edge that crosses a plane of the box is split where the surface, the plane and, for an
+//! edge of the border, the plane on which it runs meet. Faces of the mesh with a vertex beyond the
+//! box are then dropped. Since no edge crosses any more, what is left is a manifold with every
+//! border vertex on the box. Its short edges, which the cuts have made, are collapsed.
 
 use super::super::net::{Ground, Net};
 use super::super::refusal::Refusal;
@@ -12,15 +13,18 @@ use crate::math::{Bounds, NONE};
 use crate::mesh::half_edge::{HalfEdges, next, previous};
 use glam::Vec3;
 
-/// Spacings by which the coarse front grows beyond the box: what is near its ragged edge is cut away. From 1 to 6 the
-/// figures of 24 random surfaces in random boxes are the same within their scatter; with 0.5 three of them are refused, with none eleven.
+/// Spacings by which the coarse front grows beyond the box: what is near its ragged edge is cut
+/// away. From 1 to 6 the figures of 24 random surfaces in random boxes are the same within their
+/// scatter; with 0.5 three of them are refused, with none eleven.
 const BEYOND: f64 = 3.0;
-/// Twice the area of a triangle that is flat for certain, as a share of the spacing squared. With half and double of it the figures of 24 random
-/// surfaces in random boxes are the same within their scatter. With 0, seven of 180 runs on 60 of them are refined fewer times, one of these
-/// not at all, and one is refined more often.
+/// Twice the area of a triangle that is flat for certain, as a share of the spacing squared. With
+/// half and double of it the figures of 24 random surfaces in random boxes are the same within
+/// their scatter. With 0, seven of 180 runs on 60 of them are refined fewer times, one of these not
+/// at all, and one is refined more often.
 const FLAT: f32 = 0.05;
-/// Where the front cannot grow beyond the box it ends before it, by no more than this share of the spacing. Of 36 random fields that end at the box
-/// 19 are refined; with half of it 15 are, with twice and four times as much the same 19.
+/// Where the front cannot grow beyond the box it ends before it, by no more than this share of the
+/// spacing. Of 36 random fields that end at the box 19 are refined; with half of it 15 are, with
+/// twice and four times as much the same 19.
 const OPEN_END: f32 = 1.3;
 
 /// The box to which a coarse front grows whose particles have this radius.
@@ -33,7 +37,8 @@ pub(crate) fn grown(bounds: &Bounds, radius: f64) -> Bounds {
 ///
 /// # Errors
 ///
-/// A place where the surface ends inside the box, or where its border could not be laid on the planes.
+/// A place where the surface ends inside the box, or where its border could not be laid on the
+/// planes.
 pub(in super::super) fn clip(net: &mut Net, ground: &mut Ground, spacing: f32) -> Result<(), Refusal> {
     if !net.walls.is_near() {
         return open_end(net).map_or(Ok(()), |v| Err(border(net, v)));
@@ -81,7 +86,8 @@ fn is_beyond(net: &Net, v: u32, plane: usize) -> bool {
 /// Splits the edges that cross a plane.
 fn cut(net: &mut Net, ground: &mut Ground, spacing: f32, plane: usize) -> Result<(), Refusal> {
     let mut h = 0;
-    // A split adds half-edges at the end, which may cross too; but every split makes one edge fewer that does.
+    // A split adds half-edges at the end, which may cross too; but every split makes one edge fewer
+    // that does.
     while (h as usize) < net.mesh.half_edge_slots() {
         let (a, b) = (net.mesh.origin(h), net.mesh.target(h));
         let is_on = |v: u32| !net.walls.planes(v).common(Planes::of(plane)).is_inner();
@@ -113,7 +119,8 @@ struct EdgeSplit {
 /// Splits an edge by a particle on planes of the box.
 fn split(net: &mut Net, ground: &mut Ground, h: u32, crossing: EdgeSplit) -> Result<(), Refusal> {
     let EdgeSplit { near, planes, reach } = crossing;
-    // The box may be left along the plane: what is beyond its other planes is cut later, and need not lie on the surface.
+    // The box may be left along the plane: what is beyond its other planes is cut later, and need
+    // not lie on the surface.
     let place = net.walls.pinned(near, planes);
     let clear = (net.walls.lo - place).max(place - net.walls.hi).max_element();
     let site = match super::slide(ground, planes, place, reach) {
@@ -141,8 +148,8 @@ fn open_end(net: &Net) -> Option<u32> {
     (0..net.position.len() as u32).find(|&v| net.mesh.is_border(v) && net.walls.planes(v).is_inner())
 }
 
-/// Moves border vertices on no plane to the nearest one: a field that ends at the box has no surface beyond, and the front ends
-/// before it.
+/// Moves border vertices on no plane to the nearest one: a field that ends at the box has no
+/// surface beyond, and the front ends before it.
 fn close_open_ends(net: &mut Net, ground: &mut Ground, spacing: f32, first: u32) -> Result<(), Refusal> {
     for v in first..net.position.len() as u32 {
         if !net.mesh.is_border(v) || !net.walls.planes(v).is_inner() {
@@ -175,8 +182,9 @@ fn close_open_ends(net: &mut Net, ground: &mut Ground, spacing: f32, first: u32)
     Ok(())
 }
 
-/// Collapses the short edges at the border, and flips edges to those of Delaunay. Without it 0.8 points fewer of the particles of 13
-/// random surfaces that the box cuts have six neighbours. Every round but the last takes a particle away.
+/// Collapses the short edges at the border, and flips edges to those of Delaunay. Without it 0.8
+/// points fewer of the particles of 13 random surfaces that the box cuts have six neighbours. Every
+/// round but the last takes a particle away.
 fn tidy(net: &mut Net, spacing: f32) {
     loop {
         let has_changed = net.thin(spacing);
