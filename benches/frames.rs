@@ -37,7 +37,7 @@ fn sampled(count: u32) -> (Shape, Bounds) {
     let particles = run.particles();
     let last = f64::from(particles.level.iter().copied().max().unwrap_or(1));
     let shape = Shape {
-        positions: particles.position.iter().map(|p| p.to_array()).collect(),
+        positions: particles.local.iter().map(|p| p.to_array()).collect(),
         normals: particles.normal.iter().map(|n| n.to_array()).collect(),
         radii: particles.radius.clone(),
         levels: particles.level.clone(),
