@@ -23,8 +23,8 @@ use scan::{Effort, Scan};
 use serde::Serialize;
 
 /// Half-widths of the cubes that are searched, the largest first, each about a fifth of the one
-/// before. With half or twice all of them a third to a half of 68 random surfaces, most of which go
-/// on for ever, have another box: it is that of the cube.
+/// before. A surface that goes on for ever gets the smallest of them as its box, so that another
+/// choice gives it another box.
 pub(crate) const HALVES: [f64; 6] = [10_000.0, 2_000.0, 400.0, 80.0, 16.0, 4.0];
 /// Half-width of the box of a surface that goes on for ever and passes near the origin: that of the
 /// smallest cube that is searched. A gyroid has one and a quarter periods in it.
@@ -32,17 +32,15 @@ const USUAL_HALF: f64 = HALVES[HALVES.len() - 1];
 /// Shortest period of a surface of which that box shows not too much: four of them. Of a shorter
 /// one the box shows two.
 const SHORT_PERIOD: f64 = 0.5 * USUAL_HALF;
-/// The box where there is no surface, or nothing is known of it: a unit sphere fills half of its
+/// The box where there is no surface, or nothing is known of it. A unit sphere fills half of its
 /// width.
 pub const FALLBACK: Bounds = Bounds::cube(2.0);
-/// Room around the bends of an endless surface, as a share of their box: how they go on is seen on
-/// all sides of them. So the bends fill two thirds of it. Half and double give 7 of 24 random
-/// endless surfaces another box, and the figures are the same within 1 %.
+/// Room around the bends of an endless surface on every side, as a share of their box, so that they
+/// fill two thirds of it. A larger room shows more of how the surface goes on, and the bends smaller.
 const ROOM: f64 = 0.25;
-/// Room around a surface on every side, as a share of its box: three radii of a hundredth of the
-/// diagonal, so that the box is the same for all smaller particles. Half of it gives 9 of 21 random
-/// surfaces another box, and the figures are the same within 1 %; with double the share of
-/// particles with six neighbours is 2 points smaller.
+/// Room around a surface on every side, as a share of its box. It is three radii of a hundredth of
+/// the diagonal, so that the box is the same for all smaller particles. A larger room leaves less of
+/// the box to the surface, and a smaller one makes the box depend on the radius more often.
 const MARGIN: f64 = 0.05;
 /// Room around a surface in radii of particles: children are proposed at two radii, and one more
 /// keeps them off the faces.

@@ -106,8 +106,8 @@ impl Display for TooManyCalls {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "it was to be called for more than {} points, the limit that was set: allow more, or take fewer particles, a box that is \
-             given, or a coarser survey",
+            "it was to be called for more than {} points, the limit that was set: allow more, or take \
+             fewer particles, a box that is given, or a coarser survey",
             self.most
         )
     }

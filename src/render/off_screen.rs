@@ -83,7 +83,7 @@ struct Timer {
 }
 
 impl Timer {
-    /// What a device must have for it.
+    /// The features that a device must have to take the time of a picture.
     const FEATURES: wgpu::Features =
         wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
     /// Bytes of the two times.

@@ -125,7 +125,7 @@ impl Desk {
 }
 
 /// A method under way.
-pub(super) struct Method {
+pub(super) struct MethodUnderWay {
     desk: Desk,
     work: Pin<Box<dyn Future<Output = StopReason> + Send>>,
 }
@@ -140,7 +140,7 @@ pub(super) enum Request {
     End(StopReason),
 }
 
-impl Method {
+impl MethodUnderWay {
     /// A method that begins.
     pub(super) fn begin<F: Future<Output = StopReason> + Send + 'static>(method: fn(Desk) -> F) -> Self {
         let desk = Desk::default();

@@ -7,7 +7,7 @@ use super::desk::{Desk, Stopped};
 use super::phase::StopReason;
 use super::relaxation::{Grading, Sweep};
 
-/// What follows once a front has covered the surface.
+/// A verdict on a front that has covered the surface says what follows.
 pub(super) enum Verdict {
     /// Another front, with other radii.
     Again,

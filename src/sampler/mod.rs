@@ -49,7 +49,7 @@ use attempt::Attempt;
 pub use constraint::Creases;
 use constraint::tips::Tip;
 use core::hint::black_box;
-use desk::{Method as MethodUnderWay, Request};
+use desk::{MethodUnderWay, Request};
 use discovery::grid::DENSE_CELLS;
 use discovery::search::ComponentSearch;
 use discovery::singular::{Bend, NearSurvey, Singular};
@@ -59,12 +59,12 @@ use flow::Flow;
 use front::Front;
 use glam::{DVec3, Vec3};
 use neighbours::packed::PackedNeighbours;
-use phase::SurveyCursor;
 use probe::{Probe, ProbeMemory};
 use refine::{CoarseFronts, Components, MovingMesh};
 use relaxation::Relaxation;
 use sizing::Sizing;
 use std::sync::Arc;
+use steps::SurveyCursor;
 
 /// Bytes per particle that have to be free before a run: the columns, neighbour lists and grid of a
 /// front, and most of what its relaxation adds; of a refined run the columns and the last two

@@ -49,13 +49,3 @@ pub enum StopReason {
     /// The radius is too large for the surface: no child fits.
     OneParticle,
 }
-
-/// Position in the sequence of seeds: a point drawn from the surface first, and then the survey's
-/// points in grid order.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct SurveyCursor {
-    /// Whether a point has been drawn.
-    pub(super) has_drawn: bool,
-    /// The survey's point that is tried next.
-    pub(super) next: usize,
-}

@@ -11,7 +11,7 @@
 //! | which particles repel each other beside near sheets | [`numbers`]: those of fronts that have met |
 //! | which particles may be corners of one triangle | `mesh::build::ball`, which knows no field: by directions and heights |
 //!
-//! What *proves* that points are connected is in `discovery::sheets`; `quality::sheets` judges
+//! `discovery::sheets` *proves* that points are connected. `quality::sheets` judges
 //! finished particles, and shares nothing with these rules, so that a fault here shows there.
 //!
 //! The *lift* of two points is the mean height of each above the tangent plane at the other, along

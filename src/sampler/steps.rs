@@ -10,7 +10,7 @@ use crate::sampler::discovery::singular::{self, Singular};
 use crate::sampler::discovery::survey::Absence;
 use crate::sampler::flow::{BALANCE_EVERY, FlowSurface, Settled};
 use crate::sampler::front::{Front, FrontContext, FrontSetup};
-use crate::sampler::phase::{Phase, StopReason, SurveyCursor};
+use crate::sampler::phase::{Phase, StopReason};
 use crate::sampler::probe::Probe;
 use crate::sampler::refine::{self, MovingMesh, Next, Refusal, Turn};
 use crate::sampler::relaxation::{MoveLimits, Relaxation, RepulsionLaw, Sweep, Swept};
@@ -27,6 +27,16 @@ const SLICE: u32 = 8_192;
 /// Seeds that may be taken back in an attempt, and one more for every particle. Half and double
 /// give the same particles on 34 random surfaces.
 const MOST_LONE_SEEDS: usize = 256;
+
+/// Position in the sequence of seeds: a point drawn from the surface first, and then the survey's
+/// points in grid order.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct SurveyCursor {
+    /// Whether a point has been drawn.
+    pub(super) has_drawn: bool,
+    /// The survey's point that is tried next.
+    pub(super) next: usize,
+}
 
 impl Sampler {
     /// Empties the columns and prepares fronts of the present radius. Says whether an earlier

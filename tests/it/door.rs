@@ -529,7 +529,8 @@ fn a_radius_is_a_length_or_a_share_and_makes_room() {
 
 #[test]
 fn settings_as_text_keep_the_box_and_refuse_names_that_they_do_not_have() {
-    let settings = settings!(radius: Some(0.1), survey_cells: Some(32); ..Settings::with_count(7).in_box(Bounds::cube(1.5)));
+    let in_box = Settings::with_count(7).in_box(Bounds::cube(1.5));
+    let settings = settings!(radius: Some(0.1), survey_cells: Some(32); ..in_box);
     let text = serde_json::to_string(&settings).unwrap();
     assert_eq!(serde_json::from_str::<Settings>(&text).unwrap(), settings);
     assert_eq!(serde_json::from_str::<Settings>("{}").unwrap(), Settings::DEFAULT);

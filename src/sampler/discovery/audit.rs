@@ -1,6 +1,6 @@
 //! The audit at the end of a run: whether a particle lies on the component of every witness.
 //!
-//! What a run says of its components must hold for the particles as they are, wherever the
+//! The audit says which components hold particles, for the particles as they are after the
 //! relaxation has moved them. So each witness is connected with a particle anew, by proof. Where
 //! that fails and no particle near it even seems to be on its sheet, the witness is named as
 //! [`Unsampled`], with the distance to which its component can be followed.

@@ -39,9 +39,9 @@ pub(crate) struct Blur {
     pub(crate) distance: f64,
 }
 
-/// Of a selection of the particles, the one at which rounding in double precision moves the level
-/// set by most for its size; none if it does so by less than [`MOST_MOVED`], or f has no bounds to
-/// tell it by. The bounds of f at a single point are as wide as what rounding may do to it.
+/// Finds the particle, among a selection, at which rounding in double precision moves the level set
+/// farthest for the particle's size. There is none if it moves by less than [`MOST_MOVED`], or if f
+/// has no bounds. The bounds of f at a single point are as wide as the rounding error of f there.
 pub(crate) fn blur(field: &mut dyn Evaluator, particles: &Particles) -> Option<Blur> {
     let field = field.bounded()?;
     let mut most = (MOST_MOVED, None);

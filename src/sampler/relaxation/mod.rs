@@ -40,7 +40,7 @@ use core::ops::Range;
 /// a particle.
 const RENEWAL_UNITS: u32 = 10;
 
-/// What is done for each particle in turn.
+/// A sweep of the relaxation does one thing for each particle in turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sweep {
     /// Bring the particles to a surface that has moved.
