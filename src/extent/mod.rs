@@ -36,11 +36,12 @@ const SHORT_PERIOD: f64 = 0.5 * USUAL_HALF;
 /// width.
 pub const FALLBACK: Bounds = Bounds::cube(2.0);
 /// Room around the bends of an endless surface on every side, as a share of their box, so that they
-/// fill two thirds of it. A larger room shows more of how the surface goes on, and the bends smaller.
+/// fill two thirds of it. A larger room shows more of how the surface goes on, and the bends
+/// smaller.
 const ROOM: f64 = 0.25;
 /// Room around a surface on every side, as a share of its box. It is three radii of a hundredth of
-/// the diagonal, so that the box is the same for all smaller particles. A larger room leaves less of
-/// the box to the surface, and a smaller one makes the box depend on the radius more often.
+/// the diagonal, so that the box is the same for all smaller particles. A larger room leaves less
+/// of the box to the surface, and a smaller one makes the box depend on the radius more often.
 const MARGIN: f64 = 0.05;
 /// Room around a surface in radii of particles: children are proposed at two radii, and one more
 /// keeps them off the faces.

@@ -1,6 +1,6 @@
 //! Before a run starts, a session finds three things, in slices: the box, which is given with the
-//! field, belongs to a gallery surface, or is fitted around the surface of a formula; the solid that
-//! is made of the surface in the box; and the creases of the solid.
+//! field, belongs to a gallery surface, or is fitted around the surface of a formula; the solid
+//! that is made of the surface in the box; and the creases of the solid.
 
 use super::{FieldAnswer, Session, Source};
 use crate::extent::{self, Extent, Reach};
