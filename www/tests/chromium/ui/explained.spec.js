@@ -30,6 +30,7 @@ test('of an adaptive picture the lesson explains no single particle, and the car
   await page.setViewportSize({ width: 1280, height: 800 });
   await page.goto('./?backend=canvas2d');
   await page.waitForFunction(() => 'marchingParticles' in window);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
   await page.evaluate(() =>
     /** @type {any} */ (window).marchingParticles.set({ settings: { sampling: 'adaptive', radius_min_share: 0.01 } }),
   );
