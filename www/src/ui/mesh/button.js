@@ -31,8 +31,9 @@ export function createMeshButton(engine, toast) {
       event.stopPropagation();
       close();
     });
-    holder.addEventListener('toggle', ({ newState }) => {
-      if (newState === 'closed') engine.leaveMesh();
+    // The event before it, which comes at once: nobody sees a mesh without its panel.
+    holder.addEventListener('beforetoggle', ({ newState }) => {
+      if (newState === 'closed') untracked(engine.leaveMesh);
     });
     document.body.append(holder);
     // A mesh is of no use beside a formula with a mistake; the caret stays in the formula. Who chooses another method
