@@ -162,8 +162,8 @@ pub use pointcloud::job::JobError;
 pub use pointcloud::read::{InputFormat, ReadError};
 pub use quality::{Figures, Histogram, Hole, Measurements, Pair, Places, figures};
 pub use run::{
-    Cut, Error, Growth, Measures, MeshAnswer, MeshComponent, Proof, Radii, Report, Reporting, Run, Sample,
-    Severity, Start, Warning, sample,
+    Cut, Error, Growth, Measured, Measures, MeshAnswer, MeshComponent, Proof, Radii, Report, Reporting, Run,
+    Sample, Severity, Start, Warning, sample,
 };
 pub use sampler::{
     Doubt, FateCounts, FollowError, GapPolicy, LawKind, Method, Phase, Progress, Radius, Refusal, Sampled,

@@ -16,6 +16,21 @@ use std::sync::Arc;
 /// that bounds both, at twice the number allowed by default.
 const MAX_KEPT: usize = 400_000;
 
+/// What is measured for a report.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Measured {
+    /// Nothing. The report has no figures of quality, no number of components of the sample, and
+    /// none of the warnings that come from measuring, of open edges and of close sheets; files have
+    /// no columns of measured values.
+    Nothing,
+    /// The particles.
+    #[default]
+    Particles,
+    /// The particles and, where they were relaxed, those of the front before, for comparison. It
+    /// takes twice as long.
+    FrontToo,
+}
+
 /// The measurements of a run.
 #[derive(Default)]
 pub(super) struct Measuring {

@@ -11,6 +11,7 @@ mod report;
 mod sample;
 mod warning;
 
+pub use measuring::Measured;
 pub use mesh::{MeshAnswer, MeshComponent};
 pub use report::{Cut, Growth, Measures, Proof, Radii, Report, Reporting};
 pub use sample::{Sample, sample};
@@ -403,24 +404,29 @@ impl<F: Field> Run<F> {
     /// # Errors
     ///
     /// If there is no particle, or a function of the program has failed: the error says why.
-    pub fn finish(mut self) -> Result<Sample, Error> {
-        self.check_not_empty()?;
-        let report = self.report();
-        self.check_field()?;
-        Ok(Sample::new(self, report))
+    pub fn finish(self) -> Result<Sample, Error> {
+        self.finish_with(Measured::Particles)
     }
 
-    /// [`Run::finish`] without measuring, which may take longer than the sampling. The report then
-    /// has no figures of quality, no number of components of the sample, and none of the warnings
-    /// that come from measuring, of open edges and of close sheets; the files have no columns of
-    /// measured values.
+    /// [`Run::finish`] without measuring, which may take longer than the sampling:
+    /// [`Measured::Nothing`].
     ///
     /// # Errors
     ///
     /// The error of [`Run::finish`].
-    pub fn finish_unmeasured(mut self) -> Result<Sample, Error> {
+    pub fn finish_unmeasured(self) -> Result<Sample, Error> {
+        self.finish_with(Measured::Nothing)
+    }
+
+    /// [`Run::finish`], with so much measured.
+    ///
+    /// # Errors
+    ///
+    /// The error of [`Run::finish`].
+    pub fn finish_with(mut self, measured: Measured) -> Result<Sample, Error> {
         self.check_not_empty()?;
-        let report = self.report_unmeasured();
+        let report = self.report_with(measured);
+        self.check_field()?;
         Ok(Sample::new(self, report))
     }
 

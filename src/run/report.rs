@@ -1,7 +1,7 @@
 //! The report of a run: the counts of the sampler, and the measurements of the particles before and
 //! after the relaxation.
 
-use super::measuring::{Measuring, MeasuringInput, MeasuringResult, measure, measured_columns};
+use super::measuring::{Measured, Measuring, MeasuringInput, MeasuringResult, measure, measured_columns};
 use super::{Run, Warning};
 use crate::extent::Reach;
 use crate::field::{Creased, Field};
@@ -300,10 +300,19 @@ impl<F: Field> Run<F> {
         (self.measuring.measured, self.measuring.facing) = (now, Some(facing));
     }
 
-    /// The report without measurements.
-    pub(crate) fn report_unmeasured(&mut self) -> Report {
-        self.measuring = Measuring::default();
-        self.reported()
+    /// The report, with so much measured.
+    pub(crate) fn report_with(&mut self, measured: Measured) -> Report {
+        match measured {
+            Measured::Nothing => {
+                self.measuring = Measuring::default();
+                self.reported()
+            }
+            Measured::Particles => {
+                self.measuring.front = None;
+                self.report()
+            }
+            Measured::FrontToo => self.report(),
+        }
     }
 
     /// The report, with the measurements that are there.

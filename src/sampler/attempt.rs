@@ -4,7 +4,7 @@
 use crate::math::{Bounds, HEXAGONAL_CELL, sort_numbers};
 use crate::sampler::constraint::CreaseLadder;
 use crate::sampler::discovery::survey::Survey;
-use crate::sampler::neighbours::grids::RadiusRange;
+use crate::sampler::front::FrontPlan;
 use crate::sampler::projection::{Tolerance, tolerance};
 use crate::sampler::refine::{self, Refusal, SurfaceFacts};
 use crate::sampler::settings::{Settings, SizeMode};
@@ -139,9 +139,6 @@ pub(super) struct Refining {
     nearest: Option<NearestFront>,
     /// Whether the surface has creases.
     pub(super) is_creased: bool,
-    /// The radius field of the refined particles, where sizes differ: the front has one size, but
-    /// where there are creases.
-    pub(super) sizing: Option<Sizing>,
     /// The particles on creases at every level, where there are creases.
     pub(super) ladder: Option<CreaseLadder>,
     /// Point of the surface with the largest curvature.
@@ -170,17 +167,6 @@ impl Refining {
         self.search.completed = MAX_COARSE_ATTEMPTS;
         (self.search.scale, self.halvings, self.failures) = (scale, halvings, failures);
         true
-    }
-
-    /// The facts about the surface in a box that a refinement uses.
-    pub(super) fn surface(&self, bounds: &Bounds) -> SurfaceFacts<'_> {
-        SurfaceFacts {
-            bounds: *bounds,
-            sizing: self.sizing.as_ref(),
-            ladder: self.ladder.as_ref(),
-            bend: self.bend,
-            failures: self.failures,
-        }
     }
 }
 
@@ -269,8 +255,7 @@ impl Attempt {
         };
         let unrefined = self.clone();
         self.radius = radius;
-        let mut sizing = self.sizing.take();
-        if let Some(sizing) = &mut sizing {
+        if let Some(sizing) = &mut self.sizing {
             sizing.scale_to(count / self.packing);
         }
         // Why no coarser front is tried, should this one fail.
@@ -281,13 +266,12 @@ impl Attempt {
             search,
             nearest,
             is_creased,
-            sizing,
             ladder: None,
             bend,
             failures: 0,
             failure,
         });
-        self.grade_front(settings);
+        self.grade(settings);
         if self.predicted_count(settings) > f64::from(settings.max_particles) {
             *self = unrefined;
             return Some(Refusal::Full);
@@ -295,35 +279,75 @@ impl Attempt {
         None
     }
 
-    /// Gives the front of a refinement on a surface with creases radii that differ, where those of
-    /// the wanted particles do: it decides how many particles lie on each crease. The radii of
-    /// every level are those of the front over a power of two, and their slope is as much smaller.
-    pub(super) fn grade_front(&mut self, settings: &Settings) {
+    /// Grades the radius field for a refinement on a surface with creases. The front has radii that
+    /// differ there, too: it decides how many particles lie on each crease. The radii of every
+    /// level are those of the front over a power of two, and their slope is as much smaller.
+    fn grade(&mut self, settings: &Settings) {
         let share = self.front_radius() / self.radius;
-        let Some(refining) = self.refining.as_mut().filter(|refining| refining.is_creased) else { return };
-        let Some(sizing) = refining.sizing.take() else { return };
-        let mut wanted = sizing.graded(settings.grading / share, 1.0);
-        if settings.size_mode == SizeMode::Count {
-            wanted.scale_to(f64::from(settings.count) / self.packing);
+        if !self.refining.as_ref().is_some_and(|refining| refining.is_creased) {
+            return;
         }
-        refining.sizing = Some(wanted.clone());
-        self.sizing = Some(wanted);
+        let Some(mut sizing) = self.sizing.take() else { return };
+        sizing = sizing.graded(settings.grading / share, 1.0);
+        if settings.size_mode == SizeMode::Count {
+            sizing.scale_to(f64::from(settings.count) / self.packing);
+        }
+        self.sizing = Some(sizing);
         self.follow_sizing();
-        self.sizing = self.sizing.take().map(|wanted| wanted.graded(settings.grading, share));
+    }
+
+    /// The front of this attempt, for particles in a box. One that is refined grows in a larger
+    /// box, of one size but where there are creases.
+    pub(super) fn front(&mut self, settings: &Settings, bounds: &Bounds) -> FrontPlan {
+        self.grade(settings);
+        let share = self.front_radius() / self.radius;
+        let (bounds, match_tolerance, sizing) = match &self.refining {
+            None => (*bounds, settings.match_tolerance, self.sizing.clone()),
+            Some(refining) => {
+                let sizing = self.sizing.as_ref().filter(|_| refining.is_creased);
+                (
+                    refine::grown(bounds, self.front_radius()),
+                    refine::MATCH_TOLERANCE,
+                    sizing.map(|sizing| sizing.clone().graded(settings.grading, share)),
+                )
+            }
+        };
+        FrontPlan {
+            bounds,
+            radius: self.front_radius() as f32,
+            sizing,
+            grading: settings.grading as f32,
+            match_tolerance,
+            max_particles: settings.max_particles as usize,
+            expected: self.count_times_radius_sq() / (self.front_radius() * self.front_radius()),
+        }
+    }
+
+    /// The facts about the surface in a box that the refinement of this attempt's front uses, or a
+    /// mesh that follows a moving surface.
+    pub(super) fn surface(&self, bounds: &Bounds) -> SurfaceFacts<'_> {
+        let refining = self.refining.as_ref();
+        SurfaceFacts {
+            bounds: *bounds,
+            sizing: self.sizing.as_ref(),
+            ladder: refining.and_then(|refining| refining.ladder.as_ref()),
+            bend: refining.map_or(Vec3::ZERO, |refining| refining.bend),
+            failures: refining.map_or(0, |refining| refining.failures),
+        }
     }
 
     /// The target of the refinement of this attempt's front; none if the front is not refined.
     pub(super) fn target(&self, settings: &Settings) -> Option<refine::Target> {
-        let Refining { halvings, sizing, .. } = self.refining.as_ref()?;
-        Some(self.target_of(settings, *halvings, sizing.as_ref()))
+        self.refining.as_ref().map(|refining| self.target_of(settings, refining.halvings))
     }
 
     /// The target of a mesh that follows a moving surface.
     pub(super) fn moving_target(&self, settings: &Settings) -> refine::Target {
-        self.target_of(settings, 0, self.sizing.as_ref())
+        self.target_of(settings, 0)
     }
 
-    fn target_of(&self, settings: &Settings, halvings: u32, sizing: Option<&Sizing>) -> refine::Target {
+    fn target_of(&self, settings: &Settings, halvings: u32) -> refine::Target {
+        let sizing = self.sizing.as_ref();
         let count = match (settings.size_mode, sizing) {
             (SizeMode::Count, _) => refine::Count::Total(f64::from(settings.count)),
             (SizeMode::Radius, None) => refine::Count::PerCell(self.packing),
@@ -339,28 +363,15 @@ impl Attempt {
 
     /// The first attempt at the front that stands because this one's was refused.
     pub(super) fn without_refinement(&mut self, settings: &Settings, diagonal: f64) -> Self {
-        self.end_refinement();
         Self::first(settings, self.area, diagonal, self.sizing.take().map(|sizing| sizing.unscaled(settings)))
     }
 
-    /// Ends the refinement: the particles have the radii of the radius field, if there is one.
-    pub(super) fn end_refinement(&mut self) {
-        if let Some(refining) = self.refining.take() {
-            self.sizing = refining.sizing;
-        }
-    }
-
     /// Radius of the front.
-    pub(super) fn front_radius(&self) -> f64 {
+    fn front_radius(&self) -> f64 {
         let coarse = |refining: &Refining| {
             refine::FRONT_RADIUS * f64::from(1_u32 << refining.halvings) * refining.search.scale
         };
         self.radius * self.refining.as_ref().map_or(1.0, coarse)
-    }
-
-    /// The box in which the front grows, when particles are wanted in `bounds`.
-    pub(super) fn front_bounds(&self, bounds: &Bounds) -> Bounds {
-        if self.refining.is_some() { refine::grown(bounds, self.front_radius()) } else { *bounds }
     }
 
     /// Takes the radius from the radius field, if there is one.
@@ -381,27 +392,14 @@ impl Attempt {
         }
     }
 
-    /// Particles that the front of this attempt is expected to place.
-    pub(super) fn expected_count(&self) -> f64 {
-        self.count_times_radius_sq() / (self.front_radius() * self.front_radius())
-    }
-
     /// Particles to reserve room for.
     pub(super) fn reserved(count: f64, settings: &Settings) -> usize {
         (count * RESERVE).min(f64::from(settings.max_particles)) as usize
     }
 
-    /// Smallest and largest radius of a particle.
-    pub(super) fn radii(&self) -> RadiusRange {
-        match &self.sizing {
-            Some(sizing) => RadiusRange { smallest: sizing.smallest(), largest: sizing.largest() },
-            None => RadiusRange::of(self.front_radius() as f32),
-        }
-    }
-
-    /// Tolerance for the particles of the front.
+    /// Tolerance for the particles that are wanted.
     pub(super) fn tolerance(&self, survey: &Survey) -> Tolerance {
-        tolerance(self.front_radius() as f32, survey.residual_limits(), survey.gradient_scale)
+        tolerance(self.radius as f32, survey.residual_limits(), survey.gradient_scale)
     }
 
     /// Notes that this attempt has covered the surface with `count` particles, or more than that if
@@ -420,7 +418,7 @@ impl Attempt {
         {
             return false;
         }
-        let packing = count as f64 / self.expected_count();
+        let packing = count as f64 / (self.count_times_radius_sq() / (self.radius * self.radius));
         if !is_capped {
             self.packing *= packing;
             let miss = miss.max(1.0 / miss);

@@ -69,11 +69,28 @@ impl Desk {
     /// Does slices of work until one has a result.
     pub(super) async fn until<R: Send + 'static>(
         &self,
-        slice: impl Fn(&mut Sampler, &mut Probe, &mut u32) -> Option<R> + Copy + Send + 'static,
+        mut slice: impl FnMut(&mut Sampler, &mut Probe, &mut u32) -> Option<R> + Send + 'static,
+    ) -> Result<R, Stopped> {
+        self.until_on(&mut (), move |sampler, (), probe, left| slice(sampler, probe, left)).await
+    }
+
+    /// [`Desk::until`], with slices that also work on a value of the method. The value is lost if
+    /// the run is stopped.
+    pub(super) async fn until_on<T: Default + Send + 'static, R: Send + 'static>(
+        &self,
+        value: &mut T,
+        mut slice: impl FnMut(&mut Sampler, &mut T, &mut Probe, &mut u32) -> Option<R> + Send + 'static,
     ) -> Result<R, Stopped> {
         loop {
             self.check()?;
-            if let Some(result) = self.wait_for(Wish::Work, slice).await? {
+            let mut own = core::mem::take(value);
+            let work = move |sampler: &mut Sampler, probe: &mut Probe, left: &mut u32| {
+                let result = slice(sampler, &mut own, probe, left);
+                (own, slice, result)
+            };
+            let result;
+            (*value, slice, result) = self.wait_for(Wish::Work, work).await?;
+            if let Some(result) = result {
                 return Ok(result);
             }
         }

@@ -5,6 +5,8 @@
 use super::Sampler;
 use super::desk::{Desk, Stopped};
 use super::phase::StopReason;
+use super::probe::Probe;
+use super::refine::{Components, Refinement, Refusal};
 use super::relaxation::{Grading, Sweep};
 
 /// A verdict on a front that has covered the surface says what follows.
@@ -14,7 +16,7 @@ pub(super) enum Verdict {
     /// The relaxation.
     Relax,
     /// The refinement of the front, which is a coarse one.
-    Refine,
+    Refine(Components),
     /// The front stands as it is, and the run ends for this reason.
     Stands(StopReason),
 }
@@ -30,9 +32,11 @@ async fn place(desk: &Desk) -> Result<StopReason, Stopped> {
         desk.leaving(cover(desk), Sampler::leave_front).await?;
         match desk.with_field(Sampler::judge_front).await? {
             Verdict::Again => {}
-            Verdict::Refine => {
-                let refined = desk.until(Sampler::refine);
-                if desk.leaving(refined, Sampler::leave_refinement).await? {
+            Verdict::Refine(mut components) => {
+                let refined = refine(desk, &mut components);
+                let refusal = desk.leaving(refined, Sampler::leave_refinement).await?;
+                let stands = move |sampler: &mut Sampler| sampler.judge_refinement(components, refusal);
+                if desk.now(stands).await? {
                     break StopReason::Complete;
                 }
             }
@@ -93,6 +97,84 @@ async fn grow_levels(desk: &Desk) -> Result<(), Stopped> {
         desk.until(Sampler::place_children).await?;
         desk.until(Sampler::project_children).await?;
         desk.until(Sampler::settle_children).await?;
+    }
+    Ok(())
+}
+
+/// Why the work on a mesh ends early.
+enum Halt {
+    Stopped,
+    Refused(Refusal),
+}
+
+impl From<Stopped> for Halt {
+    fn from(_: Stopped) -> Self {
+        Self::Stopped
+    }
+}
+
+impl From<Refusal> for Halt {
+    fn from(refusal: Refusal) -> Self {
+        Self::Refused(refusal)
+    }
+}
+
+/// Why a mesh was given up, if it was, once the work on it has ended.
+fn refusal(result: Result<(), Halt>) -> Result<Option<Refusal>, Stopped> {
+    match result {
+        Ok(()) => Ok(None),
+        Err(Halt::Refused(refusal)) => Ok(Some(refusal)),
+        Err(Halt::Stopped) => Err(Stopped),
+    }
+}
+
+/// Refines the components of a coarse front: brings the few particles into order, and keeps it
+/// while their number is multiplied by four from level to level. Returns why it cannot, if so.
+async fn refine(desk: &Desk, components: &mut Components) -> Result<Option<Refusal>, Stopped> {
+    refusal(make_levels(desk, components).await)
+}
+
+async fn make_levels(desk: &Desk, components: &mut Components) -> Result<(), Halt> {
+    let levels = components.most_halvings() + 1;
+    for to_come in (0..levels).rev() {
+        for (k, share) in components.at_level(to_come) {
+            desk.now(move |sampler| sampler.begin_level(levels, to_come, share)).await?;
+            let mesh = components.refinement(k);
+            if mesh.to_come() > to_come {
+                divide(desk, mesh).await?;
+            }
+            make_passes(desk, mesh).await?;
+            let mut rings = mesh.begin_order();
+            let rings = desk.until_on(mesh, move |_, mesh, _, left| mesh.put_in_order(&mut rings, left));
+            let rings = rings.await?;
+            components.end_level(k, rings);
+        }
+        let show = move |sampler: &mut Sampler,
+                         components: &mut Components,
+                         _: &mut Probe,
+                         left: &mut u32| { sampler.show_level(components, to_come, left) };
+        desk.until_on(components, show).await?;
+    }
+    Ok(())
+}
+
+/// Divides every face into four, and brings the particles of the finer mesh onto the surface.
+async fn divide(desk: &Desk, mesh: &mut Refinement) -> Result<(), Halt> {
+    let mut division = mesh.begin_division();
+    let mut coarse = desk.until_on(mesh, move |_, mesh, _, left| mesh.divide(&mut division, left)).await?;
+    let land = move |sampler: &mut Sampler, mesh: &mut Refinement, probe: &mut Probe, left: &mut u32| {
+        sampler.land(mesh, &mut coarse, probe, left)
+    };
+    Ok(desk.until_on(mesh, land).await??)
+}
+
+/// Makes the passes of a level, or of a frame of a mesh that follows a surface, by its recipe.
+async fn make_passes(desk: &Desk, mesh: &mut Refinement) -> Result<(), Halt> {
+    while let Some(mut rest) = mesh.begin_pass() {
+        let pass = move |sampler: &mut Sampler, mesh: &mut Refinement, probe: &mut Probe, left: &mut u32| {
+            sampler.make_pass(mesh, &mut rest, probe, left)
+        };
+        desk.until_on(mesh, pass).await??;
     }
     Ok(())
 }
@@ -185,8 +267,11 @@ pub(super) async fn follow(desk: Desk) -> StopReason {
 }
 
 async fn follow_surface(desk: &Desk) -> Result<StopReason, Stopped> {
-    if desk.now(Sampler::begin_mesh).await? && desk.until(Sampler::move_mesh).await? {
-        return Ok(StopReason::Complete);
+    if let Some(mut mesh) = desk.now(Sampler::begin_mesh).await? {
+        let refusal = refusal(make_passes(desk, &mut mesh.refinement).await)?;
+        if desk.now(move |sampler| sampler.judge_mesh(mesh, refusal)).await? {
+            return Ok(StopReason::Complete);
+        }
     }
     loop {
         desk.now(Sampler::begin_transport).await?;

@@ -56,11 +56,12 @@ use discovery::singular::{Bend, NearSurvey, Singular};
 use discovery::survey::{Absence, Survey, bare_among, bare_size, spacing, survey};
 use discovery::{precision, singular};
 use flow::Flow;
-use front::Front;
+use front::{Front, FrontPlan};
 use glam::{DVec3, Vec3};
 use neighbours::packed::PackedNeighbours;
 use probe::{Probe, ProbeMemory};
-use refine::{CoarseFronts, Components, MovingMesh};
+use progress::RefineProgress;
+use refine::CoarseFronts;
 use relaxation::Relaxation;
 use sizing::Sizing;
 use std::sync::Arc;
@@ -92,6 +93,8 @@ pub struct Sampler {
     singular: Vec<Singular>,
     tips: Vec<Tip>,
     attempt: Attempt,
+    /// The front of this attempt.
+    plan: FrontPlan,
     /// The method that is under way, if one is.
     method: Option<MethodUnderWay>,
     phase: Phase,
@@ -99,10 +102,8 @@ pub struct Sampler {
     stop_reason: Option<StopReason>,
     /// The next seed of the survey.
     seeds: SurveyCursor,
-    /// The refinement of a coarse front, while there is one.
-    refinement: Option<Box<Components>>,
-    /// The mesh with which particles follow a moving surface, while there is one.
-    moving_mesh: Option<MovingMesh>,
+    /// How far the refinement of a coarse front is, while there is one.
+    refined: RefineProgress,
     components: ComponentSearch,
     tools: Tools,
     output: Output,
@@ -615,8 +616,8 @@ impl Sampler {
         let (area, growth) = (self.survey.area, self.tools.flow.growth());
         self.attempt.follow(&self.settings, area, bounds.diagonal(), sizing, growth);
         self.components.begin(field, bounds, &[]);
-        let settings = self.settings;
-        self.reset_front(&settings, 0);
+        self.plan = self.attempt.front(&self.settings, bounds);
+        self.tools.front.reset(&self.plan, &self.survey, 0);
         if self.attempt.sizing.is_none() {
             self.output.particles.radius.fill(self.attempt.radius as f32);
         }
@@ -624,7 +625,6 @@ impl Sampler {
 
     /// Takes a method as the one that is under way.
     fn carry_out(&mut self, method: MethodUnderWay, phase: Phase) {
-        (self.refinement, self.moving_mesh) = (None, None);
         (self.method, self.stop_reason, self.phase) = (Some(method), None, phase);
         self.output.fraction = 0.0;
     }
@@ -652,7 +652,6 @@ impl Sampler {
                 Request::Step => break,
                 Request::End(reason) => {
                     (self.method, self.stop_reason, self.phase) = (None, Some(reason), Phase::Done);
-                    (self.refinement, self.moving_mesh) = (None, None);
                 }
             }
         }

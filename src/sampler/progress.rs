@@ -89,6 +89,41 @@ pub struct Counts {
     pub refusal: Option<Refusal>,
 }
 
+/// How far a refinement is.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct RefineProgress {
+    /// Number of levels, that of the coarse front included.
+    levels: u32,
+    /// Levels after the one under way.
+    to_come: u32,
+    /// Share of the particles of this level in components that have made it.
+    before: f64,
+    /// Share of them in the component that is at work.
+    share: f64,
+    /// Share of its own work that this component has done.
+    pub(super) at: f64,
+}
+
+impl RefineProgress {
+    /// Begins a level of a component that has this share of its particles.
+    pub(super) fn begin(&mut self, levels: u32, to_come: u32, share: f64) {
+        let goes_on = (levels, to_come) == (self.levels, self.to_come);
+        let before = if goes_on { self.before + self.share } else { 0.0 };
+        *self = Self { levels, to_come, before, share, at: 0.0 };
+    }
+
+    /// The level under way, counted from 1, and how many there are.
+    fn level(&self) -> (u32, u32) {
+        (self.levels - self.to_come, self.levels)
+    }
+
+    /// Estimated share of the work that is done, that of the coarse front included.
+    fn fraction(&self) -> f64 {
+        // From a quarter of the share of this level to all of it.
+        refine::coarse_share(self.to_come) * (1.0 + 3.0 * (self.before + self.share * self.at))
+    }
+}
+
 impl Sampler {
     /// The state as of now. [`Progress::moved`] tells of what has changed since the last step.
     #[must_use]
@@ -96,8 +131,8 @@ impl Sampler {
         let settled = self.settled();
         let columns = self.output.inside.as_ref().unwrap_or(&self.output.particles);
         let rows = self.output.inside.as_ref().map_or(settled, Particles::len);
-        let refinement = self.refinement.as_ref().filter(|_| self.phase == Phase::Refinement);
-        let (refine_level, refine_levels) = refinement.map_or((0, 0), |refinement| refinement.level());
+        let (refine_level, refine_levels) =
+            if self.phase == Phase::Refinement { self.refined.level() } else { (0, 0) };
         Progress {
             phase: self.phase,
             particles: columns.count_of_first(rows),
@@ -128,22 +163,20 @@ impl Sampler {
     fn fraction(&self, particles: usize) -> f64 {
         let relax_steps = f64::from(self.settings.relax_steps);
         let generation = 1.0 / (1.0 + RELAXATION_STEP_COST * relax_steps);
-        match (self.phase, &self.refinement) {
-            (Phase::Idle, _) => 0.0,
-            (Phase::Refinement, Some(refinement)) => refinement.fraction(),
-            (Phase::Relaxation, _) => {
+        match self.phase {
+            Phase::Idle => 0.0,
+            Phase::Refinement => self.refined.fraction(),
+            Phase::Relaxation => {
                 let relaxed = f64::from(self.tools.relaxation.steps_done()) / relax_steps.max(1.0);
                 generation + (1.0 - generation) * relaxed
             }
-            (Phase::Done, _) => 1.0,
+            Phase::Done => 1.0,
             // In all other phases the number of particles grows.
             _ => {
                 // A coarse front is the smaller part of its run, and so is a pilot. Any front may
                 // place more particles than are expected.
                 let (share, expected) = match &self.attempt.refining {
-                    Some(refining) => {
-                        (refine::coarse_share(refining.halvings), self.attempt.expected_count())
-                    }
+                    Some(refining) => (refine::coarse_share(refining.halvings), self.plan.expected),
                     None => (generation, self.attempt.predicted_count(&self.settings)),
                 };
                 share * (particles as f64 / expected.max(1.0)).min(0.99)

@@ -9,13 +9,15 @@ use crate::sampler::discovery::audit::holds_any;
 use crate::sampler::discovery::singular::{self, Singular};
 use crate::sampler::discovery::survey::Absence;
 use crate::sampler::flow::{BALANCE_EVERY, FlowSurface, Settled};
-use crate::sampler::front::{Front, FrontContext, FrontSetup};
+use crate::sampler::front::{Front, FrontContext};
 use crate::sampler::phase::{Phase, StopReason};
 use crate::sampler::probe::Probe;
-use crate::sampler::refine::{self, MovingMesh, Next, Refusal, Turn};
+use crate::sampler::progress::RefineProgress;
+use crate::sampler::refine::{Coarse, Components, MovingMesh, Next, Refinement, Refusal, SurfaceFacts, Turn};
 use crate::sampler::relaxation::{MoveLimits, Relaxation, RepulsionLaw, Sweep, Swept};
-use crate::sampler::settings::{GapPolicy, Method, Sampling, Settings, SizeMode};
+use crate::sampler::settings::{GapPolicy, Method, Sampling, SizeMode};
 use crate::sampler::sheet::OrientedPoint;
+use core::ops::Range;
 use glam::{DVec3, Vec3};
 use rand_core::SeedableRng;
 
@@ -43,22 +45,15 @@ impl Sampler {
     /// coarse front is known, over whose components this one is to be.
     pub(super) fn begin_attempt(&mut self) -> bool {
         (self.phase, self.seeds) = (Phase::Seeding, SurveyCursor::default());
-        self.attempt.grade_front(&self.settings);
         self.output.moved = true;
         self.output.particles.clear();
         self.tools.neighbours.clear();
+        self.plan = self.attempt.front(&self.settings, &self.bounds);
         // Growing by doubling would hold twice the columns, and four times while they are copied.
-        let expected = Attempt::reserved(self.attempt.expected_count(), &self.settings);
-        self.output.particles.reserve(expected);
-        self.tools.neighbours.reserve(expected);
-        let mut settings = self.settings;
-        if self.attempt.refining.is_some() {
-            settings.match_tolerance = refine::MATCH_TOLERANCE;
-            if self.attempt.sizing.is_none() {
-                settings.sampling = Sampling::Uniform;
-            }
-        }
-        self.reset_front(&settings, expected);
+        let room = Attempt::reserved(self.plan.expected, &self.settings);
+        self.output.particles.reserve(room);
+        self.tools.neighbours.reserve(room);
+        self.tools.front.reset(&self.plan, &self.survey, room);
         let is_known = self.tools.coarse.known().is_some();
         if !is_known {
             self.counts.seeds = 0;
@@ -67,17 +62,6 @@ impl Sampler {
             self.components.restart();
         }
         is_known
-    }
-
-    /// Prepares a front of the present radii for about the `expected` number of particles.
-    pub(super) fn reset_front(&mut self, settings: &Settings, expected: usize) {
-        self.tools.front.reset(&FrontSetup {
-            settings,
-            bounds: &self.attempt.front_bounds(&self.bounds),
-            survey: &self.survey,
-            radii: self.attempt.radii(),
-            expected,
-        });
     }
 
     /// Starts a front over a component of which an earlier coarse front is known. Says whether it
@@ -130,15 +114,15 @@ impl Sampler {
     /// Says whether there are any.
     pub(super) fn begin_at_creases(&mut self, probe: &mut Probe) -> bool {
         let before = probe.evaluations();
-        let uniform = self.attempt.front_radius() as f32;
-        let sizing = self.attempt.sizing.as_ref();
+        let plan = &self.plan;
         let halvings = self.attempt.refining.as_ref().map_or(0, |refining| refining.halvings);
-        let mut radius =
-            |probe: &mut Probe, place| sizing.map_or(uniform, |sizing| sizing.radius_at(probe.field, place));
+        let sizing = plan.sizing.as_ref();
+        let mut radius = |probe: &mut Probe, place| {
+            sizing.map_or(plan.radius, |sizing| sizing.radius_at(probe.field, place))
+        };
         // A coarse front grows beyond the box.
-        let wide = self.attempt.front_bounds(&self.bounds);
         let is_refined = self.attempt.refining.is_some();
-        let beyond = is_refined.then(|| self.creases.beyond(probe, &self.bounds, &wide)).flatten();
+        let beyond = is_refined.then(|| self.creases.beyond(probe, &self.bounds, &plan.bounds)).flatten();
         let filled = beyond.as_ref().unwrap_or(&self.creases).fill(probe, halvings, &mut radius);
         let particles = &mut self.output.particles;
         let along = filled.add_rows(probe, particles);
@@ -169,7 +153,7 @@ impl Sampler {
             let probe = &mut probe.on(patch);
             // Where branches are equal, on creases and where bodies share a plane, no front begins
             // but those of the creases.
-            let (place, size) = (seed.position, self.attempt.front_radius() as f32);
+            let (place, size) = (seed.position, self.plan.radius);
             let normal = probe.gradient(place).1.normalize_or_zero();
             if ![normal, -normal].into_iter().all(|aside| probe.is_on_patch(place, aside, size, patch)) {
                 return false;
@@ -235,7 +219,7 @@ impl Sampler {
             return false;
         };
         let reach = ROOM * reach;
-        let slack = f64::from(2.0 * self.attempt.tolerance(&self.survey).residual);
+        let slack = f64::from(2.0 * self.plan.tolerance(&self.survey).residual);
         let others = self.tools.front.within(seed.position, reach as f32);
         let others = others.iter().map(|near| near.index as usize).filter(|&j| j != last);
         !holds_any(field, &self.output.particles, seed, reach, others, slack)
@@ -249,7 +233,7 @@ impl Sampler {
     ) -> R {
         let mut context = FrontContext {
             probe,
-            sizing: self.attempt.sizing.as_ref(),
+            sizing: self.plan.sizing.as_ref(),
             neighbours: &mut self.tools.neighbours,
             particles: &mut self.output.particles,
         };
@@ -285,7 +269,7 @@ impl Sampler {
         if self.tools.front.level().capped {
             return Some(false);
         }
-        let tolerance = self.attempt.tolerance(&self.survey);
+        let tolerance = self.plan.tolerance(&self.survey);
         let slice = (*left).min(SLICE);
         let least_gap = self.least_gap();
         let unused = self.components.search(probe, &self.bounds, tolerance, least_gap, slice);
@@ -375,7 +359,7 @@ impl Sampler {
         self.output.particles =
             self.tools.coarse.end().unwrap_or(core::mem::take(&mut self.output.particles));
         self.drop_beyond();
-        self.attempt.end_refinement();
+        self.attempt.refining = None;
     }
 
     /// Begins to refine the front that has covered the surface, or another one over a component
@@ -383,20 +367,19 @@ impl Sampler {
     fn begin_refinement(&mut self, probe: &mut Probe) -> Option<Verdict> {
         let target = self.attempt.target(&self.settings)?;
         let unpinned = self.unpinned();
-        let refining = self.attempt.refining.as_mut()?;
         let before = probe.evaluations();
         let next = if let Some(refusal) = unpinned {
             Err(refusal)
         } else if self.tools.front.level().capped {
             Err(Refusal::Full)
         } else {
-            let surface = refining.surface(&self.bounds);
+            let surface = self.attempt.surface(&self.bounds);
             self.tools.coarse.take_in(probe, &surface, &mut self.output.particles, target)
         };
         self.counts.generation_evaluations += probe.evaluations() - before;
         Some(match next {
             Ok(Next::Front(fewer)) => {
-                refining.halvings = fewer;
+                self.attempt.refining.as_mut()?.halvings = fewer;
                 Verdict::Again
             }
             Ok(Next::Refine(components)) => {
@@ -406,8 +389,8 @@ impl Sampler {
                 // The last front was one of several.
                 self.output.moved |= self.tools.coarse.are_several;
                 self.drop_beyond();
-                (self.phase, self.refinement) = (Phase::Refinement, Some(components));
-                Verdict::Refine
+                (self.phase, self.refined) = (Phase::Refinement, RefineProgress::default());
+                Verdict::Refine(components)
             }
             Err(refusal) => {
                 self.refuse(refusal);
@@ -435,9 +418,8 @@ impl Sampler {
     fn refuse(&mut self, refusal: Refusal) {
         let is_lone = !self.tools.coarse.are_several;
         self.tools.coarse.end();
-        let least = |refining: &Refining| {
-            u32::from(refining.ladder.is_some() || is_lone && refining.sizing.is_some())
-        };
+        let are_graded = self.attempt.sizing.is_some();
+        let least = |refining: &Refining| u32::from(refining.ladder.is_some() || is_lone && are_graded);
         if self.attempt.refining.as_mut().is_some_and(Refining::recall_nearest) {
             return;
         }
@@ -462,51 +444,96 @@ impl Sampler {
         }
     }
 
-    /// Brings the coarse front into order and refines it. Says whether it stands then; if not,
-    /// another front is to be tried.
-    pub(super) fn refine(&mut self, probe: &mut Probe, left: &mut u32) -> Option<bool> {
+    /// Begins a level of a component of a refinement that has so many, of which so many come after
+    /// it. The component has this share of its particles.
+    pub(super) fn begin_level(&mut self, levels: u32, to_come: u32, share: f64) {
+        self.refined.begin(levels, to_come, share);
+    }
+
+    /// [`Refinement::land`].
+    pub(super) fn land(
+        &mut self,
+        mesh: &mut Refinement,
+        coarse: &mut Coarse,
+        probe: &mut Probe,
+        left: &mut u32,
+    ) -> Option<Result<(), Refusal>> {
+        self.work_on_mesh(probe, |probe, surface| mesh.land(probe, surface, coarse, left))
+    }
+
+    /// [`Refinement::go_on`].
+    pub(super) fn make_pass(
+        &mut self,
+        mesh: &mut Refinement,
+        rest: &mut Range<u32>,
+        probe: &mut Probe,
+        left: &mut u32,
+    ) -> Option<Result<(), Refusal>> {
+        self.refined.at = mesh.share();
+        self.work_on_mesh(probe, |probe, surface| mesh.go_on(probe, surface, rest, left))
+    }
+
+    /// Works on a mesh that is refined or that follows a moving surface, and counts the
+    /// evaluations. The work says whether it is done.
+    fn work_on_mesh(
+        &mut self,
+        probe: &mut Probe,
+        work: impl FnOnce(&mut Probe, &SurfaceFacts) -> Result<bool, Refusal>,
+    ) -> Option<Result<(), Refusal>> {
         let before = probe.evaluations();
-        let (Some(refining), Some(refinement)) = (&self.attempt.refining, &mut self.refinement) else {
-            return Some(true);
+        let done = work(probe, &self.attempt.surface(&self.bounds));
+        let evaluations = match self.phase {
+            Phase::Flow => &mut self.counts.relaxation_evaluations,
+            _ => &mut self.counts.generation_evaluations,
         };
-        let surface = refining.surface(&self.bounds);
-        let step = refinement.step(probe, &surface, &mut self.output.particles, *left);
-        self.counts.generation_evaluations += probe.evaluations() - before;
-        let fewest = refinement.fewest_halvings();
-        let (units, has_changed) = match step {
-            Ok(done) => done,
-            Err(refusal) => {
-                if let Some(refining) = &mut self.attempt.refining {
-                    refining.failures += 1;
-                    refining.failure = Some(refusal);
-                    // The component that was refined least sets how coarse the next front may be.
-                    refining.halvings = fewest;
-                }
-                self.refuse(refusal);
-                return Some(false);
-            }
-        };
-        *left = left.saturating_sub(units);
-        self.output.moved |= has_changed;
-        let refinement = self.refinement.take_if(|refinement| refinement.is_done())?;
-        if let Some(refining) = &mut self.attempt.refining {
-            // Of the front over all components.
-            refining.halvings = fewest;
+        *evaluations += probe.evaluations() - before;
+        match done {
+            Ok(is_done) => is_done.then_some(Ok(())),
+            Err(refusal) => Some(Err(refusal)),
+        }
+    }
+
+    /// Shows the particles of a level that all components have made, whole, so that a run that is
+    /// cancelled has all of its particles.
+    pub(super) fn show_level(
+        &mut self,
+        components: &mut Components,
+        to_come: u32,
+        left: &mut u32,
+    ) -> Option<()> {
+        let ladder = self.attempt.refining.as_ref().and_then(|refining| refining.ladder.as_ref());
+        self.output.particles = components.particles(to_come, ladder);
+        self.output.moved = true;
+        *left = left.saturating_sub(self.output.particles.len() as u32);
+        Some(())
+    }
+
+    /// Says whether the refined particles stand; if not, or if the refinement was given up for a
+    /// `refusal`, another front is to be tried.
+    pub(super) fn judge_refinement(&mut self, components: Components, refusal: Option<Refusal>) -> bool {
+        let Some(refining) = &mut self.attempt.refining else { return true };
+        // The component that was refined least sets how coarse the next front may be.
+        refining.halvings = components.fewest_halvings();
+        if let Some(refusal) = refusal {
+            refining.failures += 1;
+            refining.failure = Some(refusal);
+            self.refuse(refusal);
+            return false;
         }
         let count = self.output.particles.count();
-        if self.attempt.is_front_corrected(&self.settings, count, refinement.are_in_order()) {
-            return Some(false);
+        if self.attempt.is_front_corrected(&self.settings, count, components.are_in_order()) {
+            return false;
         }
-        self.counts.refined_levels = Some(refinement.most_halvings());
-        self.output.corners = refinement.into_corners();
-        self.attempt.end_refinement();
-        Some(true)
+        self.counts.refined_levels = Some(components.most_halvings());
+        self.output.corners = components.into_corners();
+        self.attempt.refining = None;
+        true
     }
 
     /// Ends a refinement that was stopped: the columns hold the last level that was finished, or
     /// the coarse front.
     pub(super) fn leave_refinement(&mut self, _: &mut Probe) {
-        self.attempt.end_refinement();
+        self.attempt.refining = None;
     }
 
     /// Drops the particles of a coarse front that has grown beyond the box.
@@ -543,17 +570,16 @@ impl Sampler {
         self.tools.relaxation.begin(law, limits, steps, &self.output.particles, &mut self.tools.neighbours);
     }
 
-    /// Begins a frame of particles that follow a moving surface with the mesh of a refined run.
-    /// Says whether there is one that can.
-    pub(super) fn begin_mesh(&mut self) -> bool {
+    /// Begins a frame of particles that follow a moving surface with the mesh of a refined run, if
+    /// there is one that can.
+    pub(super) fn begin_mesh(&mut self) -> Option<MovingMesh> {
         if self.output.corners.is_empty() || self.tools.flow.is_closed {
-            return false;
+            return None;
         }
         let (particles, corners) = (&self.output.particles, &self.output.corners);
         let (target, spacing) = (self.attempt.moving_target(&self.settings), self.attempt.spacing());
         let turn = Turn { at: self.tools.flow.turn(), of: BALANCE_EVERY };
-        self.moving_mesh = MovingMesh::new(particles, corners, &self.bounds, target, spacing, turn);
-        self.moving_mesh.is_some()
+        MovingMesh::new(particles, corners, &self.bounds, target, spacing, turn)
     }
 
     /// Begins to bring the particles to the surface that has moved.
@@ -602,22 +628,13 @@ impl Sampler {
         false
     }
 
-    /// Moves the particles with their mesh. Says whether it could follow; where it could not, they
-    /// go on without it.
-    pub(super) fn move_mesh(&mut self, probe: &mut Probe, left: &mut u32) -> Option<bool> {
-        let Some(mesh) = &mut self.moving_mesh else { return Some(false) };
-        let start = probe.evaluations();
-        let stepped = mesh.step(probe, &self.bounds, self.attempt.sizing.as_ref(), *left);
-        self.counts.relaxation_evaluations += probe.evaluations() - start;
-        match stepped {
-            Ok(units) => *left -= units.min(*left),
-            Err(_) => {
-                self.tools.flow.hurry();
-                self.moving_mesh = None;
-                return Some(false);
-            }
+    /// Moves the particles with their mesh. Says whether it could follow; where it was given up for
+    /// a `refusal`, they go on without it.
+    pub(super) fn judge_mesh(&mut self, mesh: MovingMesh, refusal: Option<Refusal>) -> bool {
+        if refusal.is_some() {
+            self.tools.flow.hurry();
+            return false;
         }
-        let mesh = self.moving_mesh.take_if(|mesh| mesh.is_done())?;
         if self.settings.size_mode == SizeMode::Count && self.attempt.sizing.is_none() {
             self.attempt.radius *= mesh.growth();
         }
@@ -627,7 +644,7 @@ impl Sampler {
         if !self.tools.flow.end_with_mesh(particles, &self.survey) {
             *corners = Vec::new();
         }
-        Some(true)
+        true
     }
 
     /// Joins the particles of a refined run to a mesh again, which they have lost where the surface

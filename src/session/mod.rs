@@ -22,7 +22,7 @@ use crate::field::gallery::{self, Surface};
 use crate::field::model::ModelInfo;
 use crate::field::rbf::{Pull, RbfData, RbfField, pulled_box};
 use crate::math::Bounds;
-use crate::run::{Error, Report, Run, Sample, Start, Warning};
+use crate::run::{Error, Measured, Report, Run, Sample, Start, Warning};
 use crate::sampler::{FollowError, Settings, SettingsError};
 use core::ops::Deref;
 use fitting::Fitting;
@@ -444,15 +444,14 @@ impl Session {
         self.completed(report)
     }
 
-    /// [`Run::finish`] or, where nothing is to be measured, [`Run::finish_unmeasured`], with the
-    /// report of the session.
+    /// [`Run::finish_with`], with the report of the session.
     ///
     /// # Errors
     ///
     /// The error of [`Run::finish`].
-    pub fn finish(mut self, is_measured: bool) -> Result<Sample, Error> {
+    pub fn finish(mut self, measured: Measured) -> Result<Sample, Error> {
         self.run.check_not_empty()?;
-        let report = if is_measured { self.run.report() } else { self.run.report_unmeasured() };
+        let report = self.run.report_with(measured);
         let report = self.completed(report);
         Ok(Sample::new(self.run, report))
     }

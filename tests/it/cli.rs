@@ -46,7 +46,7 @@ fn file(name: &str) -> PathBuf {
 
 #[test]
 fn json_line_holds_the_figures_of_the_run() {
-    let run = sample(&["--surface", "ellipsoid", "--count", "3000"]);
+    let run = sample(&["--surface", "ellipsoid", "--count", "3000", "--report", "full"]);
     let count = run["count"].as_f64().expect("a count");
     assert!((count / 3000.0 - 1.0).abs() <= 0.03, "{count} particles");
     assert_eq!(run["surface"], "ellipsoid");
@@ -355,7 +355,7 @@ fn existing_file_is_replaced() {
 
 #[test]
 fn text_report_names_the_figures_before_and_after() {
-    let output = run(&["sample", "--surface", "torus", "--count", "1500"]);
+    let output = run(&["sample", "--surface", "torus", "--count", "1500", "--report", "full"]);
     assert!(output.status.success());
     let text = stdout(&output);
     for part in ["torus: ", "particles of radius", "after front", "relaxed", "Six neighbours", "digest "] {
@@ -371,8 +371,11 @@ fn text_report_names_the_figures_before_and_after() {
         let row = rows.iter().find(|row| row[0] == label);
         assert!(row.is_some_and(|row| row[1..].contains(&figure)), "{label} {figure} is not in:\n{text}");
     }
-    let unrelaxed = stdout(&run(&["sample", "--surface", "torus", "--count", "1500", "--relax", "0"]));
-    assert!(!unrelaxed.contains("after front"));
+    let torus = ["sample", "--surface", "torus", "--count", "1500"];
+    for without in [&["--report", "full", "--relax", "0"][..], &[]] {
+        let text = stdout(&run(&[&torus, without].concat()));
+        assert!(text.contains("Six neighbours") && !text.contains("after front"), "{text}");
+    }
 }
 
 #[test]
@@ -380,7 +383,7 @@ fn a_run_without_a_report_has_the_same_particles_and_says_what_is_missing() {
     let path = file("unmeasured.csv");
     let name = path.to_str().expect("a plain path");
     let arguments = ["--surface", "torus", "--count", "1500"];
-    let unmeasured = sample(&[&arguments[..], &["--no-report", "--out", name]].concat());
+    let unmeasured = sample(&[&arguments[..], &["--report", "none", "--out", name]].concat());
     let measured = sample(&arguments);
     assert_eq!(unmeasured["digest"], measured["digest"]);
     assert_eq!(measured["components"], 1);
@@ -394,7 +397,7 @@ fn a_run_without_a_report_has_the_same_particles_and_says_what_is_missing() {
     let text = std::fs::read_to_string(&path).expect("the file was written");
     assert_eq!(text.lines().next(), Some("x,y,z,nx,ny,nz,radius,level,parent,singular"));
     assert!(text.lines().all(|line| line.split(',').count() == 10));
-    let summary = stdout(&run(&[&["sample", "--no-report"], &arguments[..]].concat()));
+    let summary = stdout(&run(&[&["sample", "--report", "none"], &arguments[..]].concat()));
     assert!(summary.contains("not measured: ") && !summary.contains("Six neighbours"), "{summary}");
 }
 

@@ -15,6 +15,7 @@ mod pictures;
 mod project;
 mod readers;
 mod rust_source;
+mod sensitivity;
 mod serve;
 mod site;
 mod step;
@@ -66,6 +67,9 @@ enum Task {
     Build,
     /// Run the benches.
     Bench(bench::Options),
+    /// Halve and double constants of the sampler, and print what changes on random surfaces; three
+    /// minutes each.
+    Sensitivity(sensitivity::Options),
     /// Run the paper's jobs and write its tables (docs/tables/paper.md) and figures (docs/paper).
     Paper(paper::Options),
     /// Build the WebAssembly bundles into www/src/wasm and rewrite their declarations (serve, test
@@ -101,6 +105,7 @@ fn perform(task: Task) -> Result<()> {
             site::report_sizes(&project)
         }
         Task::Bench(options) => bench::bench(&project, &options),
+        Task::Sensitivity(options) => sensitivity::run(&project, &options),
         Task::Paper(options) => paper::paper(&project, &options),
         Task::Wasm { development, bundles } => {
             let bundles = if bundles.is_empty() { Bundle::ALL.to_vec() } else { bundles };

@@ -2,13 +2,13 @@
 
 use crate::options::{SamplingOptions, list, number, whole};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use marching_particles::export::VERTICES;
 use marching_particles::field::{model, rbf::Pull};
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::job::CENTRES;
 use marching_particles::session::{BoxCell, BoxFaces, BoxMode, FileRecord, SolidSettings};
-use marching_particles::{Format, Placement, Unit, UpAxis, Vertices, gallery};
+use marching_particles::{Format, Measured, Placement, Unit, UpAxis, Vertices, gallery};
 use std::path::PathBuf;
 
 /// Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles
@@ -33,6 +33,28 @@ Examples:
   marching-particles sample --surface ellipsoid --count 55748 --json
   marching-particles sample --surface ellipsoid --adaptive --chord-error 0.01%
   marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --box 1.2 --radius 1%";
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum ReportKind {
+    /// Nothing: no figures of quality, no components and Euler number of the sample, no warnings
+    /// that come from these, and no columns valence, nearest and residual in the files
+    None,
+    /// The particles
+    Short,
+    /// The particles, and the front before its relaxation, for comparison; takes twice as long
+    Full,
+}
+
+impl ReportKind {
+    pub(crate) fn measured(self) -> Measured {
+        match self {
+            Self::None => Measured::Nothing,
+            Self::Short => Measured::Particles,
+            Self::Full => Measured::FrontToo,
+        }
+    }
+}
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
@@ -179,12 +201,9 @@ pub(crate) struct SampleArguments {
     #[arg(long, value_name = "AXIS", value_parser = one_of(&UpAxis::ALL), default_value = "z", help_heading = "Output")]
     pub(crate) up: (&'static str, UpAxis),
 
-    /// Do not measure the particles: no figures of quality, no components and Euler number of the
-    /// sample, no warnings that come from these, and no columns valence, nearest and residual in
-    /// the files. Measuring can take longer than sampling on surfaces of many sheets and on long
-    /// formulas
-    #[arg(long, help_heading = "Output")]
-    pub(crate) no_report: bool,
+    /// How much is measured. Measuring can take longer than sampling
+    #[arg(long, value_name = "WORD", value_enum, default_value_t = ReportKind::Short, help_heading = "Output")]
+    pub(crate) report: ReportKind,
 
     /// Print one line of JSON instead of text
     #[arg(long, help_heading = "Output")]

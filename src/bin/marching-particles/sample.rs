@@ -99,7 +99,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     if model.is_some() {
         made.surface.clone_from(&arguments.surface.surface);
     }
-    let sample = timed(&mut seconds.quality, || session.finish(!arguments.no_report));
+    let sample = timed(&mut seconds.quality, || session.finish(arguments.report.measured()));
     let sample = sample.map_err(|error| match error {
         Error::Nothing { reason: StopReason::NoSurface, .. } if reach == Some(Reach::Nowhere) => {
             Failure::Nothing("there is no surface within ±10,000".to_owned())

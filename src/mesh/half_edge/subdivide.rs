@@ -8,7 +8,7 @@ use crate::math::NONE;
 /// Old vertices keep their valence and new ones have six neighbours, four on the border: a
 /// subdivision adds no defect. A vertex is followed by the middles of those of its edges that no
 /// earlier vertex has, so that what is near on the surface stays near in memory, level after level.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Subdivision {
     fine: HalfEdges,
     ends: Vec<[u32; 2]>,

@@ -6,10 +6,10 @@ use crate::math::{Bounds, tangent_frame};
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::fates::FateCounts;
-use crate::sampler::neighbours::grids::{GridHandle, RadiusGrids, RadiusRange};
+use crate::sampler::front::plan::FrontPlan;
+use crate::sampler::neighbours::grids::{GridHandle, RadiusGrids};
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::Probe;
-use crate::sampler::settings::Settings;
 use crate::sampler::sheet::{OrientedPoint, PointPair, SheetRule};
 use crate::sampler::sizing::Sizing;
 use crate::spatial::Neighbour;
@@ -36,24 +36,6 @@ impl<'a> FrontContext<'a, '_> {
     pub(crate) fn on<R>(&mut self, patch: Option<u32>, call: impl FnOnce(&mut FrontContext) -> R) -> R {
         let Self { probe, sizing, neighbours, particles } = self;
         call(&mut FrontContext { probe: &mut probe.on(patch), sizing: *sizing, neighbours, particles })
-    }
-}
-
-/// Parameters of an attempt that a front needs before its first seed.
-pub(crate) struct FrontSetup<'a> {
-    pub(crate) settings: &'a Settings,
-    pub(crate) bounds: &'a Bounds,
-    pub(crate) survey: &'a Survey,
-    /// Radii of the particles; the uniform front has one.
-    pub(crate) radii: RadiusRange,
-    /// Particles to reserve room for.
-    pub(crate) expected: usize,
-}
-
-impl FrontSetup<'_> {
-    /// The rule that tells the sheets of the particles apart.
-    pub(super) fn rule(&self) -> SheetRule {
-        SheetRule::new(self.survey.crowding, self.radii, self.survey.residual_limits())
     }
 }
 
@@ -226,8 +208,8 @@ impl ProvisionalChildren {
 /// The steps of a level in which uniform and adaptive fronts differ. [`Front`](super::Front) does
 /// the steps that are the same for both.
 pub(super) trait Placing {
-    /// Forgets an earlier run, and prepares the grids.
-    fn reset(&mut self, level: &mut FrontLevel, setup: &FrontSetup);
+    /// Forgets an earlier run, and prepares the grids for so many particles.
+    fn reset(&mut self, level: &mut FrontLevel, plan: &FrontPlan, survey: &Survey, room: usize);
 
     /// Number of parents in the level; none if the front has come to its end.
     fn parents(&self) -> usize;

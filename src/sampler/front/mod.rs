@@ -10,13 +10,16 @@
 
 mod adaptive;
 mod level;
+mod plan;
 mod uniform;
 
-pub(crate) use level::{FrontContext, FrontSetup};
+pub(crate) use level::FrontContext;
+pub(crate) use plan::FrontPlan;
 pub(crate) use uniform::gaps::widest_gap;
 
 use crate::math::{SQRT_3, sort_few};
 use crate::particles::{Particles, SlotFate, Slots};
+use crate::sampler::discovery::survey::Survey;
 use crate::sampler::front::adaptive::AdaptivePlacing;
 use crate::sampler::front::level::{ChildLanding, FrontLevel, Placing};
 use crate::sampler::front::uniform::UniformPlacing;
@@ -47,18 +50,18 @@ pub(crate) struct Front {
 }
 
 impl Front {
-    /// Prepares the front that the settings ask for, and forgets an earlier run.
-    pub(crate) fn reset(&mut self, setup: &FrontSetup) {
-        self.sampling = setup.settings.sampling;
+    /// Prepares the front of a plan, with room for so many particles, and forgets an earlier one.
+    pub(crate) fn reset(&mut self, plan: &FrontPlan, survey: &Survey, room: usize) {
+        self.sampling = if plan.sizing.is_some() { Sampling::Adaptive } else { Sampling::Uniform };
         self.level = FrontLevel {
-            bounds: *setup.bounds,
-            max_particles: setup.settings.max_particles as usize,
-            rule: setup.rule(),
+            bounds: plan.bounds,
+            max_particles: plan.max_particles,
+            rule: plan.rule(survey),
             grids: core::mem::take(&mut self.level.grids),
             ..FrontLevel::default()
         };
         let (level, placing) = self.parts();
-        placing.reset(level, setup);
+        placing.reset(level, plan, survey, room);
     }
 
     /// Gives back the memory that only the fronts need.

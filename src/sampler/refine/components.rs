@@ -13,7 +13,7 @@
 
 use super::coarse::{self, FrontPart, halvings, largest_curvatures};
 use super::refusal::Refusal;
-use super::{Count, Refinement, Target};
+use super::{Count, Refinement, Rings, Target};
 use crate::math::{Bounds, Forest, NONE};
 use crate::mesh::build::triangulate;
 use crate::particles::Particles;
@@ -79,7 +79,7 @@ pub(crate) enum Next {
     /// A front over one component, whose radius is halved so many times.
     Front(u32),
     /// The refinement.
-    Refine(Box<Components>),
+    Refine(Components),
 }
 
 impl CoarseFronts {
@@ -126,7 +126,7 @@ impl CoarseFronts {
         if let Some(first) = self.end() {
             *particles = first;
         }
-        Ok(Next::Refine(Box::new(Components::new(components, target))))
+        Ok(Next::Refine(Components::new(components, target)))
     }
 
     fn take_first(
@@ -302,11 +302,9 @@ fn gather(particles: &Particles, part_of: impl Iterator<Item = usize>) -> Parts 
 }
 
 /// The refinement of all components.
-#[derive(Clone, Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Components {
     components: Vec<AcceptedComponent>,
-    /// Number of levels after the one that is handed on next.
-    to_come: u32,
 }
 
 impl Components {
@@ -319,14 +317,7 @@ impl Components {
                 component.refinement.target.count = Count::Total(count * component.weight / sum);
             }
         }
-        let to_come =
-            components.iter().map(|component| component.refinement.level.to_come).max().unwrap_or(0);
-        Self { components, to_come }
-    }
-
-    /// Whether there is nothing left to do.
-    pub(crate) fn is_done(&self) -> bool {
-        self.components.iter().all(|component| component.refinement.is_done())
+        Self { components }
     }
 
     /// Whether no particle had a defect when the last level began.
@@ -344,12 +335,33 @@ impl Components {
         self.components.iter().map(|component| component.refinement.target.halvings).max().unwrap_or(0)
     }
 
-    /// The level under way, counted from 1, and how many there are.
-    pub(crate) fn level(&self) -> (u32, u32) {
-        let to_come =
-            self.components.iter().map(|component| component.refinement.level.to_come).max().unwrap_or(0);
-        let most = self.most_halvings();
-        (most - to_come + 1, most + 1)
+    /// The components that have a level with so many to come, by their numbers, and the share of
+    /// its particles that each of them has.
+    pub(crate) fn at_level(&self, to_come: u32) -> Vec<(usize, f64)> {
+        let all = self.components.iter().enumerate();
+        let there = all.filter(|(_, component)| component.refinement.target.halvings >= to_come);
+        let weights: Vec<(usize, f64)> = there.map(|(k, component)| (k, component.weight)).collect();
+        let sum: f64 = weights.iter().map(|(_, weight)| weight).sum();
+        weights.into_iter().map(|(k, weight)| (k, weight / sum)).collect()
+    }
+
+    /// The refinement of a component.
+    pub(crate) fn refinement(&mut self, k: usize) -> &mut Refinement {
+        &mut self.components[k].refinement
+    }
+
+    /// Takes the particles of a component at the end of a level.
+    pub(crate) fn end_level(&mut self, k: usize, rings: Rings) {
+        let component = &mut self.components[k];
+        component.particles = component.refinement.end_level(rings);
+    }
+
+    /// The particles of all components at the end of a level.
+    pub(crate) fn particles(&mut self, to_come: u32, ladder: Option<&CreaseLadder>) -> Particles {
+        match &mut self.components[..] {
+            [lone] if ladder.is_none() => mem::take(&mut lone.particles),
+            all => joined(all, to_come, ladder),
+        }
     }
 
     /// The mesh of the last level, by the particles at the corners of its faces.
@@ -365,47 +377,6 @@ impl Components {
                 component.refinement.corners.iter().map(|&corner| places.row(corner))
             });
         corners.flatten().collect()
-    }
-
-    /// Estimated share of the work that is done, that of the coarse fronts included.
-    pub(crate) fn fraction(&self) -> f64 {
-        let sum: f64 = self.components.iter().map(|component| component.weight).sum();
-        let done = self.components.iter().map(|component| component.weight * component.refinement.fraction());
-        done.sum::<f64>() / sum
-    }
-
-    /// Does `budget` units of work, or as many more as end a slice: [`Refinement::step`].
-    ///
-    /// # Errors
-    ///
-    /// Why the refinement cannot go on.
-    pub(crate) fn step(
-        &mut self,
-        probe: &mut Probe,
-        surface: &SurfaceFacts,
-        particles: &mut Particles,
-        budget: u32,
-    ) -> Result<(u32, bool), Refusal> {
-        if let [lone] = &mut self.components[..]
-            && surface.ladder.is_none()
-        {
-            return lone.refinement.step(probe, surface, particles, budget);
-        }
-        let (mut done, mut has_changed) = (0, false);
-        while done < budget && !self.is_done() {
-            // Those that are coarser catch up first.
-            let pending = |component: &&mut AcceptedComponent| component.refinement.pending();
-            let next = self.components.iter_mut().filter(|component| !component.refinement.is_done()).rev();
-            let Some(component) = next.max_by_key(pending) else { break };
-            let (units, _) = component.refinement.step(probe, surface, &mut component.particles, 1)?;
-            done += units;
-            if self.components.iter().all(|component| component.refinement.has_shown(self.to_come)) {
-                *particles = joined(&self.components, self.to_come, surface.ladder);
-                has_changed = true;
-                self.to_come = self.to_come.saturating_sub(1);
-            }
-        }
-        Ok((done, has_changed))
     }
 }
 

@@ -40,6 +40,7 @@ pub(crate) use coarse::{FRONT_RADIUS, MATCH_TOLERANCE, halvings, largest_curvatu
 pub(crate) use components::{CoarseFronts, Components, Next, SurfaceFacts};
 pub(crate) use moving::MovingMesh;
 pub use refusal::{Refusal, Spot};
+pub(crate) use rings::Rings;
 
 use crate::math::{NONE, SQRT_3};
 use crate::mesh::half_edge::Subdivision;
@@ -47,9 +48,9 @@ use crate::particles::Particles;
 use crate::sampler::probe::Probe;
 use crate::sampler::sizing::Sizing;
 use coarse::FrontPart;
+use core::ops::Range;
 use net::{BLOCK, Ground, MovedBlock, Net, Springs};
 use recipe::{LevelFacts, Pass, Recipe, TUNING};
-use rings::Rings;
 use surgery::{Aim, Surgeon};
 use tally::Tally;
 
@@ -71,7 +72,7 @@ const HALF_EDGES_PER_UNIT: u32 = 12;
 const LEAST_PARTICLES: u32 = 180;
 
 /// The number of levels, the radius and the count that a refinement is to reach.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Target {
     /// Number of levels after the coarse one, k.
     pub(crate) halvings: u32,
@@ -95,8 +96,8 @@ pub(crate) enum Count {
 
 /// A refinement of one component or patch under way, or of components that are told apart by no
 /// front.
-#[derive(Clone, Debug)]
-struct Refinement {
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Refinement {
     target: Target,
     /// The patch that is refined, of a surface with creases.
     patch: Option<u32>,
@@ -106,7 +107,8 @@ struct Refinement {
     memory: Memory,
     /// Sums over the faces, as far as the pass under way has come.
     tally: Tally,
-    task: Task,
+    /// Number of passes of the recipe that have begun.
+    begun: usize,
     /// Whether no particle had a defect when the level under way began.
     is_in_order: bool,
     /// The finished mesh, by the particles at the corners of its faces.
@@ -114,7 +116,7 @@ struct Refinement {
 }
 
 /// Properties that hold on every level of a refinement.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Shape {
     euler: i64,
     has_border: bool,
@@ -133,7 +135,7 @@ pub(crate) struct Turn {
 }
 
 /// Goals of the level under way, and the recipe that leads to them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Goals {
     /// Whether it is the level of the front, where order is made. At full resolution the goals of a
     /// last level follow on it.
@@ -158,21 +160,21 @@ struct Memory {
     near: Vec<u32>,
 }
 
-/// The task under way in a refinement, with its state.
-#[derive(Clone, Debug)]
-enum Task {
-    /// A pass of the recipe over the particles, half-edges or faces below `end`. The next one is
-    /// `next`.
-    Pass { pass: usize, next: u32, end: u32 },
-    /// The finished level is handed on.
-    Show,
-    /// Every face is divided into four.
-    Divide(Box<Subdivision>),
-    /// The particles of the finer level are put onto the surface and into the columns of the net,
-    /// in the order of `ends`. `defects` counts the particles so far that have a defect.
-    Lift { coarse: Box<Net>, ends: Vec<[u32; 2]>, defects: u32 },
-    /// All levels are finished and handed on.
-    Done,
+/// A net whose faces have been divided, from which the particles of the finer one come.
+#[derive(Debug)]
+pub(crate) struct Coarse {
+    net: Net,
+    /// The edge that each particle of the finer net halves; `[v, NONE]` where it is particle v of
+    /// this one.
+    ends: Vec<[u32; 2]>,
+    /// Particles so far that have a defect.
+    defects: u32,
+}
+
+impl Default for Count {
+    fn default() -> Self {
+        Self::Total(0.0)
+    }
 }
 
 impl Goals {
@@ -218,7 +220,7 @@ impl Refinement {
     fn of_layer(net: Net, block: MovedBlock, target: Target, patch: Option<u32>) -> Self {
         let (has_border, is_creased) = (net.has_border(), net.is_creased());
         let shape = Shape { euler: net.mesh.euler(), has_border, is_creased, wanted: 0.0 };
-        let mut refinement = Self {
+        Self {
             target,
             patch,
             level: Goals::new(&LevelFacts {
@@ -233,12 +235,10 @@ impl Refinement {
             shape,
             memory: Memory { block, ..Memory::default() },
             tally: Tally::default(),
-            task: Task::Done,
+            begun: 0,
             is_in_order: false,
             corners: Vec::new(),
-        };
-        refinement.task = refinement.begin_pass(0);
-        refinement
+        }
     }
 
     /// Share of the particles that is due to it: its area, or ∫ dA / r² where the radius r differs,
@@ -267,69 +267,20 @@ impl Refinement {
         tally
     }
 
-    /// The level that is finished next, by how many come after it.
-    fn pending(&self) -> u32 {
-        match self.task {
-            Task::Divide(_) | Task::Lift { .. } => self.level.to_come - 1,
-            Task::Pass { .. } | Task::Show | Task::Done => self.level.to_come,
-        }
+    /// Levels that come after the present one.
+    pub(crate) fn to_come(&self) -> u32 {
+        self.level.to_come
     }
 
-    /// Whether the level with so many to come is handed on, or none that is as coarse is made.
-    fn has_shown(&self, to_come: u32) -> bool {
-        self.is_done() || self.pending() < to_come
-    }
-
-    /// Whether there is nothing left to do.
-    fn is_done(&self) -> bool {
-        matches!(self.task, Task::Done)
-    }
-
-    /// Estimated share of the work that is done, that of the coarse front included.
-    fn fraction(&self) -> f64 {
-        let at = match self.task {
-            Task::Pass { pass, .. } => pass as f64 / self.level.recipe.passes.len() as f64,
-            _ => 1.0,
-        };
-        let at = match (self.target.halvings, self.level.is_first) {
+    /// Share of the passes of this level that have ended.
+    pub(crate) fn share(&self) -> f64 {
+        let at = self.begun.saturating_sub(1) as f64 / self.level.recipe.passes.len() as f64;
+        // At full resolution the goals of a last level follow on those of the first one.
+        match (self.target.halvings, self.level.is_first) {
             (0, true) => 0.5 * at,
             (0, false) => 0.5 + 0.5 * at,
             _ => at,
-        };
-        // From a quarter of the share of this level to all of it.
-        coarse_share(self.level.to_come) * (1.0 + 3.0 * at)
-    }
-
-    /// Does `budget` units of work, or as many more as end a block. A level that is finished is put
-    /// into `particles` and stays there until the next one is. Returns the units done and whether
-    /// `particles` has changed.
-    ///
-    /// # Errors
-    ///
-    /// The defect for which the refinement cannot go on.
-    fn step(
-        &mut self,
-        probe: &mut Probe,
-        surface: &SurfaceFacts,
-        particles: &mut Particles,
-        budget: u32,
-    ) -> Result<(u32, bool), Refusal> {
-        let probe = &mut probe.on(self.patch);
-        let (mut done, mut has_changed) = (0, false);
-        while done < budget && !self.is_done() {
-            let task = core::mem::replace(&mut self.task, Task::Done);
-            has_changed |= matches!(task, Task::Show);
-            let (next, units) = match task {
-                Task::Pass { pass, next, end } => self.pass(probe, surface, pass, next, end)?,
-                Task::Show => self.show(particles),
-                Task::Divide(subdivision) => self.divide(subdivision),
-                Task::Lift { coarse, ends, defects } => self.lift(probe, surface, coarse, ends, defects)?,
-                Task::Done => (Task::Done, 0),
-            };
-            self.task = next;
-            done += units;
         }
-        Ok((done, has_changed))
     }
 
     /// Computes the wanted number of faces of this level, and the spacing, from the measured faces.
@@ -374,25 +325,19 @@ impl Refinement {
         self.level.spacing = spacing(faces) as f32;
     }
 
-    /// The task that begins a pass of the recipe, or the task after the last pass.
-    fn begin_pass(&mut self, pass: usize) -> Task {
-        let Some(&kind) = self.level.recipe.passes.get(pass) else {
-            if self.level.turn.is_some() {
-                return Task::Done;
-            }
-            if self.level.is_first && self.level.to_come == 0 {
-                // At full resolution the lattice comes to rest where order was made.
-                let net = &self.net;
-                let all = (0..net.mesh.vertex_slots() as u32).filter(|&v| net.mesh.has_vertex(v));
-                let (count, defects) =
-                    all.fold((0, 0), |(n, defects), v| (n + 1, defects + u32::from(net.excess(v) != 0)));
-                self.level = self.finer(0, defects as f32 / count as f32);
-                return self.begin_pass(0);
-            }
-            // Before the columns of the finished level take their place.
-            self.memory = Memory { block: core::mem::take(&mut self.memory.block), ..Memory::default() };
-            return Task::Show;
-        };
+    /// Begins the next pass of the recipe, over the particles, half-edges or faces of a range; none
+    /// after the last pass.
+    pub(crate) fn begin_pass(&mut self) -> Option<Range<u32>> {
+        if self.begun == self.level.recipe.passes.len() && self.level.is_first && self.level.to_come == 0 {
+            // At full resolution the lattice comes to rest where order was made.
+            let net = &self.net;
+            let all = (0..net.mesh.vertex_slots() as u32).filter(|&v| net.mesh.has_vertex(v));
+            let (count, defects) =
+                all.fold((0, 0), |(n, defects), v| (n + 1, defects + u32::from(net.excess(v) != 0)));
+            self.begin_level(0, defects as f32 / count as f32);
+        }
+        let kind = *self.level.recipe.passes.get(self.begun)?;
+        self.begun += 1;
         let mesh = &self.net.mesh;
         let end = match kind {
             Pass::Flip => mesh.half_edge_slots(),
@@ -414,30 +359,58 @@ impl Refinement {
             Pass::Thin | Pass::Clip => 0,
         };
         let end = end as u32;
-        match (kind, self.level.turn) {
-            (Pass::Mend { .. }, Some(Turn { at, of })) => {
-                Task::Pass { pass, next: at * end / of, end: (at + 1) * end / of }
-            }
-            _ => Task::Pass { pass, next: 0, end },
-        }
+        Some(match (kind, self.level.turn) {
+            (Pass::Mend { .. }, Some(Turn { at, of })) => at * end / of..(at + 1) * end / of,
+            _ => 0..end,
+        })
     }
 
-    /// Goes on with a pass for one block.
-    fn pass(
+    /// Goes on with a pass: does the blocks of its range that the budget allows, and takes them
+    /// from the range. Says whether the pass has ended.
+    ///
+    /// # Errors
+    ///
+    /// The defect for which the refinement cannot go on.
+    pub(crate) fn go_on(
         &mut self,
         probe: &mut Probe,
         surface: &SurfaceFacts,
-        pass: usize,
-        next: u32,
-        end: u32,
-    ) -> Result<(Task, u32), Refusal> {
+        rest: &mut Range<u32>,
+        left: &mut u32,
+    ) -> Result<bool, Refusal> {
+        let probe = &mut probe.on(self.patch);
+        while *left > 0 {
+            let units = self.do_block(probe, surface, rest)?;
+            *left = left.saturating_sub(units);
+            if rest.start == rest.end {
+                self.end_pass()?;
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// The pass under way.
+    fn kind(&self) -> Pass {
+        self.level.recipe.passes[self.begun - 1]
+    }
+
+    /// Does a block of the pass under way, and takes it from the range. Returns the units of work.
+    fn do_block(
+        &mut self,
+        probe: &mut Probe,
+        surface: &SurfaceFacts,
+        rest: &mut Range<u32>,
+    ) -> Result<u32, Refusal> {
         let springs =
             Springs { spacing: self.level.spacing, theta: self.level.recipe.theta, omega: TUNING.omega };
+        let kind = self.kind();
         let net = &mut self.net;
         let mut ground = Ground { probe, block: &mut self.memory.block };
-        let kind = self.level.recipe.passes[pass];
         let per_unit = if matches!(kind, Pass::Flip) { HALF_EDGES_PER_UNIT } else { 1 };
+        let Range { start: next, end } = *rest;
         let last = end.min(next + per_unit * BLOCK as u32);
+        rest.start = last;
         let mut units = BLOCK as u32;
         match kind {
             Pass::Size { is_whole } => {
@@ -489,24 +462,14 @@ impl Refinement {
             Pass::Follow => net.land_all(&mut ground, self.level.spacing, next..last, true)?,
             Pass::Clip => border::clip(net, &mut ground, self.level.spacing)?,
         }
-        if last < end {
-            return Ok((Task::Pass { pass, next: last, end }, units));
-        }
-        self.end_pass(kind)?;
-        let mut following = pass + 1;
-        if matches!(kind, Pass::Mend { .. }) && !self.memory.surgeon.take_kept() {
-            // There is nothing new to be brought to rest.
-            let is_calm = |pass: &Pass| matches!(pass, Pass::Sweep | Pass::Flip);
-            following +=
-                self.level.recipe.passes[following..].iter().take_while(|pass| is_calm(pass)).count();
-        }
-        Ok((self.begin_pass(following), units))
+        Ok(units)
     }
 
-    /// Goals of a level after the coarse one. A share of its particles has `defects`.
-    fn finer(&self, to_come: u32, defects: f32) -> Goals {
+    /// Begins a level after the coarse one. A share of its particles has `defects`.
+    fn begin_level(&mut self, to_come: u32, defects: f32) {
         let (is_graded, has_border) = (self.target.grading.is_some(), self.shape.has_border);
-        Goals::new(&LevelFacts { is_first: false, to_come, is_graded, has_border, defects })
+        self.level = Goals::new(&LevelFacts { is_first: false, to_come, is_graded, has_border, defects });
+        self.begun = 0;
     }
 
     /// Largest slope of the sizes at this level, per unit of length.
@@ -516,10 +479,15 @@ impl Refinement {
     }
 
     /// Ends a pass: does the work that its particles, half-edges or faces need together.
-    fn end_pass(&mut self, kind: Pass) -> Result<(), Refusal> {
-        match kind {
+    fn end_pass(&mut self) -> Result<(), Refusal> {
+        match self.kind() {
             Pass::Measure => self.measure(),
             Pass::Find => self.memory.surgeon.widen(&self.net.mesh, &mut self.memory.near),
+            Pass::Mend { .. } if !self.memory.surgeon.take_kept() => {
+                // There is nothing new to be brought to rest.
+                let is_calm = |pass: &&Pass| matches!(pass, Pass::Sweep | Pass::Flip);
+                self.begun += self.level.recipe.passes[self.begun..].iter().take_while(is_calm).count();
+            }
             Pass::Inspect => {
                 if let Some(at) = self.tally.inverted {
                     return Err(Refusal::Folded { at: at.into() });
@@ -533,61 +501,86 @@ impl Refinement {
         Ok(())
     }
 
-    /// Hands the finished level on, whole, so that a run that is cancelled has all of its
-    /// particles.
-    fn show(&mut self, particles: &mut Particles) -> (Task, u32) {
+    /// Begins to put the particles of a finished level in order.
+    pub(crate) fn begin_order(&mut self) -> Rings {
+        let block = core::mem::take(&mut self.memory.block);
+        // Before the columns of the finished level take their place.
+        self.memory =
+            if self.level.to_come == 0 { Memory::default() } else { Memory { block, ..Memory::default() } };
+        Rings::new(&self.net, self.target.radius * (1_u32 << self.level.to_come) as f32)
+    }
+
+    /// Goes on with the order of the particles, until all are in order.
+    pub(crate) fn put_in_order(&self, rings: &mut Rings, left: &mut u32) -> Option<Rings> {
+        rings.go_on(&self.net, left).then(|| core::mem::take(rings))
+    }
+
+    /// The particles of the finished level, in their order.
+    pub(crate) fn end_level(&mut self, rings: Rings) -> Particles {
         if self.level.to_come == 0 {
-            // The walk that orders the particles takes as much.
-            self.memory = Memory::default();
-        }
-        let rings = Rings::new(&self.net, self.target.radius * (1_u32 << self.level.to_come) as f32);
-        let task = if self.level.to_come > 0 {
-            Task::Divide(Box::new(Subdivision::new(&self.net.mesh)))
-        } else {
             // Of the net nothing else is needed any more. Surgery, which removes faces, may have
             // been at work on a last level that is the first one too.
             let corners = core::mem::take(&mut self.net).mesh.into_corners();
             self.corners = corners.into_iter().filter_map(|v| rings.place(v)).collect();
-            Task::Done
-        };
-        *particles = rings.into_particles();
-        (task, particles.len() as u32)
-    }
-
-    fn divide(&mut self, mut subdivision: Box<Subdivision>) -> (Task, u32) {
-        if !subdivision.step(&self.net.mesh, BLOCK as u32) {
-            return (Task::Divide(subdivision), BLOCK as u32);
         }
-        let (mesh, ends) = subdivision.finish();
-        let coarse = Box::new(core::mem::replace(&mut self.net, Net::with_room(mesh, ends.len())));
-        self.net.walls = coarse.walls.finer(ends.len());
-        (Task::Lift { coarse, ends, defects: 0 }, BLOCK as u32)
+        rings.into_particles()
     }
 
-    fn lift(
+    /// Begins to divide every face into four.
+    pub(crate) fn begin_division(&self) -> Subdivision {
+        Subdivision::new(&self.net.mesh)
+    }
+
+    /// Goes on with a division. Once every face is divided, the net that they were of is returned.
+    pub(crate) fn divide(&mut self, division: &mut Subdivision, left: &mut u32) -> Option<Coarse> {
+        while *left > 0 {
+            let is_done = division.step(&self.net.mesh, BLOCK as u32);
+            *left = left.saturating_sub(BLOCK as u32);
+            if is_done {
+                let (mesh, ends) = core::mem::take(division).finish();
+                let net = core::mem::replace(&mut self.net, Net::with_room(mesh, ends.len()));
+                self.net.walls = net.walls.finer(ends.len());
+                return Some(Coarse { net, ends, defects: 0 });
+            }
+        }
+        None
+    }
+
+    /// Puts the particles of a net whose faces were divided, and those between them, onto the
+    /// surface and into the columns of the finer net. Says whether all are there; the level of the
+    /// finer net begins then.
+    ///
+    /// # Errors
+    ///
+    /// The particle that does not come to the surface.
+    pub(crate) fn land(
         &mut self,
         probe: &mut Probe,
         surface: &SurfaceFacts,
-        coarse: Box<Net>,
-        ends: Vec<[u32; 2]>,
-        mut defects: u32,
-    ) -> Result<(Task, u32), Refusal> {
-        let net = &mut self.net;
-        let start = net.position.len();
-        let end = ends.len().min(start + BLOCK);
-        for &ends in &ends[start..end] {
-            net.push_from(&coarse, ends, surface.ladder);
-            // A particle on the middle of an edge has none.
-            defects += u32::from(matches!(ends, [old, NONE] if coarse.excess(old) != 0));
+        coarse: &mut Coarse,
+        left: &mut u32,
+    ) -> Result<bool, Refusal> {
+        let probe = &mut probe.on(self.patch);
+        let Coarse { net: coarse, ends, defects } = coarse;
+        while *left > 0 {
+            let net = &mut self.net;
+            let start = net.position.len();
+            let end = ends.len().min(start + BLOCK);
+            for &ends in &ends[start..end] {
+                net.push_from(coarse, ends, surface.ladder);
+                // A particle on the middle of an edge has none.
+                *defects += u32::from(matches!(ends, [old, NONE] if coarse.excess(old) != 0));
+            }
+            let mut ground = Ground { probe: &mut *probe, block: &mut self.memory.block };
+            net.land_all(&mut ground, self.level.spacing, start as u32..end as u32, false)?;
+            *left = left.saturating_sub(BLOCK as u32);
+            if end == ends.len() {
+                self.is_in_order = *defects == 0;
+                self.begin_level(self.level.to_come - 1, *defects as f32 / ends.len() as f32);
+                return Ok(true);
+            }
         }
-        let mut ground = Ground { probe, block: &mut self.memory.block };
-        net.land_all(&mut ground, self.level.spacing, start as u32..end as u32, false)?;
-        if end < ends.len() {
-            return Ok((Task::Lift { coarse, ends, defects }, BLOCK as u32));
-        }
-        self.is_in_order = defects == 0;
-        self.level = self.finer(self.level.to_come - 1, defects as f32 / ends.len() as f32);
-        Ok((self.begin_pass(0), BLOCK as u32))
+        Ok(false)
     }
 }
 

@@ -13,18 +13,16 @@
 use super::net::{Ground, MovedBlock, Net};
 use super::recipe::Recipe;
 use super::walls::Walls;
-use super::{Goals, Refinement, Refusal, SurfaceFacts, Target, Turn, border, coarse};
+use super::{Goals, Refinement, Refusal, Target, Turn, border, coarse};
 use crate::math::{Bounds, NONE};
 use crate::mesh::half_edge::HalfEdges;
 use crate::particles::{Particles, Slots};
 use crate::sampler::probe::Probe;
-use crate::sampler::sizing::Sizing;
-use glam::Vec3;
 
 /// A frame of a mesh that follows a surface.
 #[derive(Clone, Debug)]
 pub(crate) struct MovingMesh {
-    refinement: Refinement,
+    pub(crate) refinement: Refinement,
     /// Area of the surface at the beginning of the frame.
     area: f64,
 }
@@ -49,7 +47,6 @@ impl MovingMesh {
         let mut refinement = Refinement::of_layer(net, MovedBlock::default(), target, None);
         refinement.level =
             Goals { is_first: false, turn: Some(turn), to_come: 0, recipe, spacing, faces: 0.0 };
-        refinement.task = refinement.begin_pass(0);
         let area = refinement.area();
         Some(Self { refinement, area })
     }
@@ -76,37 +73,14 @@ impl MovingMesh {
         Ok(Self { refinement, area })
     }
 
-    /// Whether the frame has come to its end.
-    pub(crate) fn is_done(&self) -> bool {
-        self.refinement.is_done()
-    }
-
     /// Factor by which lengths on the surface have grown in this frame.
     pub(crate) fn growth(&self) -> f64 {
         (self.refinement.area() / self.area).sqrt()
     }
 
-    /// Does `budget` units of work, or as many more as end a block, and returns how many.
-    ///
-    /// # Errors
-    ///
-    /// The defect for which the mesh cannot follow.
-    pub(crate) fn step(
-        &mut self,
-        probe: &mut Probe,
-        bounds: &Bounds,
-        sizing: Option<&Sizing>,
-        budget: u32,
-    ) -> Result<u32, Refusal> {
-        let facts = SurfaceFacts { bounds: *bounds, sizing, ladder: None, bend: Vec3::ZERO, failures: 0 };
-        // The columns are filled in the end: a frame that is cancelled leaves those of the frame
-        // before.
-        let (units, _) = self.refinement.step(probe, &facts, &mut Particles::default(), budget)?;
-        Ok(units)
-    }
-
     /// Puts the particles of the finished frame into the columns of the frame before, those that
-    /// were born last, and the mesh into `corners`.
+    /// were born last, and the mesh into `corners`. A frame that was cancelled before leaves both
+    /// as they were.
     pub(crate) fn hand_on(self, radius: f32, particles: &mut Particles, corners: &mut Vec<u32>) {
         let net = self.refinement.net;
         let (old, born): (Vec<u32>, Vec<u32>) = (0..net.position.len() as u32)

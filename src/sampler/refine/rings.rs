@@ -4,16 +4,22 @@ use super::net::Net;
 use crate::math::NONE;
 use crate::particles::Particles;
 
-/// A breadth-first walk over the surface that fills the columns.
+/// A breadth-first walk over the surface that fills the columns. It can be left and gone on with.
 ///
 /// The generation level of a particle is its distance, in edges, from the first particle of its
 /// component, or from the creases around its patch, and its parent is the neighbour from which the
 /// walk came to it. Particles on creases come first; their numbers stand in place of their first
 /// rows.
-#[derive(Clone, Debug)]
-pub(super) struct Rings {
+#[derive(Debug, Default)]
+pub(crate) struct Rings {
     /// Vertices in the order in which they were met.
     order: Vec<u32>,
+    /// Place in `order` of the vertex whose neighbours are met next.
+    next: usize,
+    /// Vertex from which on the next root is looked for, once there is none to go on from.
+    root: u32,
+    /// Radius of a particle of size 1.
+    radius: f32,
     /// Place of each vertex in `order`.
     place: Vec<u32>,
     /// The particles in the order of `order`.
@@ -21,12 +27,13 @@ pub(super) struct Rings {
 }
 
 impl Rings {
-    /// Walks over the net. A particle of size 1 has this radius.
+    /// Begins a walk over a net. A particle of size 1 has this radius.
     pub(super) fn new(net: &Net, radius: f32) -> Self {
         let n = net.position.len();
         let mut ready = Particles::default();
         ready.reserve(n);
-        let mut rings = Self { order: Vec::with_capacity(n), place: vec![NONE; n], ready };
+        let order = Vec::with_capacity(n);
+        let mut rings = Self { order, next: 0, root: 0, radius, place: vec![NONE; n], ready };
         let last = net.on_crease.iter().filter(|&&number| number != NONE).max();
         let mut met = vec![NONE; last.map_or(0, |&last| last as usize + 1)];
         let is_held = |&(v, &number): &(u32, &u32)| number != NONE && net.mesh.has_vertex(v);
@@ -45,21 +52,37 @@ impl Rings {
             }
             rings.place[v as usize] = place;
         }
-        rings.walk(net, 0);
-        for root in 0..n as u32 {
-            if rings.place[root as usize] == NONE && net.mesh.has_vertex(root) {
-                let start = rings.order.len();
-                rings.meet(root, Particles::NO_PARENT, 0);
-                rings.walk(net, start);
+        rings
+    }
+
+    /// Goes on for so many particles. Says whether all are in order.
+    pub(super) fn go_on(&mut self, net: &Net, left: &mut u32) -> bool {
+        while *left > 0 {
+            *left -= 1;
+            if let Some(&v) = self.order.get(self.next) {
+                self.pass(net, v);
+            } else {
+                let is_unmet = |&v: &u32| self.place[v as usize] == NONE && net.mesh.has_vertex(v);
+                let Some(root) = (self.root..self.place.len() as u32).find(is_unmet) else { return true };
+                self.root = root + 1;
+                self.meet(root, Particles::NO_PARENT, 0);
             }
         }
-        for &v in &rings.order {
-            rings.ready.local.push(net.position[v as usize]);
-            rings.ready.normal.push(net.normal[v as usize]);
-            rings.ready.radius.push(radius * net.size_of(v));
-            rings.ready.slots.push(net.fates(v));
+        false
+    }
+
+    /// Meets the neighbours of a vertex, and writes its own row.
+    fn pass(&mut self, net: &Net, v: u32) {
+        for other in net.mesh.neighbours(v) {
+            if self.place[other as usize] == NONE {
+                self.meet(other, self.next as u32, self.ready.level[self.next] + 1);
+            }
         }
-        rings
+        self.next += 1;
+        self.ready.local.push(net.position[v as usize]);
+        self.ready.normal.push(net.normal[v as usize]);
+        self.ready.radius.push(self.radius * net.size_of(v));
+        self.ready.slots.push(net.fates(v));
     }
 
     /// The place of a vertex among the particles; none if there is no such vertex.
@@ -70,19 +93,6 @@ impl Rings {
     /// The particles, in their order.
     pub(super) fn into_particles(self) -> Particles {
         self.ready
-    }
-
-    /// Goes on from the vertex that was met as number `start` to all that can be reached.
-    fn walk(&mut self, net: &Net, start: usize) {
-        let mut next = start;
-        while let Some(&v) = self.order.get(next) {
-            for other in net.mesh.neighbours(v) {
-                if self.place[other as usize] == NONE {
-                    self.meet(other, next as u32, self.ready.level[next] + 1);
-                }
-            }
-            next += 1;
-        }
     }
 
     fn meet(&mut self, v: u32, parent: u32, level: u32) {

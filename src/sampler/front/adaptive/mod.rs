@@ -20,13 +20,15 @@ mod prediction;
 mod vicinity;
 
 use crate::particles::Particles;
+use crate::sampler::discovery::survey::Survey;
 use crate::sampler::front::adaptive::arcs::ParentFrame;
 use crate::sampler::front::adaptive::parents::{LocalShape, Parent, Parents, shape_in};
 use crate::sampler::front::adaptive::placement::{DirectPlacement, Proposal};
 use crate::sampler::front::adaptive::vicinity::Vicinity;
 use crate::sampler::front::level::{
-    ChildLanding, FrontContext, FrontLevel, FrontSetup, Placing, SlotFrame, SurfacePoint, is_on_sheet,
+    ChildLanding, FrontContext, FrontLevel, Placing, SlotFrame, SurfacePoint, is_on_sheet,
 };
+use crate::sampler::front::plan::FrontPlan;
 use crate::sampler::neighbours::constants::{OVERLAP_RANGE, OVERLAP_SKIN};
 use crate::sampler::probe::Probe;
 use crate::sampler::projection::{ResidualLimits, Tolerance, tolerance};
@@ -133,15 +135,14 @@ impl AdaptivePlacing {
 }
 
 impl Placing for AdaptivePlacing {
-    fn reset(&mut self, level: &mut FrontLevel, setup: &FrontSetup) {
-        let &FrontSetup { settings, survey, radii, .. } = setup;
-        let grading = settings.grading as f32;
+    fn reset(&mut self, level: &mut FrontLevel, plan: &FrontPlan, survey: &Survey, _: usize) {
+        let grading = plan.grading;
         // Neighbours that touch differ by this factor at most.
         let ratio = (1.0 + grading) / (1.0 - grading);
         let reach = REACH.max(LISTED * (1.0 + ratio));
         self.rules = FrontRules {
             grading,
-            match_tolerance: settings.match_tolerance as f32,
+            match_tolerance: plan.match_tolerance as f32,
             reach,
             residual_limits: survey.residual_limits(),
             gradient_scale: survey.gradient_scale,
@@ -149,7 +150,7 @@ impl Placing for AdaptivePlacing {
         self.clear_level();
         self.truncate(0);
         self.fills = 0;
-        level.grids.reset(radii, |radius| reach * radius);
+        level.grids.reset(plan.radii(), |radius| reach * radius);
     }
 
     fn parents(&self) -> usize {

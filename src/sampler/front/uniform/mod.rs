@@ -20,16 +20,18 @@ mod surroundings;
 use crate::differential::Curvature;
 use crate::field::Evaluator;
 use crate::particles::{Particles, SlotFate};
+use crate::sampler::discovery::survey::Survey;
 use crate::sampler::front::level::{
-    ChildLanding, FrontContext, FrontLevel, FrontSetup, Placing, SlotFrame, SurfacePoint,
+    ChildLanding, FrontContext, FrontLevel, Placing, SlotFrame, SurfacePoint,
 };
+use crate::sampler::front::plan::FrontPlan;
 use crate::sampler::front::uniform::gaps::SEAM;
 use crate::sampler::front::uniform::surroundings::{SecondForm, Surroundings};
 use crate::sampler::front::{MAX_DIP, SIN_60};
 use crate::sampler::neighbours::constants::{GAUSSIAN_RANGE, GAUSSIAN_SKIN};
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::Probe;
-use crate::sampler::projection::{ChildCircle, CircleLanding, Tolerance, tolerance};
+use crate::sampler::projection::{ChildCircle, CircleLanding, Tolerance};
 use crate::sampler::sheet::{OrientedPoint, PointPair, is_level, level_slack_sq};
 use core::ops::Range;
 use glam::Vec3;
@@ -181,17 +183,16 @@ impl UniformPlacing {
 }
 
 impl Placing for UniformPlacing {
-    fn reset(&mut self, level: &mut FrontLevel, setup: &FrontSetup) {
-        let &FrontSetup { settings, survey, radii, .. } = setup;
-        let radius = radii.largest;
+    fn reset(&mut self, level: &mut FrontLevel, plan: &FrontPlan, survey: &Survey, room: usize) {
+        let radius = plan.radius;
         self.radius = radius;
-        self.match_radius = 2.0 * radius * settings.match_tolerance as f32;
-        self.tolerance = tolerance(radius, survey.residual_limits(), survey.gradient_scale);
+        self.match_radius = 2.0 * radius * plan.match_tolerance as f32;
+        self.tolerance = plan.tolerance(survey);
         self.clear_level();
         self.truncate(0);
         self.next_seam = 0;
-        level.grids.reset(radii, |_| self.reach());
-        level.grids.reserve(setup.expected);
+        level.grids.reset(plan.radii(), |_| self.reach());
+        level.grids.reserve(room);
     }
 
     fn parents(&self) -> usize {
