@@ -13,33 +13,29 @@ use glam::Vec3;
 
 /// Particles that a front places per hexagonal cell 2√3 r², as a first guess: rows squeezed by
 /// positive curvature make it more than one, seams less. Measured on sphere, ellipsoid, torus and
-/// tanglecube: 1.02 to 1.12. With half of it 34 random surfaces take 1.07 times the evaluations,
-/// for another attempt.
+/// tanglecube: 1.02 to 1.12. A guess that is far off takes another attempt.
 const PACKING: f64 = 1.08;
 
 /// [`PACKING`] of the adaptive front, whose arcs bend with the surface: 1.00 to 1.05 on the same
-/// surfaces. With half of it 22 random surfaces take 1.07 times the evaluations, with twice as much
-/// 1.01 times.
+/// surfaces.
 const ADAPTIVE_PACKING: f64 = 1.02;
 
 /// A wanted count above this is approached through a pilot run, which measures the packing. Without
-/// one 18 random surfaces take 1.07 times the evaluations for 12,000 particles, and 1.04 times for
-/// 6,000.
+/// one such a count takes more evaluations.
 const PILOT_FROM: f64 = 8_000.0;
-/// Size of a pilot run as a share of the wanted count. Eight random surfaces get 60,000 particles
-/// but for 1.2 % at the worst; with half of it 2.6 %, with twice as much 0.8 % for 0.6 % more
-/// evaluations.
+/// Size of a pilot run as a share of the wanted count. Smaller: the count is farther off; larger:
+/// there are more evaluations.
 const PILOT_SHARE: f64 = 1.0 / 20.0;
-/// Fewest particles of a pilot run. Of 18 random surfaces all get 20,000 particles but for 2.3 % at
-/// the worst; with half of it 2.6 %, with twice as much 1.0 % for 0.6 % more evaluations.
+/// Fewest particles of a pilot run. Smaller: the count is farther off; larger: there are more
+/// evaluations.
 const LEAST_PILOT: f64 = 1_500.0;
 
 /// Columns are reserved for the expected count times this: for the tolerance of a wanted count, and
-/// some more. Half and double give the same particles.
+/// some more.
 const RESERVE: f64 = 1.05;
 
-/// A wanted count counts as met within this share. With half of it 6 of 34 random surfaces take
-/// another attempt; with twice as much a count is up to 5.6 % off.
+/// A wanted count counts as met within this share. Smaller: more attempts; larger: the count is
+/// farther off.
 pub(crate) const COUNT_TOLERANCE: f64 = 0.03;
 
 /// Attempts at meeting a wanted count, after which the nearest of them stands: a limit on time

@@ -46,37 +46,32 @@ use core::f32::consts::{FRAC_PI_3, PI, TAU};
 use core::f64::consts::E;
 use glam::{Vec2, Vec3};
 
-/// Frames from one balance to the next. On the twelve sweeps of `benches/flow.rs` more of the first
-/// particles live to the end than with half of it, and holes stay smaller than with half as much
-/// again.
+/// Frames from one balance to the next. On the sweeps of `benches/flow.rs` fewer of the first
+/// particles live to the end with a smaller number, and holes are wider with a larger one.
 pub(crate) const BALANCE_EVERY: u32 = 4;
 
 /// Steps of relaxation after a balance; every other frame has one. With one the closest pairs of
-/// the sweeps are 0.03 nearer, a third changes nothing.
+/// the sweeps of `benches/flow.rs` are nearer; a third changes nothing.
 const STEPS_AFTER_BALANCE: u32 = 2;
 
 /// Two particles nearer than this, over the sum of their radii, crowd each other: a front takes a
-/// child so near to a particle for that particle. On 16 random motions the count is off by 4.8 %
-/// and the closest pair at 0.80; with 0.6 by 6.3 % and at 0.78, with 0.8 by 5.2 %, where 32 % in
-/// place of 35 % have six neighbours.
+/// child so near to a particle for that particle. With less or more, the count is farther off.
 const CROWDED: f32 = 0.7;
 
 /// The energy, over the usual one, below which a particle gets a child if no neighbour has less,
-/// and above which it dies if none has more. With 1.25 for 1.3 two of a hundred particles more die
-/// in a sweep, and the count is nearer by half a per cent.
+/// and above which it dies if none has more. If the second is smaller, more particles die in a
+/// sweep.
 const LEAST_ENERGY: f32 = 0.9;
 const MOST_ENERGY: f32 = 1.3;
 
 /// The energy, over the usual one, below which a particle gets a child in a wide gap beside it,
 /// whatever its neighbours have: where a surface grows everywhere, extrema are too few. Without
-/// this rule spheres that grow keep two thirds of the particles that they have room for. On 16
-/// random motions the count is off by 1.6 % with 0.6, 1.1 % with 0.8 and 1.8 % with 0.9.
+/// this rule spheres that grow have too few particles.
 const SPARSE_ENERGY: f32 = 0.8;
 
 /// Radius of a gap, over the sum of two radii, in which a child has room beside an extremum, and
-/// that of a wide one. In a lattice it is 0.577. From 0.4 to 0.65 of the first the figures of 16
-/// random motions are the same within 1 %. With 0.6 for the second 76.9 % have six neighbours in
-/// place of 77.7 %, and with 0.8 the count is off by 2.5 % in place of 1.1 %.
+/// that of a wide one. In a lattice it is 0.577. If the second is smaller, fewer particles have six
+/// neighbours; if it is larger, the count is farther off.
 const GAP: f32 = 0.5;
 const WIDE_GAP: f32 = 0.7;
 
@@ -84,30 +79,25 @@ const WIDE_GAP: f32 = 0.7;
 const LATTICE_PAIR: f64 = 1.0 / (E * E) - END_ENERGY as f64;
 
 /// A sector without a neighbour is open if its angle is larger: in a lattice it is 60°, and 120°
-/// where one neighbour is missing. From 80° to 120° the mean figures of 16 random motions are the
-/// same within 1 %.
+/// where one neighbour is missing.
 const OPEN_SECTOR: f32 = 100.0 / 180.0 * PI;
 
 /// A child is placed 60° beside the neighbour at which an open sector begins, as in a front. In a
 /// sector too narrow for two it is placed in the middle: below half-way between 120° and the 180°
-/// that two take. From 120° to 180° the mean figures of 16 random motions are the same within 1 %.
+/// that two take.
 const NARROW_SECTOR: f32 = 150.0 / 180.0 * PI;
 
-/// Distance that a child in an open sector needs from all others, over the sum of the radii. On 16
-/// random motions the count is off by 1.3 % with 0.7, 1.1 % with 0.8 and with 0.9, and the closest
-/// pair is at 0.72, 0.72 and 0.71.
+/// Distance that a child in an open sector needs from all others, over the sum of the radii.
+/// Smaller: the count is farther off.
 const CLEAR: f32 = 0.8;
 
-/// Largest share of the particles that may be farther from the new surface than from each other. On
-/// 30 random motions of fronts the count is off by 4 % eight frames after a leap in which none is,
-/// and 83 % have six neighbours. With up to this share it is off by 8 %, and 76 % have six; with up
-/// to twice of it by 11 %, and 69 %.
+/// Largest share of the particles that may be farther from the new surface than from each other.
+/// Larger: after a leap the count is farther off, and fewer particles have six neighbours.
 const MOST_FAR: f64 = 0.1;
 
 /// Least share of such particles at which the frame is a leap, in which the others are balanced at
-/// once: fewer may lie where the gradient vanishes. Without that, a hole was wider than 1.9 in 1 of
-/// 35 random frames of refined runs with up to half of this share, and in 9 of 15 with up to twice
-/// of it.
+/// once: fewer may lie where the gradient vanishes. Without the balance a leap may leave wide
+/// holes.
 const LEAP: f64 = 0.01;
 
 /// Why particles cannot follow a surface. Nothing has changed then: a run under way goes on, and a
@@ -515,8 +505,7 @@ impl Flow {
         let grown_sq = -0.5 * libm::log(pair + f64::from(END_ENERGY));
         let more = surface.count.map_or(1.0, |count| (n / f64::from(count)).sqrt());
         let growth = grown_sq.max(0.0).sqrt() * more;
-        // Of a few particles without neighbours the energy says nothing. Half and double of the
-        // tenth give the same in 16 random motions.
+        // The energy of a few particles without neighbours says nothing.
         self.growth = if growth.is_finite() { growth.clamp(0.9, 1.1) } else { 1.0 };
         usual
     }

@@ -449,9 +449,8 @@ impl Sampler {
     /// second derivative.
     fn find_tips(&mut self, probe: &mut Probe, patch: Option<u32>, near: &NearSurvey, spacing: f64) {
         /// Bends at which the gradient may jump that are looked at. Most surfaces have none; around
-        /// a tip where f has a gradient they are the sharpest. With 4 and with all 200 runs on
-        /// random surfaces have the same particles; all of them make the search on a much bent one
-        /// take up to twice as long.
+        /// a tip where f has a gradient they are the sharpest. More make the search on a much bent
+        /// surface take longer.
         const MOST: usize = 16;
         for place in singular::places(&near.points) {
             if place.kind == SingularKind::Point {

@@ -8,7 +8,7 @@ use crate::sampler::refine::{self, Refusal};
 use serde::Serialize;
 
 /// Cost of a relaxation step per particle, as a share of what it costs to place the particle, for
-/// the display of progress. On sixteen random formulas it is 0.07 to 0.2 natively.
+/// the display of progress. Natively it is 0.07 to 0.2.
 const RELAXATION_STEP_COST: f64 = 0.125;
 
 /// Result of [`Sampler::begin`]: the radius, and estimates for the run.

@@ -8,29 +8,26 @@ use crate::sampler::probe::{BATCH, Probe, ProbeMemory};
 use glam::Vec3;
 
 /// A Newton correction shorter than this, in radii, is not checked by another evaluation: the
-/// residual that it leaves is of the order of its square. In placement half of it takes 0.5 % more
-/// evaluations, and the figures of 24 random surfaces are the same within their scatter up to five
-/// times as much.
+/// residual that it leaves is of the order of its square. Smaller: more evaluations.
 pub(crate) const TRUSTED_CORRECTION: f32 = 0.02;
 
 /// Largest number of steps of the bracketed search, over all brackets of a circle: with those of
-/// Newton's method 50. Half and double give the same particles on 34 random surfaces.
+/// Newton's method 50.
 const MAX_BRACKET_STEPS: u32 = 38;
 
-/// Largest turn of a Newton step on a circle, as the tangent of half the angle: about 23°. Half and
-/// double change the particles of 8 and 2 of 33 random surfaces, and no figure beyond scatter.
+/// Largest turn of a Newton step on a circle, as the tangent of half the angle: about 23°.
 pub(crate) const MAX_TURN: f32 = 0.2;
 
 /// Smallest cos θ: the circle is searched up to about 100° from the tangent plane, as far as the
-/// bracketed search goes. With 95° or 111° 34 random surfaces get the same particles.
+/// bracketed search goes.
 pub(crate) const MIN_COS: f32 = -0.18;
 
 /// Smallest sine of the angle between circle and surface at which Newton's method is trusted: about
-/// 6°. Half and double change the particles of 1 of 33 random surfaces, and no figure.
+/// 6°.
 pub(crate) const MIN_CROSSING: f32 = 0.1;
 
 /// Largest ratio of |f| after a Newton step to |f| before it; above it the bracketed search takes
-/// over. Half and double change the particles of 1 and 2 of 33 random surfaces, and no figure.
+/// over.
 const MAX_RATIO: f32 = 0.7;
 
 /// Number of intervals into which the bracketed search divides the arc. Two crossings in one of
@@ -192,12 +189,9 @@ impl Probe<'_> {
     /// Goes along the surface from the centre of a circle to the circle, in small steps, so that it
     /// stays on the sheet of the centre where others are near.
     pub(crate) fn walk(&mut self, circle: &ChildCircle, tolerance: Tolerance) -> CircleLanding {
-        /// Steps from the centre to the circle. One fewer or one more changes the particles of 7 of
-        /// 16 random surfaces of two to four near shells, and hardly a figure beyond scatter.
+        /// Steps from the centre to the circle. A choice.
         const STEPS: u32 = 8;
-        /// Newton steps in the plane of the circle after each. With one 16 random surfaces of near
-        /// shells take 0.97 times the evaluations, with three 1.03 times; no figure changes beyond
-        /// scatter.
+        /// Newton steps in the plane of the circle after each. More take more evaluations.
         const LANDINGS: u32 = 2;
         let &ChildCircle { centre, normal, direction, radius, .. } = circle;
         let plane = |v: Vec3| direction * v.dot(direction) + normal * v.dot(normal);
@@ -344,8 +338,7 @@ impl Probe<'_> {
 }
 
 /// Tangent of half the angle between two samples of the arc: 16 steps of 6.3° to either side, which
-/// reach [`MIN_COS`]. With half of it, and so half of the arc, 681 instead of 631 children of 33
-/// random surfaces find no place.
+/// reach [`MIN_COS`]. With a smaller angle, and so a shorter arc, more children find no place.
 const HALF_TURN: f32 = 0.055;
 
 /// Rotates (cos θ, sin θ) by the angle whose half has the tangent `t`, by arithmetic alone and
@@ -370,17 +363,15 @@ impl ResidualLimits {
     /// Nothing is known of the field.
     pub(crate) const UNLIMITED: Self = Self { finest: 0.0, coarsest: f32::INFINITY };
 
-    /// Returns the largest |f|/|∇f| of a particle of a radius: 10⁻⁴ r, within these limits. With
-    /// half of it 38 random surfaces take 1.012 times the evaluations, with double 0.991 times; no
-    /// figure changes beyond scatter.
+    /// Returns the largest |f|/|∇f| of a particle of a radius: 10⁻⁴ r, within these limits. A
+    /// smaller share takes more evaluations.
     pub(crate) fn residual(self, radius: f32) -> f32 {
         (1e-4 * radius).min(self.coarsest).max(self.finest)
     }
 }
 
 /// Returns the tolerance for particles of a radius. A gradient below a millionth of the usual
-/// `gradient_scale` is cancellation noise at a singular point: half and ten times give the same
-/// particles on 38 random surfaces, some of them cones.
+/// `gradient_scale` is cancellation noise at a singular point.
 pub(crate) fn tolerance(radius: f32, residual_limits: ResidualLimits, gradient_scale: f32) -> Tolerance {
     Tolerance { residual: residual_limits.residual(radius), min_gradient: 1e-6 * gradient_scale }
 }

@@ -144,7 +144,7 @@ pub struct Settings {
 const MOST_WANTED: f64 = 4e6;
 
 /// Room for the particles that are expected, as a multiple of them: a wanted count is met within 3
-/// %, and the first attempts on 34 random surfaces place at most 1.6 % too many.
+/// %, and a first attempt may place some too many.
 pub const COUNT_ROOM: f64 = 1.1;
 
 /// The smallest and the largest radius that are accepted, as shares of the diagonal: on an area of
@@ -215,11 +215,10 @@ fn out_of_range(name: &str, value: &f64, min: &f64, max: &f64, f: &mut fmt::Form
 }
 
 impl Settings {
-    /// The values that `Default` gives. The radius is the smaller one of the paper (§6). At the
-    /// median 21 random surfaces take 21,600 particles by the chord error, which is the default
-    /// count too, and 55,000 by the largest curvature; their radii lie between the limits, of which
-    /// the smaller one gives 300,000 particles on a sphere and the larger one 340. There is room
-    /// for ten times the default count.
+    /// The values that `Default` gives. The radius is the smaller one of the paper (§6). By the
+    /// chord error most surfaces take about as many particles as the default count, by the largest
+    /// curvature more; of the limits of their radii the smaller one gives 300,000 particles on a
+    /// sphere and the larger one 340. There is room for ten times the default count.
     pub const DEFAULT: Self = Self {
         bounds: None,
         radius: None,

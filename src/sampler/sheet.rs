@@ -92,8 +92,6 @@ pub(crate) fn is_cover(particles: &Particles, near: &Neighbour, normal: Vec3) ->
 
 /// sin² 45°: the steepest direction from a point to one on its sheet, above the tangent plane. A
 /// sheet that bends by 45° over the distance of two neighbours is not resolved by its particles.
-/// Half and double change the particles of 10 and 3 of 33 random surfaces, and no figure beyond
-/// scatter.
 pub(crate) const MAX_RISE_SQ: f32 = 0.5;
 
 /// Square of half the match radius: nearer than that two particles are taken for one whatever the
@@ -115,17 +113,14 @@ pub(crate) fn is_level(pair: PointPair, distance_sq: f32, match_radius: f32) -> 
 ///
 /// In between the weight is linear in the cosine. So no pair appears or disappears suddenly, and
 /// the energy is a continuous function of the positions. The force is the derivative with respect
-/// to the distance alone and leaves out that of the weight, so the ramp must not be steep. Of ramps
-/// from 60°, 75° and 90° to 90°, 105° and 120° this one spreads particles most evenly on the
-/// surfaces of the gallery at radii of 1 % to 5 % of the diagonal.
+/// to the distance alone and leaves out that of the weight, so the ramp must not be steep.
 pub(crate) fn repulsion_weight(cosine: f32) -> f32 {
     (0.5 + cosine).clamp(0.0, 1.0)
 }
 
 /// Lift, in spacings, above which two particles a spacing apart may lie on two sheets. On one sheet
 /// such a lift needs a change of the curvature, over one spacing, by 0.24 of an inverse spacing.
-/// With half of it 687 instead of 631 children of 33 random surfaces find no place; with twice as
-/// much the closest pairs are 0.006 ± 0.003 nearer.
+/// Smaller: more children find no place; larger: the closest pairs are nearer.
 pub(crate) const MAX_LIFT: f32 = 0.02;
 
 /// Whether two points that face the same way may lie on two sheets: their lift is larger than
@@ -188,8 +183,7 @@ impl SheetRule {
     /// lie on one sheet.
     pub(crate) fn is_one_sheet(self, probe: &mut Probe, position: Vec3, pair: PointPair) -> bool {
         /// Times that the way between the two points is halved: the error of the curve between them
-        /// falls by 16 each time. Two and four give the same particles on 16 random surfaces of
-        /// near shells, none other ones on 2.
+        /// falls by 16 each time.
         const HALVINGS: u32 = 3;
         let Some(least) = self.resolved else {
             return is_one_sheet(probe, position, pair);
@@ -229,12 +223,11 @@ impl SheetRule {
 /// than half the lift, and the gradient there faces the same way. Between two sheets the middle is
 /// half the lift away from both.
 fn is_one_sheet(probe: &mut Probe, position: Vec3, pair: PointPair) -> bool {
-    /// Smallest lift, as a share of the distance, that rounding leaves meaningful. Half of it gives
-    /// the same particles of 34 random surfaces; twice as much changes 2, and no figure.
+    /// Smallest lift, as a share of the distance, that rounding leaves meaningful.
     const ROUNDING: f32 = 0.01;
     /// Share of the lift within which the surface has to be of the middle: half-way between the
-    /// two, 0 on one sheet and ½ on two. With half of it 721 instead of 631 children of 33 random
-    /// surfaces find no place; with twice as much the closest pairs are 0.008 ± 0.004 nearer.
+    /// two, 0 on one sheet and ½ on two. Smaller: more children find no place; larger: the closest
+    /// pairs are nearer.
     const NEAR: f32 = 0.25;
     let PointPair { offset, normal, other } = pair;
     let length = offset.length();
@@ -269,16 +262,11 @@ fn is_one_sheet_between(
     halvings: u32,
 ) -> bool {
     /// Share of the lift within which the surface has to be of the curve. The curve of two sheets
-    /// is at least 5/32 away from both at each of the three places. Half of it takes 1.02 times the
-    /// evaluations on 16 random surfaces of near shells, twice as much 0.96 times; they change the
-    /// particles of 1 and 3.
+    /// is at least 5/32 away from both at each of the three places. Smaller: more evaluations.
     const NEAR: f32 = 0.05;
-    /// Newton steps to the surface. With one fewer 7,356 instead of 7,235 children of 16 random
-    /// surfaces of near shells find no place, with one more 7,210; no figure changes beyond
-    /// scatter.
+    /// Newton steps to the surface. With fewer, more children find no place.
     const STEPS: u32 = 4;
-    /// Longest of these steps, as a share of the way. Half and double give the same particles on 16
-    /// random surfaces of near shells.
+    /// Longest of these steps, as a share of the way. A choice.
     const LONGEST: f32 = 0.25;
     let (pair, facing) = (from.pair(to.position - from.position, to.normal), from.normal + to.normal);
     if !pair.faces_one_way() {
@@ -305,8 +293,7 @@ fn is_one_sheet_between(
         let (value, gradient) = probe.gradient(middle);
         slope = gradient;
         step = descent::step(value, gradient);
-        // Within a quarter of what is not told apart; an eighth and a half give the same particles
-        // on 38 random surfaces.
+        // Within a quarter of what is not told apart.
         if step.length_squared() <= 0.0625 * least * least {
             let middle = OrientedPoint { position: middle, normal: gradient.normalize_or_zero() };
             return middle.normal.dot(facing) > 0.0

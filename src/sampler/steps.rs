@@ -22,12 +22,10 @@ use glam::{DVec3, Vec3};
 use rand_core::SeedableRng;
 
 /// Largest number of units of the search, of the audit or of the relaxation in one step, whatever
-/// the budget: a caller that derives its budget from the pace of the front must not wait. On 14
-/// random surfaces a unit takes 0.04 to 0.5 µs natively in the mean, so many 0.3 to 4 ms. It
-/// changes no particle.
+/// the budget: a caller that derives its budget from the pace of the front must not wait. A unit
+/// takes 0.04 to 0.5 µs natively, so many 0.3 to 4 ms. It changes no particle.
 const SLICE: u32 = 8_192;
-/// Seeds that may be taken back in an attempt, and one more for every particle. Half and double
-/// give the same particles on 34 random surfaces.
+/// Seeds that may be undone in an attempt, and one more for every particle.
 const MOST_LONE_SEEDS: usize = 256;
 
 /// Position in the sequence of seeds: a point drawn from the surface first, and then the survey's
@@ -209,8 +207,7 @@ impl Sampler {
     /// Whether the last particle, a witness, is the only one on a small piece of the surface that
     /// is closed in itself.
     fn is_on_own_piece(&mut self, probe: &mut Probe) -> bool {
-        /// The reach of a piece is measured along a few paths. With half of it 1 of 34 random
-        /// surfaces has crowded particles on a tiny component, with twice as much none changes.
+        /// The reach of a piece is measured along a few paths, between which it may be longer.
         const ROOM: f64 = 1.05;
         let last = self.output.particles.len() - 1;
         let Some(field) = probe.field.bounded() else { return false };

@@ -12,8 +12,7 @@ use crate::sampler::probe::Probe;
 use glam::{DVec3, Vec3};
 
 /// Largest difference of a branch between a point and its image, as a share of its gradient:
-/// rounding is far below it, another branch far above. From a millionth to a hundredth the
-/// particles of 32 random periodic solids are the same.
+/// rounding is far below it, another branch far above.
 const SAME: f64 = 1e-4;
 
 /// Two opposite faces of a cell that the solid reaches.

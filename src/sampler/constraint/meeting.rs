@@ -11,8 +11,7 @@ use glam::DVec3;
 /// radius of curvature is the reach.
 pub(super) const FADED: f64 = 10.0 * ASIDE;
 /// Distance from a crease, as a share of the reach, at which it is asked which branch gives f: by
-/// [`FADED`] times as much the branches differ there, which is far above rounding. Half and double
-/// change the particles of 4 of 24 random solids, but not their number.
+/// [`FADED`] times as much the branches differ there, which is far above rounding.
 pub(super) const ASIDE: f64 = 1e-4;
 
 /// Distance outside of a sheet, as a share of the reach, at which it is asked which branch gives f:
@@ -20,8 +19,7 @@ pub(super) const ASIDE: f64 = 1e-4;
 /// other one counts, too, at [`ASIDE`].
 const OUTSIDE: f64 = 1e-11;
 
-/// Cosine of the largest turn of a crease in one step, 30°. A step that turns more is halved. Half
-/// of the angle and 45° give the same particles on 24 random solids.
+/// Cosine of the largest turn of a crease in one step, 30°. A step that turns more is halved.
 pub(super) const MOST_TURN: f64 = 0.5 * SQRT_3;
 
 /// A point where two patches meet.

@@ -37,24 +37,21 @@ pub(super) use ladder::CreaseLadder;
 use meeting::Meeting;
 
 /// Side of the smallest cells of the search, and about twice the step along a curve, as a share of
-/// the diagonal of the box. Half and double find as many creases and corners of 24 random solids.
+/// the diagonal of the box.
 const CELL: f64 = 1.0 / 128.0;
 /// Corners nearer to each other than this share of a step are one: the width of the smallest crease
-/// that is followed. So are a corner and a tip nearer than this share of a radius. Half and double
-/// give the same particles on 24 random solids.
+/// that is followed. So are a corner and a tip nearer than this share of a radius.
 const ONE_CORNER: f64 = 1e-3;
 /// Distance from a corner, in steps, at which the creases that end there are looked for: ten times
 /// the width of the smallest one.
 const BESIDE: f64 = 10.0 * ONE_CORNER;
 /// Share of a step within which ends of creases that fade out are one corner, and corners on
 /// opposite faces images. Such ends are known less precisely than corners: a walk may end at an
-/// angle of [`meeting::FADED`], on three crossing cylinders a twentieth of a step before. Half and
-/// double give the same particles on 24 random solids.
+/// angle of [`meeting::FADED`], on three crossing cylinders a twentieth of a step before.
 const ONE_END: f64 = 0.1;
 
 /// Distance from the chord between two points of a curve, in steps, up to which a point lies on the
-/// curve: the chord of a curve that turns by 60° in two steps is a seventh of a step away. Half and
-/// double give the same particles on 24 random solids.
+/// curve: the chord of a curve that turns by 60° in two steps is a seventh of a step away.
 const NEAR: f64 = 0.2;
 
 /// Length of a chord, in steps, that none exceeds: a step leads at most as far beyond its end, and
@@ -62,8 +59,7 @@ const NEAR: f64 = 0.2;
 const LONGEST: f64 = 4.0;
 
 /// A point is found when a step is shorter than this share of the reach: Newton's method squares
-/// the share, to below any rounding. With ten times and a tenth of it the particles of 24 random
-/// solids are the same.
+/// the share, to below any rounding.
 const AT_REST: f64 = 1e-9;
 
 /// A curve along which patches meet: two, or four where two sheets cross.

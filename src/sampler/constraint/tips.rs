@@ -14,32 +14,27 @@ use crate::sampler::probe::Probe;
 use glam::{DMat3, DVec3, Vec3};
 
 /// Divisions of the edge of an octahedron whose faces, thrown onto the sphere, show the link: the
-/// narrowest nappe is three of them wide. Half and double take 0.99 and 1.03 times the evaluations
-/// in 33 runs on 11 random surfaces with tips, with holes as wide within 1.3 %, and another number
-/// of components in two runs each.
+/// narrowest nappe is three of them wide.
 const DIVISIONS: i32 = 8;
 /// Radius of the sphere that tells how many nappes a tip has, in spacings of the survey. Rounded
-/// coefficients open a cone to a neck of a ten-thousandth of a spacing. Half and double give the
-/// same particles in 33 runs on 11 random surfaces with tips.
+/// coefficients open a cone to a neck of a ten-thousandth of a spacing.
 const SMALL: f64 = 1.0 / 32.0;
 /// Rounds in which the place of a tip is found, on spheres of which each is a quarter of the one
 /// before: the error falls with the square.
 const ROUNDS: u32 = 10;
 /// Determinant of the mean of nnᵀ over the normals n of a link below which the surface is smooth: a
-/// cone flatter than 3°. A tenth and ten times give the same particles on 20 random cones.
+/// cone flatter than 3°.
 const SMOOTH: f64 = 1e-5;
 /// Least cosine of the angle between a nappe's normals and their mean. The rows of the tip on two
-/// nappes are told apart by it. Half and double give the same particles on 14 random surfaces with
-/// tips.
+/// nappes are told apart by it.
 const LEAST_COSINE: f64 = 0.1;
-/// Cosine of the angle within which a nappe on a larger sphere is the one on the smaller: 45°. 70°
-/// and 26° give the same particles on 14 random surfaces with tips.
+/// Cosine of the angle within which a nappe on a larger sphere is the one on the smaller: 45°.
 const ONE_NAPPE: f64 = 0.7;
 /// Least number of particles around a tip: three on a narrow cone would face away from each other.
-/// With five 0.8 % fewer of the particles of 20 random cones have six neighbours.
+/// With more, fewer particles have six neighbours.
 pub(in super::super) const LEAST_RING: u32 = 4;
 /// Largest distance of a ring from its tip, in spacings. A nappe narrower than 16° has none that is
-/// nearer. With 1.2 one of 20 random cones comes out differently, with 1.7 and 2.8 none.
+/// nearer.
 const FARTHEST: f64 = 1.4;
 
 /// A point of the surface, by the unit vector to it from the centre of a sphere, with its unit
@@ -94,8 +89,7 @@ impl Tip {
 
     /// Whether a curvature at a point is no larger than a cone with this tip would have there.
     pub(in super::super) fn explains(&self, point: Vec3, curvature: f64) -> bool {
-        /// The sheets bend by themselves as well. Half and double give the same particles on 14
-        /// random surfaces with tips.
+        /// The sheets bend by themselves as well.
         const MORE: f64 = 1.5;
         curvature * self.position.distance(point.as_dvec3()) <= MORE * self.bend
     }

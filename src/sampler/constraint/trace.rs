@@ -131,8 +131,7 @@ impl Walk<'_, '_> {
                 let end = creases.corners[corner].position;
                 return self.end_at(creases, [here, end], self.patches, ONE_CORNER, points);
             }
-            // Of the 1.2 the part above 1 allows for the turn of a step. Half and double of it give
-            // other places to the particles of 2 and 7 of 24 random solids, and change no figure.
+            // Of the 1.2 the part above 1 allows for the turn of a step.
             let to_start = origin - here;
             let is_back = to_start.dot(direction) > 0.0 && to_start.length() <= 1.2 * length;
             if left_start && is_back && next.position.distance(origin) <= length {

@@ -18,21 +18,19 @@ use crate::spatial::tree::Tree;
 use glam::DVec3;
 
 /// Particles within this many of their radii of a witness are tried. A closed cover leaves no hole
-/// larger than 1.85. With half of it a component seems without particles on 29 of 59 random
-/// surfaces, with twice as much on 2 fewer.
+/// larger than 1.85. Smaller: components with particles seem to have none.
 const REACH: f32 = 2.5;
 /// Particles that are handed to the witnesses around them, for one unit of work: a search in a tree
 /// takes an eighth of the time in which a particle is placed.
 const SCANNED: usize = 8;
-/// Units of work that a witness counts for. On seven random surfaces one takes 21,000 to 190,000
-/// instructions as a seed and 87,000 to 410,000 in the audit, and a unit of the front 2,400 to
-/// 5,100.
+/// Units of work that a witness counts for. One takes 21,000 to 190,000 instructions as a seed and
+/// 87,000 to 410,000 in the audit, and a unit of the front 2,400 to 5,100.
 pub(super) const UNITS: u32 = 32;
 /// Components that are named, and witnesses left open, after which the others are not looked at and
-/// count as open. Half and double give the same on 12 random surfaces of many components.
+/// count as open.
 const MOST_NAMED: usize = 256;
 /// Distance, in radii, to which a component without a particle is followed. One that reaches
-/// farther has room for a child, at two radii. Half and double give the same on 38 random surfaces.
+/// farther has room for a child, at two radii.
 pub(super) const FOLLOWED: f64 = 4.0;
 
 /// A particle near a witness.
@@ -215,8 +213,7 @@ fn on_factor(
         let p = particles.local[near.index].as_dvec3();
         let steepest = DVec3::from_array(known.gradient.map(Interval::magnitude)).length();
         // As near as the particle is to its own sheet: that of another factor may be within the
-        // slack too. By the slack alone 1 of 200 random surfaces has a component without particles
-        // that is not named.
+        // slack too.
         let (value, gradient) = field.value_and_gradient(p);
         let own = value.abs() / gradient.length() + ROUNDING * p.abs().max_element();
         (known.value.magnitude() <= 2.0 * own.min(slack) * steepest).then_some(near.index)
@@ -231,15 +228,11 @@ pub(crate) fn follow(field: &mut dyn Bounded, factor: usize, from: DVec3, most: 
     /// the longer one: cos 22.5°.
     const PATHS: usize = 8;
     /// Steps of a path, of which a circle takes 32, and the long way around a spheroid with axes of
-    /// 1 and 3 takes 200. With half as many, 1 of 25 random surfaces of many small components
-    /// counts one of them twice.
+    /// 1 and 3 takes 200. With fewer a small component may count twice.
     const STEPS: u32 = 256;
-    /// A step as a share of the radius of curvature: its sagitta is a fiftieth of that. With 0.4, 1
-    /// of those 25 takes another seed.
+    /// A step as a share of the radius of curvature: its sagitta is a fiftieth of that.
     const SHARE: f64 = 0.2;
-    /// Largest step as a share of `most`: what is flat at its start may bend farther on. Half and
-    /// twice of it name the same pieces of the same sizes on 80 random surfaces of spheres, tori
-    /// and flat quartics.
+    /// Largest step as a share of `most`: what is flat at its start may bend farther on.
     const LARGEST: f64 = 1.0 / 16.0;
     let gradient = value_at(field, factor, from).1;
     let normal = gradient.try_normalize().unwrap_or(DVec3::Z);

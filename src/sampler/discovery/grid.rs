@@ -6,8 +6,7 @@ use crate::sampler::probe::{BATCH, Probe};
 use glam::{DVec3, Vec3};
 
 /// Grid cells along the longest side of the box. 32³ evaluations are a few per cent of a run with
-/// 50,000 particles. Half as many leave a component without a particle on 3 of 38 random surfaces,
-/// and twice as many on 1.
+/// 50,000 particles. With fewer, more components are left without a particle.
 pub(crate) const CELLS: f64 = 32.0;
 /// Grid cells along the longest side of the box for fields without bounds, of which only the grid
 /// shows the surface. It does not miss a sphere whose radius is 1.4 % of the box's longest side:
@@ -98,14 +97,11 @@ pub(super) struct Dense {
 }
 
 /// Grid cells along the edge of the first blocks of a dense grid: a power of two. Each block costs
-/// its corners, of which there are 64 times fewer than nodes. On 75 random surfaces blocks of 2
-/// take 1.04 times the evaluations, of 8 as many, and the particles are the same.
+/// its corners, of which there are 64 times fewer than nodes.
 const COARSEST: usize = 4;
 /// A block may hold the surface if at one of its corners |f| is no more than the largest |∇f| at
 /// them times so many diagonals. No point of a block is farther than half a diagonal from all
-/// corners; between them |∇f| may be somewhat larger. Half of it, which allows for no such thing,
-/// takes 0.8 times the evaluations on 75 random surfaces, twice as much 1.34 times, and the
-/// particles are the same.
+/// corners; between them |∇f| may be somewhat larger.
 const REACH: f32 = 0.7;
 
 impl Dense {

@@ -7,11 +7,8 @@
 //! the distance.
 //!
 //! Sheets that near each other keep rules of their own
-//! ([`SheetRule`](crate::sampler::sheet::SheetRule)): precision is not what they lack. Of two and
-//! three spheres and planes 10⁻⁶ to 0.025 apart in a box of 3, at three kinds of sizes, 100 of 132
-//! runs show all components and their Euler number by these rules and 74 without them; with f
-//! evaluated in double precision besides, 99 and 73. A child 2r away comes to whichever sheet is
-//! nearest to its circle, however precisely that is known.
+//! ([`SheetRule`](crate::sampler::sheet::SheetRule)): precision is not what they lack. A child 2r
+//! away comes to whichever sheet is nearest to its circle, however precisely that is known.
 
 use crate::field::Evaluator;
 use glam::DVec3;
@@ -19,9 +16,8 @@ use glam::DVec3;
 /// Sheets nearer than this many of the distances that single precision resolves are not told apart,
 /// in runs of one size and of many: a particle may be one such distance away from its sheet, and
 /// the lift of two particles has to be four times that (see
-/// [`SheetRule`](crate::sampler::sheet::SheetRule)). Of three concentric spheres, particles of one
-/// size have the right components and Euler number from 8 of them on, and particles of many sizes
-/// from 55 on, but not at 33.
+/// [`SheetRule`](crate::sampler::sheet::SheetRule)). Particles of many sizes need more. Smaller:
+/// components and Euler numbers of near sheets come out wrong.
 pub(crate) const UNRESOLVED: [f64; 2] = [16.0, 48.0];
 /// Distances, over that of the second zero of the quadratic, at which the sign is looked at. Of
 /// three sheets at equal distances the quadratic puts the second one at two thirds of its distance,
@@ -29,7 +25,6 @@ pub(crate) const UNRESOLVED: [f64; 2] = [16.0, 48.0];
 /// one twice as far there is one of them.
 const LOOKS: [f64; 6] = [0.8, 1.2, 1.7, 2.4, 3.4, 4.8];
 /// Newton steps to a point: far from several sheets at once each step goes only a part of the way.
-/// With 24 or 96 of them the same sheets are found on 91 random surfaces.
 pub(super) const STEPS: u32 = 48;
 
 /// Another sheet near a point of the surface.

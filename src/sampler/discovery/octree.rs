@@ -67,45 +67,39 @@ use glam::{DVec3, Vec3};
 use std::collections::VecDeque;
 
 /// Halvings after which a cell is left undecided: 2⁻¹⁶ of the box, a sixth of the smallest particle
-/// allowed. With 8, 6 of 43 random surfaces are no longer proven; with 32 no more are, in 1.2 times
-/// the cells.
+/// allowed. With fewer, fewer surfaces are proven; with more, there are more cells.
 const DEPTH: u8 = 16;
 /// Halvings after which a cell is left undecided where f jumps or is not defined. Such cells lie
-/// along curves and faces, so there are many: with 4, 0.6 times the cells on 46 random surfaces,
-/// with 9, 1.2 times, and as many of them proven.
+/// along curves and faces, so there are many. More halvings prove no more.
 const IRREGULAR_DEPTH: u8 = 6;
 /// Largest number of cells visited, and how many more for every particle that is expected: a cell
 /// takes about as long as a third of a particle. Most smooth surfaces of the gallery take 100 to
 /// 8,000 cells, and two take 60,000 to 70,000. Sixteen cone points add none; Barth's sextic with
-/// fifty takes 36,000. With half of the first number 3 of 38 random surfaces are no longer proven,
-/// with double as many are; half and double of the second change nothing.
+/// fifty takes 36,000.
 const MOST_CELLS: usize = 8_192;
 const CELLS_PER_PARTICLE: f64 = 0.5;
 /// Largest number of cells visited where each level has hardly more of them than the one before it:
-/// the search is then near its end. Without, 8 of 177 random surfaces are no longer proven; where a
-/// level may have 2.6 times as many, there are 3.4 times the cells, and no more are.
+/// the search is then near its end.
 const MOST_AT_THE_END: usize = 65_536;
 const HARDLY_MORE: f64 = 1.3;
-/// Halvings before singular points are searched in a cell, and halvings between two tries. One more
-/// or one fewer of either proves the same on 43 random surfaces.
+/// Halvings before singular points are searched in a cell, and halvings between two tries. A
+/// choice.
 const SINGULAR_FROM: u8 = 3;
 const SINGULAR_EVERY: u8 = 2;
 /// Largest number of cells of a factor in which they are searched. There are more where they form a
 /// curve, of which half as many cells name half as many points.
 const MOST_TRIED: usize = 512;
-/// Units of work that a cell counts for. On seven random surfaces one takes 8,000 to 30,000
-/// instructions, and a unit of the front 2,400 to 5,100.
+/// Units of work that a cell counts for. One takes 8,000 to 30,000 instructions, and a unit of the
+/// front 2,400 to 5,100.
 const UNITS: u32 = 8;
 /// The box is enlarged by this share of its longest side: the size of the smallest cell.
 const MARGIN: f64 = 1.0 / (1_u32 << DEPTH) as f64;
-/// A taller cell reaches this many times as far as the slopes of the cell itself require: half or
-/// twice as far takes 1.00 times the cells.
+/// A taller cell reaches this many times as far as the slopes of the cell itself require. A choice.
 const RISE_ROOM: f64 = 2.0;
-/// A taller cell reaches at least this share of its height, because it may be flat: without, the
-/// gallery takes 1.1 times the cells.
+/// A taller cell reaches at least this share of its height, because it may be flat.
 const LEAST_RISE: f64 = 0.02;
 /// A cell is halved along the sides that are longer than this share of the longest: those nearer to
-/// it than to its half. With all sides there are 1.2 times the cells.
+/// it than to its half. Where all sides are halved there are more cells.
 const LONG: f64 = 0.7;
 /// Largest height difference between a witness and the surface, as a share of the rise over the
 /// footprint: the longer part of a side.
@@ -626,8 +620,7 @@ fn tighten(known: &mut Enclosure, middle: &Enclosure, second: &Sym3<Interval>, h
 }
 
 /// Whether the field has finite bounds at all, tested on a small box that is not in the middle,
-/// where f may have a pole. With 27 boxes the same searches begin, on 52 random surfaces and for 16
-/// formulas with poles or places without a value.
+/// where f may have a pole.
 fn bounds_say_something(field: &mut dyn Bounded, bounds: &Bounds) -> bool {
     let boxes: Vec<Bounds> = bounds.spread(1).map(|p| Bounds::new(p, p + MARGIN * bounds.size())).collect();
     let mut known = [Enclosure::UNKNOWN];

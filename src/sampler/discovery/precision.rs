@@ -11,8 +11,7 @@ use glam::{DVec3, Vec3};
 /// Nodes along each side of the grid on which both precisions are compared: 729 in all, of which
 /// the share below is 15.
 const SIDE: usize = 9;
-/// Share of them that single precision may lose. Half and double decide the same on 22 random
-/// surfaces.
+/// Share of them that single precision may lose. A choice.
 const MOST_LOST: f64 = 0.02;
 /// Ratio of all nodes to those at which the distance is measured by which single precision moves
 /// the level set: a hundred do for a median, and as 7 does not divide [`SIDE`] they are in all
@@ -20,11 +19,10 @@ const MOST_LOST: f64 = 0.02;
 const ONE_IN: usize = 7;
 /// Double precision is taken where the median of those distances is more than this times that by
 /// which coordinates in single precision are rounded. On the gallery's formulas it is at most 0.3
-/// times that; from 1 to 16 of it decide the same on 17 random surfaces far from the origin.
+/// times that.
 const MOST_BLUR: f64 = 4.0;
 /// Nodes along each side of the grid on which the gradient at the surface is looked for: 4,096, a
-/// tenth of those of the survey. With half and double the figures of 24 random surfaces that need
-/// double precision are the same within 0.01 %.
+/// tenth of those of the survey.
 const FINE_SIDE: usize = 16;
 /// Share of the distance between neighbours by which rounding may move a particle: a five-hundredth
 /// of the scatter of such distances on a relaxed surface.

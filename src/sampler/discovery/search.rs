@@ -112,8 +112,7 @@ impl ComponentSearch {
 
     /// Projects the witnesses onto the surface as single precision computes it.
     fn project(&mut self, probe: &mut Probe, starts: &[Witness], bounds: &Bounds, tolerance: Tolerance) {
-        // Single precision may move the surface by more than the residual. From 1 to 32 of them 38
-        // random surfaces are the same.
+        // Single precision may move the surface by more than the residual.
         let reach = self.octree.region.margin as f32 + 16.0 * tolerance.residual;
         let limits = Descent { residual: tolerance.residual, reach, trust: 0.0 };
         let mut points: Vec<Vec3> = starts.iter().map(|start| start.position.as_vec3()).collect();

@@ -9,8 +9,7 @@ use crate::sampler::discovery::octree::Region;
 use glam::DVec3;
 
 /// Largest number of segments that are tested in one call, and so of the nearest points to which a
-/// connection is tried. With 5 and with 20 the same 94 of 116 random runs are proven, in the same
-/// time within 2 %.
+/// connection is tried. A choice.
 pub(crate) const TOGETHER: usize = 10;
 
 /// A point of the surface in double precision, and the unit normal there.
@@ -85,8 +84,7 @@ impl Prover<'_> {
     /// box need more than one: a segment without a proof is halved, at a point of the surface in
     /// the region.
     pub(crate) fn is_connected_by_segments(&mut self, whole: Segment) -> bool {
-        /// Largest number of rounds. With one more or one fewer each, 1 of 43 random surfaces has
-        /// another seed.
+        /// Largest number of rounds, in each of which segments without a proof are halved.
         const MOST_ROUNDS: u32 = 8;
         let mut waiting = vec![whole];
         for _ in 0..MOST_ROUNDS {
@@ -98,7 +96,6 @@ impl Prover<'_> {
                 let middle_of_chord = from.position + 0.5 * chord;
                 let Some(middle) = self.land_inside(middle_of_chord) else { return false };
                 // A point farther than half the chord from its middle does not lie between the two.
-                // Half and double of the distance prove the same on 38 random surfaces.
                 let offset = middle.position - middle_of_chord;
                 if offset.length_squared() > 0.25 * chord.length_squared() {
                     return false;
@@ -155,8 +152,7 @@ impl Prover<'_> {
     /// surface. None where the surface does not reach into the box there.
     pub(crate) fn moved_inside(&mut self, mut p: DVec3, bounds: &Bounds) -> Option<DVec3> {
         /// Each turn shortens the way by the cosine squared of the angle between surface and face:
-        /// at 26° so many by a thousand. With a fourth of them 1 of 22 random surfaces gets other
-        /// particles.
+        /// at 26° so many by a thousand.
         const MOST_TURNS: u32 = 32;
         let margin = self.region.margin;
         let inner = bounds.enlarged(-margin);
@@ -197,14 +193,14 @@ struct GraphBox {
 
 impl GraphBox {
     fn around(&Segment { from, to }: &Segment, slack: f64) -> Self {
-        /// Room above and below the ends, over the rise of the tangent plane between them. Of 43
-        /// random surfaces half of it proves 8 fewer, and twice as much no more.
+        /// Room above and below the ends, over the rise of the tangent plane between them. Less
+        /// proves fewer connections, more no more.
         const RISES: f64 = 1.5;
-        /// Room for what the surface bends, as a share of the longest side. Without it 1 of 59
-        /// random surfaces has more seeds, and the proofs take a fifth longer.
+        /// Room for what the surface bends, as a share of the longest side. Without it proofs take
+        /// longer.
         const BEND: f64 = 0.25;
-        /// Room for the slack: twice what the proof takes. With just that, on 4 of 25 random
-        /// surfaces of many small components one of them counts twice.
+        /// Room for the slack: twice what the proof takes. With just that, small components may
+        /// count twice.
         const SLACKS: f64 = 8.0;
         let size = from.normal.abs();
         let up = size.max_position();

@@ -23,11 +23,10 @@ use crate::spatial::tree::Tree;
 use glam::{DMat3, DVec3, Vec3};
 
 /// Number of sizes of a box around a singular point that are tried: the longest side of the whole
-/// box, and each half the one before. Half of them leaves 0.01 % more cells undecided on 48 random
-/// surfaces, and double as many.
+/// box, and each half the one before.
 const SIZES: usize = 10;
 /// Number of sizes, above the largest one that is proven as a whole, that are tried in sub-boxes.
-/// Without any, 7 of 150 random surfaces with cone points are no longer proven.
+/// Without any, fewer surfaces with cone points are proven.
 const MOST_LARGER: usize = 2;
 /// Number of sub-boxes: three along each axis.
 const SUB_BOXES: usize = 27;
@@ -45,35 +44,31 @@ const MOST_STEPS: u32 = 24;
 const ENDS: [f64; 2] = [1e-12, 1e-7];
 /// Largest |f| that counts as zero at a saddle of f, in units of |H| d², where H is the Hessian and
 /// d the search distance. It is far above rounding: cone points open where coefficients are
-/// rounded. A hundredth of it finds none of the 29 points of 46 random surfaces, a hundred times as
-/// much 77, some of them necks.
+/// rounded. Smaller: cone points are missed; larger: necks count as cone points.
 const LARGEST_VALUE: f64 = 1e-8;
 /// Largest |f|, in units of |H| d², at the middle of the narrow neck that a cone point leaves when
-/// it opens, which the search treats as a singular point. Without, 5 of 24 random surfaces whose
-/// cone points have opened are no longer proven; ten times as much changes nothing.
+/// it opens, which the search treats as a singular point. Smaller: fewer surfaces whose cone points
+/// have opened are proven.
 const LARGEST_NECK: f64 = 1e-3;
 /// A direction along which the second derivatives are smaller than this share of the largest is
 /// taken for that of a singular curve: the Newton step does not run along it. It is the root of the
 /// precision to which second derivatives are known.
 const SMALL: f64 = 1e-6;
 /// Share in the place of [`SMALL`] where a Newton step leads too far: beside a curve of singular
-/// points the step runs along the curve. In 60 runs on 30 random surfaces that cross themselves 124
-/// places are found, with half 118, with double 136, and 166 without: curves in pieces.
+/// points the step runs along the curve. Without it curves are found in pieces.
 const DAMPED: f64 = 0.1;
 /// Factors by which steps shrink where the first derivatives that do not vanish are of third to
-/// eighth order: (n − 2)/(n − 1). Such a step is lengthened to where the steps would end. Without,
-/// 5 of 50 random surfaces with cusps no longer show theirs.
+/// eighth order: (n − 2)/(n − 1). Such a step is lengthened to where the steps would end. Without
+/// this some cusps are missed.
 const SLOW: core::ops::Range<f64> = 0.45..0.88;
 /// Two singular points count as one if they are nearer to each other than this share of the search
-/// distance: Newton's method ends at 10⁻¹² of it. A tenth and ten times give the same particles on
-/// 20 random cones. A tip as near to one is that point.
+/// distance: Newton's method ends at 10⁻¹² of it. A tip as near to one is that point.
 pub(crate) const SAME: f64 = 1e-6;
 /// Distance from a point of the survey within which a singular point is searched, in spacings of
 /// its grid: the diagonal of a cell.
 const NEAR: f64 = 1.75;
 /// Extent of linked points that are no curve, as a share of the search distance: at a point where
-/// sheets touch, Newton's method ends within a hundredth of it. Half and double give the same
-/// particles on 20 random cones.
+/// sheets touch, Newton's method ends within a hundredth of it.
 const ONE_PLACE: f64 = 0.25;
 
 /// A point where the gradient of f vanishes and f is 0, or nearly so.
@@ -161,7 +156,6 @@ pub(crate) fn near_survey(
         for (k, p) in points.iter().enumerate() {
             let (p, slope_sq) = (p.as_dvec3(), gradient[k].as_dvec3().length_squared());
             let most_sq = size_sq(&matrix(&hessian[k].map(f64::from))) * reach * reach;
-            // A quarter and a half of a spacing give the same particles on 38 random surfaces.
             let is_near = |other: DVec3| other.distance_squared(p) <= spacing * spacing;
             // False for NaN.
             let is_start = slope_sq <= most_sq

@@ -15,13 +15,11 @@ use crate::sampler::sheet::OrientedPoint;
 use glam::{DVec3, Vec3};
 use rand_core::Rng;
 
-/// Largest number of evaluations of f on an edge that look for two crossings. With one, a tenth of
-/// the area of two spheres 1e-4 apart is missed; with two or four, 9 and 5 of 26 random surfaces of
-/// near sheets take other seeds.
+/// Largest number of evaluations of f on an edge that look for two crossings. Fewer miss more of
+/// sheets that are near each other.
 const LOOKS: usize = 3;
 /// Distance at which the size of f distinguishes a zero from a pole, in tolerances of the survey.
-/// With 1 rounding decides on 1 of 46 random surfaces with poles, jumps and cones; with 40 the same
-/// is found.
+/// At a single tolerance rounding may decide.
 const POLE_PROBE: f32 = 4.0;
 
 /// The result of a survey.
@@ -429,8 +427,7 @@ impl Survey {
     /// Limits for the residual of particles on this surface.
     pub(crate) fn residual_limits(&self) -> ResidualLimits {
         /// Share of the crowding, which is the distance of the nearest other sheet or up to twice
-        /// that: a particle stays within a fifth of the way there. Twice as much changes the seeds
-        /// of 3 of 26 random surfaces of near sheets, half of it those of 4.
+        /// that: a particle stays within a fifth of the way there.
         const SHARE: f32 = 0.1;
         let gap = self.nearness.map_or(f32::INFINITY, |near| near.gap as f32);
         ResidualLimits { finest: self.resolution, coarsest: SHARE * self.crowding.min(gap) }
@@ -497,8 +494,7 @@ impl Survey {
         /// Lines that are tried. A third of them meet a surface that its box fits.
         const LINES: u32 = 64;
         /// Least cosine of the angle between line and normal: 60°. Where a line grazes the surface,
-        /// the point moves more than that. With half of it and with 0 holes are 0.6 % wider in 104
-        /// runs on 52 random surfaces.
+        /// the point moves more than that. Smaller: holes are wider.
         const LEAST_COSINE: f32 = 0.5;
         let Tolerance { residual, min_gradient, .. } = self.tolerance();
         // One more step from there.
@@ -542,15 +538,12 @@ impl Survey {
 }
 
 /// Largest distance at which f is looked at on either side of a point, as a share of the grid's
-/// spacing: it halves from there. For surfaces that only touch zero a sixth of it tells the same on
-/// 223 random surfaces.
+/// spacing: it halves from there.
 const LARGEST: f32 = 0.125;
-/// Number of points at which a median or a quartile is taken, which then rests on 12 of them. Half
-/// and twice as many at which the resolution is measured change no particle on 43 random surfaces.
+/// Number of points at which a median or a quartile is taken, which then rests on 12 of them.
 pub(super) const FEW: usize = 48;
 /// Number of points or particles that are looked at, spread over all: a share of them is that of
-/// all to 3 %. Half as many at which near sheets are looked for give the same particles in 72 runs
-/// on 36 random surfaces, many of which have some, twice as many others on one.
+/// all to 3 %.
 pub(crate) const SAMPLES: usize = 256;
 /// Distance, in resolutions, below which rounding may decide the sign of f: that at which sheets
 /// are told apart.
@@ -590,8 +583,7 @@ fn measure_precision(probe: &mut Probe, bounds: &Bounds, spacing: f32, out: &mut
 /// than half of these have one.
 fn look_for_near_sheets(field: &mut dyn Evaluator, out: &mut Survey, spacing: f32) -> bool {
     /// Largest distance, in grid spacings, at which the tolerance of particles depends on another
-    /// sheet: a hundred times that to which the survey's points land. Half and double give the same
-    /// particles in 72 runs on 36 random surfaces, many of which have some.
+    /// sheet: a hundred times that to which the survey's points land.
     const MOST: f32 = 0.01;
     let points: Vec<DVec3> = selection(&out.position, SAMPLES).map(|p| p.as_dvec3()).collect();
     let (found, count) = nearest(field, points.iter().copied(), f64::from(MOST * spacing));

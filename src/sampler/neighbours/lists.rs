@@ -12,7 +12,7 @@ use crate::sampler::neighbours::packed::PackedNeighbours;
 use glam::{BVec4A, Vec4};
 
 /// Largest number of particles whose lists are renewed together. It limits the candidates of a
-/// list; half and double give the same particles.
+/// list, and changes no particle.
 const GROUP: usize = 32;
 
 /// Distance that a particle has travelled since its list was made, or one of two marks beyond all

@@ -16,30 +16,24 @@ use core::slice;
 use glam::Vec3;
 
 /// Match tolerance of a coarse front. It places fewer particles where grains meet than the paper's
-/// front does, whose relaxation cannot remove one. With the paper's 0.7 the figures of 180 random
-/// surfaces are the same within noise, but beside the tip of a narrow cone a particle stands 2.1
-/// spacings from it.
+/// front does, whose relaxation cannot remove one. With the paper's 0.7 a particle may stand two
+/// spacings from the tip of a narrow cone.
 pub(crate) const MATCH_TOLERANCE: f64 = 0.8;
 
 /// Radius of a coarse front over that of its share of the particles, of which it places fewer where
-/// its grains meet. What it is off by is made up for at the first level. With 1, 0.7 points fewer
-/// of the particles have six neighbours on 36 closed random surfaces and 1.1 on 36 that a box cuts;
-/// with 0.9 the closest pair on 36 solids is at 0.65 in place of 0.69.
+/// its grains meet. What it is off by is made up for at the first level. Larger: fewer particles
+/// have six neighbours; smaller: the closest pairs on solids are nearer.
 pub(crate) const FRONT_RADIUS: f64 = 0.95;
 
 /// Largest number of halvings: with it a million particles come from 240.
 const MAX_LEVELS: u32 = 6;
-/// Largest product of coarse spacing and curvature. On 40 closed random surfaces half of it makes
-/// the share of particles with six neighbours 0.3 points smaller and double 0.2 points larger; on
-/// 40 that a box cuts it is the other way, and with double angles are 0.2° smaller. With 3.2, a
-/// small ball beside a large one gets a seventh fewer particles than are due to it: so few do not
-/// know its area.
+/// Largest product of coarse spacing and curvature. Smaller: fewer particles of a closed surface
+/// have six neighbours. Larger: a small ball beside a large one gets fewer particles than are due
+/// to it, because so few do not know its area.
 const MAX_BEND: f64 = 0.9;
 /// Largest product of spacing and curvature for a front that is refined once, or healed at full
-/// resolution: beyond it an edge spans half a turn. With half of it the share of particles with six
-/// neighbours is 2.5 and 1.4 points smaller on 40 strongly bent random surfaces with 2,500 and
-/// 4,000 particles; with twice as much one more is refined, with an Euler number that is not the
-/// front's.
+/// resolution: beyond it an edge spans half a turn. Smaller: fewer particles of a strongly bent
+/// surface have six neighbours.
 const MAX_BEND_LEAST: f64 = 3.2;
 
 /// Largest curvature at each of some points of the surface; infinite where there is none.
@@ -172,8 +166,7 @@ fn judge_triangles(joined: &Triangulation, particles: &Particles, bounds: &Bound
     if let Some(v) = joined.unfilled.iter().flatten().copied().find(is_inside) {
         return Err(doubtful(particles, v));
     }
-    // The only particle of a component, say. Without this 19 of 60 random solids beside a small
-    // ball lose the ball.
+    // The only particle of a small component, say, which would be lost.
     let is_seed = |&v: &u32| particles.parent[v as usize] == Particles::NO_PARENT;
     if let Some(v) = left_out.find(is_seed) {
         return Err(doubtful(particles, v));

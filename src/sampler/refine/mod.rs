@@ -59,16 +59,15 @@ use tally::Tally;
 /// in ten, four leave 10⁻⁵ of it.
 const BORDER_ROUNDS: u32 = 4;
 
-/// Units that a trial of surgery counts for. On random surfaces one takes 83,000 to 89,000
-/// instructions, and a unit of the front 2,400 to 5,100.
+/// Units that a trial of surgery counts for. One takes 83,000 to 89,000 instructions, and a unit of
+/// the front 2,400 to 5,100.
 const TRIAL_UNITS: u32 = 32;
 /// Half-edges looked at for a unit. An edge takes 120 instructions, a particle of a sweep 1,500,
 /// and a face that is measured 1,600.
 const HALF_EDGES_PER_UNIT: u32 = 12;
 
-/// Fewest particles of a coarse front. With half of it, those of 180 runs on random bodies that
-/// change have 0.9 % more particles with six neighbours, and angles 0.3° smaller; with twice as
-/// many 1 % fewer, and 1.5 % where sizes differ, in 1.1 times the time.
+/// Fewest particles of a coarse front. Fewer: more particles have six neighbours, and angles are
+/// smaller. More: fewer have six, and a run takes longer.
 const LEAST_PARTICLES: u32 = 180;
 
 /// The number of levels, the radius and the count that a refinement is to reach.

@@ -103,55 +103,40 @@ pub(super) struct Tuning {
     graded_rounds: usize,
 }
 
-/// The values, chosen on random surfaces that no test or table names: blends of ellipsoids and
-/// tori, bumpy ellipsoids, quartics, sums of waves, and surfaces cut by random boxes, with 1,500 to
-/// 40,000 particles. Angles are means of the smallest angle of a triangle, holes and pairs the
-/// largest and the closest over those of the hexagonal lattice.
+/// The values. Angles are the smallest angles of triangles, holes and pairs the largest hole and
+/// the closest pair. `cargo xtask sensitivity sampler/refine/recipe.rs:rounds` shows what one of
+/// them changes.
 pub(super) const TUNING: Tuning = Tuning {
-    // With half the δ the share of particles with six neighbours is 0.15 points smaller. With half
-    // and double the sweeps of any plan all figures of 80 surfaces of one size are the same within
-    // 0.2 %; with 6 at first, two more of 36 are refused where sizes differ.
+    // Smaller δ: fewer particles have six neighbours. Fewer sweeps: more surfaces are refused where
+    // sizes differ.
     first: Plan { sweeps: 10, theta: 0.8, delta: 0.045 },
-    // With θ = 0.8 and half the δ holes are 1 % wider.
+    // If both θ and δ are smaller, holes are wider.
     between: Plan { sweeps: 4, theta: 0.9, delta: 0.015 },
     // θ without a defect, before the limits below.
     last: Plan { sweeps: 6, theta: 1.3, delta: 0.0 },
-    // With 16 rounds at the first level, and two or three sweeps after each, no figure is better
-    // beyond noise. At full resolution the second half of them heals 2.3 points more of the
-    // particles than two rounds without a loss, in 23 runs, and all ten no more than that half.
+    // More are no better. At full resolution the second half of them heals as much as all.
     rounds: 10,
-    // Without it the count is 0.03 % farther off on 43 random surfaces, and holes are 1.5 % wider.
+    // Without it the count is farther off, and holes are wider.
     stretch: 0.04,
-    // On twelve motions and eight of random surfaces holes are up to 2.0 without it, and with 0.04
-    // a frame takes 1.3 times as long for the same figures.
+    // Without it holes are wider; smaller: a frame takes longer.
     kept_stretch: 0.2,
-    // 83 % of the first particles live to the end there, and as many have six neighbours as with 0,
-    // where it is 77 %. With 0.5 it is 86 %, and holes are wider.
+    // With 0 fewer of the first particles live to the end. Larger: more do, and holes are wider.
     least_gain: 0.2,
-    // With half of it holes are 0.8 % wider on 40 closed surfaces; with twice as much the share of
-    // particles with six neighbours is 0.25 points smaller on 40 that a box cuts. Whether it falls
-    // to 0 over a third of the rounds or all of them changes nothing beyond noise.
+    // Smaller: holes are wider. Larger: fewer particles of a surface that a box cuts have six
+    // neighbours.
     loss: 0.1,
     // Half-way from 1, where sweeps are slow, to 2, where those of a quadratic energy diverge.
     omega: 1.5,
-    // The limits below then hold for one defect in a hundred particles and for one in forty. With
-    // half of it the closest pairs of 56 runs on 28 random surfaces are 2.1 % farther apart and
-    // angles 0.7 % smaller, with double 0.6 % nearer and 0.2 % larger.
+    // The limits below then hold for one defect in a hundred particles and for one in forty.
+    // Smaller: pairs are farther apart, and angles smaller; larger: the other way round.
     theta_per_defect: 30.0,
-    // With half of it the largest holes of those runs are 4.6 % wider where sizes differ, with 0.8
-    // angles are 0.7 % smaller.
+    // Smaller: holes are wider where sizes differ; larger: angles are smaller.
     least_theta: 0.6,
-    // Pairs are at 0.81 and angles of 56.8° with this everywhere on closed surfaces, at 0.79 and of
-    // 57.2° with 0.7.
+    // Smaller: pairs are nearer, and angles larger.
     most_theta: 0.98,
-    // Three bring pairs from 0.79 to 0.81 at θ = 0.9, for 0.2°; the third makes the smallest angle
-    // of all 0.4° smaller.
+    // More: pairs are farther apart, and angles smaller.
     lloyd: 2,
-    // Four steps of two rounds each instead of two steps make angles 0.2° smaller. Without rounds
-    // at the last level the largest hole of 58 runs on random surfaces is 1.38 times that of the
-    // local lattice in place of 1.33, and three times as many are wider than 1.4; 0.6 points more
-    // of the particles have six neighbours. With one round the largest hole is 1.34 times it, with
-    // three 1.32.
+    // More: holes are narrower, and fewer particles have six neighbours.
     graded_rounds: 2,
 };
 

@@ -8,33 +8,26 @@ use crate::mesh::half_edge::{HalfEdges, next, previous};
 use core::cmp::Ordering;
 use glam::Vec3;
 
-/// Rings around a defect that a trial moves. On 57 random surfaces one ring makes the mean smallest
-/// angle 0.2° smaller, three make it 0.1° larger in 1.4 times the time; with none all are refused.
+/// Rings around a defect that a trial moves. Fewer: angles are smaller. More: they are larger, and
+/// a run takes longer.
 const RINGS: u32 = 2;
-/// Sweeps over the patch of a trial. With four of them the figures of 43 random surfaces are the
-/// same within their noise.
+/// Sweeps over the patch of a trial. More are no better.
 const SWEEPS: u32 = 2;
 /// Over-relaxation of the steps of surgery: less than in sweeps over all particles, since the patch
-/// must come to rest within a few. With 1 and with 1.7 the share of particles with six neighbours
-/// is 0.4 and 0.3 % smaller in 56 runs on 28 random surfaces, with 1.5 holes are 0.9 % wider where
-/// sizes differ.
+/// must come to rest within a few. With less or more, fewer particles have six neighbours.
 const OMEGA: f32 = 1.3;
 /// A trial ends early if the gain of its last sweep, times this, would not be enough. In 19 of 20
 /// trials a sweep gains no more than 0.35 of what the one before it did, and so all that follow no
-/// more than 0.54 of it. On 80 random surfaces the figures are the same within 1 % with none of it
-/// and with double.
+/// more than 0.54 of it.
 const STILL_TO_GAIN: f32 = 0.5;
 /// Price of a particle, in units of the spacing squared, over the share by which the faces exceed
-/// the wanted number. On 57 random surfaces the count is 0.10 % off; without a price it is 0.61 %
-/// off, with half 0.13 %, and with twice as much 0.08 %, where the share of particles with six
-/// neighbours is 0.15 points smaller.
+/// the wanted number. Smaller: the count is farther off; larger: fewer particles have six
+/// neighbours.
 const COUNT_PRICE: f32 = 20.0;
 
 /// Least cosine of the angle between the normal of a face that a trial leaves and that of the
-/// surface at its corners: that of 60°. In 128 runs on a body with two thin ears, seven lose an ear
-/// without this rule, and none with 0 or more; with 0.4 to 0.6, 69 to 71 of them are refined once,
-/// with 0 to 0.2 only 35 to 40. The figures of 180 runs on random bodies are the same within their
-/// scatter with 0 to 0.7.
+/// surface at its corners: that of 60°. Without this rule a body may lose a thin ear; with a
+/// smaller cosine fewer such bodies are refined.
 const LEAST_AGREEMENT: f32 = 0.5;
 
 /// Parameters of a round of surgery.

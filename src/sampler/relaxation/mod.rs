@@ -144,8 +144,7 @@ pub(crate) struct Swept {
 pub(crate) const TRANSPORT_REACH: f32 = 2.0;
 
 /// A Newton correction shorter than this, in radii, ends the transport: what it leaves is far below
-/// the step that follows, which lands particles as closely as any. With a tenth, half and double of
-/// it the figures of 16 random motions are the same within 1 %.
+/// the step that follows, which lands particles as closely as any.
 const TRANSPORT_TRUST: f32 = 0.1;
 
 impl Relaxation {

@@ -14,11 +14,11 @@ use crate::sampler::sizing::Sizing;
 use glam::{Vec3, Vec4};
 
 /// Largest number of evaluations to bring a particle back onto the surface. Three are enough on
-/// smooth random formulas; where a field through points takes more than six, the particle stays.
+/// smooth formulas; where a field through points takes more than six, the particle stays.
 const MAX_NEWTON: u32 = 6;
 
 /// Largest distance that a particle moves in one step, in radii: it stays far from the next one,
-/// at 2. Half of it and twice as much give the same figures on random surfaces within 0.5 %.
+/// at 2.
 pub(crate) const MAX_MOVE: f32 = 0.35;
 
 /// A batch of particles that return to the surface.
@@ -119,8 +119,6 @@ impl Gaussian {
 impl Repulsion for Gaussian {
     const RANGE: f32 = GAUSSIAN_RANGE;
     const SKIN: f32 = GAUSSIAN_SKIN;
-    /// Half of it takes 0 to 1.2 % more instructions in runs on six random surfaces, double of it
-    /// as many within 0.3 %.
     const SLACK: f32 = 0.5;
     /// The unit is σ². The stiffest mode of the hexagonal lattice at spacing 2σ has the eigenvalue
     /// 2.2 / σ², so steps below 0.9 are stable there, and steps below 0.7 where rows are squeezed
@@ -297,8 +295,7 @@ impl Repulsion for Overlap<'_> {
 
 /// A radius is brought up to date once its particle has travelled this share of it. Until then the
 /// law has changed by less than this share of the slope, a few thousandths on most surfaces, and a
-/// Hessian costs two to three gradients. With half and double the figures of 25 random surfaces are
-/// the same within 0.3 %.
+/// Hessian costs two to three gradients.
 const RADIUS_LASTS: f32 = 0.1;
 
 /// A batch of descents to the surface that notes the curvature at each evaluation.

@@ -14,15 +14,12 @@ use core::ops::Range;
 use glam::Vec3;
 
 /// Factor by which the step size grows after a step that stands; it is halved after one that does
-/// not. Ten steps without growth end within 0.1 % of the same figures; in longer runs the size
-/// recovers in 14 steps.
+/// not, and recovers in 14 steps.
 const GROWTH: f32 = 1.05;
-/// Times that the way of a particle that has come to another sheet is halved. Half and double give
-/// the same particles on 46 random surfaces.
+/// Times that the way of a particle that has come to another sheet is halved. A choice.
 const HALVINGS: u32 = 4;
 /// The configuration counts as being at its minimum after more than this many rejected steps in a
-/// row: the step is then shorter than a hundredth of the first. Ten steps on random surfaces,
-/// creased ones too, reject no more than three in a row.
+/// row: the step is then shorter than a hundredth of the first.
 const MAX_FAILURES: u32 = 6;
 
 /// The step size and the state of every particle that a step changes.

@@ -6,8 +6,7 @@ use crate::sampler::discovery::grid::CELLS;
 use glam::Vec3;
 
 /// Largest number of passes forwards and backwards over the nodes. One would be enough on a full
-/// grid; in a thin band of nodes the shortest path may turn back around a bend. One and three give
-/// the same radii on 22 random surfaces.
+/// grid; in a thin band of nodes the shortest path may turn back around a bend.
 const ROUNDS: usize = 2;
 
 /// A function on the nodes of a regular grid. Only the nodes near the surface, the *active* ones,

@@ -22,11 +22,10 @@ use crate::sampler::sizing::laws::SizingLaw;
 use glam::Vec3;
 
 /// Rounds towards a predicted count. Each scales the radii by the square root of the ratio of the
-/// counts; more than one is necessary only because of the clamps and the slope. Five and seven give
-/// the same radii on 22 random surfaces.
+/// counts; more than one is necessary only because of the clamps and the slope.
 const MAX_ROUNDS: u32 = 6;
 /// Relative error at which a predicted count counts as met; the prediction itself is not more
-/// accurate. Half of it gives the same radii on 22 random surfaces, twice as much others on 3.
+/// accurate.
 const PREDICTION_TOLERANCE: f64 = 2e-3;
 
 /// The radius field of a run.

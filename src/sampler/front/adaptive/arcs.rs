@@ -27,12 +27,11 @@ use core::f32::consts::TAU;
 use glam::{Vec2, Vec3};
 
 /// A child has room if the free angle τ is at least this share of φ. At ½ its distance from either
-/// neighbour is 0.77 (r_i + r_j). With 0.4 random surfaces have larger overlaps, with 0.63 larger
-/// holes.
+/// neighbour is 0.77 (r_i + r_j). Smaller: larger overlaps; larger: larger holes.
 const FIT: f32 = 0.5;
 
-/// An arc takes another child if it has room for this share of it. On random surfaces 89 in 100
-/// particles have six neighbours so, with a quarter of it and with a whole 86.
+/// An arc takes another child if it has room for this share of it. With less or more, fewer
+/// particles have six neighbours.
 const CROWDING: f32 = 0.5;
 
 /// Stands for no angle: an interval that ends this far from its middle is empty.
@@ -432,6 +431,6 @@ impl ParentRing {
     }
 }
 
-/// Ridge parameter of the fit of the radius's gradient, as a share of the squared distances. Half
-/// of it and twice as much give the same figures on random surfaces within 2 %, to either side.
+/// Ridge parameter of the fit of the radius's gradient, as a share of the squared distances. A
+/// choice.
 const SLOPE_PULL: f32 = 0.02;

@@ -37,8 +37,7 @@ use core::ops::Range;
 use glam::{Vec2, Vec3};
 
 /// Radius of the query around a parent, in its radii: it covers every collision of a child of usual
-/// size, 2 + 2 × 0.7, and some more. The second ring of a lattice is at 3.46. With 3.4 the
-/// particles of 25 random surfaces are the same, with 4.4 their figures within 0.4 %.
+/// size, 2 + 2 × 0.7, and some more. The second ring of a lattice is at 3.46.
 const REACH: f32 = 3.7;
 
 /// Particles within this share of r_i + r_j enter each other's neighbour lists for the relaxation.
@@ -48,18 +47,17 @@ const LISTED: f32 = 0.5 * (OVERLAP_RANGE + OVERLAP_SKIN);
 /// It moves no particle.
 const TOUCHING: f32 = 1.25;
 
-/// Neighbours within this many radii enter the fit of the radius's gradient: those between the
-/// rings of a lattice, which are at 2 and at 3.46. From 2.2 to 3.5 the figures of random surfaces
-/// are the same within 2 %.
+/// Neighbours within this many radii enter the fit of the radius's gradient. The rings of a lattice
+/// are at 2 and at 3.46.
 const RING: f32 = 2.8;
 
 /// A child and its parent take part in the filling if the child's radius differs from the
-/// prediction by more than this share: the radii around them are known by then. On creased surfaces
-/// the holes beside small particles are 1 % narrower so.
+/// prediction by more than this share: the radii around them are known by then. Holes beside small
+/// particles are narrower so.
 const SURPRISE: f32 = 0.1;
 
-/// Largest number of rounds of filling. On creased surfaces the largest hole is 3 % narrower with
-/// them. Two place as many particles on most, but not on all; eight place no more.
+/// Largest number of rounds of filling. With them the largest hole of creased surfaces is narrower;
+/// more rounds place no more particles.
 const MAX_FILLS: u32 = 4;
 
 /// Bound for the slope of the radius along the way to a child, above the steepest grading that a

@@ -14,34 +14,28 @@ use crate::sampler::projection::{
 use crate::sampler::sizing::Sizing;
 use glam::Vec3;
 
-/// Largest difference between the distance from the parent and r_p + r_c, as a share of r_c. With
-/// half and with double the figures of 24 random surfaces are the same within 0.3 %.
+/// Largest difference between the distance from the parent and r_p + r_c, as a share of r_c.
 pub(crate) const TOUCH: f32 = 2e-3;
 
 /// A correction of the distance shorter than this share of r_c is accepted without another
-/// evaluation. The error that remains is the change of the radius beyond its slope. From half to
-/// five times as much the figures of 24 random surfaces are the same within their scatter, and half
-/// of it takes 0.5 % more evaluations.
+/// evaluation. The error that remains is the change of the radius beyond its slope. Smaller: more
+/// evaluations.
 const TRUSTED_PULL: f32 = 0.02;
 
 /// Largest number of evaluations of Newton's method. A good guess takes one or two; where it has
-/// not come to its end by then, the search goes on in brackets. Twice as many give the same
-/// particles on 39 random surfaces, half of them others on one.
+/// not come to its end by then, the search goes on in brackets.
 const MAX_STEPS: u32 = 8;
 
 /// Largest change of the distance in a step, as a share of the distance: it stays positive. Only
-/// creased surfaces meet the bound; half of it and twice as much give the same figures there within
-/// 2.5 %.
+/// creased surfaces meet the bound.
 const MAX_PULL: f32 = 0.3;
 
 /// Rounds of the safeguarded search, of which each finds a root on the circle and then corrects the
-/// distance. Children take some where the surface bends within a particle, and where f ends: on 20
-/// of the gallery's 40 surfaces, and on 2 of 80 random ones. Three and twelve give the same figures
-/// on creased surfaces within 3 %.
+/// distance. Children take some where the surface bends within a particle, and where f ends.
 const MAX_ROUNDS: u32 = 6;
 
 /// Where the radius jumps, no distance fits exactly. A child is accepted if it misses by at most
-/// this share of its radius. Half of it gives the same particles on creased surfaces.
+/// this share of its radius.
 const LOOSE_TOUCH: f32 = 0.5;
 
 /// A child to be placed: the data of the problem |c − p| = r_p + r(c).
@@ -307,8 +301,7 @@ impl DirectPlacement {
 }
 
 /// A correction shorter than this share of the radius is accepted without another evaluation: the
-/// third-order term that the Hessian leaves out is then below a thousandth of the radius. Half and
-/// double change the particles of 7 and 3 of 25 random surfaces, and no figure.
+/// third-order term that the Hessian leaves out is then below a thousandth of the radius.
 const TRUSTED_MOVE: f32 = 0.06;
 
 /// The outcome of a step of Newton's method.

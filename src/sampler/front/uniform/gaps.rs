@@ -18,22 +18,18 @@ use crate::spatial::Neighbour;
 use glam::Vec2;
 
 /// A slot lies on a seam if the particle that matches it is farther away than this share of 2r.
-/// Inside a lattice the distance is below 0.2. With half of it random surfaces come out the same;
-/// with twice as much the gaps stay.
+/// Inside a lattice the distance is below 0.2. Larger: gaps stay.
 pub(crate) const SEAM: f32 = 0.35;
 
 /// A gap is filled if its centre is at least this far from every particle, in 2r. The triangles of
-/// a lattice have 0.577; a hole of 1.45 times the ideal size has 0.84. On 24 random surfaces the
-/// largest hole is 1.24 in the mean with 0.7, 1.29 with 0.8 and 1.30 with 0.9, and the mean
-/// smallest angle of a triangle 54.2°, 54.5° and 54.5°.
+/// a lattice have 0.577; a hole of 1.45 times the ideal size has 0.84. Smaller: holes are smaller,
+/// and so are the smallest angles of triangles.
 const GAP: f32 = 0.8;
 
-/// A circle of a larger radius, in 2r, lies at the border of the surface and is no gap. Twice the
-/// bound changes nothing on closed random surfaces.
+/// A circle of a larger radius, in 2r, lies at the border of the surface and is no gap.
 const WIDEST: f32 = 1.25;
 
-/// Largest number of neighbours considered. The two rings of a lattice have 18. With 18 and 48 the
-/// particles of 24 random surfaces are the same, with 12 those of half of them are others.
+/// Largest number of neighbours considered. The two rings of a lattice have 18.
 const CAPACITY: usize = 24;
 
 impl UniformPlacing {
@@ -119,8 +115,7 @@ pub(crate) fn widest_gap(points: &[Vec2], least: f32) -> Option<Vec2> {
             let centre = Vec2::new(q.y * pp - p.y * qq, p.x * qq - q.x * pp) / (2.0 * twice_area);
             let width = centre.length();
             if width > widest && width < WIDEST {
-                // Rounding may put the three points themselves inside. With a tenth of this room 38
-                // random surfaces are the same.
+                // Rounding may put the three points themselves inside.
                 let inside = width * width * (1.0 - 1e-4);
                 if points.iter().all(|r| (*r - centre).length_squared() >= inside) {
                     widest = width;

@@ -41,8 +41,7 @@ const SLOT_DIRECTION: [[f32; 2]; 6] =
     [[1.0, 0.0], [0.5, SIN_60], [-0.5, SIN_60], [-1.0, 0.0], [-0.5, -SIN_60], [0.5, -SIN_60]];
 
 /// Allowance for the distance between a provisional and a final place, in r. Children of smooth
-/// surfaces move by a hundredth of it; those that move farther are compared again. With half and
-/// double the figures of 38 random surfaces are the same.
+/// surfaces move by a hundredth of it; those that move farther are compared again.
 const DRIFT_ROOM: f32 = 0.2;
 
 /// A predicted child, on the circle around its parent.

@@ -6,12 +6,11 @@ use crate::sampler::sheet::{MAX_LIFT, MAX_RISE_SQ};
 use glam::{Vec3, Vec4};
 
 /// Particles within this many radii of a parent enter the fit of its curvature. The six ideal
-/// neighbours are at 2, the next ring at 3.46; from 2.1 to 3.2 random surfaces come out the same.
+/// neighbours are at 2, the next ring at 3.46.
 const RING: f32 = 2.6;
 
 /// Weight of the prior "equal curvature in all directions" in the fit. It decides where the
-/// neighbours determine no curvature; half of it and twice as much change the evaluations of random
-/// surfaces by 0.01 %, and no figure.
+/// neighbours determine no curvature, and hardly matters elsewhere.
 const ISOTROPY: f32 = 0.005;
 
 /// The particles around a parent: offset x, y, z from the parent, normal x, y, z, and whether the

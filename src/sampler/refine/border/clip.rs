@@ -14,17 +14,13 @@ use crate::mesh::half_edge::{HalfEdges, next, previous};
 use glam::Vec3;
 
 /// Spacings by which the coarse front grows beyond the box: what is near its ragged edge is cut
-/// away. From 1 to 6 the figures of 24 random surfaces in random boxes are the same within their
-/// scatter; with 0.5 three of them are refused, with none eleven.
+/// away. With less than one spacing more surfaces are refused.
 const BEYOND: f64 = 3.0;
-/// Twice the area of a triangle that is flat for certain, as a share of the spacing squared. With
-/// half and double of it the figures of 24 random surfaces in random boxes are the same within
-/// their scatter. With 0, seven of 180 runs on 60 of them are refined fewer times, one of these not
-/// at all, and one is refined more often.
+/// Twice the area of a triangle that is flat for certain, as a share of the spacing squared. With 0
+/// some surfaces are refined fewer times.
 const FLAT: f32 = 0.05;
 /// Where the front cannot grow beyond the box it ends before it, by no more than this share of the
-/// spacing. Of 36 random fields that end at the box 19 are refined; with half of it 15 are, with
-/// twice and four times as much the same 19.
+/// spacing. Smaller: fewer fields that end at the box are refined.
 const OPEN_END: f32 = 1.3;
 
 /// The box to which a coarse front grows whose particles have this radius.
@@ -182,9 +178,8 @@ fn close_open_ends(net: &mut Net, ground: &mut Ground, spacing: f32, first: u32)
     Ok(())
 }
 
-/// Collapses the short edges at the border, and flips edges to those of Delaunay. Without it 0.8
-/// points fewer of the particles of 13 random surfaces that the box cuts have six neighbours. Every
-/// round but the last takes a particle away.
+/// Collapses the short edges at the border, and flips edges to those of Delaunay. Every round but
+/// the last takes a particle away.
 fn tidy(net: &mut Net, spacing: f32) {
     loop {
         let has_changed = net.thin(spacing);

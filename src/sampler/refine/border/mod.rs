@@ -89,8 +89,7 @@ impl Net {
     }
 
     /// Vector from a border vertex half-way to the middle between its neighbours along the border.
-    /// Without that step the longest edge of the border is 5 % longer in the mean of 32 surfaces in
-    /// random boxes.
+    /// It shortens the longest edges of the border.
     pub(super) fn way_along_border(&self, v: u32) -> Vec3 {
         let [before, after] = self.border_edges(v);
         let [a, b] = [self.mesh.origin(before), self.mesh.target(after)].map(|v| self.position[v as usize]);
@@ -131,8 +130,7 @@ impl Net {
     }
 
     /// Brings particles onto the surface by one step of Newton's method, as [`land`](Self::land)
-    /// does, and those on the border that it cannot bring there by several. Without the several
-    /// steps, 3 of 400 surfaces in random boxes are refused.
+    /// does, and those on the border that it cannot bring there by several.
     ///
     /// # Errors
     ///

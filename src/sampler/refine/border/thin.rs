@@ -1,6 +1,5 @@
 //! Acute corners: where two planes of the box cut the surface at a small angle, the particles along
-//! both curves come near each other. On 40 surfaces in random boxes the shortest edge of all is
-//! 0.60 spacings with this stage, and 0.34 without.
+//! both curves come near each other. One of each pair that crowds is taken out.
 
 use super::super::net::Net;
 use crate::math::{key, sort_by_key};
