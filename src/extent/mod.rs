@@ -49,13 +49,10 @@ const MARGIN_RADII: f64 = 3.0;
 /// The room in radii is not more than this share of the longest side: the surface fills at least
 /// half of it.
 const MOST_MARGIN: f64 = 0.5;
-/// Cells visited at most for a short formula: 20 to 50 milliseconds. With half as many 19 of 68
-/// random surfaces have another box, mostly a wider one, with twice as many 13, mostly a tighter
-/// one.
+/// Cells visited at most for a short formula: 20 to 50 milliseconds. Fewer make the box wider.
 const MOST_CELLS: usize = 32_768;
 /// Largest number of operations of a formula that may have [`MOST_CELLS`]. A longer one may have
-/// fewer cells, in inverse proportion. Of 16 random sums of as many waves half of it gives 12
-/// another box, a wider one, and double 8, a tighter one.
+/// fewer cells, in inverse proportion, so that it takes as long.
 const SHORT: usize = 64;
 
 /// Whether a surface is bounded.
@@ -203,8 +200,7 @@ fn of_periods(periods: [Option<f64>; 3]) -> Option<Bounds> {
 /// which often touch the surface: creases are plain curves then.
 #[must_use]
 pub fn unit_cell(field: &dyn Field, periods: [Option<f64>; 3], bounds: &Bounds) -> Bounds {
-    /// Places of the corner along each axis. On six random surfaces |f| at the corner is 97 % of
-    /// the largest in the cell, with half as many places 84 %, with twice as many 98 %.
+    /// Places of the corner along each axis. Fewer come less near to the largest |f| in the cell.
     const SIDE: u32 = 8;
     /// Share of the way between two places at which the first one is, by the golden ratio: planes
     /// of symmetry are at simple fractions.

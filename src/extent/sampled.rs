@@ -8,9 +8,8 @@ use glam::{DVec3, Vec3};
 
 /// Cells along a side of a grid: as many as those of the survey.
 pub(crate) const CELLS: usize = 32;
-/// The grid is laid anew over what it found, with a cell around it, until that fills this share of
-/// it: further grids would hardly be smaller. Of 68 random surfaces the box of one is found by
-/// grids; with half of it the box is the same.
+/// The grid is laid again over what it found, with a cell around it, until that fills this share of
+/// it: further grids would hardly be smaller.
 const FULL: f64 = 0.6;
 
 /// Finds the smallest cube through whose faces the surface does not pass, and its box in it. The

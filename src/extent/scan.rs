@@ -28,23 +28,19 @@ const LARGER: f64 = 1.02;
 /// The extremes are known to this share of the longest side of their box: a third of the room that
 /// is left around it.
 const FINE: f64 = 1.0 / 64.0;
-/// Where no cells are left to visit, this share will do. With [`FINE`] in its place 2 of 68 random
-/// surfaces have a box that is a tenth larger.
+/// This share will do where no cells are left to visit. With [`FINE`] instead some boxes would be
+/// larger.
 const COARSE: f64 = 1.0 / 16.0;
 /// Halvings after which what is still in the cells at the faces, a 128th of the cube wide, counts
-/// as passing through them: a test holds a scan to a fiftieth of its half-width. With 6, 11 of 68
-/// random surfaces have another box, with 8, 2.
+/// as passing through them: a test holds a scan to a fiftieth of its half-width.
 const FACE_LEVEL: u32 = 7;
-/// Halvings at most, for an isolated point: places are counted in 32 bits. With 15, 24 of 68 random
-/// surfaces have another box.
+/// Halvings at most, for an isolated point: places are counted in 32 bits.
 const DEPTH: u32 = 30;
 /// Cells of a level that are many while some lie at the faces: eighths of them are a third of the
-/// cells that a scan may visit. Half of it gives 7 of 68 random surfaces another box, twice as much
-/// none, for 1.06 times the cells.
+/// cells that a scan may visit.
 const MANY_AT_FACES: usize = 1_500;
 /// Where a level of this depth, which has 512 cells, drops less than a tenth of them, the bounds
-/// say nothing. Without this rule 136 random surfaces take 1.1 times the cells, and surfaces of
-/// short periods eight times.
+/// say nothing. Without this rule surfaces of short periods would take many more cells.
 const IDLE_LEVEL: u32 = 3;
 const IDLE_SHARE: f64 = 0.9;
 /// Parts of a cell that are looked into at a time: two for each of the eight corners of a cell that

@@ -33,9 +33,7 @@ pub(crate) fn step_to_corner(slopes: [Slope; 3]) -> (DVec3, f64) {
 }
 
 /// Largest number of evaluations of Newton's method from a good guess, which takes two to five:
-/// each step doubles the digits. With half of them 5 of 33 random surfaces get other particles, and
-/// one another number of components; twice as many change the particles of 3, and no figure beyond
-/// scatter.
+/// each step doubles the digits.
 pub(crate) const STEPS: u32 = 12;
 
 /// Limits of the way of a point.

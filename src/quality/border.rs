@@ -7,8 +7,8 @@ use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
 /// Points nearer to the border than this many d_hex are left out of the figures per point: their
-/// neighbourhood is cut. With half of it `cover` of 7 of 13 random cut surfaces is larger, by up to
-/// 0.12; with twice as much that of 11 is smaller, by 0.06 in the mean, over far fewer points.
+/// neighbourhood is cut. Smaller: `cover` comes out larger; larger: the figures rest on fewer
+/// points.
 const MARGIN: f64 = 4.0;
 /// Step of the grid on a face, in d_hex. A border that is sampled this densely seems at most 0.05 %
 /// farther away than it is, at the distance of the margin.
@@ -17,8 +17,7 @@ const STEP: f64 = 0.25;
 /// for each face.
 const MOST_CELLS: f64 = 1500.0;
 /// Distance that the surface must reach beyond a face to count as cut, in d_hex: a surface that
-/// touches its box from inside is whole. Half of it gives the same figures on 13 random cut
-/// surfaces; with twice as much one of them has 3 % fewer particles at its border.
+/// touches its box from inside is whole.
 const BEYOND: f64 = 0.05;
 
 /// The curves along which the surface leaves a box, as points on them.

@@ -2,9 +2,7 @@
 
 use glam::DVec2;
 
-/// Largest number of points by which a cell is clipped. With half of it 6 of 36 runs on random
-/// surfaces have more open cells, with double none; to try a few points first takes as many
-/// instructions within 0.2 % on smooth surfaces, and 2 % more where there are creases.
+/// Largest number of points by which a cell is clipped. Fewer leave more cells open.
 pub(super) const MOST_POINTS: usize = 200;
 /// Largest number of corners of a cell: each of the points can add one, and the starting square has
 /// four.

@@ -11,20 +11,17 @@ use crate::slices::{MEDIUM, pause, ranges};
 use glam::Vec3;
 
 /// An edge may lead across a gap if it is longer than this many times the spacing at either end.
-/// With half of it all of 34 random surfaces fall into pieces; with twice as much 4 of them have
-/// another number of components.
+/// Smaller: surfaces fall into pieces; larger: pieces on either side of a gap may count as one.
 pub(super) const LONG: f32 = 2.0;
-/// The distance of the natural neighbour with this rank is the spacing at a point, of fewer that of
-/// the last: a single neighbour may be far too near. With 2 the figures of 7 of 34 random surfaces
-/// are others, with 4 those of 5, in the fourth digit.
+/// The distance of the natural neighbour with this rank is the spacing at a point, or that of the
+/// last one where there are fewer: a single neighbour may be far too near.
 const RANK: usize = 3;
 /// Largest distance of the surface from the middle of an edge, lifted to the circle through its
 /// ends, over the edge's length: the sagitta of an arc that turns by one radian is an eighth of its
-/// chord. Half of it changes figures on 2 of 34 random surfaces, twice as much on 3.
+/// chord.
 const REACH: f32 = 0.125;
 /// Distance from the surface at which a place is on it, and from the box at which it is in it, over
-/// the edge's length. Half of it changes the area of 6 of 34 random surfaces by up to 0.4 %; with
-/// twice as much one of them has another number of components.
+/// the edge's length. Larger: pieces on either side of a gap may count as one.
 const NEAR: f32 = 0.02;
 
 /// Returns the spacing at every point.

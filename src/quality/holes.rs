@@ -169,8 +169,8 @@ impl Surroundings {
     /// Whether a point of `tree` may lie within the squared distance `bound_sq` of `p`. The box is
     /// gathered anew if it does not hold all of those; within `width` there are a few points.
     fn may_be_nearer(&mut self, tree: &Tree, p: Vec3, bound_sq: f32, width: f32) -> bool {
-        /// Room around a sample for those that follow, in units of `width`. Half and double take
-        /// 1.01 and 1.02 times the instructions of two runs with their reports.
+        /// Room around a sample for those that follow, in units of `width`. Less: the box is
+        /// gathered more often; more: it holds more points.
         const REACH: f32 = 2.0;
         /// Points above which a search in the tree takes less: a triangle across a gap may be as
         /// wide as the surface.

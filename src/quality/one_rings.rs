@@ -11,8 +11,8 @@ use glam::{DVec2, DVec3, Vec3};
 /// Largest height of one point over the other's tangent plane, as the mean of both heights over the
 /// distance, if the two are on one sheet. On a smooth surface the two heights cancel to second
 /// order in the distance over the radius of curvature: the mean is 1/12 where the curvature changes
-/// by its own size between the points. Half of it leaves more open edges on 5 of 12 random surfaces
-/// with edges, cone points or near sheets, twice as much fewer on 4.
+/// by its own size between the points. Smaller: more edges stay open beside creases, cone points
+/// and near sheets.
 const MAX_LIFT: f32 = 0.2;
 /// Marks, in [`OneRings::neighbour`], that the Voronoi corner between this neighbour and the next
 /// one is proven.

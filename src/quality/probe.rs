@@ -22,8 +22,7 @@ const STATIONS: usize = 64;
 /// Lines that are evaluated together, in one slice of work.
 const LINES_AT_ONCE: usize = MEDIUM / STATIONS;
 /// A crossing counts if its first-order distance from the surface after projection is below this
-/// share of the step along the line: at poles and jumps the sign changes too. Half and double give
-/// the same figures on 34 random surfaces.
+/// share of the step along the line: at poles and jumps the sign changes too.
 const RESIDUAL: f32 = 1e-2;
 /// Seed of the lines, other than that of the samples on triangles: the letters of `lines`.
 const STREAM: u64 = 0x6c69_6e65_7300_0000;

@@ -4,8 +4,7 @@ use crate::field::descent::{Descent, descend};
 use crate::field::{BATCH, Evaluator};
 use glam::Vec3;
 
-/// Largest number of Newton steps of a projection. With two the figures of 4 of 34 random surfaces
-/// change in the sixth digit, with four that of one.
+/// Largest number of Newton steps of a projection: each doubles the digits.
 pub(super) const STEPS: u32 = 3;
 /// A step shorter than this share of the leash is the last one.
 ///

@@ -16,8 +16,7 @@ use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
 /// A pair is doubtful from this share of the distance of the sheet that faces the other way: those
-/// on either side of it are farther apart than that. Half of it changes `edge_cv` of 3 of 34 random
-/// surfaces by up to 0.012; with twice as much one of them has another number of components.
+/// on either side of it are farther apart than that.
 const SHARE: f64 = 0.5;
 /// Steps of the way along the surface from one point to another. At an eighth of the distance d a
 /// step leaves the surface by d³/3000 times the change of the curvature, which must be less than

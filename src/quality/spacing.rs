@@ -22,8 +22,8 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// The range is fixed, so that two runs can be compared; the perfect lattice has 1. On 24
-    /// random surfaces no more than one particle in 20,000 has a larger distance.
+    /// The range is fixed, so that two runs can be compared; the perfect lattice has 1. Hardly any
+    /// particle has a larger distance.
     const RANGE: (f64, f64) = (0.0, 1.2);
     /// A bin is 0.01 wide: a fifth of the standard deviation of the distances on a relaxed surface.
     const BINS: usize = 120;

@@ -6,8 +6,7 @@ use crate::math::NONE;
 use glam::Vec3;
 
 /// Points for each list head. With more heads most would stay empty, with fewer many cells would
-/// share one. With half and double of it runs on random surfaces take as many instructions within
-/// 0.3 %.
+/// share one.
 const POINTS_PER_HEAD: usize = 4;
 
 /// Hash factors of the coordinates: multiplication by them spreads neighbouring cells over all

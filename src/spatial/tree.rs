@@ -46,9 +46,8 @@ impl Leaf {
     /// Radius of the first ball that is searched around each of the points.
     pub(crate) fn reach(&self) -> f32 {
         /// Share of the diagonal of the box. A leaf of 8 to 16 points of spacing d spans 3 to 5 d,
-        /// so the ball reaches 1.4 to 2.2 d, and few points need a second one. With two thirds of
-        /// it two runs with report and mesh take 1.00 and 1.01 times the instructions, with double
-        /// 1.08 and 1.02 times.
+        /// so the ball reaches 1.4 to 2.2 d, and few points need a second one. A larger ball holds
+        /// more points that are not needed.
         const SHARE: f32 = 0.45;
         SHARE * (self.hi - self.lo).length()
     }

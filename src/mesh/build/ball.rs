@@ -6,20 +6,17 @@ use crate::spatial::tree::{PointsInBox, Tree};
 use glam::{Vec3, Vec4};
 
 /// Largest number of points in a ball. In a hexagonal lattice the first ball that is searched holds
-/// some 18. With half of it 6 of 24 unrelaxed random runs have another mesh, with double 2, in as
-/// many instructions within 0.1 %.
+/// some 18.
 pub(super) const MOST: usize = 64;
 /// Numbers that are worked on at once: the lanes of a SIMD register.
 const WIDTH: usize = 4;
 const BLOCKS: usize = MOST / WIDTH;
 /// Two points are on one sheet only if the sine squared of the angle between their line and the
-/// normal is at least this: the line rises by 63° at most. Half of it gives the same meshes of 46
-/// unrelaxed random runs, twice as much changes two.
+/// normal is at least this: the line rises by 63° at most.
 const MIN_FLAT: f32 = 0.2;
 /// Two points are on one sheet only if their line rises from one tangent plane as it sinks below
-/// the other, up to this share of its length: that tells sheets apart that face the same way. With
-/// half of it 492 instead of 154 particles of 46 unrelaxed random runs are in no triangle; with
-/// twice as much 81, but a surface that crosses itself has a hole more.
+/// the other, up to this share of its length: that tells sheets apart that face the same way.
+/// Smaller: more particles are in no triangle; larger: a surface that crosses itself gets holes.
 pub(super) const MAX_LIFT: f32 = 0.35;
 
 /// The points of a tree in a box, with their normals.

@@ -7,24 +7,19 @@ use crate::slices::pause;
 
 /// Least cosine of the angle between the normal of a triangle and that of a point on it: that of
 /// 78°. The points are those that are set into the triangle, and the corners of one that fills a
-/// hole, or their mean where there is no other way. Half of it changes the holes of 3 of 46
-/// unrelaxed random runs, twice as much of 4, by a few triangles.
+/// hole, or their mean where there is no other way.
 pub(super) const AGREEMENT: f64 = 0.2;
-/// A vertex is at the box if it is nearer to one of the faces than this many spacings. With twice
-/// as much 5 of 46 unrelaxed random runs have borders that were holes; half of it changes one.
+/// A vertex is at the box if it is nearer to one of the faces than this many spacings. Larger: more
+/// holes are taken for borders.
 const AT_BOX: f64 = 1.5;
-/// Rounds in which holes are filled and, where that fails, made larger by a vertex. One of 46
-/// unrelaxed random runs takes more than six; with twice as many it has 11 particles fewer in
-/// triangles.
+/// Rounds at most in which holes are filled and, where that fails, made larger by a vertex. Hardly
+/// any mesh takes more than half of them.
 const ROUNDS: u32 = 12;
 /// Largest number of edges of a hole that is filled. A longer loop is taken for a border of the
-/// surface. Half and double give the same meshes of 33 random runs. Where 40 % of the particles of
-/// 36 are taken out, half leaves 117 borders instead of 114 and double 108; but of 12 random
-/// surfaces that end at loops of 12 to 55 edges, double closes 10 instead of 2, and half one.
+/// surface. Smaller: more holes stay; larger: more borders of the surface are closed.
 const LARGEST: usize = 24;
 /// Largest number of edges of a hole along a rim that is filled: the work grows with the cube of
-/// it, to some 10 ms at this number. Half and double give the same meshes of 53 unrelaxed random
-/// runs.
+/// it, to some 10 ms at this number.
 const LARGEST_AT_RIM: usize = 96;
 
 /// Rule that tells a hole of the mesh from a border of the surface.

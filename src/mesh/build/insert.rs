@@ -6,15 +6,13 @@ use super::patch::Patch;
 use crate::math::unkey;
 use crate::spatial::tree::Tree;
 
-/// Number of nearest points among whose triangles the one below a point is searched for. Half and
-/// double give the same meshes of 46 unrelaxed random runs.
+/// Number of nearest points among whose triangles the one below a point is searched for.
 const NEAR: usize = 32;
 /// Largest distance of a point outside a triangle that still counts as inside, as a share of the
-/// triangle's height. Half and double give the same meshes of 46 unrelaxed random runs.
+/// triangle's height.
 const OUTSIDE: f64 = 0.25;
 /// Largest number of triangles that a point may replace. It then has 18 neighbours, three times as
-/// many as in a lattice. With half of it and without a limit the meshes of 53 unrelaxed random runs
-/// are the same.
+/// many as in a lattice.
 const MOST: usize = 16;
 
 /// Inserts the point `v`, which is in no triangle, if there is one below it.

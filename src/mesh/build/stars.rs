@@ -12,12 +12,10 @@ use crate::spatial::tree::{Leaf, Tree};
 use core::ops::Range;
 use glam::Vec3;
 
-/// Largest circumradius of a triangle, in units of the spacing at the corner. With half of it 336
-/// instead of 154 particles of 46 unrelaxed random runs are in no triangle; with twice as much gaps
-/// of the surface are closed: 8 of 91 borders go.
+/// Largest circumradius of a triangle, in units of the spacing at the corner. Smaller: more
+/// particles are in no triangle; larger: more gaps of the surface are closed.
 pub(super) const WIDEST: f32 = 2.0;
-/// Points nearer than this share of the ball's radius are one point. Half and double give the same
-/// meshes of 46 unrelaxed random runs.
+/// Points nearer than this share of the ball's radius are one point.
 const TWIN: f32 = 1e-5;
 /// Marks, in [`Stars::entry`], that the triangle with this neighbour and the next one is narrow
 /// enough to be one of the mesh.
