@@ -33,13 +33,12 @@ const MAX_CONDITION: f64 = 1e13;
 /// single precision shows.
 const WARN_CONDITION: f64 = 1e10;
 /// Margin around the points for the surface, which bulges between them, as a share of the diagonal
-/// of their box. Half and twice as much hold the same surfaces of twelve random clouds.
+/// of their box.
 const MARGIN: f64 = 0.06;
-/// Largest smoothing term λ that is tried. The largest that was chosen for spheres, tori and
-/// bunnies of 5,000 points, with and without noise, is a fourth of it.
+/// Largest smoothing term λ that is tried: four times the largest that was chosen for noisy points.
 const LARGEST_SMOOTHING: f64 = 4.0;
-/// Ratio of two terms that are tried one after the other. The distances of those surfaces from the
-/// true ones change by less than a tenth from one term to the next.
+/// Ratio of two terms that are tried one after the other. From one to the next the distance from
+/// the true surface hardly changes.
 const SMOOTHING_STEP: f64 = 0.25;
 /// Maximum number of terms that are tried: the last one is 10⁻⁵, below any that was chosen.
 const SMOOTHING_TRIALS: u32 = 10;
@@ -47,8 +46,8 @@ const SMOOTHING_TRIALS: u32 = 10;
 /// holds for more centres too, whose systems take up to 64 times as long.
 const TRIAL_CENTRES: usize = 200;
 /// Fractions of the work at which the trials end, and at which the elimination begins and ends, for
-/// the display of progress: the means of twelve random clouds of 1,000 to 20,000 points with 100 to
-/// 800 centres are 0.43, 0.53 and 0.93.
+/// the display of progress. They are rounded means of clouds of 1,000 to 20,000 points with 100 to
+/// 800 centres.
 const TRIALS_END: f64 = 0.4;
 const ELIMINATION_SPAN: [f64; 2] = [0.5, 0.9];
 

@@ -66,9 +66,8 @@ fn names() -> String {
     names.join(", ")
 }
 
-/// A stage of a job in words, with its begin and length as shares of the whole time. Of 32 random
-/// files of 2 to 6 MB reading takes 7 % of it, normals 4 %, the surface 82 %, and all else together
-/// 4 %.
+/// A stage of a job in words, with its begin and length as shares of the whole time. Of a file of 2
+/// to 6 MB reading takes 7 % of it, normals 4 %, the surface 82 %, and all else together 4 %.
 struct JobPart {
     label: &'static str,
     begins: f64,

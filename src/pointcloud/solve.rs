@@ -8,12 +8,11 @@ use crate::slices::{pause, ranges};
 use core::ops::Range;
 use nalgebra::{DMatrix, DVector};
 
-/// Columns per panel: enough to read a panel seldom, few enough to keep its rows in the cache. With
-/// half as many a fit of 800 centres takes 1.15 times as long, with twice as many 0.94 times, in
-/// longer slices.
+/// Columns per panel: enough to read a panel seldom, few enough to keep its rows in the cache. More
+/// make longer slices.
 const PANEL: usize = 32;
 /// Rows updated together: 64 kB of a panel, which stay in a second-level cache for all the columns
-/// they update. Half and twice as many take the same time within 3 %.
+/// they update.
 const ROWS: usize = 256;
 /// Maximum number of steps of Hager's estimator, which nearly always ends after two or three.
 /// LAPACK's DLACN2 has the same limit.

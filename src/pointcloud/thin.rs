@@ -8,18 +8,16 @@ use glam::DVec3;
 
 /// Maximum number of points that thinning keeps. Normals are estimated for these points, and the
 /// centres are chosen among them. The spacing of twenty thousand is about a hundredth of the
-/// model's size, a tenth of that of 200 centres. With half and twice as many the mean residual of
-/// three clouds of 20,000 to 43,000 points changes by 5 % at most.
+/// model's size, a tenth of that of 200 centres.
 pub const KEPT: usize = 20_000;
 
 /// Minimum distance of two centres, as a share of the diagonal of the points' box. The system for a
 /// few hundred centres loses a digit each time that the distance between two of them is halved.
-/// Half and double choose the same centres of twelve random clouds.
 const MIN_DISTANCE_SHARE: f64 = 1e-4;
 
 /// Largest standard deviation across a line or plane, as a share of that along it, at which points
 /// count as lying in it. It is above the rounding of coordinates in single precision, 6·10⁻⁸ of the
-/// largest. Half and double take the same ones of twelve random clouds.
+/// largest.
 const FLAT_SHARE: f64 = 1e-5;
 
 /// Index in `points` of the point equal to `p`, or `fresh` if there is none.

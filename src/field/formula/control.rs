@@ -40,18 +40,15 @@ pub struct Grip {
 }
 
 /// The parameters take at most this many steps towards the points. So many of the longest steps
-/// cross a range eight times. Of 1,398 random pulls at one to three points of seven families as
-/// many are met with half of them, two more with twice.
+/// cross a range eight times.
 const MOST_STEPS: usize = 64;
 
 /// A step changes a parameter by at most this share of its range, so that a surface that is pulled
-/// far passes through what lies between. Of the same pulls 1,282 are met; with half of it 1,291,
-/// with twice as much 1,267.
+/// far passes through what lies between. With longer steps fewer pulls meet their points.
 const LONGEST_STEP: f64 = 0.125;
 
 /// A step that does not bring the surface nearer to the points is halved at most this often, to a
-/// 2,000th of a range. Then the parameters stay where they are. Two and sixteen meet the same
-/// pulls.
+/// 2,000th of a range. Then the parameters stay where they are.
 const MOST_HALVINGS: usize = 8;
 
 /// Distance from a point, over its distance from the origin or over 1, at which the surface passes

@@ -17,9 +17,7 @@ use glam::Vec3;
 /// Maximum number of [`Lanes`] in a block: those of a batch.
 pub(super) const BLOCK: usize = BATCH / LANES;
 
-/// Intended maximum size of the register file in bytes: half of a small first-level cache. With
-/// half of it six runs on random surfaces take up to 0.2 % more instructions, with double they take
-/// the same.
+/// Intended maximum size of the register file in bytes: half of a small first-level cache.
 const FILE_BYTES: usize = 16 * 1024;
 
 /// Evaluates `program` at `points`, and calls `store` with the index of each eighth point and the

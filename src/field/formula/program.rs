@@ -107,8 +107,8 @@ impl Program {
 }
 
 /// Number of operations that compute `outputs` at a point. It serves to choose between forward and
-/// backward differentiation. Where each operation counts for what it takes, two adaptive runs of
-/// the gallery and one of 58 on random surfaces choose the other, and take as long.
+/// backward differentiation. Each operation counts as one, whatever it takes: that hardly ever
+/// changes the choice.
 pub(super) fn cost(graph: &Graph, outputs: &[Id]) -> usize {
     let is_operation = |&id: &Id| !graph.is_uniform(id) && !matches!(graph.node(id), Node::Coordinate(_));
     graph.needed_by(outputs).iter().filter(|id| is_operation(id)).count()

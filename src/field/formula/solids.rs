@@ -10,11 +10,9 @@ use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
 use crate::math::Bounds;
 
-/// Maximum number of smooth functions that the sheets of a thickened surface are put together from.
-/// Beyond it the choices of f are taken as they are, and edges of a sheet may be off where
-/// gradients of different length meet. Of 16 random solids and products none changes with half or
-/// twice as many, half of them with 16; a function in k absolute values, one in the other, takes
-/// 2ᵏ.
+/// Maximum number of smooth functions that the sheets of a thickened surface are put together from;
+/// a function in k absolute values, one in the other, takes 2ᵏ. Beyond it the choices of f are
+/// taken as they are, and edges of a sheet may be off where gradients of different length meet.
 const MAX_SHEETS: usize = 128;
 
 /// The solid that is made of a surface: its thickness and the box that closes it. Without both it

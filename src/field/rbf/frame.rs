@@ -4,8 +4,7 @@ use crate::math::{Bounds, power_of_two};
 use glam::DVec3;
 
 /// Grid of the origin in local units. The origin is a multiple of it, so that rounding of points
-/// does not move it. Half and double give the same residuals of four random clouds, to three
-/// digits.
+/// does not move it.
 const GRID: f64 = 1.0 / 16.0;
 
 /// Local coordinates s (x − o).

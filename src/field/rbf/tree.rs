@@ -29,21 +29,17 @@ const ROOT: f64 = 4.0;
 /// 1/300. On the surface of the bunny, half of the series then have an error below 10⁻⁷ of the
 /// model's size, which is that of rounding in the near terms.
 const MAX_REMAINDER: f64 = 3e-4;
-/// Minimum distance of a far centre, in radii of the cell: the series converges beyond 1. With half
-/// of it 2 of 4 random clouds give other particles in the same time; twice as much takes 1.1 times
-/// as long.
+/// Minimum distance of a far centre, in radii of the cell. The series converges beyond 1. Larger:
+/// fewer centres are far, and an evaluation takes longer.
 const MIN_DISTANCE: f64 = 1.5;
 /// Maximum number of near centres of a leaf, beyond which it is split. A smaller number makes
 /// evaluation cheaper and the cells costlier: with 32, the cells of a model of 200 centres pay off
-/// after about 10,000 evaluations. With half of it a fit and 3,000 or 12,000 particles of a random
-/// surface take 5 % more instructions, with double 1 to 2 % fewer.
+/// after about 10,000 evaluations.
 const MAX_NEAR: usize = 32;
 /// Distance of the nearest centre, in radii of the cell, beyond which a cell is not split: little
-/// of the surface is there. With half of it four random clouds take 1.9 times as long, with twice
-/// as much they give the same particles.
+/// of the surface is there. Smaller: evaluation takes longer.
 const CLOSE: f64 = 1.0;
-/// Half-width at which a cell is not split, even in a cluster of centres. Half and double give the
-/// same particles on four random clouds.
+/// Half-width at which a cell is not split, even in a cluster of centres.
 const MIN_HALF_WIDTH: f64 = 1.0 / 512.0;
 
 /// Minimum number of consecutive points of a cell that are evaluated together. With 3 a run on the

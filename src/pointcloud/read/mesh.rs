@@ -9,9 +9,8 @@ use crate::slices::{MEDIUM, pause};
 use crate::topology::Topology;
 use glam::DVec3;
 
-/// Points on the faces of a mesh of large ones: five for each centre. With half of them the areas
-/// of four coarse balls are off by up to 4 %, with these and four times as many by 2 %; those of
-/// eight boxes and prisms differ by a tenth.
+/// Points on the faces of a mesh of large ones: five for each centre. Fewer: the areas of coarse
+/// balls are farther off; more are no better.
 const ON_FACES: f64 = 5.0 * DEFAULT_CENTRES as f64;
 
 /// Points and faces as they are in a file.

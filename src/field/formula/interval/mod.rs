@@ -21,9 +21,8 @@ pub(super) use range::Range;
 pub(super) use rows::Row;
 use std::sync::Arc;
 
-/// Number of boxes whose bounds are computed together. Most calls have eight boxes or fewer. With 8
-/// runs on a gyroid, on linked rings and on a torus take 6, 4 and 1 % more instructions, with a
-/// single one two of them 7 and 13 %, and a scan for a box up to 30 %.
+/// Number of boxes whose bounds are computed together. Most calls have eight boxes or fewer. One
+/// alone takes longer, and so do more than four together.
 const BOXES: usize = 4;
 
 /// A graph compiled for boxes.
@@ -67,7 +66,7 @@ impl BoxProgram {
     }
 
     /// The operand and the number of a product with an exact number, which takes half the time of
-    /// other products: with it runs on products of coordinates take up to 4 % fewer instructions.
+    /// other products.
     fn scaled(&self, node: Node) -> Option<(Id, f64)> {
         let Node::Binary(Binary::Mul, a, b) = node else { return None };
         let factor = self.uniforms[b as usize].at(0);
@@ -234,9 +233,7 @@ impl FactorProgram {
 }
 
 /// Maximum number of factors. A product of more is taken as one function: each program holds the
-/// whole product too, for its domain, so that all of them grow with the square of the number. With
-/// 4, 16 and 32 products of 8, 14, 18 and 24 random planes take as long to 40 %, and have as many
-/// particles to 1 %.
+/// whole product too, for its domain, so that all of them grow with the square of the number.
 const MAX_FACTORS: usize = 16;
 
 /// Programs for the [factors](Graph::factors) of `root`, or for `root` alone. A factor is simpler
