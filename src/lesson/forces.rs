@@ -26,8 +26,7 @@ use glam::DVec3;
 pub(super) const AT_REST: f64 = GAMMA * TIME_STEP;
 
 /// Σ (overlap / mean radius)² below which a particle counts as free and divides: one overlap of a
-/// twentieth of the spacing. On 24 random surfaces half of it leaves 3 % fewer particles, of which
-/// 55 % have six neighbours in place of 61 %, and double 3 % more, with 66 %.
+/// twentieth of the spacing. Larger: there are more particles.
 const FREE: f64 = 0.01;
 
 /// Σ (overlap / mean radius)² above which a particle may die: six neighbours at 0.7 of the spacing

@@ -9,12 +9,10 @@ use crate::particles::SlotFate;
 use glam::{DVec2, DVec3};
 
 /// A gap is filled if its centre is at least this far from every particle, in 2r. The triangles of
-/// a lattice have 0.577. On 16 random surfaces nine tenths of it add 6 % more particles, and 1.1
-/// times as much leaves holes 2 % wider than now.
+/// a lattice have 0.577. Smaller: more particles are added; larger: wider holes stay.
 const NARROWEST: f64 = 0.8;
 
-/// A wider circle, in 2r, lies at the border of the surface. Twice the bound changes nothing on
-/// closed random surfaces.
+/// A wider circle, in 2r, lies at the border of the surface.
 const WIDEST: f64 = 1.25;
 
 /// Neighbours within this many radii border a gap: those of the lattice's first ring, at 2, and at

@@ -15,7 +15,7 @@ use glam::DVec3;
 const RING: f64 = 2.6;
 
 /// Weight of "equal curvature in all directions" in that fit. It decides where the neighbours
-/// determine no curvature; half and double change the evaluations of random surfaces by 0.01 %.
+/// determine no curvature, and hardly matters elsewhere.
 const ISOTROPY: f64 = 0.005;
 
 impl Course {

@@ -7,9 +7,8 @@ use crate::paper::{ChildSlot, Moment, Observer, Particle, Trial};
 use crate::particles::SlotFate;
 use crate::sampler::Sampling;
 
-/// A child that meets a particle farther away than this share of 2r is out of step with it. Half
-/// and 1.5 times as much fill the same gaps on 16 random surfaces; double is the match radius,
-/// beyond which nothing is met.
+/// A child that meets a particle farther away than this share of 2r is out of step with it. Twice
+/// as far is the match radius, beyond which nothing is met.
 const SEAM: f64 = 0.35;
 
 /// The events of the chapter under way, as the run tells them.

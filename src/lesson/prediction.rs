@@ -3,8 +3,7 @@
 use crate::paper::{DIRECTIONS, ImplicitSurface, TangentFrame};
 
 /// Largest |sin θ₀|: at 1 the surface would curve with the radius r, which particles of this size
-/// do not resolve. On 16 random surfaces half of it changes no count of small particles, and that
-/// of large ones by 0.5 %; with 1 a tenth more searches find no surface.
+/// do not resolve. Larger: more searches find no surface.
 const STEEPEST: f64 = 0.9;
 
 /// Angles θ₀ at which the curvature of the surface predicts the children of a particle.

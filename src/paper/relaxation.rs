@@ -33,12 +33,10 @@ pub(crate) struct Move {
 pub(crate) const GAUSSIAN_REACH: f64 = 3.0;
 
 /// Discs of many sizes push each other up to this distance, in r_i + r_j: discs that barely touch
-/// would not push into gaps. On 16 random surfaces half and twice the excess over 1 leave holes 6 %
-/// wider after ten steps.
+/// would not push into gaps. With less or more, holes are wider.
 pub(crate) const OVERLAP_REACH: f64 = 1.15;
 
 /// A particle moves by no more than this in a step, in radii: it stays far from the next one, at 2.
-/// On 16 random surfaces half and twice of it change no figure after ten steps by more than 0.5 %.
 pub(crate) const MAX_MOVE: f64 = 0.35;
 
 /// Weight of a pair by the cosine between its normals: 1 on one sheet, 0 on two that face away from

@@ -9,18 +9,15 @@ use core::f64::consts::PI;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Largest number of evaluations in Newton's method. From a good guess it takes two. With six of
-/// them three of 24 random surfaces get other particles, with 24 none, or one where particles are
-/// large.
+/// Largest number of evaluations in Newton's method. From a good guess it takes two.
 const MAX_NEWTON: u32 = 12;
 
-/// Largest turn of a step on the circle, as the tangent of half the angle: about 23°. On 16 random
-/// surfaces half of it takes 2 % more evaluations for large particles. Twice as much changes counts
-/// and evaluations by less than 0.1 %.
+/// Largest turn of a step on the circle, as the tangent of half the angle: about 23°. Smaller:
+/// large particles take more evaluations.
 const MAX_TURN: f64 = 0.2;
 
 /// Angle from the tangent plane at which a child is given up, 100°: past 90° it lies beneath its
-/// parent, behind a rim. On 16 random surfaces 75° and 130° change nothing.
+/// parent, behind a rim.
 const MAX_THETA_RAD: f64 = PI * 5.0 / 9.0;
 
 /// "Require: an implicit surface": f = 0 in a box. Clones share the field, and count their

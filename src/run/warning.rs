@@ -18,16 +18,12 @@ use core::fmt;
 use serde::{Serialize, Serializer};
 
 /// Least share of the particles that face another sheet where sheets are said to be close. The
-/// particles around a tip face each other too, up to 15 of them at any radius. At radii of 0.3 % of
-/// the diagonal this share tells of none of 12 random cones and drops and of four of 6 random pairs
-/// of balls nearer than 2r; half of it tells of one and of all six, twice as much of none and of
-/// two.
+/// particles around a tip face each other too, up to 15 of them at any radius. Smaller: more tips
+/// are taken for close sheets; larger: more close sheets are missed.
 const CLOSE_SHARE: f64 = 0.005;
 /// Least number of particles that face another sheet where sheets are said to be close: in samples
-/// of a few hundred, tips exceed the share. At radii of 0.5 to 1.5 % of the diagonal the two limits
-/// tell of 21 of 32 random cones and drops and of 12 of 20 random pairs of balls nearer than 2r;
-/// with half of this number of 28 and of 16, with twice of none and of 7. Of all of 20 random
-/// plates thinner than 2r they tell with any of these.
+/// of a few hundred, tips exceed the share. Smaller: more tips are taken for close sheets; larger:
+/// more close sheets are missed.
 const CLOSE_COUNT: usize = 8;
 /// Places of components without a particle that are named in words: as many as a note of some four
 /// lines holds. It is a choice of length; the report has all of them.
