@@ -187,13 +187,13 @@ impl Attempt {
         {
             sizing.scale_to(uniform / packing);
         }
-        attempt.follow_sizing();
+        attempt.set_radius_by_sizing();
         attempt
     }
 
     /// Takes the area and the radius field of a surface that has moved, and the `growth` of the
     /// radius since the survey before where the number of particles is given.
-    pub(super) fn follow(
+    pub(super) fn move_on(
         &mut self,
         settings: &Settings,
         area: f64,
@@ -211,7 +211,7 @@ impl Attempt {
         {
             sizing.scale_to(f64::from(settings.count) / self.packing);
         }
-        self.follow_sizing();
+        self.set_radius_by_sizing();
     }
 
     /// The number of particles of radius r that are expected, times r².
@@ -289,7 +289,7 @@ impl Attempt {
             sizing.scale_to(f64::from(settings.count) / self.packing);
         }
         self.sizing = Some(sizing);
-        self.follow_sizing();
+        self.set_radius_by_sizing();
     }
 
     /// The front of this attempt, for particles in a box. One that is refined grows in a larger
@@ -371,7 +371,7 @@ impl Attempt {
     }
 
     /// Takes the radius from the radius field, if there is one.
-    fn follow_sizing(&mut self) {
+    fn set_radius_by_sizing(&mut self) {
         let Some(sizing) = &self.sizing else { return };
         let radius = (self.area / (HEXAGONAL_CELL * sizing.predicted_count())).sqrt();
         // There is none where there is no surface.
@@ -436,7 +436,7 @@ impl Attempt {
         if let Some(sizing) = &mut self.sizing {
             sizing.scale(factor);
         }
-        self.follow_sizing();
+        self.set_radius_by_sizing();
         true
     }
 

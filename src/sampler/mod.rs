@@ -613,7 +613,7 @@ impl Sampler {
         let sizing = (self.settings.sampling == Sampling::Adaptive)
             .then(|| Sizing::new(probe, bounds, &self.settings, &self.survey, &self.creases));
         let (area, growth) = (self.survey.area, self.tools.flow.growth());
-        self.attempt.follow(&self.settings, area, bounds.diagonal(), sizing, growth);
+        self.attempt.move_on(&self.settings, area, bounds.diagonal(), sizing, growth);
         self.components.begin(field, bounds, &[]);
         self.plan = self.attempt.front(&self.settings, bounds);
         self.tools.front.reset(&self.plan, &self.survey, 0);

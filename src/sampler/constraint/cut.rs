@@ -1,4 +1,4 @@
-//! Creases that run to the box: they are followed beyond it, and cut where they pass its faces.
+//! Creases that run to the box: they are traced beyond it, and cut where they pass its faces.
 //!
 //! A coarse front grows beyond the box and is clipped there. So that the creases fit its mesh on
 //! both sides of a face, one that passes the face has a corner on it, at the common point of both

@@ -6,7 +6,7 @@ use crate::math::newton::{self, STEPS, StepLimits, step_to_corner, step_to_curve
 use crate::sampler::probe::Probe;
 use glam::DVec3;
 
-/// Sine of that angle down to which a crease is followed, where it fades out. At [`ASIDE`] the
+/// Sine of that angle down to which a crease is traced, where it fades out. At [`ASIDE`] the
 /// angle then still outweighs the bend of a branch, which is half of `ASIDE` squared where the
 /// radius of curvature is the reach.
 pub(super) const FADED: f64 = 10.0 * ASIDE;

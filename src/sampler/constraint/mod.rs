@@ -9,8 +9,8 @@
 //!
 //! 1. *Search.* The field says in which small cells of the box creases can be. There Newton's
 //!    method looks for a point on each pair of branches.
-//! 2. *Trace.* From such a point the curve is followed both ways, to where another branch takes
-//!    over: that place is a corner. From there the other creases of the corner are followed. A
+//! 2. *Trace.* From such a point the curve is traced both ways, to where another branch takes
+//!    over: that place is a corner. From there the other creases of the corner are traced. A
 //!    crease that passes a corner of others is divided there.
 //! 3. *Fill.* Particles are put on corners and along curves at equal distances, as many as fit
 //!    best. They do not move any more: fronts start from them, patch by patch, and end at them. For
@@ -40,7 +40,7 @@ use meeting::Meeting;
 /// the diagonal of the box.
 const CELL: f64 = 1.0 / 128.0;
 /// Corners nearer to each other than this share of a step are one: the width of the smallest crease
-/// that is followed. So are a corner and a tip nearer than this share of a radius.
+/// that is traced. So are a corner and a tip nearer than this share of a radius.
 const ONE_CORNER: f64 = 1e-3;
 /// Distance from a corner, in steps, at which the creases that end there are looked for: ten times
 /// the width of the smallest one.
@@ -131,7 +131,7 @@ pub struct Creases {
     unit_cell: Option<UnitCell>,
     /// Opposite faces of the cell with the same creases.
     faces: Vec<FacePair>,
-    /// A place where sheets cross along a curve and no patch ends, which is not followed: three
+    /// A place where sheets cross along a curve and no patch ends, which is not traced: three
     /// planes through one line, say.
     pub(super) passed: Option<DVec3>,
     /// A place where branches are zero together and f is on a curve or at a point alone, as |x| +
@@ -172,7 +172,7 @@ impl Creases {
                         });
                     let Some(meeting) = meeting else { continue };
                     if meeting.are_left(probe, &[b, a], step).is_some() {
-                        trace::follow(probe, bounds, &mut creases, meeting, step).await;
+                        trace::trace(probe, bounds, &mut creases, meeting, step).await;
                     } else if creases.passed.is_none() && meeting.is_passed(probe, step) {
                         creases.passed = Some(meeting.position);
                     } else if creases.bare.is_none() && meeting.is_bare(probe, step) {
@@ -181,7 +181,7 @@ impl Creases {
                 }
             }
         }
-        creases.follow_from_corners(probe, bounds, step).await;
+        creases.trace_from_corners(probe, bounds, step).await;
         creases.divide(probe, step);
         if let Some(cell) = unit_cell {
             creases.repeat(probe, &cell, step);
@@ -193,7 +193,7 @@ impl Creases {
 
     /// Follows the creases between patches that meet at a corner: one shorter than a cell is not
     /// always found from a cell.
-    async fn follow_from_corners(&mut self, probe: &mut Probe<'_>, bounds: &Bounds, step: f64) {
+    async fn trace_from_corners(&mut self, probe: &mut Probe<'_>, bounds: &Bounds, step: f64) {
         let mut next = 0;
         while let Some(Corner { position, patches, .. }) = self.corners.get(next).cloned() {
             next += 1;
@@ -212,7 +212,7 @@ impl Creases {
                             })
                             .filter(|meeting| meeting.are_left(probe, &[b, a], step).is_some());
                         if let Some(meeting) = meeting {
-                            trace::follow(probe, bounds, self, meeting, step).await;
+                            trace::trace(probe, bounds, self, meeting, step).await;
                         }
                     }
                 }

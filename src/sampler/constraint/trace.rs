@@ -8,7 +8,7 @@ use crate::slices::{Work, pause};
 use glam::DVec3;
 
 /// Times that a step is halved, at most: a closed crease as wide as a thousandth of the usual step,
-/// in twelve turns of 30°, is followed.
+/// in twelve turns of 30°, is traced.
 const HALVINGS: u32 = 12;
 /// Times that the way to the end of a crease is halved where it ends at no corner: it is found to a
 /// billionth of a step.
@@ -31,8 +31,8 @@ enum WalkEnd {
     Corner(usize),
 }
 
-/// Follows the crease through `start` and adds it with its corners.
-pub(super) fn follow<'a>(
+/// Traces the crease through `start` and adds it with its corners.
+pub(super) fn trace<'a>(
     probe: &'a mut Probe<'_>,
     bounds: &'a Bounds,
     creases: &'a mut Creases,

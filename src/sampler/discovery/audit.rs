@@ -3,7 +3,7 @@
 //! The audit says which components hold particles, for the particles as they are after the
 //! relaxation has moved them. So each witness is connected with a particle anew, by proof. Where
 //! that fails and no particle near it even seems to be on its sheet, the witness is named as
-//! [`Unsampled`], with the distance to which its component can be followed.
+//! [`Unsampled`], with the distance to which its component can be explored.
 
 use crate::field::{Bounded, Enclosure};
 use crate::math::newton::step_to_surface;
@@ -29,9 +29,9 @@ pub(super) const UNITS: u32 = 32;
 /// Components that are named, and witnesses left open, after which the others are not looked at and
 /// count as open.
 const MOST_NAMED: usize = 256;
-/// Distance, in radii, to which a component without a particle is followed. One that reaches
+/// Distance, in radii, to which a component without a particle is explored. One that reaches
 /// farther has room for a child, at two radii.
-pub(super) const FOLLOWED: f64 = 4.0;
+pub(super) const EXPLORED: f64 = 4.0;
 
 /// A particle near a witness.
 #[derive(Clone, Copy, Debug)]
@@ -175,11 +175,11 @@ impl Audit {
             self.leave_open(exact, 1);
             return;
         }
-        let followed = FOLLOWED * *radius;
-        if self.is_on_named(&mut prover, from, followed) {
+        let most = EXPLORED * *radius;
+        if self.is_on_named(&mut prover, from, most) {
             return;
         }
-        self.without.push(follow(prover.field, factor, exact, followed));
+        self.without.push(explore(prover.field, factor, exact, most));
         self.named.push(seed);
     }
 
@@ -221,9 +221,9 @@ fn on_factor(
     near.iter().zip(known).filter_map(index_if_on).collect()
 }
 
-/// Follows the zero set of a factor of the field from the point `from` of it, to a distance of
+/// Explores the zero set of a factor of the field from the point `from` of it, to a distance of
 /// `most`: along its cuts with eight half-planes through the normal.
-pub(crate) fn follow(field: &mut dyn Bounded, factor: usize, from: DVec3, most: f64) -> Unsampled {
+pub(crate) fn explore(field: &mut dyn Bounded, factor: usize, from: DVec3, most: f64) -> Unsampled {
     /// Eight lanes. The reach of a path half-way between two axes of an ellipse is at least 0.92 of
     /// the longer one: cos 22.5°.
     const PATHS: usize = 8;

@@ -48,7 +48,7 @@ pub struct Unsampled {
     pub position: [f64; 3],
     /// Largest distance from the witness at which a point of the component was found.
     pub reach: f64,
-    /// Whether the component was followed no further than that, so that it may be larger.
+    /// Whether the component was explored no further than that, so that it may be larger.
     pub goes_on: bool,
 }
 

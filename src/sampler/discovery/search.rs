@@ -5,7 +5,7 @@ use crate::field::descent::Descent;
 use crate::field::{Bounded, Evaluator};
 use crate::math::{Bounds, newton};
 use crate::particles::Particles;
-use crate::sampler::discovery::audit::{Audit, Audited, FOLLOWED, UNITS, follow};
+use crate::sampler::discovery::audit::{Audit, Audited, EXPLORED, UNITS, explore};
 use crate::sampler::discovery::completeness::{Doubt, Sampled, Search};
 use crate::sampler::discovery::nearness::{Nearness, nearest};
 use crate::sampler::discovery::octree::{Octree, Seed, Witness};
@@ -192,7 +192,7 @@ impl ComponentSearch {
     /// The piece of the surface around the last witness, if it is small and closed in itself.
     pub(crate) fn small_piece(&self, field: &mut dyn Bounded, radius: f32) -> Option<(Seed, f64)> {
         let seed = *self.points.get(self.next.checked_sub(1)?)?;
-        let piece = follow(field, seed.factor, seed.exact, FOLLOWED * f64::from(radius));
+        let piece = explore(field, seed.factor, seed.exact, EXPLORED * f64::from(radius));
         (!piece.goes_on).then_some((seed, piece.reach))
     }
 

@@ -200,7 +200,7 @@ impl Relaxation {
     ) {
         self.law = law;
         (self.sweep, self.grid_serves) = (None, false);
-        self.stepper.follow(limits, law.first_step());
+        self.stepper.begin_transport(limits, law.first_step());
         if !are_listed {
             self.list_anew(particles, pairs);
         }

@@ -65,7 +65,7 @@ impl Stepper {
 
     /// Prepares for particles on a surface that moves: there are no judgements, and all steps have
     /// one size.
-    pub(super) fn follow(&mut self, limits: MoveLimits, size: f32) {
+    pub(super) fn begin_transport(&mut self, limits: MoveLimits, size: f32) {
         self.clear();
         (self.limits, self.step_size) = (limits, size);
     }
