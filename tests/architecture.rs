@@ -98,12 +98,9 @@ const ROOMS: [Room; 4] = [
             ),
             ("message", &["settings", "discovery", "phase"]),
             ("progress", &["fates", "phase", "refine"]),
-            (
-                "attempt",
-                &["settings", "projection", "neighbours", "constraint", "discovery", "sizing", "refine"],
-            ),
+            ("attempt", &["settings", "projection", "constraint", "discovery", "sizing", "front", "refine"]),
             ("desk", &["phase", "probe"]),
-            ("methods", &["desk", "phase", "relaxation"]),
+            ("methods", &["desk", "phase", "probe", "refine", "relaxation"]),
             // The steps of the methods, which alone know every room.
             (
                 "steps",
@@ -112,6 +109,7 @@ const ROOMS: [Room; 4] = [
                     "settings",
                     "phase",
                     "attempt",
+                    "progress",
                     "probe",
                     "sheet",
                     "constraint",

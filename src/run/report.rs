@@ -154,7 +154,7 @@ pub struct Measures {
     /// Quality of the present particles; none if there are none, or where they were not measured.
     pub quality: Option<Figures>,
     /// Quality of the particles after the front, before the relaxation; none where nothing was
-    /// relaxed.
+    /// relaxed, or the front was not measured.
     pub quality_before: Option<Figures>,
     /// Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of
     /// the particles.
@@ -215,36 +215,48 @@ impl Reporting<'_> {
 }
 
 impl<F: Field> Run<F> {
-    fn measuring_input(&self) -> MeasuringInput {
+    /// Of the particles, and of those of the front if they are still to be measured and `with_front`.
+    fn measuring_input(&self, with_front: bool) -> MeasuringInput {
         MeasuringInput {
-            front: self.measuring.open_front(),
+            front: self.measuring.open_front().filter(|_| with_front),
             now: measured_columns(self.particles()),
             bounds: self.local_bounds(),
             sampling: self.sampler.settings().sampling,
         }
     }
 
-    /// Measures the particles, before and after the relaxation, and reports. Call it when the run
-    /// has ended. What was measured since the particles last changed is not measured again.
+    /// Measures the particles and reports. Call it when the run has ended. What was measured since
+    /// the particles last changed is not measured again.
     pub fn report(&mut self) -> Report {
-        slices::complete(self.measure().0)
+        self.report_with(Measured::Particles)
     }
 
-    /// [`Run::report`] in slices, with [`Reporting::step`].
-    pub fn measure(&mut self) -> Reporting<'_> {
+    /// [`Run::report`], with so much measured.
+    pub fn report_with(&mut self, measured: Measured) -> Report {
+        if measured == Measured::Nothing {
+            self.measuring = Measuring::default();
+        }
+        slices::complete(self.measure(measured).0)
+    }
+
+    /// [`Run::report_with`] in slices, with [`Reporting::step`].
+    pub fn measure(&mut self, measured: Measured) -> Reporting<'_> {
         Reporting(Box::pin(async move {
-            if self.measuring.facing.is_none() {
+            let with_front = measured == Measured::FrontToo;
+            let is_known =
+                self.measuring.facing.is_some() && !(with_front && self.measuring.open_front().is_some());
+            if measured != Measured::Nothing && !is_known {
                 self.measuring.stop();
-                let measured =
-                    self.measuring_input().in_slices(self.field.function(), self.sampler.frame()).await;
-                self.keep(measured);
+                let input = self.measuring_input(with_front);
+                let result = input.in_slices(self.field.function(), self.sampler.frame()).await;
+                self.keep(result);
             }
             self.reported()
         }))
     }
 
-    /// [`Run::report`] in slices, up to `budget` of them, with the run free between them: the
-    /// report, once it is complete. A measurement that anything comes between is given up, and the
+    /// [`Run::report_with`] in slices, the front measured, too, up to `budget` of them, with the run
+    /// free between them: the report, once it is complete. A measurement that anything comes between is given up, and the
     /// next call begins anew.
     pub(crate) fn measure_copy(&mut self, budget: u32) -> Option<Report>
     where
@@ -257,7 +269,7 @@ impl<F: Field> Run<F> {
                     Some(creased) => Arc::<dyn Creased>::clone(creased),
                     None => Arc::new(self.field.given.clone()),
                 };
-                self.measuring_input().work(field, self.sampler.frame())
+                self.measuring_input(true).work(field, self.sampler.frame())
             });
             let measured = slices::advance(self.measuring.work.insert(work).as_mut(), budget)?;
             self.measuring.work = None;
@@ -298,21 +310,6 @@ impl<F: Field> Run<F> {
             (self.measuring.front, self.measuring.front_figures) = (None, front);
         }
         (self.measuring.measured, self.measuring.facing) = (now, Some(facing));
-    }
-
-    /// The report, with so much measured.
-    pub(crate) fn report_with(&mut self, measured: Measured) -> Report {
-        match measured {
-            Measured::Nothing => {
-                self.measuring = Measuring::default();
-                self.reported()
-            }
-            Measured::Particles => {
-                self.measuring.front = None;
-                self.report()
-            }
-            Measured::FrontToo => self.report(),
-        }
     }
 
     /// The report, with the measurements that are there.

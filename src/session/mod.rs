@@ -440,7 +440,7 @@ impl Session {
 
     /// Measures the particles at once: [`Session::measure`].
     pub fn report(&mut self) -> Report {
-        let report = self.run.report();
+        let report = self.run.report_with(Measured::FrontToo);
         self.completed(report)
     }
 

@@ -2,8 +2,8 @@
 
 use marching_particles::glam::DVec3;
 use marching_particles::{
-    BatchField, Bounds, BoxError, Error, Field, FnField, Format, Formula, MeshFormat, Method, Particles,
-    Radius, Run, Settings, SettingsError, Severity, StopReason, Warning, sample,
+    BatchField, Bounds, BoxError, Error, Field, FnField, Format, Formula, Measured, MeshFormat, Method,
+    Particles, Radius, Run, Settings, SettingsError, Severity, StopReason, Warning, sample,
 };
 use std::cell::Cell;
 use std::sync::Arc;
@@ -279,8 +279,8 @@ fn any_field_is_measured_in_slices_and_none_is_measured_twice() {
     let field: Box<dyn Field> = Box::new(FnField::new(counted_sphere));
     let mut run = Run::start(field, &settings).unwrap();
     while run.step(1_000).stop_reason.is_none() {}
-    assert!(run.measure().step(3).is_none(), "a measurement that is given up");
-    let mut measuring = run.measure();
+    assert!(run.measure(Measured::Particles).step(3).is_none(), "a measurement that is given up");
+    let mut measuring = run.measure(Measured::Particles);
     let mut steps = 1;
     let report = loop {
         match measuring.step(10) {
@@ -292,7 +292,7 @@ fn any_field_is_measured_in_slices_and_none_is_measured_twice() {
     drop(measuring);
     assert_eq!(format!("{report:?}"), format!("{:?}", whole.report()));
     let calls = CALLS.replace(0);
-    let again = [run.report(), run.measure().step(1).unwrap()];
+    let again = [run.report(), run.measure(Measured::Particles).step(1).unwrap()];
     let sample = run.finish().unwrap();
     assert_eq!(format!("{again:?}"), format!("{:?}", [&report, sample.report()]));
     assert!(CALLS.get() < calls / 100, "{} calls after {calls}", CALLS.get());
