@@ -869,7 +869,7 @@ export type Measures = {
   /** Quality of the present particles; none if there are none, or where they were not measured. */
   quality: Figures | null,
   /** Quality of the particles after the front, before the relaxation; none where nothing was
-  * relaxed. */
+  * relaxed, or the front was not measured. */
   quality_before: Figures | null,
   /** Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of
   * the particles. */
@@ -1157,7 +1157,7 @@ export type Report = {
   /** Quality of the present particles; none if there are none, or where they were not measured. */
   quality: Figures | null,
   /** Quality of the particles after the front, before the relaxation; none where nothing was
-  * relaxed. */
+  * relaxed, or the front was not measured. */
   quality_before: Figures | null,
   /** Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of
   * the particles. */
