@@ -81,6 +81,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
     shortcutsOf(engine, {
       history,
       motion,
+      pins,
       print,
       timeline,
       hide: layout.hideMore,
@@ -225,7 +226,7 @@ function pictureOf(engine, motion, toast) {
  * @param {ShortcutTargets} page
  * @returns {Shortcut[]}
  */
-function shortcutsOf(engine, { history, motion, print, timeline, hide, open }) {
+function shortcutsOf(engine, { history, motion, pins, print, timeline, hide, open }) {
   const along = (/** @type {'toggle' | 'back' | 'forward' | 'first' | 'all'} */ command) => () =>
     void timeline.then((made) => made?.[command]());
   return [
@@ -233,10 +234,12 @@ function shortcutsOf(engine, { history, motion, print, timeline, hide, open }) {
     {
       keys: ['Escape'],
       shown: 'Esc',
-      label: 'Stop',
+      label: 'Stop; leave Grab or measuring',
       act: () => {
         if (motion.stop()) return;
-        if (engine.busy.peek() || engine.loading.peek()) engine.stop();
+        if (pins.peek()) pins.value = null;
+        else if (engine.state.peek().view.measured) engine.setView({ measured: null });
+        else if (engine.busy.peek() || engine.loading.peek()) engine.stop();
         else engine.pointOut(null);
       },
     },

@@ -206,6 +206,7 @@ export type Toast = (notice: Notice) => void;
 export interface ShortcutTargets {
   history: ReturnType<typeof createHistory>;
   motion: Motion;
+  pins: Pins;
   print: () => void;
   /** a key that is pressed before it has loaded acts as soon as it has */
   timeline: Promise<Record<'toggle' | 'back' | 'forward' | 'first' | 'all', () => void> | null>;
