@@ -344,7 +344,10 @@ export interface EngineCommands {
   declareParameter: (name: string) => void;
   /** the number that a text stands for in the language of formulas, such as `pi/2`; null for any other text */
   readNumber: (text: string) => Promise<number | null>;
-  setBounds: (bounds: Bounds | null, options?: { live?: boolean }) => void;
+  /** `enlarges`: nobody has set this box, so the camera fits it and the next formula ends it */
+  setBounds: (bounds: Bounds | null, options?: { live?: boolean; enlarges?: boolean }) => void;
+  /** whether the box was enlarged by a press, around an `endless` surface or another; reads the state */
+  enlargement: () => 'endless' | 'larger' | null;
   /** the normal may have any length but 0 */
   setPlane: (plane: CuttingPlane | null, options?: { live?: boolean }) => void;
   /** takes the box of the gallery surface back, or fits it to the formula */

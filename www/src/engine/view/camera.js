@@ -359,7 +359,7 @@ export class Camera {
 
   /**
    * Moves the camera so that the whole ball is visible, or from a distance, with an animation
-   * unless `jump` is set.
+   * unless `jump` is set, and goes on with a turn under way.
    * @param {Ball} ball
    * @param {{jump?: boolean, distance?: number}} [how]
    */
@@ -371,7 +371,7 @@ export class Camera {
       this.state = { ...this.state, ...goal };
       this.#glide = null;
     } else {
-      this.#glide = goal;
+      this.#glide = { ...this.#glide, ...goal };
     }
   }
 

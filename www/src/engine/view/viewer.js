@@ -30,7 +30,7 @@ import { FADE_S, firstLook, scaleOf, shownLevel, shownStep, styleOf } from './st
 import { ParticleUpload } from './upload.js';
 
 /**
- * @import { Bounds, Place, Ray, Vec3 } from '../types.js'
+ * @import { Angles, Bounds, Place, Ray, Vec3 } from '../types.js'
  * @import { Device, FrameResult, Look, View, ViewerEvents, ViewerOptions } from './types.js'
  */
 
@@ -253,11 +253,10 @@ export class Viewer {
     this.moved();
   }
 
-  /** Turns about the vertical to where most of the surface is seen. */
-  turnWide() {
+  /** Turns to where most of the surface is seen, about the vertical from these angles. @param {Angles} from */
+  turnWide(from) {
     const { columns, camera } = this;
-    const yaw = widestYaw(camera.end, columns, this.#fitBall());
-    camera.turnTo({ yaw, pitch: camera.end.pitch });
+    camera.turnTo({ yaw: widestYaw(from, columns, this.#fitBall()), pitch: from.pitch });
     this.moved();
   }
 
@@ -414,7 +413,8 @@ export class Viewer {
       this.keeper.giveUp(error instanceof Error ? error.message : String(error));
       return 'none';
     }
-    if (this.due.legend && !this.reveal.active) this.#tellLegend();
+    // Without particles the colours have no range; the legend before stays.
+    if (this.due.legend && this.columns.count > 0) this.#tellLegend();
     const revealing = this.#tellReveal(nowS);
     const dimming = this.dimmer.moving(nowS);
     if (dimming) this.due.style = true;
@@ -468,7 +468,6 @@ export class Viewer {
     if (!reveal.active) return false;
     if (nowS > reveal.endS() + FADE_S && !this.growing) {
       this.#endReveal();
-      if (this.due.legend) this.#tellLegend();
       return false;
     }
     const level = reveal.levelAt(nowS);

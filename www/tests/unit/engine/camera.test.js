@@ -204,6 +204,15 @@ describe('the camera', () => {
     }
   });
 
+  test('turns to the end where a fit comes between', () => {
+    const camera = new Camera(state);
+    camera.turnTo({ yaw: 1.5, pitch: 0.4 });
+    camera.step(1 / 60);
+    camera.fit({ centre: [1, 1, 1], radius: 3 });
+    while (camera.step(1 / 60));
+    expect(camera.state).toMatchObject({ yaw: 1.5, pitch: 0.4, target: [1, 1, 1], distance: fitDistance(3) });
+  });
+
   test('is before a place at once where motion is reduced', () => {
     const camera = new Camera(state);
     camera.calm = true;
