@@ -86,12 +86,14 @@ export class Framing {
   written({ typed, another = false }) {
     this.#isWritten = true;
     this.#isTyped = typed;
+    if (typed) this.#viewer.linked = null;
     this.#isAnother = typed && (this.#isAnother || another);
   }
 
   /** Fits the surface that is to come, wherever the hand has left the camera. */
   enlarged() {
     this.#follow();
+    this.#viewer.linked = null;
     this.written({ typed: false });
   }
 

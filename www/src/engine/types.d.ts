@@ -8,6 +8,17 @@ import type { LessonClientOptions, Surface } from './lesson/types.js';
 export type Signal<T> = import('@preact/signals-core').Signal<T>;
 export type ReadonlySignal<T> = import('@preact/signals-core').ReadonlySignal<T>;
 export type Vec3 = [number, number, number];
+/**
+ * Margins of the picture that panels cover, in pixels. `corner`: a rectangle in the upper left of what is free, into
+ * which a fit does not let the surface reach.
+ */
+export type Insets = {
+  left: number;
+  right: number;
+  top: number;
+  bottom: number;
+  corner?: { width: number; height: number };
+};
 
 // ---- what the core says and is told: written from its own types (core-types.d.ts)
 
@@ -378,7 +389,7 @@ export interface EngineCommands {
   zoom: (factor: number) => void;
   orbit: (dxRad: number, dyRad: number) => void;
   /** pixels of the canvas host covered by panels; the surface is centred in the rest */
-  setInsets: (insets: { left: number; right: number; top: number; bottom: number }) => void;
+  setInsets: (insets: Insets) => void;
   /** the state as the fragment of an address, with `#`; empty for the default state. Not before the core has loaded */
   link: () => Promise<string>;
   /**

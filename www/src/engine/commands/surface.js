@@ -66,7 +66,8 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
       if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && scheduler.loader.hasFile)) return;
       showAll(store);
       change(store, freshShape(description(store), state.value.settings, id, surface?.formula));
-      // Another surface is framed, wherever the hand has left the camera.
+      // Another surface is framed, wherever the hand or a link has left the camera.
+      viewer.linked = null;
       const { camera } = viewer;
       if (!camera.state.fit) {
         camera.set({ ...camera.state, fit: true });

@@ -3,7 +3,7 @@
  *
  * @module
  */
-import { vec } from '../vector.js';
+import { clamp, vec } from '../vector.js';
 import {
   ballOf,
   Camera,
@@ -30,7 +30,7 @@ import { FADE_S, firstLook, scaleOf, shownLevel, shownStep, styleOf } from './st
 import { ParticleUpload } from './upload.js';
 
 /**
- * @import { Angles, Bounds, Place, Ray, Vec3 } from '../types.js'
+ * @import { Angles, Bounds, CameraState, Place, Ray, Vec3 } from '../types.js'
  * @import { Device, FrameResult, Look, View, ViewerEvents, ViewerOptions } from './types.js'
  */
 
@@ -76,6 +76,8 @@ export class Viewer {
     this.#lastS = 0;
     /** Whether the next surface that grows is first seen from the side of its seed. */
     this.opening = false;
+    /** The camera of the link that was opened last, until the surface is fitted by hand. @type {CameraState | null} */
+    this.linked = null;
     /** Whether the front is still placing particles. A reveal does not end before the front. */
     this.growing = false;
     this.dimmer = new Dimmer();
@@ -310,12 +312,25 @@ export class Viewer {
       return { ball, distance: this.#wholeDistance };
     const { placed: positions, radii, count } = columns;
     const discs = { positions, radii, count };
-    return { ball, distance: outlineDistance(this.camera.end, ball, this.#free(), discs, this.#shownOnly()) };
+    const distance = outlineDistance(this.camera.end, ball, this.#free(), discs, this.#shownOnly());
+    return { ball, distance: this.#asLinked(distance) };
   }
 
-  /** Returns the size of the part of the picture that no panel covers. */
+  /** Returns the size of the part of the picture that no panel covers, and the corner of it that stays free. */
   #free() {
-    return freePart(this.screen.cssWidth, this.screen.cssHeight, this.look.insets);
+    const { insets } = this.look;
+    return { ...freePart(this.screen.cssWidth, this.screen.cssHeight, insets), corner: insets.corner };
+  }
+
+  /**
+   * Returns the distance of the camera of a link, at its angles and where the whole surface is seen from there. So a
+   * page that is opened again shows what it showed.
+   * @param {number} distance  of a fit
+   */
+  #asLinked(distance) {
+    const [{ linked }, { yaw, pitch }] = [this, this.camera.end];
+    if (linked?.yaw !== yaw || linked.pitch !== pitch) return distance;
+    return clamp(linked.distance, distance, Math.max(distance, this.#wholeDistance));
   }
 
   /** Brings a place before the camera, seen along its normal. @param {Place} place */

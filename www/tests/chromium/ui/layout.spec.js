@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { afresh, atRest, open, scan, settled, state } from './helpers.js';
+import { afresh, atRest, open, scan, settled, state, typeFormula } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -150,6 +150,53 @@ test('on a phone the surface stands clear of tools, legend and caption', async (
     expect(under).toEqual([false, false, false]);
     expect(between).toBe(true);
   }
+});
+
+test('on a larger window a fit leaves the legend free, and a page that is opened again shows the same', async ({
+  page,
+}) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  const isUnderLegend = () =>
+    page.evaluate(() => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      const box = /** @type {Element} */ (document.querySelector('.legend')).getBoundingClientRect();
+      for (let x = box.left; x <= box.right - 6; x += 4)
+        for (let y = box.top; y <= box.bottom - 6; y += 4) if (engine.pick(x, y) !== null) return true;
+      return false;
+    });
+  // A heart reaches into the corners of its picture.
+  await typeFormula(page, '(x^2 + 9/4*y^2 + z^2 - 1)^3 - x^2*z^3 - 9/80*y^2*z^3 = 0');
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.lookFrom('front'));
+  await settled(page);
+  await page.keyboard.press('Escape');
+  for (const [width, height] of /** @type {const} */ ([
+    [1440, 900],
+    [1024, 768],
+  ])) {
+    await page.setViewportSize({ width, height });
+    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.fit());
+    await atRest(page);
+    expect(await isUnderLegend(), `${width} by ${height}`).toBe(false);
+  }
+  // Turned by hand it is as small as it was.
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.orbit(1.2, 0.3));
+  await atRest(page);
+  const before = (await state(page)).view.camera;
+  await expect
+    .poll(() =>
+      page.evaluate(
+        async () =>
+          (await /** @type {any} */ (window).marchingParticles.link()) === location.href.replace(location.search, ''),
+      ),
+    )
+    .toBe(true);
+  await page.reload();
+  await settled(page);
+  await atRest(page);
+  const after = (await state(page)).view.camera;
+  expect(after.distance / before.distance).toBeCloseTo(1, 4);
+  expect(after.yaw).toBeCloseTo(before.yaw, 4);
+  await clean();
 });
 
 test('targets are large, the theme can be switched, and the page says what it is', async ({ page }) => {
