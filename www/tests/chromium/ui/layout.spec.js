@@ -383,3 +383,33 @@ test('the page says in one line what it is', async ({ page }) => {
     await clean();
   }
 });
+
+test('a theme that was chosen is that of the lesson and of the next visit, and no link changes it', async ({
+  page,
+}) => {
+  await page.emulateMedia({ colorScheme: 'light' });
+  const { clean } = await open(page);
+  const theme = () => page.evaluate(() => getComputedStyle(document.documentElement).colorScheme);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ theme: 'dark' }));
+  expect(await theme()).toBe('dark');
+  await page.goto('./learn/');
+  expect(await theme()).toBe('dark');
+  await page.goto('./?backend=canvas2d');
+  await settled(page);
+  expect(await theme()).toBe('dark');
+  expect((await state(page)).view.theme).toBe('dark');
+  const light = await page.evaluate(async () => {
+    const { engine, link } = /** @type {any} */ (window).marchingParticles;
+    engine.setView({ theme: 'light' });
+    const address = await link();
+    engine.setView({ theme: 'dark' });
+    return new URL(address).hash;
+  });
+  await page.goto('./learn/');
+  await page.goto(`./?backend=canvas2d${light}`);
+  await settled(page);
+  expect(await theme()).toBe('light');
+  await page.goto('./learn/');
+  expect(await theme()).toBe('dark');
+  await clean();
+});
