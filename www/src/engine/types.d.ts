@@ -239,6 +239,8 @@ export interface Legend {
   mark?: number;
   colours: string[];
   pending?: boolean;
+  /** of the dots on vertices of a mesh, while it is drawn with them */
+  dots?: LegendEntry[];
 }
 /**
  * The times in seconds of the sampling and of its parts. With `steps` above 0 they are those of so many relaxation

@@ -15,7 +15,7 @@ import {
   STANDARD_VIEWS,
   viewOf,
 } from './camera.js';
-import { legendOf } from './colouring.js';
+import { legendOf, legendOfDots } from './colouring.js';
 import { CreaseUpload } from './creases.js';
 import { DeviceKeeper } from './device.js';
 import { Dimmer } from './dimmer.js';
@@ -171,6 +171,7 @@ export class Viewer {
 
   /** Handles a mesh that has come or gone without particles. */
   meshed() {
+    this.due.legend = true;
     this.frames.ask();
   }
 
@@ -195,6 +196,7 @@ export class Viewer {
     const { colour, theme, level, marks } = this.look;
     if (colour !== before.colour || theme !== before.theme) this.recolour(0, this.columns.count);
     if (marks !== before.marks) this.#faces.recolour();
+    if (marks !== before.marks || this.look.draw !== before.draw) this.due.legend = true;
     this.remembered();
     if (level !== before.level || this.look.insets !== before.insets) this.#frameFront();
     // A running reveal would continue behind the levels that are stepped through.
@@ -472,9 +474,11 @@ export class Viewer {
   }
 
   #tellLegend() {
-    const { colour, theme } = this.look;
+    const { colour, theme, draw, marks } = this.look;
     this.due.legend = false;
-    this.#events.onLegend(legendOf(colour, theme, this.columns, this.upload.range));
+    const legend = legendOf(colour, theme, this.columns, this.upload.range);
+    const hasDots = draw === 'mesh' && marks && this.columns.mesh !== null && this.keeper.device?.kind !== 'canvas2d';
+    this.#events.onLegend(hasDots ? { ...legend, dots: legendOfDots(theme) } : legend);
   }
 
   /** @param {number} nowS @returns whether further levels are to appear */

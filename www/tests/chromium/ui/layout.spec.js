@@ -114,7 +114,7 @@ test('axe finds nothing at 1440 by 900', async ({ page }) => {
   await page.getByRole('button', { name: 'View options' }).click();
   await expectAccessible(page);
   await page.keyboard.press('Escape');
-  await page.getByRole('button', { name: 'Keyboard shortcuts' }).click();
+  await page.getByRole('button', { name: 'Help' }).click();
   await expectAccessible(page);
 });
 
@@ -234,8 +234,8 @@ test('targets are large, the theme can be switched, and the page says what it is
     expect(await top('.formula')).toBeLessThan(await top('.story'));
     expect(await top('.parameters')).toBeLessThan(await top('.story'));
     expect(await top('.story')).toBeLessThan(await top('.clip'));
-    await page.getByRole('button', { name: 'Keyboard shortcuts' }).click();
-    await expect(page.getByRole('dialog', { name: 'Keyboard and pointer' })).toBeVisible();
+    await page.getByRole('button', { name: 'Help' }).click();
+    await expect(page.getByRole('dialog', { name: 'Help' })).toBeVisible();
   });
 
   await test.step('in a large window everything grows with it, in a usual one it has the size that the user has set', async () => {
@@ -340,9 +340,13 @@ test('keys alone reach the formula, a slider, the run and the panels', async ({ 
   await page.keyboard.press('h');
   await expect(page.locator('#panel-field')).toBeVisible();
   await page.keyboard.press('?');
-  await expect(page.getByRole('dialog', { name: 'Keyboard and pointer' })).toBeVisible();
+  const help = page.getByRole('dialog', { name: 'Help' });
+  await expect(help.locator('p').first()).toContainText('covers a surface, given by a formula, with particles');
   await page.keyboard.press('Escape');
   await expect(page.getByRole('dialog')).toHaveCount(0);
+  await page.keyboard.press('?');
+  await help.getByRole('link', { name: 'lesson' }).click();
+  await expect(page).toHaveURL(/\/learn\/#surface=/);
   await clean();
 });
 
