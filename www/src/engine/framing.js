@@ -1,7 +1,8 @@
 /**
- * Decides when the camera fits the surface automatically: after a formula was typed or a link was read, and when the
- * surface disappears or reappears. A formula that is still being typed is kept once it has stood for another pause. If
- * it gives way to the surface before, the camera goes back, too. The camera moves only while `camera.fit` is set.
+ * Decides when the camera fits the surface automatically: after a formula was typed, a link was read or the box was
+ * enlarged, and when the surface disappears or reappears. A formula that is still being typed is kept once it has stood
+ * for another pause. If it gives way to the surface before, the camera goes back, too. The camera moves only while
+ * `camera.fit` is set, which it is again for an enlarged box and for a formula that takes the place of another.
  *
  * @module
  */
@@ -11,7 +12,7 @@ import { homeCamera } from './view/camera.js';
 
 /**
  * @import { Store } from './store.js'
- * @import { CameraState, Columns } from './types.js'
+ * @import { Angles, CameraState, Columns } from './types.js'
  * @import { Viewer } from './view/viewer.js'
  */
 
@@ -23,8 +24,11 @@ export class Framing {
   /** Whether the formula changed or a link was read, and the camera has not fitted the surface since. */
   #isWritten;
 
-  /** The yaw that the page gave the camera last. */
-  #yaw;
+  /** The angles that the page gave the camera last. @type {Angles} */
+  #angles;
+
+  /** Whether another surface was typed, which the camera has not shown since. */
+  #isAnother;
 
   /** Whether the formula was typed. That keeps the camera where it is as long as the formula has no surface. */
   #isTyped;
@@ -41,7 +45,8 @@ export class Framing {
     this.#viewer = viewer;
     this.#isWritten = false;
     this.#isTyped = false;
-    this.#yaw = homeCamera().yaw;
+    this.#isAnother = false;
+    this.#angles = homeCamera();
     /** Whether the camera shows the whole box because there is no surface. */
     let boxShown = false;
     /** Where the camera was when the first trial began. @type {CameraState | null} */
@@ -74,10 +79,22 @@ export class Framing {
     ];
   }
 
-  /** Notes that the formula changed or a link was read. @param {{typed: boolean}} how */
-  written({ typed }) {
+  /**
+   * Notes that the formula changed, a link was read or the box was made larger.
+   * @param {{typed: boolean, another?: boolean}} how  `another`: the formula took the place of another one
+   */
+  written({ typed, another = false }) {
     this.#isWritten = true;
     this.#isTyped = typed;
+    if (typed) this.#viewer.linked = null;
+    this.#isAnother = typed && (this.#isAnother || another);
+  }
+
+  /** Fits the surface that is to come, wherever the hand has left the camera. */
+  enlarged() {
+    this.#follow();
+    this.#viewer.linked = null;
+    this.written({ typed: false });
   }
 
   /**
@@ -96,29 +113,43 @@ export class Framing {
     this.#fit();
   }
 
-  /** Shows a typed surface from where its outline is largest, unless the hand has turned the camera. */
+  /**
+   * Shows a typed surface from where its outline is largest: another one wherever the hand has left the camera, else
+   * unless the hand has turned it.
+   */
   #turn() {
     const { camera } = this.#viewer;
-    if (!camera.state.fit || this.#columns.count === 0 || this.#isTurned()) return;
-    this.#viewer.turnWide();
-    this.#yaw = camera.end.yaw;
+    const isAnother = this.#isAnother;
+    if (this.#columns.count === 0 || (!isAnother && (!camera.state.fit || this.#isTurned()))) return;
+    this.#isAnother = false;
+    if (isAnother) this.#follow();
+    this.#viewer.turnWide(isAnother ? homeCamera() : camera.end);
+    this.#angles = camera.end;
   }
 
   /** Whether the hand has turned the camera since the page did. */
   #isTurned() {
-    return Math.abs(this.#viewer.camera.end.yaw - this.#yaw) > 1e-3;
+    const { end } = this.#viewer.camera;
+    return Math.hypot(end.yaw - this.#angles.yaw, end.pitch - this.#angles.pitch) > 1e-3;
   }
 
   /** Goes back to where the camera was, turned as the hand has turned it since. @param {CameraState} before */
-  #back({ target, distance, yaw }) {
+  #back(before) {
     const { camera } = this.#viewer;
     if (!camera.state.fit) return;
+    const { target, distance } = before;
     if (this.#isTurned()) camera.set({ ...camera.state, target, distance });
     else {
-      camera.set({ ...camera.state, target, distance, yaw });
-      this.#yaw = yaw;
+      camera.set(before);
+      this.#angles = camera.end;
     }
     this.#viewer.moved();
+  }
+
+  /** Has the camera fit the surface again, after the hand had taken it. */
+  #follow() {
+    const { camera } = this.#viewer;
+    if (!camera.state.fit) camera.set({ ...camera.state, fit: true });
   }
 
   #fit() {

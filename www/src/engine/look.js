@@ -3,7 +3,7 @@
  *
  * @module
  */
-import { effect, signal, untracked } from '@preact/signals-core';
+import { computed, effect, signal, untracked } from '@preact/signals-core';
 import { seenOf } from './view/style.js';
 
 /**
@@ -24,6 +24,12 @@ export function keepLook({ store, viewer, scheduler: { loader, sampling } }) {
   };
   system.addEventListener('change', follow);
 
+  // A box that the surface misses is drawn, so that it can be moved; if there is no surface anywhere, it is not.
+  const isMissed = computed(
+    () =>
+      store.empty.value && store.field.value?.reach !== 'nowhere' && store.progress.value.stop_reason !== 'constant',
+  );
+
   /** Returns the points of the model on the page, or null if they are not drawn. */
   function points() {
     const { view, pulls } = store.state.value;
@@ -38,12 +44,10 @@ export function keepLook({ store, viewer, scheduler: { loader, sampling } }) {
       view.theme === 'auto' ? (isDark.value ? 'dark' : 'light') : view.theme
     );
     const field = store.field.value;
-    // A box that the surface misses is drawn, so that it can be moved; if there is no surface anywhere, it is not.
-    const isMissed = store.empty.value && field?.reach !== 'nowhere';
     return {
       ...seenOf(view),
       theme,
-      box: view.box || isMissed ? (bounds ?? field?.bounds ?? null) : null,
+      box: view.box || isMissed.value ? (bounds ?? field?.bounds ?? null) : null,
       plane,
       points: points(),
     };

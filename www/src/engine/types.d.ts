@@ -8,6 +8,17 @@ import type { LessonClientOptions, Surface } from './lesson/types.js';
 export type Signal<T> = import('@preact/signals-core').Signal<T>;
 export type ReadonlySignal<T> = import('@preact/signals-core').ReadonlySignal<T>;
 export type Vec3 = [number, number, number];
+/**
+ * Margins of the picture that panels cover, in pixels. `corner`: a rectangle in the upper left of what is free, into
+ * which a fit does not let the surface reach.
+ */
+export type Insets = {
+  left: number;
+  right: number;
+  top: number;
+  bottom: number;
+  corner?: { width: number; height: number };
+};
 
 // ---- what the core says and is told: written from its own types (core-types.d.ts)
 
@@ -228,6 +239,8 @@ export interface Legend {
   mark?: number;
   colours: string[];
   pending?: boolean;
+  /** of the dots on vertices of a mesh, while it is drawn with them */
+  dots?: LegendEntry[];
 }
 /**
  * The times in seconds of the sampling and of its parts. With `steps` above 0 they are those of so many relaxation
@@ -344,7 +357,10 @@ export interface EngineCommands {
   declareParameter: (name: string) => void;
   /** the number that a text stands for in the language of formulas, such as `pi/2`; null for any other text */
   readNumber: (text: string) => Promise<number | null>;
-  setBounds: (bounds: Bounds | null, options?: { live?: boolean }) => void;
+  /** `enlarges`: nobody has set this box, so the camera fits it and the next formula ends it */
+  setBounds: (bounds: Bounds | null, options?: { live?: boolean; enlarges?: boolean }) => void;
+  /** whether the box was enlarged by a press, around an `endless` surface or another; reads the state */
+  enlargement: () => 'endless' | 'larger' | null;
   /** the normal may have any length but 0 */
   setPlane: (plane: CuttingPlane | null, options?: { live?: boolean }) => void;
   /** takes the box of the gallery surface back, or fits it to the formula */
@@ -375,7 +391,7 @@ export interface EngineCommands {
   zoom: (factor: number) => void;
   orbit: (dxRad: number, dyRad: number) => void;
   /** pixels of the canvas host covered by panels; the surface is centred in the rest */
-  setInsets: (insets: { left: number; right: number; top: number; bottom: number }) => void;
+  setInsets: (insets: Insets) => void;
   /** the state as the fragment of an address, with `#`; empty for the default state. Not before the core has loaded */
   link: () => Promise<string>;
   /**

@@ -3,6 +3,7 @@ import { kindOf, LessonClient } from '../engine/lesson/client.js';
 import { Meter } from '../engine/sampling/meter.js';
 import { byId } from '../ui/dom.js';
 import { surfaceWords } from '../ui/surface-link.js';
+import '../ui/theme.js';
 import { readAddress, writeAddress } from './address.js';
 import { Lab, NoSurface, PARTICLES } from './lab.js';
 import { subjectOf } from './surface.js';

@@ -10,6 +10,7 @@ import { rgbFromPacked } from '../engine/view/oklab.js';
 import { Painter } from '../engine/view/painter.js';
 import { PALETTES, RAMP } from '../engine/view/palettes.js';
 import { endsWith, h, live, reducedMotion } from '../ui/dom.js';
+import '../ui/theme.js';
 import { Fit } from './fit.js';
 import { frontNormal, shareFacing } from './front.js';
 
@@ -37,10 +38,13 @@ const FINENESS = 2;
 const dark = matchMedia('(prefers-color-scheme: dark)');
 /** Paper is white whatever the screen is. */
 const printing = signal(false);
-const isDark = signal(dark.matches);
-dark.addEventListener('change', () => {
-  isDark.value = dark.matches;
-});
+const isDark = signal(false);
+const followTheme = () => {
+  const { theme } = document.documentElement.dataset;
+  isDark.value = theme ? theme === 'dark' : dark.matches;
+};
+followTheme();
+dark.addEventListener('change', followTheme);
 addEventListener('beforeprint', () => {
   printing.value = true;
 });

@@ -1,36 +1,69 @@
 /**
  * Keeps the state in the fragment of the page's address: writes it shortly after a change and reads it from a link.
+ * Another surface is a new entry of the browser's history, so that Back leads to the surface before, as it was seen;
+ * other changes are written into the present entry.
  *
  * @module
  */
 import { effect } from '@preact/signals-core';
 
-/** @import { Engine } from '../engine/types.js' */
+/** @import { Engine, State } from '../engine/types.js' */
 
 /** Delay between a change and its write. Browsers refuse more than about 100 address changes in 30 seconds. */
 const ADDRESS_MS = 500;
 
-/** @param {Engine} engine */
-export function keepAddress(engine) {
+/** What makes a surface another one, for which Back is pressed. @param {State} state */
+const nameOf = ({ surface, formula }) => JSON.stringify([surface, formula]);
+
+/** @param {Engine} engine @param {{ hasEntries: boolean }} how  `hasEntries`: surfaces are entries of the history */
+export function keepAddress(engine, { hasEntries }) {
   /** The fragment last written by the page. Any other fragment comes from the user. */
   let own = location.hash;
+  /**
+   * The surface of the present entry; null while it may still change, as one that is being typed.
+   * @type {string | null}
+   */
+  let entry = null;
+  /** Number of fragments that are being read, one after the other. */
+  let reading = 0;
+  let last = Promise.resolve();
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
   addEventListener('hashchange', () => {
     if (location.hash === own) return;
     own = location.hash;
-    if (engine.description.value) void engine.openLink(own);
+    if (!engine.description.value) return;
+    reading += 1;
+    last = last
+      .then(() => read(own))
+      .finally(() => {
+        reading -= 1;
+      });
   });
+  /** @param {string} link */
+  async function read(link) {
+    // The theme is that of the reader, not of an entry.
+    const { theme } = engine.state.value.view;
+    await engine.openLink(link, { patch: { view: { theme } } });
+    entry = nameOf(engine.state.value);
+  }
   async function write() {
     if (!engine.description.value) return;
     const link = await engine.link();
+    // What there was before Back does not belong into the entry that it leads to.
+    if (reading > 0) return;
+    const { trial, typing, fieldError, state } = engine;
+    const name = nameOf(state.value);
+    const isNext = hasEntries && entry !== null && entry !== name;
+    if (trial.value !== 'shown' && !typing.value && fieldError.value === null) entry = name;
+    else if (isNext) entry = null;
     if (link === own) return;
     own = link;
-    history.replaceState(history.state, '', link || location.pathname + location.search);
+    history[isNext ? 'pushState' : 'replaceState'](history.state, '', link || location.pathname + location.search);
   }
   effect(() => {
-    // Reading the whole state makes the effect run after any change of it.
-    void engine.state.value;
+    // Reading the whole state makes the effect run after any change of it, and after a typed formula has settled.
+    void [engine.state.value, engine.trial.value, engine.typing.value, engine.fieldError.value];
     clearTimeout(timer);
     timer = setTimeout(write, ADDRESS_MS);
   });

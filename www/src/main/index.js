@@ -15,10 +15,11 @@ const query = new URLSearchParams(location.search);
 const wanted = query.get('backend');
 const backend = BACKENDS.find((kind) => kind === wanted) ?? null;
 const engine = createEngine({ host: byId('canvas-host'), link: location.hash, backend });
-keepAddress(engine);
 const p = createConsole(engine);
 Object.assign(window, { marchingParticles: p });
 const parts = query.get('embed');
+// In a frame Back is that of the page around it.
+keepAddress(engine, { hasEntries: parts === null });
 if (parts !== null) {
   // The panels do not flash before the rest is there.
   byId('shell').dataset.hidden = 'all';

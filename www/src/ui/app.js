@@ -15,6 +15,7 @@ import { mountReport } from './report/panel.js';
 import { mountSampling } from './sampling/panel.js';
 import { isDue } from './sampling/settings.js';
 import { COMMAND_KEY, mountShortcuts } from './shortcuts.js';
+import { keepTheme, keptTheme, showTheme } from './theme.js';
 import { mountToasts } from './toasts.js';
 import { mountHover } from './view/hover.js';
 import { createLegend } from './view/legend.js';
@@ -22,7 +23,7 @@ import { mountOverlay } from './view/overlay.js';
 import { createToolbar } from './view/toolbar.js';
 
 /**
- * @import { Description, Engine, ReadonlySignal, Signal } from '../engine/types.js'
+ * @import { Description, Engine, ReadonlySignal, Signal, ViewState } from '../engine/types.js'
  * @import { Told } from './levels/types.js'
  * @import { Dialog, Motion, Pins, Shortcut, ShortcutTargets, Toast } from './types.js'
  */
@@ -81,6 +82,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
     shortcutsOf(engine, {
       history,
       motion,
+      pins,
       print,
       timeline,
       hide: layout.hideMore,
@@ -172,12 +174,18 @@ function nameTab(engine) {
   });
 }
 
-/** Gives the page and the browser's frame the chosen theme. @param {Engine} engine */
+/** Gives the page and the browser's frame the chosen theme, and keeps what is chosen. @param {Engine} engine */
 function followTheme(engine) {
+  let isRead = false;
+  // Nothing before the first state, in which a link may have chosen one.
+  const theme = computed(() => engine.state.value.surface && engine.state.value.view.theme);
   effect(() => {
-    const { theme } = engine.state.value.view;
-    if (theme === 'auto') delete document.documentElement.dataset.theme;
-    else document.documentElement.dataset.theme = theme;
+    if (!theme.value) return;
+    if (isRead) keepTheme(theme.value);
+    else if (theme.value === 'auto' && keptTheme)
+      engine.setView({ theme: /** @type {ViewState['theme']} */ (keptTheme) });
+    isRead = true;
+    showTheme(theme.value);
   });
   effect(() => {
     void engine.theme.value;
@@ -225,7 +233,7 @@ function pictureOf(engine, motion, toast) {
  * @param {ShortcutTargets} page
  * @returns {Shortcut[]}
  */
-function shortcutsOf(engine, { history, motion, print, timeline, hide, open }) {
+function shortcutsOf(engine, { history, motion, pins, print, timeline, hide, open }) {
   const along = (/** @type {'toggle' | 'back' | 'forward' | 'first' | 'all'} */ command) => () =>
     void timeline.then((made) => made?.[command]());
   return [
@@ -233,10 +241,12 @@ function shortcutsOf(engine, { history, motion, print, timeline, hide, open }) {
     {
       keys: ['Escape'],
       shown: 'Esc',
-      label: 'Stop',
+      label: 'Stop; leave Grab or measuring',
       act: () => {
         if (motion.stop()) return;
-        if (engine.busy.peek() || engine.loading.peek()) engine.stop();
+        if (pins.peek()) pins.value = null;
+        else if (engine.state.peek().view.measured) engine.setView({ measured: null });
+        else if (engine.busy.peek() || engine.loading.peek()) engine.stop();
         else engine.pointOut(null);
       },
     },

@@ -52,14 +52,18 @@ export function withFace(bounds, axis, end, value) {
 }
 
 /**
- * Returns what is said of a surface that the box cuts, and whether a fitted box would hold it.
+ * Returns what is said of a surface that the box cuts, and what helps: a larger box, or one that is fitted anew.
  * @param {Pick<Report, 'cut' | 'border'> | null} report
+ * @param {ReturnType<Engine['enlargement']>} [enlargement]  of the box
  */
-export function cutOf(report) {
+export function cutOf(report, enlargement = null) {
   if (!report?.cut) return null;
-  if (report.cut === 'endless') return { text: 'The surface continues outside the box.', canFit: false };
+  if (report.cut === 'endless')
+    return { text: 'The surface continues outside the box.', canEnlarge: true, canFit: false };
+  if (enlargement === 'endless')
+    return { text: 'The surface has no end: a larger box shows more of it.', canEnlarge: false, canFit: true };
   const of = report.border === 1 ? '1 particle lies' : `${report.border.toLocaleString('en')} particles lie`;
-  return { text: `The box cuts the surface: ${of} at its border.`, canFit: true };
+  return { text: `The box cuts the surface: ${of} at its border.`, canEnlarge: true, canFit: true };
 }
 
 /**
@@ -68,10 +72,11 @@ export function cutOf(report) {
  * @param {Engine} engine
  */
 export const isBoxDrawn = (engine) =>
-  engine.state.value.view.box || (engine.empty.value && engine.field.value?.reach !== 'nowhere');
+  engine.state.value.view.box ||
+  (engine.empty.value && engine.field.value?.reach !== 'nowhere' && engine.progress.value.stop_reason !== 'constant');
 
 /** Doubles the box in which the surface is sampled. @param {Engine} engine */
 export function enlarge(engine) {
   const bounds = engine.field.peek()?.bounds;
-  if (bounds) engine.setBounds(doubled(engine.state.peek().bounds ?? bounds));
+  if (bounds) engine.setBounds(doubled(engine.state.peek().bounds ?? bounds), { enlarges: true });
 }

@@ -1,7 +1,7 @@
 /**
  * Records the undo history: the last hundred changes of surface, formula, parameters, clip box, cutting plane, settings
- * and camera. Typing up to a pause, a drag and a look around count as one change each. The browser's history is not
- * used, so Back leaves the page as usual.
+ * and camera. Typing up to a pause, a drag and a look around count as one change each. The browser's history is another
+ * one: Back leads from surface to surface (main/address.js).
  */
 import { effect, signal } from '@preact/signals-core';
 

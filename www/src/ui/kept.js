@@ -50,7 +50,7 @@ export function keptOf(engine) {
     });
   if (bounds !== null || settings.box_mode !== undefined)
     kept.push({
-      text: 'Box set by hand',
+      text: engine.enlargement() ? 'Enlarged box' : 'Box set by hand',
       end: 'Put the box around the surface',
       act: () => engine.fitBox(),
     });

@@ -57,14 +57,17 @@ export function mountLayout({ shell, view, nav, panels, covered, inset }) {
   const compact = matchMedia(COMPACT);
   const measure = () => {
     const { left, top, right, bottom } = view.getBoundingClientRect();
-    // On a phone the tools and the legend would cover the surface, so their areas are not free.
-    const side = (/** @type {string} */ part) =>
-      (compact.matches && view.querySelector(part)) || { clientWidth: 0, clientHeight: 0 };
+    const size = (/** @type {string} */ part) => view.querySelector(part) ?? { clientWidth: 0, clientHeight: 0 };
+    const [tools, legend] = [size('.toolbar'), size('.legend')];
+    // On a phone the tools and the legend would cover the surface, so their areas are not free. In a larger window a
+    // fit leaves the corner of the legend free.
+    const [aside, above] = compact.matches ? [tools.clientWidth, legend.clientHeight] : [0, 0];
     inset({
       left,
-      top: top + side('.legend').clientHeight,
-      right: innerWidth - right + side('.toolbar').clientWidth,
+      top: top + above,
+      right: innerWidth - right + aside,
       bottom: innerHeight - bottom + covered(),
+      corner: { width: legend.clientWidth, height: legend.clientHeight - above },
     });
   };
   const sizes = new ResizeObserver(measure);

@@ -1,7 +1,7 @@
 /** Handles single-key shortcuts, the dialog that lists them, and the switch that disables them (WCAG 2.1.4). */
 
 import { createDialog } from './dialog.js';
-import { h } from './dom.js';
+import { byId, h } from './dom.js';
 import { remembered } from './remembered.js';
 
 /** @import { Shortcut } from './types.js' */
@@ -17,6 +17,12 @@ function types(target) {
     target.shadowRoot !== null ||
     target.matches('textarea, select, input:not([type=range], [type=checkbox], [type=radio])')
   );
+}
+
+/** Follows the page's link to the lesson, which takes the surface along. @param {Event} event */
+function follow(event) {
+  event.preventDefault();
+  byId('learn-link').click();
 }
 
 /** @param {Shortcut[]} shortcuts */
@@ -44,7 +50,15 @@ export function mountShortcuts(shortcuts) {
     ['Double click on a slider', 'Reset'],
   ]);
   const dialog = createDialog(
-    'Keyboard and pointer',
+    'Help',
+    h(
+      'p',
+      null,
+      'This page covers a surface, given by a formula, with particles that lie evenly on it. Choose a surface or type a formula, and watch it grow; the ',
+      h('a', { href: './learn/', on: { click: follow } }, 'lesson'),
+      ' shows how it works.',
+    ),
+    h('h3', null, 'Keyboard and pointer'),
     h(
       'dl',
       { class: 'keys' },

@@ -1,7 +1,7 @@
 // Types of the interface's parts: what elements are created from, and what panels share.
 
 import type { ReadonlySignal, Signal } from '@preact/signals-core';
-import type { Bounds, CameraState, Notice, Parameter, Shape, Vec3 } from '../engine/types.js';
+import type { Bounds, CameraState, Insets, Notice, Parameter, Shape, Vec3 } from '../engine/types.js';
 import type { createDialog } from './dialog.js';
 import type { createHistory } from './history.js';
 import type { IconName } from './icons.js';
@@ -206,6 +206,7 @@ export type Toast = (notice: Notice) => void;
 export interface ShortcutTargets {
   history: ReturnType<typeof createHistory>;
   motion: Motion;
+  pins: Pins;
   print: () => void;
   /** a key that is pressed before it has loaded acts as soon as it has */
   timeline: Promise<Record<'toggle' | 'back' | 'forward' | 'first' | 'all', () => void> | null>;
@@ -221,7 +222,7 @@ export interface LayoutOptions {
   panels: Panel[];
   /** pixels at the bottom of the view that something else than panels covers */
   covered: () => number;
-  inset: (insets: { top: number; right: number; bottom: number; left: number }) => void;
+  inset: (insets: Insets) => void;
 }
 export interface SelectOptions<T> {
   /** accessible name, where no label names it */

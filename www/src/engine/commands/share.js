@@ -50,7 +50,9 @@ export function shareCommands({ store, columns, picture: { viewer }, scheduler, 
         const what = [...new Set(reset)].join(', ');
         store.notice.value = { id: 'link', kind: 'warn', text: `The link was read, except for: ${what}.` };
       }
-      adopt(mergeState(state, { ...patch }, about, scheduler.loader.hasFile).state);
+      const whole = mergeState(state, { ...patch }, about, scheduler.loader.hasFile).state;
+      viewer.linked = whole.view.camera;
+      adopt(whole);
     },
     set(patch) {
       const { state, reset } = mergeState(store.state.value, patch, description(store), scheduler.loader.hasFile);

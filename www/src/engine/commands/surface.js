@@ -21,7 +21,7 @@ import { change, changeView, description, showAll } from '../store.js';
 
 /**
  * @import { Parts } from '../parts.js'
- * @import { EngineCommands, Shape, State } from '../types.js'
+ * @import { Bounds, EngineCommands, Shape, State } from '../types.js'
  */
 
 /**
@@ -30,8 +30,27 @@ import { change, changeView, description, showAll } from '../store.js';
  */
 /**
  * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'pull' | 'setPulls' | 'declareParameter' |
- *   'readNumber' | 'setBounds' | 'setPlane' | 'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands
+ *   'readNumber' | 'setBounds' | 'enlargement' | 'setPlane' | 'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands
  */
+
+/** The boxes that were enlarged by a press, and what they cut before. @type {WeakMap<Bounds, 'larger' | 'endless'>} */
+const ENLARGED = new WeakMap();
+
+/** Whether a box was enlarged by a press: around an `endless` surface, or another. @param {Bounds | null} box */
+const enlargement = (box) => (box && ENLARGED.get(box)) ?? null;
+
+/**
+ * Returns whether a text takes the place of another: less than half of the other stands.
+ * @param {string} old @param {string} text
+ */
+export function replaces(old, text) {
+  const most = Math.min(old.length, text.length);
+  let start = 0;
+  while (start < most && old[start] === text[start]) start += 1;
+  let end = 0;
+  while (end < most - start && old.at(-1 - end) === text.at(-1 - end)) end += 1;
+  return 2 * (start + end) < old.length;
+}
 
 /** Returns what of a state is sampled, as a text to compare. @param {Shape} shape */
 const sampledOf = ({ surface, formula, parameters, declared, centres, bounds, pulls, settings }) =>
@@ -47,7 +66,8 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
       if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && scheduler.loader.hasFile)) return;
       showAll(store);
       change(store, freshShape(description(store), state.value.settings, id, surface?.formula));
-      // Another surface is framed, wherever the hand has left the camera.
+      // Another surface is framed, wherever the hand or a link has left the camera.
+      viewer.linked = null;
       const { camera } = viewer;
       if (!camera.state.fit) {
         camera.set({ ...camera.state, fit: true });
@@ -68,16 +88,18 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
     },
     cancelLoading: () => scheduler.loader.cancel(),
     setFormula(text, { typing = false } = {}) {
-      const { surface, formula } = state.value;
+      const { surface, formula, bounds } = state.value;
       if (text !== formula) {
         // A model has no formula. A formula typed in its place starts from the default surface.
         const fresh = fromPoints(store.description.value, surface);
         // The values of the gallery's parameters belong to its formula; in another one the same names begin afresh.
         const isOwn = surfaceOf(store.description.value, surface)?.formula === formula;
-        const next = isOwn ? { formula: text, parameters: {} } : { formula: text };
+        const own = isOwn ? { parameters: {} } : {};
+        // So does an enlarged box, which nobody set for another formula.
+        const next = { ...own, formula: text, bounds: enlargement(bounds) ? null : bounds };
         const about = description(store);
         change(store, fresh ? freshShape(about, state.value.settings, about.surfaces[0].id, text) : next);
-        framing.written({ typed: true });
+        framing.written({ typed: true, another: fresh || replaces(formula, text) });
       } else if (!store.typing.value) {
         if (!typing) scheduler.sampling.commit();
         return;
@@ -101,7 +123,7 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
 }
 
 /** @param {Parts} parts @returns {InputCommands} */
-export function inputCommands({ store, scheduler }) {
+export function inputCommands({ store, scheduler, framing }) {
   const { state } = store;
   /**
    * Changes the state and says whether a drag is under way, as one, so that the history records the drag once.
@@ -147,11 +169,17 @@ export function inputCommands({ store, scheduler }) {
       if (text.trim() !== '' && Number.isFinite(plain)) return plain;
       return scheduler.sampling.client.number(text);
     },
-    setBounds(bounds, { live = false } = {}) {
+    setBounds(bounds, { live = false, enlarges = false } = {}) {
       const valid = bounds === null ? null : validBounds(bounds, description(store).limits);
       if (valid === undefined) return;
+      if (valid && enlarges) {
+        const isEndless = store.report.value?.cut === 'endless' || enlargement(state.value.bounds) === 'endless';
+        ENLARGED.set(valid, isEndless ? 'endless' : 'larger');
+        framing.enlarged();
+      }
       resample(live, { bounds: valid });
     },
+    enlargement: () => enlargement(state.value.bounds),
     setPlane(plane, { live = false } = {}) {
       const valid = plane === null ? null : validPlane(plane);
       if (valid === undefined) return;

@@ -29,7 +29,10 @@ export function viewCommands({ store, picture }) {
       if ((patch.box !== undefined || patch.axes !== undefined) && viewer.camera.state.fit) viewer.fit();
       if (store.hover.value && store.hover.value.level > (view.level ?? Infinity)) picture.hover(null, 0, 0);
     },
-    fit: () => viewer.fit(),
+    fit() {
+      viewer.linked = null;
+      viewer.fit();
+    },
     pointOut(place) {
       store.spot.value = place;
       if (place) viewer.lookAt(place);
@@ -46,10 +49,8 @@ export function viewCommands({ store, picture }) {
       viewer.moved();
     },
     setInsets(insets) {
-      const { left, right, top, bottom } = viewer.look.insets;
       // The layout measures after every change of a part's size, which mostly leaves the free area as it was.
-      const isSame = insets.left === left && insets.right === right && insets.top === top && insets.bottom === bottom;
-      if (!isSame) viewer.set({ insets });
+      if (JSON.stringify(insets) !== JSON.stringify(viewer.look.insets)) viewer.set({ insets });
     },
     dismissHover: () => picture.hover(null, 0, 0),
     pick: (x, y) => viewer.pick(x, y),

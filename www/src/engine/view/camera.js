@@ -194,33 +194,53 @@ export const fitDistance = (radius) => (radius * 1.05) / Math.sin(FIELD_OF_VIEW_
 const OUTLINE_SHARE = 0.93;
 /** Least distance of that fit, over the one that shows the whole ball: turned, the surface may reach beyond a side. */
 const NEAREST_FIT = 0.8;
+/** Largest distance of that fit, over the same: so much smaller a surface may be that leaves a corner free. */
+const FARTHEST_FIT = 1.25;
 
 /**
  * Returns the distance at which the outline of discs fills the free part of the picture, seen from
- * these angles: at most that at which the ball around them does.
+ * these angles: at most that at which the ball around them does, unless the outline would reach into a corner.
  * @param {Angles} angles
  * @param {Ball} ball
- * @param {{width: number, height: number}} free  size of that part
+ * @param {{width: number, height: number, corner?: Insets['corner']}} free  that part
  * @param {{positions: ArrayLike<number>, radii: ArrayLike<number>, count: number}} discs
  * @param {(disc: number) => boolean} [isShown]  the discs that are drawn, if not all are
  */
-export function outlineDistance(angles, ball, { width, height }, { positions, radii, count }, isShown = () => true) {
+export function outlineDistance(
+  angles,
+  ball,
+  { width, height, corner },
+  { positions, radii, count },
+  isShown = () => true,
+) {
   const { right, up, forward } = axes(angles);
   const [cx, cy, cz] = ball.centre;
   const perPx = (OUTLINE_SHARE * Math.tan(FIELD_OF_VIEW_RAD / 2)) / Math.min(width, height);
   const [tanX, tanY] = [perPx * width, perPx * height];
+  const full = (2 * Math.tan(FIELD_OF_VIEW_RAD / 2)) / Math.min(width, height);
+  const [besideX, belowY] = [full * (width / 2 - (corner?.width ?? 0)), full * (height / 2 - (corner?.height ?? 0))];
   let distance = 0;
+  let clear = 0;
   for (let i = 0; i < count; i += 1) {
     if (!isShown(i)) continue;
     const [x, y, z] = [positions[3 * i] - cx, positions[3 * i + 1] - cy, positions[3 * i + 2] - cz];
-    const across = Math.abs(right[0] * x + right[1] * y + right[2] * z) + radii[i];
-    const high = Math.abs(up[0] * x + up[1] * y + up[2] * z) + radii[i];
-    const near = -(forward[0] * x + forward[1] * y + forward[2] * z);
-    distance = Math.max(distance, near + across / tanX, near + high / tanY);
+    const [across, high] = [dot(right, [x, y, z]), dot(up, [x, y, z])];
+    const near = -dot(forward, [x, y, z]);
+    distance = Math.max(
+      distance,
+      near + (Math.abs(across) + radii[i]) / tanX,
+      near + (Math.abs(high) + radii[i]) / tanY,
+    );
+    // Beside the corner or below it is enough.
+    if (corner)
+      clear = Math.max(clear, near + Math.min(beyond(radii[i] - across, besideX), beyond(high + radii[i], belowY)));
   }
   const whole = fitDistance(ball.radius);
-  return clamp(distance, NEAREST_FIT * whole, whole);
+  return Math.max(clamp(distance, NEAREST_FIT * whole, whole), Math.min(clear, FARTHEST_FIT * whole));
 }
+
+/** The distance from which a length has an angle of this tangent. @param {number} length @param {number} tan */
+const beyond = (length, tan) => (length <= 0 ? -Infinity : tan > 0 ? length / tan : Infinity);
 
 /** Returns the ball around a box. @param {{min: ArrayLike<number>, max: ArrayLike<number>}} bounds */
 export function ballOf({ min, max }) {
@@ -359,7 +379,7 @@ export class Camera {
 
   /**
    * Moves the camera so that the whole ball is visible, or from a distance, with an animation
-   * unless `jump` is set.
+   * unless `jump` is set, and goes on with a turn under way.
    * @param {Ball} ball
    * @param {{jump?: boolean, distance?: number}} [how]
    */
@@ -371,7 +391,7 @@ export class Camera {
       this.state = { ...this.state, ...goal };
       this.#glide = null;
     } else {
-      this.#glide = goal;
+      this.#glide = { ...this.#glide, ...goal };
     }
   }
 

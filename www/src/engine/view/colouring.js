@@ -341,6 +341,13 @@ export function legendOf(mode, theme, columns, range = rangeOf(mode, columns)) {
   return { unit: '', pending: colour(context) === null, ...legend(context) };
 }
 
+/** Returns the legend entries of the dots on the vertices of a mesh. @param {Theme} theme @returns {LegendEntry[]} */
+export const legendOfDots = (theme) =>
+  VALENCE_LABELS.filter(([key]) => key !== 'six' && key !== 'none').map(([key, label]) => ({
+    label,
+    colour: hexFromPacked(PALETTES[theme].valence[key]),
+  }));
+
 /**
  * Returns a legend entry for each of the largest components, and one for all others.
  * @param {Uint32Array} component @param {Palette} palette

@@ -23,8 +23,7 @@ export interface Device {
   renderer: Renderer | Painter;
   dispose: () => void;
 }
-/** pixels covered by panels */
-export type Insets = { left: number; right: number; top: number; bottom: number };
+export type Insets = import('../types.js').Insets;
 export type Ball = { centre: Vec3; radius: number };
 /** A picture from an eye: its matrices and vectors, and its size in CSS pixels. */
 export type View = {

@@ -3,7 +3,7 @@
  *
  * @module
  */
-import { vec } from '../vector.js';
+import { clamp, vec } from '../vector.js';
 import {
   ballOf,
   Camera,
@@ -15,7 +15,7 @@ import {
   STANDARD_VIEWS,
   viewOf,
 } from './camera.js';
-import { legendOf } from './colouring.js';
+import { legendOf, legendOfDots } from './colouring.js';
 import { CreaseUpload } from './creases.js';
 import { DeviceKeeper } from './device.js';
 import { Dimmer } from './dimmer.js';
@@ -30,7 +30,7 @@ import { FADE_S, firstLook, scaleOf, shownLevel, shownStep, styleOf } from './st
 import { ParticleUpload } from './upload.js';
 
 /**
- * @import { Bounds, Place, Ray, Vec3 } from '../types.js'
+ * @import { Angles, Bounds, CameraState, Place, Ray, Vec3 } from '../types.js'
  * @import { Device, FrameResult, Look, View, ViewerEvents, ViewerOptions } from './types.js'
  */
 
@@ -76,6 +76,8 @@ export class Viewer {
     this.#lastS = 0;
     /** Whether the next surface that grows is first seen from the side of its seed. */
     this.opening = false;
+    /** The camera of the link that was opened last, until the surface is fitted by hand. @type {CameraState | null} */
+    this.linked = null;
     /** Whether the front is still placing particles. A reveal does not end before the front. */
     this.growing = false;
     this.dimmer = new Dimmer();
@@ -169,6 +171,7 @@ export class Viewer {
 
   /** Handles a mesh that has come or gone without particles. */
   meshed() {
+    this.due.legend = true;
     this.frames.ask();
   }
 
@@ -193,6 +196,7 @@ export class Viewer {
     const { colour, theme, level, marks } = this.look;
     if (colour !== before.colour || theme !== before.theme) this.recolour(0, this.columns.count);
     if (marks !== before.marks) this.#faces.recolour();
+    if (marks !== before.marks || this.look.draw !== before.draw) this.due.legend = true;
     this.remembered();
     if (level !== before.level || this.look.insets !== before.insets) this.#frameFront();
     // A running reveal would continue behind the levels that are stepped through.
@@ -253,11 +257,10 @@ export class Viewer {
     this.moved();
   }
 
-  /** Turns about the vertical to where most of the surface is seen. */
-  turnWide() {
+  /** Turns to where most of the surface is seen, about the vertical from these angles. @param {Angles} from */
+  turnWide(from) {
     const { columns, camera } = this;
-    const yaw = widestYaw(camera.end, columns, this.#fitBall());
-    camera.turnTo({ yaw, pitch: camera.end.pitch });
+    camera.turnTo({ yaw: widestYaw(from, columns, this.#fitBall()), pitch: from.pitch });
     this.moved();
   }
 
@@ -311,12 +314,25 @@ export class Viewer {
       return { ball, distance: this.#wholeDistance };
     const { placed: positions, radii, count } = columns;
     const discs = { positions, radii, count };
-    return { ball, distance: outlineDistance(this.camera.end, ball, this.#free(), discs, this.#shownOnly()) };
+    const distance = outlineDistance(this.camera.end, ball, this.#free(), discs, this.#shownOnly());
+    return { ball, distance: this.#asLinked(distance) };
   }
 
-  /** Returns the size of the part of the picture that no panel covers. */
+  /** Returns the size of the part of the picture that no panel covers, and the corner of it that stays free. */
   #free() {
-    return freePart(this.screen.cssWidth, this.screen.cssHeight, this.look.insets);
+    const { insets } = this.look;
+    return { ...freePart(this.screen.cssWidth, this.screen.cssHeight, insets), corner: insets.corner };
+  }
+
+  /**
+   * Returns the distance of the camera of a link, at its angles and where the whole surface is seen from there. So a
+   * page that is opened again shows what it showed.
+   * @param {number} distance  of a fit
+   */
+  #asLinked(distance) {
+    const [{ linked }, { yaw, pitch }] = [this, this.camera.end];
+    if (linked?.yaw !== yaw || linked.pitch !== pitch) return distance;
+    return clamp(linked.distance, distance, Math.max(distance, this.#wholeDistance));
   }
 
   /** Brings a place before the camera, seen along its normal. @param {Place} place */
@@ -414,7 +430,8 @@ export class Viewer {
       this.keeper.giveUp(error instanceof Error ? error.message : String(error));
       return 'none';
     }
-    if (this.due.legend && !this.reveal.active) this.#tellLegend();
+    // Without particles the colours have no range; the legend before stays.
+    if (this.due.legend && this.columns.count > 0) this.#tellLegend();
     const revealing = this.#tellReveal(nowS);
     const dimming = this.dimmer.moving(nowS);
     if (dimming) this.due.style = true;
@@ -457,9 +474,11 @@ export class Viewer {
   }
 
   #tellLegend() {
-    const { colour, theme } = this.look;
+    const { colour, theme, draw, marks } = this.look;
     this.due.legend = false;
-    this.#events.onLegend(legendOf(colour, theme, this.columns, this.upload.range));
+    const legend = legendOf(colour, theme, this.columns, this.upload.range);
+    const hasDots = draw === 'mesh' && marks && this.columns.mesh !== null && this.keeper.device?.kind !== 'canvas2d';
+    this.#events.onLegend(hasDots ? { ...legend, dots: legendOfDots(theme) } : legend);
   }
 
   /** @param {number} nowS @returns whether further levels are to appear */
@@ -468,7 +487,6 @@ export class Viewer {
     if (!reveal.active) return false;
     if (nowS > reveal.endS() + FADE_S && !this.growing) {
       this.#endReveal();
-      if (this.due.legend) this.#tellLegend();
       return false;
     }
     const level = reveal.levelAt(nowS);

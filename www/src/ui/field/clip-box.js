@@ -126,10 +126,10 @@ function createNumber(engine, bounds, { i, end, name }) {
 /** Creates the line about a surface that the box cuts, with what to do. @param {Engine} engine */
 function createCut(engine) {
   // During a run the line of the previous one stays.
-  let last = cutOf(engine.report.peek());
+  let last = cutOf(engine.report.peek(), engine.enlargement());
   const cut = computed(() => {
     if (engine.empty.value) last = null;
-    else if (engine.report.value) last = cutOf(engine.report.value);
+    else if (engine.report.value) last = cutOf(engine.report.value, engine.enlargement());
     return last;
   });
   return h('div', { class: 'section cut', role: 'status', hidden: () => cut.value === null }, () => {
@@ -140,7 +140,7 @@ function createCut(engine) {
         h(
           'div',
           { class: 'repairs' },
-          button({ class: 'small', press: () => enlarge(engine) }, 'Enlarge'),
+          now.canEnlarge && button({ class: 'small', press: () => enlarge(engine) }, 'Enlarge'),
           now.canFit && button({ class: 'small', press: () => engine.fitBox() }, 'Fit'),
         ),
       ]

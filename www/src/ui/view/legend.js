@@ -36,30 +36,36 @@ export function createLegend(engine, { colours }) {
       return now && SCALES[now.kind](now);
     },
   );
-  return h('div', { class: 'legend' }, select, scale);
+  const dots = h('div', { class: 'scale', hidden: () => !legend()?.dots }, () => [
+    h('span', null, 'Dots: not six neighbours, but'),
+    listOf(legend()?.dots),
+  ]);
+  return h('div', { class: 'legend' }, select, scale, dots);
 }
 
 /** @param {string} colour */
 const swatch = (colour) => h('span', { class: 'swatch', 'aria-hidden': 'true', style: { 'background-color': colour } });
 
+/** @param {Legend['entries']} [entries] */
+const listOf = (entries = []) =>
+  h(
+    'ul',
+    { class: 'categories' },
+    entries.map(({ label, colour, count }) =>
+      h(
+        'li',
+        null,
+        swatch(colour),
+        h('span', null, label),
+        count === undefined ? null : h('span', { class: 'count' }, formatCount(count)),
+      ),
+    ),
+  );
+
 /** @type {Record<Legend['kind'], (legend: Legend) => Child[]>} */
 const SCALES = {
   plain: () => [],
-  categories: ({ entries }) => [
-    h(
-      'ul',
-      { class: 'categories' },
-      (entries ?? []).map(({ label, colour, count }) =>
-        h(
-          'li',
-          null,
-          swatch(colour),
-          h('span', null, label),
-          count === undefined ? null : h('span', { class: 'count' }, formatCount(count)),
-        ),
-      ),
-    ),
-  ],
+  categories: ({ entries }) => [listOf(entries)],
   normal: (legend) => SCALES.categories(legend),
   sequential: (legend) => rampOf(legend, ([low, high]) => [formatSignificant(low), formatSignificant(high)]),
   // Values outside the range have the colour of its end.

@@ -39,7 +39,7 @@ export function createToolbar(engine, { hide, shortcuts, picture, makeMesh, moti
     tool('picture', 'Save picture', 'The picture as a file, on paper, or as a film.', picture),
     save,
     h('span', { class: 'rule', 'aria-hidden': 'true' }),
-    tool('help', 'Keyboard shortcuts', 'Key ?', shortcuts),
+    tool('help', 'Help', 'What the page does, and its keys. Key ?', shortcuts),
   );
   attachMenu(
     view,

@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { afresh, open, report, settled, state, typeFormula } from './helpers.js';
+import { afresh, atRest, open, report, settled, state, typeFormula } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -15,7 +15,9 @@ test('the box around a formula', async ({ page }) => {
     await cut(page).getByRole('button', { name: 'Enlarge' }).click();
     await settled(page);
     expect((await state(page)).bounds).toEqual({ min: [-8, -8, -8], max: [8, 8, 8] });
-    await expect(cut(page)).toContainText('The box cuts the surface');
+    // A larger box is no cure for what has no end.
+    await expect(cut(page)).toContainText('no end');
+    await expect(cut(page).getByRole('button', { name: 'Enlarge' })).toHaveCount(0);
     await cut(page).getByRole('button', { name: 'Fit' }).click();
     await settled(page);
     expect((await state(page)).bounds).toBeNull();
@@ -35,6 +37,39 @@ test('the box around a formula', async ({ page }) => {
     await typeFormula(page, 'x^2+y^2+z^2=1');
     await settled(page);
     await expect(periods).toBeHidden();
+  });
+
+  await test.step('a surface in an enlarged box is fitted, wherever the hand has left the camera', async () => {
+    await afresh(page);
+    await typeFormula(page, 'x^2+y^2=1');
+    await settled(page);
+    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.zoom(2));
+    await cut(page).getByRole('button', { name: 'Enlarge' }).click();
+    await settled(page);
+    await atRest(page);
+    const [top, bottom] = await page.evaluate(() => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      return [8, -8].map((z) => engine.project([0, 0, z]).y);
+    });
+    expect(top).toBeGreaterThan(0);
+    expect(bottom).toBeLessThan(800);
+  });
+
+  await test.step('an enlarged box ends with its formula; one that was typed stays, and the page says so', async () => {
+    const kept = page.locator('.foot .kept');
+    await expect(kept).toContainText('Enlarged box');
+    await typeFormula(page, 'x^2+y^2+z^2=1');
+    await settled(page);
+    await expect(kept).toBeHidden();
+    expect((await state(page)).bounds).toBeNull();
+    expect((await report(page)).count).toBeGreaterThan(5000);
+    await page.evaluate(() =>
+      /** @type {any} */ (window).marchingParticles.engine.setBounds({ min: [-2, -2, -2], max: [2, 2, 2] }),
+    );
+    await typeFormula(page, 'x^2+y^2+2z^2=1');
+    await settled(page);
+    await expect(kept).toContainText('Box set by hand');
+    expect((await state(page)).bounds.max).toEqual([2, 2, 2]);
   });
 
   await test.step('a formula without a surface is told so, as far as it was searched', async () => {

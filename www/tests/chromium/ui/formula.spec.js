@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { afresh, open, report, settled, state, typeFormula } from './helpers.js';
+import { afresh, atRest, open, report, settled, state, typeFormula } from './helpers.js';
 
 test('a formula is typed, and mended', async ({ page }) => {
   test.slow();
@@ -189,5 +189,37 @@ test('a formula is typed, and mended', async ({ page }) => {
     await page.locator('.clip').getByRole('button', { name: 'Reset' }).click();
     await expect.poll(async () => (await state(page)).bounds).toBeNull();
   });
+  await clean();
+});
+
+test('another formula is shown from its widest side, also where the hand has turned the camera, and an edit is not', async ({
+  page,
+}) => {
+  await page.emulateMedia({ reducedMotion: 'no-preference' });
+  const { clean } = await open(page, { hash: '' });
+  const engine = (/** @type {string} */ act) =>
+    page.evaluate(
+      (call) => new Function('engine', `return ${call}`)(/** @type {any} */ (window).marchingParticles.engine),
+      act,
+    );
+  const yaw = async () => {
+    await settled(page);
+    await atRest(page);
+    return (await state(page)).view.camera.yaw;
+  };
+  await page.locator('.tile[data-surface="torus"]').click();
+  await yaw();
+  await engine('engine.orbit(0.7, 0.5)');
+  // A plate across the x axis.
+  await typeFormula(page, '(4x)^4 + y^4 + z^4 = 1');
+  const plate = await yaw();
+  expect(Math.abs(Math.cos(plate))).toBeGreaterThan(0.7);
+  await engine('engine.orbit(0.7, 0)');
+  const turned = await yaw();
+  await page.keyboard.press('End');
+  await page.keyboard.type('.5');
+  expect(await yaw()).toBeCloseTo(turned, 6);
+  await typeFormula(page, 'x^4 + (5y)^4 = 2 - z^4');
+  expect(Math.abs(Math.sin(await yaw()))).toBeGreaterThan(0.7);
   await clean();
 });

@@ -267,3 +267,21 @@ test('particles that have followed stay, if they are to', async ({ page }) => {
   expect((await report(page)).warnings.join()).not.toContain('followed');
   await clean();
 });
+
+test('Escape leaves the tools that take the pointer, and the next press pins nothing', async ({ page }) => {
+  const { clean } = await open(page);
+  const card = page.locator('.tool-card:visible');
+  await page.getByRole('button', { name: 'Grab' }).click();
+  await expect(card).toContainText('Drag the surface');
+  await page.mouse.move(700, 300);
+  await page.keyboard.press('Escape');
+  await expect(card).toHaveCount(0);
+  await page.mouse.click(700, 300);
+  await expect(page.getByRole('slider', { name: /^Pin/ })).toHaveCount(0);
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('d');
+  await expect(card).toContainText('Press a particle');
+  await page.keyboard.press('Escape');
+  await expect(card).toHaveCount(0);
+  await clean();
+});

@@ -7,6 +7,7 @@ const undo = (/** @type {Page} */ page) => page.getByRole('button', { name: 'Und
 const redo = (/** @type {Page} */ page) => page.getByRole('button', { name: 'Redo', exact: true });
 
 test('the history', async ({ page }) => {
+  test.slow();
   const { clean } = await open(page, { width: 1440, height: 900 });
   await test.step('surface, formula and settings are undone and redone, by buttons and by keys', async () => {
     await expect(undo(page)).toHaveAttribute('aria-disabled', 'true');
@@ -72,7 +73,7 @@ test('the history', async ({ page }) => {
     expect((await state(page)).surface).toBe('sphere');
   });
 
-  await test.step('five hundred steps back end at the first state and harm nothing; Back leaves the page as ever', async () => {
+  await test.step('five hundred steps back end at the first state and harm nothing', async () => {
     await afresh(page);
     const first = await state(page);
     await page.evaluate(async () => {
@@ -91,10 +92,71 @@ test('the history', async ({ page }) => {
     await settled(page);
     expect((await state(page)).settings).toEqual(first.settings);
     expect((await state(page)).surface).toBe(first.surface);
-    const length = await page.evaluate(() => history.length);
-    await page.locator('.tile[data-surface="torus"]').click();
-    await settled(page);
-    expect(await page.evaluate(() => history.length)).toBe(length);
   });
+  await clean();
+});
+
+test('Back leads from surface to surface, each as it was seen, and at last leaves the page', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  /** Waits until the address holds the state. */
+  const written = () =>
+    expect
+      .poll(() =>
+        page.evaluate(
+          async () =>
+            (await /** @type {any} */ (window).marchingParticles.link()) ===
+            location.origin + location.pathname + location.hash,
+        ),
+      )
+      .toBe(true);
+  const length = () => page.evaluate(() => history.length);
+  const shown = async () => {
+    await settled(page);
+    const { surface, formula, parameters, view } = await state(page);
+    return { surface, formula, parameters, yaw: Number(view.camera.yaw.toFixed(4)), theme: view.theme };
+  };
+  const first = await length();
+  await page.locator('.tile[data-surface="torus"]').click();
+  await settled(page);
+  await written();
+  expect(await length()).toBe(first + 1);
+  // A turn, a slider and the theme are no surfaces.
+  await page.evaluate(() => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    engine.orbit(0.4, 0);
+    engine.setParameter('r', 0.2);
+  });
+  await settled(page);
+  await written();
+  expect(await length()).toBe(first + 1);
+  const torus = await shown();
+  expect(torus.parameters).toEqual({ r: 0.2 });
+  // However often the typing pauses, a formula is one surface until it has stood.
+  await typeFormula(page, 'x^2 + y^2 +');
+  await written();
+  await page.keyboard.type(' z^2 = 1');
+  await settled(page);
+  await expect
+    .poll(() => page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.trial.value))
+    .toBe('none');
+  await written();
+  expect(await length()).toBe(first + 2);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ theme: 'dark' }));
+  await written();
+  await page.goBack();
+  await expect.poll(async () => (await state(page)).surface).toBe('torus');
+  // The theme is the reader's.
+  expect(await shown()).toEqual({ ...torus, theme: 'dark' });
+  await page.goForward();
+  await expect.poll(async () => (await state(page)).formula).toBe('x^2 + y^2 + z^2 = 1');
+  // Twice at once.
+  await page.evaluate(() => {
+    history.back();
+    history.back();
+  });
+  await expect.poll(async () => (await state(page)).surface).toBe('ellipsoid');
+  await settled(page);
+  await page.goBack();
+  expect(page.url()).toBe('about:blank');
   await clean();
 });

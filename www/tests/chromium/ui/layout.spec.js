@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { afresh, atRest, open, scan, settled, state } from './helpers.js';
+import { afresh, atRest, open, scan, settled, state, typeFormula } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -114,7 +114,7 @@ test('axe finds nothing at 1440 by 900', async ({ page }) => {
   await page.getByRole('button', { name: 'View options' }).click();
   await expectAccessible(page);
   await page.keyboard.press('Escape');
-  await page.getByRole('button', { name: 'Keyboard shortcuts' }).click();
+  await page.getByRole('button', { name: 'Help' }).click();
   await expectAccessible(page);
 });
 
@@ -152,6 +152,53 @@ test('on a phone the surface stands clear of tools, legend and caption', async (
   }
 });
 
+test('on a larger window a fit leaves the legend free, and a page that is opened again shows the same', async ({
+  page,
+}) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  const isUnderLegend = () =>
+    page.evaluate(() => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      const box = /** @type {Element} */ (document.querySelector('.legend')).getBoundingClientRect();
+      for (let x = box.left; x <= box.right - 6; x += 4)
+        for (let y = box.top; y <= box.bottom - 6; y += 4) if (engine.pick(x, y) !== null) return true;
+      return false;
+    });
+  // A heart reaches into the corners of its picture.
+  await typeFormula(page, '(x^2 + 9/4*y^2 + z^2 - 1)^3 - x^2*z^3 - 9/80*y^2*z^3 = 0');
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.lookFrom('front'));
+  await settled(page);
+  await page.keyboard.press('Escape');
+  for (const [width, height] of /** @type {const} */ ([
+    [1440, 900],
+    [1024, 768],
+  ])) {
+    await page.setViewportSize({ width, height });
+    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.fit());
+    await atRest(page);
+    expect(await isUnderLegend(), `${width} by ${height}`).toBe(false);
+  }
+  // Turned by hand it is as small as it was.
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.orbit(1.2, 0.3));
+  await atRest(page);
+  const before = (await state(page)).view.camera;
+  await expect
+    .poll(() =>
+      page.evaluate(
+        async () =>
+          (await /** @type {any} */ (window).marchingParticles.link()) === location.href.replace(location.search, ''),
+      ),
+    )
+    .toBe(true);
+  await page.reload();
+  await settled(page);
+  await atRest(page);
+  const after = (await state(page)).view.camera;
+  expect(after.distance / before.distance).toBeCloseTo(1, 4);
+  expect(after.yaw).toBeCloseTo(before.yaw, 4);
+  await clean();
+});
+
 test('targets are large, the theme can be switched, and the page says what it is', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await test.step('targets are at least 24 pixels', async () => {
@@ -187,8 +234,8 @@ test('targets are large, the theme can be switched, and the page says what it is
     expect(await top('.formula')).toBeLessThan(await top('.story'));
     expect(await top('.parameters')).toBeLessThan(await top('.story'));
     expect(await top('.story')).toBeLessThan(await top('.clip'));
-    await page.getByRole('button', { name: 'Keyboard shortcuts' }).click();
-    await expect(page.getByRole('dialog', { name: 'Keyboard and pointer' })).toBeVisible();
+    await page.getByRole('button', { name: 'Help' }).click();
+    await expect(page.getByRole('dialog', { name: 'Help' })).toBeVisible();
   });
 
   await test.step('in a large window everything grows with it, in a usual one it has the size that the user has set', async () => {
@@ -293,9 +340,13 @@ test('keys alone reach the formula, a slider, the run and the panels', async ({ 
   await page.keyboard.press('h');
   await expect(page.locator('#panel-field')).toBeVisible();
   await page.keyboard.press('?');
-  await expect(page.getByRole('dialog', { name: 'Keyboard and pointer' })).toBeVisible();
+  const help = page.getByRole('dialog', { name: 'Help' });
+  await expect(help.locator('p').first()).toContainText('covers a surface, given by a formula, with particles');
   await page.keyboard.press('Escape');
   await expect(page.getByRole('dialog')).toHaveCount(0);
+  await page.keyboard.press('?');
+  await help.getByRole('link', { name: 'lesson' }).click();
+  await expect(page).toHaveURL(/\/learn\/#surface=/);
   await clean();
 });
 
@@ -335,4 +386,34 @@ test('the page says in one line what it is', async ({ page }) => {
     expect((await line.boundingBox())?.height).toBeLessThan(24);
     await clean();
   }
+});
+
+test('a theme that was chosen is that of the lesson and of the next visit, and no link changes it', async ({
+  page,
+}) => {
+  await page.emulateMedia({ colorScheme: 'light' });
+  const { clean } = await open(page);
+  const theme = () => page.evaluate(() => getComputedStyle(document.documentElement).colorScheme);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ theme: 'dark' }));
+  expect(await theme()).toBe('dark');
+  await page.goto('./learn/');
+  expect(await theme()).toBe('dark');
+  await page.goto('./?backend=canvas2d');
+  await settled(page);
+  expect(await theme()).toBe('dark');
+  expect((await state(page)).view.theme).toBe('dark');
+  const light = await page.evaluate(async () => {
+    const { engine, link } = /** @type {any} */ (window).marchingParticles;
+    engine.setView({ theme: 'light' });
+    const address = await link();
+    engine.setView({ theme: 'dark' });
+    return new URL(address).hash;
+  });
+  await page.goto('./learn/');
+  await page.goto(`./?backend=canvas2d${light}`);
+  await settled(page);
+  expect(await theme()).toBe('light');
+  await page.goto('./learn/');
+  expect(await theme()).toBe('dark');
+  await clean();
 });

@@ -1,6 +1,6 @@
 import { expect, test } from '@playwright/test';
 import { link } from '../engine/browser.js';
-import { afresh, open, state, typeFormula } from './helpers.js';
+import { afresh, open, settled, state, typeFormula } from './helpers.js';
 
 test('the mesh', async ({ page }) => {
   const { clean } = await open(page);
@@ -87,5 +87,26 @@ test('the mesh', async ({ page }) => {
     await afresh(page, { hash: link({ surface: 'torus', settings }) });
     await expect(page.locator('.figures tr.group').filter({ hasText: 'Refined' })).toHaveCount(1);
   });
+  await clean();
+});
+
+test('the legend says what the dots on the mesh mean, while there are some', async ({ page }) => {
+  const { clean } = await open(page);
+  // The dots are drawn by the graphics device.
+  await page.goto('./');
+  await settled(page);
+  const dots = page.getByText('Dots: not six neighbours, but');
+  await expect(dots).toBeHidden();
+  const view = (/** @type {object} */ patch) =>
+    page.evaluate((change) => /** @type {any} */ (window).marchingParticles.engine.setView(change), patch);
+  await view({ draw: 'mesh' });
+  await expect(dots).toBeVisible();
+  await expect(page.locator('.legend .categories li')).toHaveText(['4 or fewer', '5', '7', '8 or more']);
+  await view({ marks: false });
+  await expect(dots).toBeHidden();
+  await view({ marks: true });
+  await expect(dots).toBeVisible();
+  await view({ draw: 'discs' });
+  await expect(dots).toBeHidden();
   await clean();
 });

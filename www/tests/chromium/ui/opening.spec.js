@@ -53,6 +53,29 @@ test('faces the seed while the surface grows, then turns to the usual view', asy
   await clean();
 });
 
+test('the legend has the colours of the particles from the first frame that shows some', async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: 'no-preference' });
+  await page.addInitScript(() => {
+    const legends = /** @type {string[]} */ ([]);
+    Object.assign(window, { legends });
+    const look = () => {
+      const p = /** @type {any} */ (window).marchingParticles;
+      const scale = document.querySelector('.scale');
+      if (p?.engine.reveal.value?.particles > 0 && scale)
+        legends.push(scale.checkVisibility() ? (scale.textContent ?? '') : '');
+      requestAnimationFrame(look);
+    };
+    look();
+  });
+  const { clean } = await open(page);
+  const legends = await page.evaluate(() => /** @type {any} */ (window).legends);
+  expect(legends.length).toBeGreaterThan(5);
+  expect(legends.filter((/** @type {string} */ text) => text.includes('everywhere'))).toEqual([]);
+  expect(legends.at(-1)).toContain('rings around the seed');
+  expect(legends[Math.floor(legends.length / 2)]).toBe(legends.at(-1));
+  await clean();
+});
+
 test('stays as it is where motion is reduced', async ({ page }) => {
   const { clean } = await open(page);
   const { yaw, pitch } = (await state(page)).view.camera;

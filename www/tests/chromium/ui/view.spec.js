@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { afresh, atRest, open, settled, state } from './helpers.js';
+import { afresh, atRest, open, settled, state, typeFormula } from './helpers.js';
 
 test('the view', async ({ page }) => {
   test.slow();
@@ -144,5 +144,29 @@ test('on a first visit sampling and report take a line each; what is unfolded st
   await settled(page);
   await expect(page.locator('#report-body')).toBeVisible();
   await expect(page.getByRole('group', { name: 'Settings', exact: true })).toBeHidden();
+  await clean();
+});
+
+test('on a phone the sheets are as wide as the window on a first visit, too', async ({ page }) => {
+  const { clean } = await open(page, { width: 390, height: 844, folded: true });
+  for (const name of ['Report', 'Sampling']) {
+    await page.locator('.tabs').getByRole('button', { name }).click();
+    const box = await page.locator(`#panel-${name.toLowerCase()}`).boundingBox();
+    expect([name, box?.x, box?.width]).toEqual([name, 0, 390]);
+  }
+  await clean();
+});
+
+test('on a phone the message that there is no surface leaves the tools free, and a constant has no box', async ({
+  page,
+}) => {
+  const { clean } = await open(page, { width: 390, height: 844 });
+  await typeFormula(page, 'hello world');
+  await expect(page.locator('.empty')).toContainText('constant');
+  const last = page.getByRole('button', { name: 'Help' });
+  const { x, y, width, height } = (await last.boundingBox()) ?? { x: 0, y: 0, width: 0, height: 0 };
+  const at = { x: x + width / 2, y: y + height / 2 };
+  expect(await last.evaluate((tool, { x, y }) => tool.contains(document.elementFromPoint(x, y)), at)).toBe(true);
+  await expect(page.getByRole('slider', { name: /face of the clip box/ })).toHaveCount(0);
   await clean();
 });

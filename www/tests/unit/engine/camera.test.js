@@ -14,7 +14,7 @@ import {
 
 /**
  * @import { Vec3 } from '../../../src/engine/types.js'
- * @import { View } from '../../../src/engine/view/types.js'
+ * @import { Insets, View } from '../../../src/engine/view/types.js'
  */
 
 const scene = { centre: /** @type {Vec3} */ ([0, 0, 0]), radius: 2 };
@@ -204,6 +204,15 @@ describe('the camera', () => {
     }
   });
 
+  test('turns to the end where a fit comes between', () => {
+    const camera = new Camera(state);
+    camera.turnTo({ yaw: 1.5, pitch: 0.4 });
+    camera.step(1 / 60);
+    camera.fit({ centre: [1, 1, 1], radius: 3 });
+    while (camera.step(1 / 60));
+    expect(camera.state).toMatchObject({ yaw: 1.5, pitch: 0.4, target: [1, 1, 1], distance: fitDistance(3) });
+  });
+
   test('is before a place at once where motion is reduced', () => {
     const camera = new Camera(state);
     camera.calm = true;
@@ -328,6 +337,23 @@ describe('the camera', () => {
         if (distance > 0.8 * whole && distance < whole) expect((bottom - top) / free.height).toBeCloseTo(0.93, 6);
         expect(bottom - top).toBeLessThan(0.96 * free.height);
       }
+    });
+
+    test('leaves a corner free, by no more than that takes', () => {
+      const angles = { yaw: 0, pitch: 0 };
+      // From the lower left to the upper right, as seen from the front of x.
+      const [rising, falling] = [along((t) => [0, 0.7 * t, 0.7 * t]), along((t) => [0, -0.7 * t, 0.7 * t])];
+      const corner = { width: 300, height: 100 };
+      const at = (/** @type {typeof rising} */ discs, /** @type {Insets['corner']} */ kept) =>
+        outlineDistance(angles, ball, { ...free, corner: kept }, discs);
+      expect(at(rising, corner)).toBe(at(rising, undefined));
+      const distance = at(falling, corner);
+      expect(distance).toBeGreaterThan(at(falling, undefined));
+      const view = viewOf({ ...state, ...angles, target: [0, 0, 0], distance }, free.width, free.height, ball);
+      const { x, y } = project(view, [0, -0.7, 0.7]);
+      expect(x > corner.width || y > corner.height).toBe(true);
+      expect(Math.min(Math.abs(x - corner.width), Math.abs(y - corner.height))).toBeLessThan(10);
+      expect(at(falling, { width: 790, height: 590 })).toBe(1.25 * fitDistance(ball.radius));
     });
 
     test('takes the discs alone that are shown', () => {

@@ -10,13 +10,22 @@ describe('a surface that the box cuts', () => {
   it('goes on for ever, which no box fits', () => {
     expect(cutOf({ cut: 'endless', border: 40 })).toEqual({
       text: 'The surface continues outside the box.',
+      canEnlarge: true,
       canFit: false,
     });
+  });
+
+  it('that has no end is not said to be held by a box that is larger still', () => {
+    const { text, canEnlarge, canFit } = cutOf({ cut: 'fixed', border: 40 }, 'endless') ?? {};
+    expect(text).toContain('no end');
+    expect([canEnlarge, canFit]).toEqual([false, true]);
+    expect(cutOf({ cut: 'fixed', border: 40 }, 'larger')?.canEnlarge).toBe(true);
   });
 
   it('is cut by a fixed box, and a fitted one would hold it', () => {
     expect(cutOf({ cut: 'fixed', border: 1234 })).toEqual({
       text: 'The box cuts the surface: 1,234 particles lie at its border.',
+      canEnlarge: true,
       canFit: true,
     });
     expect(cutOf({ cut: 'fixed', border: 1 })?.text).toContain('1 particle lies');
