@@ -5,6 +5,7 @@
  */
 import { decode, encode } from '../share/codec.js';
 import { mergeState } from '../share/state.js';
+import { homeView } from '../share/view.js';
 import { description } from '../store.js';
 
 /**
@@ -51,7 +52,9 @@ export function shareCommands({ store, columns, picture: { viewer }, scheduler, 
         store.notice.value = { id: 'link', kind: 'warn', text: `The link was read, except for: ${what}.` };
       }
       const whole = mergeState(state, { ...patch }, about, scheduler.loader.hasFile).state;
-      viewer.linked = whole.view.camera;
+      // A link that says nothing of the camera has the home one, whose distance is of no surface.
+      const { camera } = whole.view;
+      viewer.linked = camera.distance === homeView().camera.distance ? null : camera;
       adopt(whole);
     },
     set(patch) {

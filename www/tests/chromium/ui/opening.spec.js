@@ -44,8 +44,12 @@ test('faces the seed while the surface grows, then turns to the usual view', asy
     )
     .toBeLessThan(-0.3);
   await atRest(page);
-  const { yaw, pitch } = (await state(page)).view.camera;
+  const { yaw, pitch, distance } = (await state(page)).view.camera;
   expect([yaw, pitch]).toEqual([0.62, 0.42]);
+  // As large as a fit makes it.
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.fit());
+  await atRest(page);
+  expect((await state(page)).view.camera.distance).toBeCloseTo(distance, 4);
   // The address never holds a view that nobody chose: it is written half a second after a change.
   await page.waitForTimeout(700);
   expect(new URL(page.url()).hash).toBe('');
