@@ -6,6 +6,7 @@ import { formatCount, formatFixed, formatSignificant, plural } from '../ui/forma
 import { adaptiveRun } from './adaptive.js';
 import { judgePair } from './judged.js';
 import { asFineEverywhere, costOf, openBend, RING, ringsOf, scoresOfRest, widestHole } from './measure.js';
+import { verdictOf } from './score.js';
 
 /** @import { Prediction } from './types.js' */
 
@@ -13,8 +14,6 @@ import { asFineEverywhere, costOf, openBend, RING, ringsOf, scoresOfRest, widest
 const ALIKE = 1.25;
 /** A guess within this share of the number is close. */
 const CLOSE = 0.1;
-/** By more than this share ten steps change a figure, or they do not. */
-const CHANGED = 0.05;
 /** Distances below this share of 2r are called nearer. */
 const NEARER = 0.999;
 
@@ -135,8 +134,7 @@ export const PREDICTIONS = {
     ],
     async answer(lab) {
       const [before, after] = await scoresOfRest(lab);
-      const changed = (/** @type {'hole' | 'six'} */ key) =>
-        Math.abs(Number(after[key]) / Number(before[key]) - 1) > CHANGED;
+      const changed = (/** @type {'hole' | 'six'} */ key) => verdictOf([before, after], [key]) !== null;
       const right = changed('hole') ? (changed('six') ? 'both' : 'hole') : changed('six') ? 'six' : 'neither';
       const [hole, six] = /** @type {const} */ (['hole', 'six']).map((key) =>
         [before, after].map((score) => formatFixed(Number(score[key]), 2)),

@@ -57,7 +57,8 @@ export function createScorecard(show) {
         const chance = isJudged ? chanceOf(row, scores) : null;
         const best = isMarked && isJudged ? bestOf(scores, row) : -1;
         const kind = row.key === verdict?.key ? 'decides' : null;
-        const byChance = chance === null ? '' : ` By chance: up to ${(row.writeChance ?? row.write)(chance)}.`;
+        const byChance =
+          chance === null ? '' : ` Another seed changes it by up to ${(row.writeChance ?? row.write)(chance)}.`;
         return [
           h(
             'tr',

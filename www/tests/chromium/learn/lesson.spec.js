@@ -437,7 +437,7 @@ test('the last pairs of samplings have figures without names or marks until they
   await expect(judge.locator('thead')).toHaveText('IdealAB', { timeout: 60_000 });
   await expect(judge.locator('.best, .decides, .outcome')).toHaveCount(0);
   // What chance can do stands there before, too.
-  await expect(judge.locator('.means').nth(1)).toContainText('By chance: up to 5.0 points.');
+  await expect(judge.locator('.means').nth(1)).toContainText('Another seed changes it by up to 5.0 points.');
   const question = page.locator('#predict-last');
   await question.getByRole('radio', { name: 'Sampling A' }).check();
   await question.getByRole('button', { name: 'Reveal' }).click();

@@ -115,9 +115,8 @@ test('the tables on the page are those of the paper', () => {
 });
 
 test('what the text states of the paper is in its tables', () => {
-  says('The paper counts 373 for 10,633 particles; about 50,000 were stopped, unfinished, after 1,613.');
+  says('The paper counts 373 for 10,633 particles.');
   expect(section('Ellipsoid, uniform, 13,923')).toMatch(/10,633[\s\S]*\| 373 \|/);
-  expect(section('Ellipsoid, uniform, 55,748')).toMatch(/≈ 50,000, cut off[\s\S]*\| 1,613 \|/);
   says('82 to 96 % of the time in the paper’s Table 2');
   const shares = rowsOf(cards)
     .filter(({ cells }) => cells.length === 3)
@@ -245,23 +244,21 @@ test('the learner judges three pairs, and the runs say which is better, or neith
   for (const key of DECIDING) expect(verdictOf(await scoresOf('chance'), [key]), key).toBe(null);
 });
 
-/** The largest difference of each deciding figure among ten seeds, and what is called chance there. */
+/** The largest difference of each judged figure among ten seeds, and what is called chance there. */
 async function spreadOf(/** @type {Lab} */ own, /** @type {object} */ change, particles = 1500) {
   /** @type {import('../../../src/learn/types.js').Score[]} */
   const scores = [];
   for (let seed = 0; seed < 10; seed += 1)
     scores.push(await scoreAtEnd(await own.run({ ...change, seed }, { particles })));
-  return DECIDING.map((key) => {
+  return /** @type {const} */ ([...DECIDING, 'evaluations']).map((key) => {
     const values = scores.map((score) => Number(score[key]));
     return { key, range: Math.max(...values) - Math.min(...values), chance: Number(chanceOf(rowOf(key), scores)) };
   });
 }
 
 test('ten seeds of one method differ by no more than what is called chance, and by nearly as much', async () => {
-  says(
-    'ten seeds of one method differ by up to 5 points in the share with six neighbours, 0.15 in the largest hole and',
-  );
-  says('0.08 in the closest pair');
+  says('With 1,500 particles, ten seeds of one method differ by up to 5 points in the share with six neighbours');
+  says('and by more with fewer particles; by 0.15 in the largest hole, and by 0.08 in the closest pair.');
   const [tanglecube, torus] = [lab.on(TANGLECUBE), lab.on(TORUS)];
   const all = [
     await spreadOf(lab, {}),
@@ -273,6 +270,7 @@ test('ten seeds of one method differ by no more than what is called chance, and 
   for (const spread of all) for (const { key, range, chance } of spread) expect(range, key).toBeLessThanOrEqual(chance);
   for (const k of DECIDING.keys())
     expect(Math.max(...all.map((spread) => spread[k].range / spread[k].chance)), DECIDING[k]).toBeGreaterThan(0.8);
+  expect(all[4][0].range).toBeGreaterThan(0.05);
 }, 120_000);
 
 test('the energy has fallen by three quarters after the third step, and every chapter says the same of the costs', async () => {
