@@ -17,6 +17,8 @@ const SHAPE = 0.27;
 const NUMBER_AT = 1.38;
 /** A particle's number is so far from its middle, and from the shape of a fate if there is room. */
 const [BESIDE, CLEAR] = [0.58, 0.5];
+/** Radius of the middle that a number keeps clear of likewise: a little less than that of the disc there. */
+const MIDDLE = 0.85;
 
 /**
  * Draws the tangent plane: the six slots, the particles around, and what became of the children.
@@ -69,7 +71,10 @@ function clear([x, y], taken) {
     [x + BESIDE, y],
     [x - BESIDE, y],
   ]);
-  const room = places.map(([u, v]) => Math.min(...taken.map((one) => Math.hypot(one[0] - u, one[1] - v))));
+  // The particle in the middle lies over its neighbours.
+  const room = places.map(([u, v]) =>
+    Math.min(Math.hypot(u, v) - MIDDLE, ...taken.map((one) => Math.hypot(one[0] - u, one[1] - v))),
+  );
   const free = room.findIndex((far) => far >= CLEAR);
   return places[free < 0 ? room.indexOf(Math.max(...room)) : free];
 }

@@ -97,8 +97,8 @@ test('the whole disc of a particle counts as the particle, and its number is und
   await drawing.evaluate((element) => element.scrollIntoView({ block: 'center', behavior: 'instant' }));
   for (let slot = 1; slot < 6 && !(await question.innerText()).startsWith('The front has met itself'); slot += 1) {
     const covered = await drawing.evaluate((svg) => {
-      const shapes = [...svg.querySelectorAll('.fate')].map((one) => one.getBoundingClientRect());
-      const middles = [...svg.querySelectorAll('.number')].map((one) => one.getBoundingClientRect());
+      const shapes = [...svg.querySelectorAll('.fate, .self')].map((one) => one.getBoundingClientRect());
+      const middles = [...svg.querySelectorAll('.number:not(.strong)')].map((one) => one.getBoundingClientRect());
       return middles.filter(({ x, y, width, height }) =>
         shapes.some(
           (one) =>
@@ -120,17 +120,25 @@ test('the whole disc of a particle counts as the particle, and its number is und
     await press(figure, 'A new one');
   }
   // Slot 1 of particle 1 holds a particle: all over its disc a press is that particle, though the slot lies on it.
-  const radius = ((await drawing.boundingBox())?.height ?? 0) / 10.1;
   for (const [dx, dy] of [
     [0, 0],
     [0.6, 0.6],
     [-0.3, -0.8],
   ]) {
     await expect(question).toContainText('Particle 1, slot 1');
-    const box = await drawing.boundingBox();
-    if (!box) throw new Error('There is no drawing.');
-    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
-    await page.mouse.click(x + (1 + dx) * radius, y - (Math.sqrt(3) + dy) * radius);
+    // At once, since figures above may still move it.
+    await drawing.evaluate(
+      (svg, [right, up]) => {
+        const { left, top, width, height } = svg.getBoundingClientRect();
+        const radius = Math.min(width, height) / 10.1;
+        const place = {
+          clientX: left + width / 2 + (1 + right) * radius,
+          clientY: top + height / 2 - (Math.sqrt(3) + up) * radius,
+        };
+        svg.dispatchEvent(new MouseEvent('click', { bubbles: true, ...place }));
+      },
+      [dx, dy],
+    );
     await expect(figure.locator('.told').last()).toContainText('matched particle 6');
     await press(figure, 'One slot back');
   }
