@@ -15,6 +15,10 @@ const PROFILE = { left: -2.4, right: 2.9, half: 2.3 };
 /** Half size of a fate's shape, and distance of a slot's number from the particle: between its disc and the child. */
 const SHAPE = 0.27;
 const NUMBER_AT = 1.38;
+/** A particle's number is so far from its middle, and from the shape of a fate if there is room. */
+const [BESIDE, CLEAR] = [0.58, 0.5];
+/** Radius of the middle that a number keeps clear of likewise: a little less than that of the disc there. */
+const MIDDLE = 0.85;
 
 /**
  * Draws the tangent plane: the six slots, the particles around, and what became of the children.
@@ -38,9 +42,11 @@ export function tangentPlane(opened, moment) {
     }
     svg.append(ring('circle', [0, 0], 2));
     for (const child of children) svg.append(slotGroup(child, slotMarks(child, child.slot === slot && isNow)));
-    for (const { particle } of gathered?.neighbours ?? [])
-      svg.append(label('number', clear(at(particle)), formatCount(particle)));
     for (const child of children) svg.append(slotGroup(child, childMarks(child, plane, at)));
+    const shapes = children.map((child) => placeOf(child, plane, at)).filter((shape) => shape !== null);
+    const taken = [...shapes, ...children.map(numberPlace)];
+    for (const { particle } of gathered?.neighbours ?? [])
+      svg.append(label('number', clear(at(particle), taken), formatCount(particle)));
     const now = slot === null ? null : children[slot];
     if (now?.compared && moment.event.type === 'compared')
       svg.append(ring('tolerance', inPlane(plane, now.compared.position), now.compared.limit / subject.radius));
@@ -53,16 +59,33 @@ export function tangentPlane(opened, moment) {
 export const slotGroup = ({ slot }, marks) => s('g', { 'data-slot': slot }, ...marks);
 
 /**
- * Returns the place of a particle's number: outwards, clear of the shape of a fate and of the slot's number.
- * @param {Point} at
+ * Returns the place of a particle's number within its disc: outwards, or elsewhere where it would be covered.
+ * @param {Point} at @param {readonly Point[]} taken  places of the shapes and of the slots' numbers
  * @returns {Point}
  */
-const clear = ([x, y]) => [x, y > 0.5 ? y + 0.58 : y - 0.58];
+function clear([x, y], taken) {
+  const out = y > 0.5 ? BESIDE : -BESIDE;
+  const places = /** @type {Point[]} */ ([
+    [x, y + out],
+    [x, y - out],
+    [x + BESIDE, y],
+    [x - BESIDE, y],
+  ]);
+  // The particle in the middle lies over its neighbours.
+  const room = places.map(([u, v]) =>
+    Math.min(Math.hypot(u, v) - MIDDLE, ...taken.map((one) => Math.hypot(one[0] - u, one[1] - v))),
+  );
+  const free = room.findIndex((far) => far >= CLEAR);
+  return places[free < 0 ? room.indexOf(Math.max(...room)) : free];
+}
+
+/** Where the number of a slot stands. @param {Pick<Child, 'slot'>} child */
+const numberPlace = ({ slot }) => scaledBy(slotPlace(slot), NUMBER_AT / 2);
 
 /** @param {Child} child @param {boolean} isNow */
 function slotMarks({ slot }, isNow) {
   const end = slotPlace(slot);
-  const between = scaledBy(end, NUMBER_AT / 2);
+  const between = numberPlace({ slot });
   return [
     line(isNow ? 'ray now' : 'ray', [[0, 0], end]),
     ring(isNow ? 'slot now' : 'slot', end, 1),
@@ -71,14 +94,23 @@ function slotMarks({ slot }, isNow) {
 }
 
 /**
+ * Where a child is; null before it is tried.
+ * @param {Child} child @param {Plane} plane @param {(particle: number) => Point} at
+ */
+function placeOf({ fate, landed, start, particle, iterates }, plane, at) {
+  if (fate === 'parent') return particle === null ? null : at(particle);
+  const where = landed?.position ?? iterates.at(-1)?.position ?? start?.place;
+  return where ? inPlane(plane, where) : null;
+}
+
+/**
  * Draws where a child is, with the shape of its fate, and a line to the particle that it met.
  * @param {Child} child @param {Plane} plane @param {(particle: number) => Point} at
  */
-export function childMarks({ fate, landed, start, particle, iterates }, plane, at) {
-  if (fate === 'parent') return particle === null ? [] : [fateShape(fate, at(particle), SHAPE)];
-  const where = landed?.position ?? iterates.at(-1)?.position ?? start?.place;
-  if (!where) return [];
-  const here = inPlane(plane, where);
+export function childMarks(child, plane, at) {
+  const { fate, particle } = child;
+  const here = placeOf(child, plane, at);
+  if (!here) return [];
   return [
     fate === 'matched' && particle !== null ? line('met', [here, at(particle)]) : null,
     fateShape(fate, here, SHAPE),

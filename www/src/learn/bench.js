@@ -51,13 +51,15 @@ export function createBench(host, lab, { setup: first = setupOf(COMMON[0].id), l
   /** Makes the controls of a choice. @param {WhatIf} whatIf */
   async function stand({ id, values, knobs, look: words }) {
     if (standing === id) return;
-    if (knobs) fail ??= (await import('./fail.js')).createFail(lab, { choose, isLocked: locks.includes('right') });
+    const module = knobs ? await import('./fail.js') : null;
     if (setup.what !== id || standing === id) return;
     standing = id;
+    // What is taken off the page ends, so it is made anew.
+    fail = module?.createFail(lab, { choose, isLocked: locks.includes('right') }) ?? null;
     look.textContent = words;
-    fill(above, knobs ? fail?.kept : null);
-    fill(below, knobs ? fail?.verdict : null);
-    if (knobs && fail) {
+    fill(above, fail?.kept);
+    fill(below, fail?.verdict);
+    if (fail) {
       follow = fail.follow;
       fill(chosen, what.element, fail.controls);
       return;
@@ -84,7 +86,7 @@ export function createBench(host, lab, { setup: first = setupOf(COMMON[0].id), l
     const isPicked = whatIf.knobs && !locks.includes('right');
     pair.pickWith(isPicked ? (place) => fail?.seed(place) : null);
     await pair.show(sidesOf(whatIf, [setup.left, setup.right]), whatIf);
-    if (setup === next && whatIf.knobs) await fail?.tell(next);
+    if (setup === next) await fail?.tell(next);
   }
 
   // A presentation goes through the values on the right.
@@ -112,7 +114,7 @@ export function createBench(host, lab, { setup: first = setupOf(COMMON[0].id), l
       const whatIf = whatIfOf(setup.what);
       const names = sidesOf(whatIf, [setup.left, setup.right]);
       const sides = (runs ?? []).map((run, k) => ({ label: names[k].label, run, score: scores?.[k] }));
-      const all = [...((whatIf.knobs && fail?.runs()) || []), ...sides];
+      const all = [...(fail?.runs() ?? []), ...sides];
       return all.filter(({ run }, k) => all.findIndex((one) => one.run === run) === k);
     },
   };

@@ -23,7 +23,7 @@ export const PATCHES = [
     surface: { formula: 'z = 0', parameters: [], bounds: { min: [-1, -1, -0.5], max: [1, 1, 0.5] } },
     radius: 0.13,
     seed: [0, 0, 0],
-    ends: 'Three particles are done. In a plane every child met its particle exactly, or none at all.',
+    ends: 'Two particles are done. In a plane every child met its particle exactly, or none at all.',
   },
   {
     id: 'cap',
@@ -63,8 +63,8 @@ export async function childrenOf(lab) {
   }
 }
 
-/** Particles of a plane that the learner treats: the seed and two of its children. */
-const TREATED = 3;
+/** Particles of a plane that the learner treats: the seed and its first child. */
+const TREATED = 2;
 /** Particles that are looked through for the first meeting of a front. */
 const MOST_BEFORE = 60;
 

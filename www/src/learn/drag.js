@@ -26,7 +26,7 @@ export function createNumber({ name, scale, value, say, change, stage }) {
   /** @param {number} to */
   function set(to) {
     const host = stage ? stage() : element.closest('.stage, .bench');
-    if (host instanceof HTMLElement) pin(element, host);
+    if (host instanceof HTMLElement) pin(element, host, drag !== null);
     change(to);
   }
   const element = h(

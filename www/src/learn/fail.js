@@ -7,7 +7,8 @@ import { packed } from '../ui/surface-link.js';
 import { createTolerance } from './drag.js';
 import { reasonOf } from './figure.js';
 import { createSelectRow } from './parts.js';
-import { blame, isWorse, reasonWhy, share, tryOut, widest } from './verdict.js';
+import { verdictOf } from './score.js';
+import { blame, isWorse, reasonWhy, tryOut, written } from './verdict.js';
 import { FAIL, KNOBS, knobWords, partsOf, partWords, SEED, seedAt, turned, USUAL } from './whatifs.js';
 
 /**
@@ -98,7 +99,7 @@ export function createFail(lab, { choose, isLocked }) {
           press: () => setTo(value),
         },
         h('span', null, ENDS[k]),
-        h('b', null, share(score)),
+        h('b', null, written('six', score), ', hole ', written('hole', score)),
         h('span', { class: 'quiet' }, knobWords(value)),
       ),
     ),
@@ -147,34 +148,44 @@ export function createFail(lab, { choose, isLocked }) {
   };
 }
 
+/** The figures that decide, in a sentence. */
+const SAID = {
+  six: (/** @type {string} */ value) => `${value} have six neighbours`,
+  hole: (/** @type {string} */ value) => `the largest hole is ${value}`,
+  pair: (/** @type {string} */ value) => `the closest pair is at ${value}`,
+};
+
 /** @param {Try} mine @param {Try} usual */
 function verdictWords(mine, usual) {
-  const isBad = isWorse(mine.score, usual.score);
   if (mine.value === USUAL) return h('p', null, 'This is the sampling of the lesson. Turn something.');
-  if (isBad === null) return h('p', null, 'There are too few particles for a share of six neighbours.');
-  return h('p', null, h('b', null, isBad ? 'Worse. ' : 'Not worse. '), compared(mine.score, usual.score));
-}
-
-/**
- * Two scores in words: by their shares, and by their holes where those are written alike.
- * @param {Score} mine @param {Score} other
- */
-function compared(mine, other) {
-  if (share(mine) !== share(other))
-    return `${share(mine)} have six neighbours, and ${share(other)} in the sampling of the lesson.`;
-  const hole = widest(mine) === widest(other) ? 'is as wide' : `is ${widest(mine)}, and ${widest(other)} there`;
-  return `${share(mine)} have six neighbours, as in the lesson; the largest hole ${hole}.`;
+  if (mine.score.six === null) return h('p', null, 'There are too few particles for a share of six neighbours.');
+  const verdict = verdictOf([mine.score, usual.score]);
+  if (!verdict)
+    return h(
+      'p',
+      null,
+      h('b', null, 'No difference beyond chance. '),
+      'It cannot be told apart from that of the lesson.',
+    );
+  const key = /** @type {keyof typeof SAID} */ (verdict.key);
+  const [own, other] = [mine, usual].map(({ score }) => written(key, score));
+  return h(
+    'p',
+    null,
+    h('b', null, verdict.side === 1 ? 'Worse. ' : 'Better. '),
+    `Here ${SAID[key](own)}, in the sampling of the lesson ${other}.`,
+  );
 }
 
 /** @param {Score} own @param {Awaited<ReturnType<typeof blame>>[number]} one */
-function blameItem(own, { k, part, usual, score, isHarm }) {
-  const figure = share(own) === share(score) ? `the largest hole is ${widest(score)}` : `it is ${share(score)}`;
-  const why = isHarm ? reasonWhy(k, part) : 'It does no harm here.';
+function blameItem(own, { k, part, usual, score, harm }) {
+  const key = /** @type {keyof typeof SAID} */ (harm ?? 'six');
+  const why = harm ? reasonWhy(k, part) : 'It does no harm beyond chance here.';
   return h(
     'li',
     null,
     h('b', null, `${partWords(k, part)}. `),
     h('span', { class: 'why' }, `${why} `),
-    `Put back to ${partWords(k, usual).toLowerCase()}, ${figure}.`,
+    `Put back to ${partWords(k, usual).toLowerCase()}, ${SAID[key](written(key, score))} instead of ${written(key, own)}.`,
   );
 }

@@ -7,7 +7,7 @@ import { FlowingFront } from '../engine/sampling/flowing.js';
 import { along, distance } from '../engine/vector.js';
 import { formatCount, formatFixed } from '../ui/format.js';
 import { PARTICLES } from './lab.js';
-import { ROWS, scoreOf } from './score.js';
+import { rowOf, scoreOf } from './score.js';
 
 /**
  * @import { LessonParticles } from '../engine/types.js'
@@ -218,7 +218,7 @@ export async function lossOf(lab, lane = new FrontLane(MOTIONS[0])) {
     const lost = Number(before.six) - Number(after.six);
     const isFar = Math.abs(count / fresh - 1) > COUNT;
     const right = Number(after.hole) > HOLE ? 'holes' : isFar ? 'count' : lost > SIX ? 'order' : 'nothing';
-    const percent = (/** @type {number | null} */ share) => ROWS[0].write(Number(share));
+    const percent = (/** @type {number | null} */ share) => rowOf('six').write(Number(share));
     const hole = (/** @type {number | null} */ size) => formatFixed(Number(size), 2);
     const words = [
       `There are ${formatCount(count)} particles, and a new front has ${formatCount(fresh)}. The largest hole was ${hole(before.hole)} times that of the ideal pattern and is ${hole(after.hole)}.`,

@@ -1,60 +1,73 @@
-/** The two pairs of samplings that the learner judges: at the beginning by their pictures, at the end with figures. */
-import { formatCount } from '../ui/format.js';
-import { ROWS, scoreAtEnd } from './score.js';
-import { isWorse, share } from './verdict.js';
-import { projected } from './whatifs.js';
+/** The pairs of samplings that the learner judges: at the beginning by their pictures, at the end with figures. */
+import { scoreAtEnd, verdictOf } from './score.js';
+import { written } from './verdict.js';
 
-/** @import { Answer, Lab, LabRun, ScoreFigures } from './types.js' */
+/** @import { FormulaSurface } from '../ui/types.js' */
+/** @import { Answer, Lab, LabRun, Score } from './types.js' */
 
 /**
  * @typedef {object} Judged
  * @property {string} stop
  * @property {readonly [string, string]} names
- * @property {keyof ScoreFigures} decides
  * @property {boolean} hasFigures  whether the figures are there, too
  * @property {(lab: Lab) => Promise<[LabRun, LabRun]>} make
+ * @property {(scores: readonly Score[]) => string[]} words  why one is better, or neither
  */
 
-/** @type {Record<'first' | 'last', Judged>} */
+/** A surface that the learner has not seen before. @type {FormulaSurface} */
+export const TORUS = {
+  formula: '(sqrt(x^2 + y^2) - 0.7)^2 + z^2 = 0.09',
+  parameters: [],
+  bounds: { min: [-1.2, -1.2, -0.5], max: [1.2, 1.2, 0.5] },
+};
+
+/** @type {Record<'first' | 'weigh' | 'chance', Judged>} */
 export const PAIRS = {
   first: {
     stop: 'predict-first',
     names: ['A, a stack', 'B, a queue'],
-    decides: 'six',
     hasFigures: false,
     make: async (lab) => [await lab.run({ order: 'stack' }), await lab.run({}, { keep: true })],
+    words: ([a, b]) => [
+      `Of the particles of B ${written('six', b)} have six neighbours, of those of A ${written('six', a)}.`,
+      'A has seams all over, with holes along them. The rest of the lesson is about where seams come from, and at the end you judge again.',
+    ],
   },
-  last: {
+  weigh: {
     stop: 'predict-last',
-    names: ['A, on circles', 'B, by Newton’s method'],
-    decides: 'pair',
+    names: ['A, a stack after ten steps', 'B, a queue before any'],
     hasFigures: true,
-    make: async (lab) => [await projected(lab, 'circle'), await projected(lab, 'newton')],
+    make: async (lab) => {
+      const own = lab.on(TORUS);
+      return [await own.run({ order: 'stack' }), await own.run({ relax_steps: 0 })];
+    },
+    words: ([a, b]) => [
+      `The largest hole and the closest pair speak for A. But ${written('six', b)} of B have six neighbours, and ${written('six', a)} of A, a difference beyond chance; so order decides.`,
+      'Ten steps of relaxation would shrink the hole of B. They cannot give A the order that its seams have cost.',
+    ],
+  },
+  chance: {
+    stop: 'predict-chance',
+    names: ['A, seed 1', 'B, seed 3'],
+    hasFigures: true,
+    make: async (lab) => {
+      const own = lab.on(TORUS);
+      return [await own.run({ seed: 1 }), await own.run({ seed: 3 })];
+    },
+    words: () => [
+      'No figure differs by more than chance. Both are the sampling of the lesson, from two seeds: what differs is where the front began.',
+    ],
   },
 };
 
-/** Which of the first two is better: by the share with six neighbours. @param {Lab} lab @returns {Promise<Answer>} */
-export async function judgeFirst(lab) {
-  const [a, b] = await Promise.all((await PAIRS.first.make(lab)).map(scoreAtEnd));
-  const right = isWorse(a, b) ? 'b' : isWorse(b, a) ? 'a' : 'alike';
-  const words = [
-    `Of the particles of B ${share(b)} have six neighbours, of those of A ${share(a)}.`,
-    'A has seams all over, with holes along them. The rest of the lesson is about where seams come from, and at the end you judge again.',
-  ];
-  return { right, words: words.join(' ') };
-}
-
-const [, , PAIR] = ROWS;
-
-/** Which of the last two is better: by the closest pair. @param {Lab} lab @returns {Promise<Answer>} */
-export async function judgeLast(lab) {
-  const runs = await PAIRS.last.make(lab);
-  const [a, b] = await Promise.all(runs.map(scoreAtEnd));
-  const [nearA, nearB] = [a, b].map(({ pair }) => PAIR.write(Number(pair)));
-  const [countA, countB] = runs.map(({ end }) => formatCount(end.radii.length));
-  const words = [
-    `A has ${countA} particles and B ${countB}, and more of those of A have six neighbours. The closest pair of A is at ${nearA} of the ideal distance, that of B at ${nearB}: Newton’s method has forgotten the parent where the surface bends.`,
-    'That less of the surface lies outside the discs of B says nothing, since its discs are larger.',
-  ];
-  return { right: Number(a.pair) > Number(b.pair) ? 'a' : 'b', words: words.join(' ') };
+/**
+ * Which of a pair is better.
+ * @param {Lab} lab @param {keyof typeof PAIRS} which
+ * @returns {Promise<Answer>}
+ */
+export async function judgePair(lab, which) {
+  const { make, words } = PAIRS[which];
+  const scores = await Promise.all((await make(lab)).map(scoreAtEnd));
+  const verdict = verdictOf(scores);
+  return { right: verdict ? ['a', 'b'][verdict.side] : 'alike', words: words(scores).join(' ') };
 }

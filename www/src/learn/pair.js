@@ -70,8 +70,8 @@ export function createPair(lab) {
   const element = h(
     'div',
     { class: 'pair-box' },
-    h('div', { class: 'pair' }, figures),
     status,
+    h('div', { class: 'pair' }, figures),
     legend,
     scorecard.element,
   );
@@ -91,6 +91,7 @@ export function createPair(lab) {
   /** @typedef {{ sides: readonly [Side, Side], whatIf: Pick<WhatIf, 'colouring' | 'decides'> }} Pair */
   const compare = latest(async (/** @type {Pair} */ { sides, whatIf: { colouring, decides } }, isOld) => {
     status.textContent = 'Running both';
+    element.ariaBusy = 'true';
     try {
       const left = await sides[0].make(lab);
       const right = await sides[1].make(lab);
@@ -109,6 +110,8 @@ export function createPair(lab) {
       }
       fill(legend, legendOf(colouring, radii));
       point(null, 0);
+      element.ariaBusy = 'false';
+      scorecard.wait();
       status.textContent = 'Measuring both';
       const scores = [await scoreAtEnd(left), await scoreAtEnd(right)];
       if (isOld()) return;
@@ -120,7 +123,9 @@ export function createPair(lab) {
       );
       status.textContent = '';
     } catch (error) {
-      if (!isOld()) status.textContent = reasonOf(error);
+      if (isOld()) return;
+      status.textContent = reasonOf(error);
+      element.ariaBusy = 'false';
     }
   });
   return shown;

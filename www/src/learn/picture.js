@@ -279,11 +279,10 @@ export class Picture {
   #pick(xPx, yPx) {
     const scene = this.scene.peek();
     if (!scene) return null;
-    const { positions, normals, radii } = scene.particles;
+    const { positions, normals, radii } = scene.places ?? scene.particles;
     const view = this.#view();
     let best = null;
     let nearest = Infinity;
-    // One that is not drawn yet is a place, too.
     for (let i = 0; i < radii.length; i += 1) {
       const place = positions.subarray(3 * i, 3 * i + 3);
       const at = projected(view, place);

@@ -4,8 +4,9 @@ import { distance, triple } from '../engine/vector.js';
 import { inRadii } from '../figures/words.js';
 import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
 import { adaptiveRun } from './adaptive.js';
-import { judgeFirst, judgeLast } from './judged.js';
-import { asFineEverywhere, costOf, energiesOf, openBend, RING, ringsOf, scoresOfRest, widestHole } from './measure.js';
+import { judgePair } from './judged.js';
+import { asFineEverywhere, costOf, openBend, RING, ringsOf, scoresOfRest, widestHole } from './measure.js';
+import { verdictOf } from './score.js';
 
 /** @import { Prediction } from './types.js' */
 
@@ -13,8 +14,6 @@ import { asFineEverywhere, costOf, energiesOf, openBend, RING, ringsOf, scoresOf
 const ALIKE = 1.25;
 /** A guess within this share of the number is close. */
 const CLOSE = 0.1;
-/** By more than this share ten steps change a figure, or they do not. */
-const CHANGED = 0.05;
 /** Distances below this share of 2r are called nearer. */
 const NEARER = 0.999;
 
@@ -34,18 +33,14 @@ const EVEN = 1.05;
 const JUDGED = [
   { value: 'a', label: 'Sampling A' },
   { value: 'b', label: 'Sampling B' },
-  { value: 'alike', label: 'They are alike' },
+  { value: 'alike', label: 'They cannot be told apart' },
 ];
-
-/** The share of what ten steps take off the energy that is asked for. */
-const MOST_OF_IT = 0.75;
-/** The last step of each answer about the energy. */
-const BY_STEP = [1, 3, 6, 10];
 
 /** By the id of the question in the page's markup. @type {Record<string, Prediction>} */
 export const PREDICTIONS = {
-  'predict-first': { kind: 'choice', choices: JUDGED, answer: judgeFirst },
-  'predict-last': { kind: 'choice', choices: JUDGED, answer: judgeLast },
+  'predict-first': { kind: 'choice', choices: JUDGED, answer: (lab) => judgePair(lab, 'first') },
+  'predict-last': { kind: 'choice', choices: JUDGED, answer: (lab) => judgePair(lab, 'weigh') },
+  'predict-chance': { kind: 'choice', choices: JUDGED, answer: (lab) => judgePair(lab, 'chance') },
   'predict-cost': {
     kind: 'choice',
     choices: [
@@ -93,26 +88,6 @@ export const PREDICTIONS = {
       };
     },
   },
-  'predict-average': {
-    kind: 'choice',
-    choices: [
-      { value: '1', label: 'About one' },
-      { value: '2', label: 'About two' },
-      { value: '3', label: 'About three' },
-      { value: '6', label: 'Nearly all six' },
-    ],
-    async answer(lab) {
-      const run = await lab.coarse();
-      const count = run.end.radii.length;
-      const added = run.chapters.reduce((sum, { fates }) => sum + fates.added, 0);
-      const mean = added / count;
-      const words = [
-        `${formatCount(added)} children were added by ${plural(count, 'particle')}: ${formatFixed(mean, 2)} each.`,
-        'It cannot be otherwise, since every particle but a seed is the new child of exactly one other. The bars below the drawing show how few are added on each level, and how many are matched.',
-      ];
-      return { right: String(Math.round(mean)), words: words.join(' ') };
-    },
-  },
   'predict-ring': {
     kind: 'number',
     label: 'Particles in ring 12',
@@ -124,7 +99,7 @@ export const PREDICTIONS = {
         count === 6 * level
           ? 'The bars below the picture follow 6k, as in a plane.'
           : count < 6 * level
-            ? 'The surface closes around the seed, or ends at its box, and takes room from the rings: the bars below the picture fall behind 6k.'
+            ? 'The surface closes around the seed, or ends at the box, and takes room from the rings: the bars below the picture fall behind 6k.'
             : 'The surface bends like a saddle around the seed, which gives the rings more room: the bars below the picture run ahead of 6k.';
       const words = `Ring ${level} of this surface has ${plural(count, 'particle')}; on a plane it would have ${6 * level}. ${reason}`;
       return { right: count, words };
@@ -159,8 +134,7 @@ export const PREDICTIONS = {
     ],
     async answer(lab) {
       const [before, after] = await scoresOfRest(lab);
-      const changed = (/** @type {'hole' | 'six'} */ key) =>
-        Math.abs(Number(after[key]) / Number(before[key]) - 1) > CHANGED;
+      const changed = (/** @type {'hole' | 'six'} */ key) => verdictOf([before, after], [key]) !== null;
       const right = changed('hole') ? (changed('six') ? 'both' : 'hole') : changed('six') ? 'six' : 'neither';
       const [hole, six] = /** @type {const} */ (['hole', 'six']).map((key) =>
         [before, after].map((score) => formatFixed(Number(score[key]), 2)),
@@ -170,27 +144,6 @@ export const PREDICTIONS = {
         'Pushes even out the room that there is: those around a hole move in. For another neighbour whole rows would have to slip past each other, and hardly any does.',
       ];
       return { right, words: words.join(' ') };
-    },
-  },
-  'predict-energy': {
-    kind: 'choice',
-    choices: [
-      { value: '1', label: 'After the first step' },
-      { value: '3', label: 'After the second or third' },
-      { value: '6', label: 'After the fourth to sixth' },
-      { value: '10', label: 'Later' },
-    ],
-    async answer(lab) {
-      const energies = await energiesOf(lab);
-      const fall = energies[0] - energies[energies.length - 1];
-      const lost = energies.map((energy) => (energies[0] - energy) / fall);
-      const step = lost.findIndex((share) => share >= MOST_OF_IT);
-      const percent = (/** @type {number} */ share) => `${formatFixed(100 * share, 0)} %`;
-      const words = [
-        `It is step ${formatCount(step)}: the first one takes off ${percent(lost[1])} of it, and the first three ${percent(lost[3])}.`,
-        `All ten together lower the energy by no more than ${percent(fall)}: the front had it nearly right. Ten are enough because the curve is flat by then, and its end is fixed beforehand.`,
-      ];
-      return { right: String(BY_STEP.find((last) => step <= last) ?? 10), words: words.join(' ') };
     },
   },
   'predict-sizes': {

@@ -28,7 +28,9 @@ export function createReplay({ films, names, axes, axisName, name, places, at, m
     async (/** @type {{ pair: readonly Snapshot<L>[], caption: string }} */ { pair, caption }, isOld) => {
       const scores = [];
       for (const shot of pair) scores.push(await score(shot));
-      if (!isOld()) scorecard.tell(names, scores, { caption });
+      // While it plays there is always a newer moment; the caption says which one this is.
+      scorecard.tell(names, scores, { caption });
+      if (isOld()) scorecard.wait();
     },
   );
   async function seek() {
@@ -36,6 +38,7 @@ export function createReplay({ films, names, axes, axisName, name, places, at, m
     const cost = costAt(range.get());
     const pair = films.map((shots) => shotAt(shots, axis.peek().of, cost));
     for (const [k, shot] of pair.entries()) show(k, shot);
+    scorecard.wait();
     await measure({ pair, caption: axis.peek().moment(cost) });
   }
   const range = createRangeRow({

@@ -1,10 +1,10 @@
 /** The figures that decide between two runs, or two moments of one: those of the sampler's own report. */
 import { distance, triple } from '../engine/vector.js';
-import { formatFixed, formatSignificant } from '../ui/format.js';
+import { formatCount, formatFixed, formatSignificant } from '../ui/format.js';
 
 /**
  * @import { LessonParticles, Measures } from '../engine/types.js'
- * @import { Lab, LabRun, Score, ScorePlace, ScoreRow } from './types.js'
+ * @import { Lab, LabRun, Score, ScoreFigures, ScorePlace, ScoreRow } from './types.js'
  */
 
 /** @param {number} share */
@@ -15,23 +15,50 @@ const ratio = (value) => formatFixed(value, 2);
 /** The share of a plane that touching discs in the hexagonal pattern leave open. */
 const OPEN = 1 - Math.PI / (2 * Math.sqrt(3));
 
-/** The figures in their order. A press on one that has a place shows the place. @type {readonly ScoreRow[]} */
+/** @param {number} share */
+const points = (share) => `${formatFixed(100 * share, 1)} points`;
+
+/**
+ * Two seeds of one method differ by up to this in the share with six neighbours, for 1,500 particles. It is a mean over
+ * all of them, so that with fewer chance is larger.
+ */
+const CHANCE_SIX = 0.05;
+const CHANCE_COUNT = 1500;
+
+/**
+ * The figures in their order. A press on one that has a place shows the place. The chances are the largest differences
+ * among ten seeds of one method with particles of one size, of several methods and surfaces.
+ * @type {readonly ScoreRow[]}
+ */
 export const ROWS = [
+  {
+    key: 'count',
+    name: 'Particles',
+    means: 'Holes and pairs are told over the ideal with this number of particles, so they can be compared.',
+    ideal: null,
+    worse: null,
+    digits: 0,
+    write: formatCount,
+  },
   {
     key: 'six',
     name: 'Six neighbours',
     means: 'Share of the particles whose cell borders on six others. A cell is what lies nearest to its particle.',
     ideal: 1,
     worse: 'below',
+    chance: ({ count }) => CHANCE_SIX * Math.sqrt(CHANCE_COUNT / Number(count)),
+    digits: 3,
     write: percent,
+    writeChance: points,
   },
   {
     key: 'hole',
     name: 'Largest hole, over the ideal',
-    means:
-      'Radius of the largest empty circle, over that of the ideal pattern: equal particles, as many on as much area.',
+    means: 'Radius of the largest empty circle, over that of the ideal pattern on the same area.',
     ideal: 1,
     worse: 'above',
+    chance: () => 0.15,
+    digits: 2,
     write: ratio,
   },
   {
@@ -40,34 +67,34 @@ export const ROWS = [
     means: 'Distance of the two nearest particles, over that of neighbours in the ideal pattern.',
     ideal: 1,
     worse: 'below',
+    chance: () => 0.08,
+    digits: 2,
     write: ratio,
   },
   {
     key: 'uncovered',
     name: 'Surface outside all discs',
-    means: 'Share of the area that lies farther than r from every particle. Discs that touch leave 9.3 % in a plane.',
+    means:
+      'Told, and not judged: more discs or larger ones always cover more. Discs that touch leave 9.3 % in a plane.',
     ideal: OPEN,
-    worse: 'above',
-    isOfDiscs: true,
+    worse: null,
+    digits: 3,
     write: percent,
   },
   {
-    key: 'count',
-    name: 'Particles, over A/(2√3 r²)',
-    means: 'As many touching discs of radius r as fill the area A in a plane are 1. More than that overlap.',
-    ideal: 1,
-    worse: null,
-    write: ratio,
-  },
-  {
     key: 'evaluations',
-    name: 'Evaluations of f for each',
-    means: 'How often f and its gradient were asked for, in the whole run, for each particle.',
+    name: 'Evaluations of f per particle',
+    means: 'How often f and its gradient were asked for in the whole run.',
     ideal: null,
     worse: 'above',
+    chance: ({ evaluations }) => 0.03 * Number(evaluations),
+    digits: 1,
     write: (value) => formatSignificant(value, 3),
   },
 ];
+
+/** @param {keyof ScoreFigures} key */
+export const rowOf = (key) => /** @type {ScoreRow} */ (ROWS.find((row) => row.key === key));
 
 /**
  * Measures particles. Those of many sizes are measured each against its own.
@@ -83,10 +110,8 @@ export async function scoreOf(lab, particles, { evaluations, isAdaptive }) {
     hole: (isAdaptive ? quality?.cover_local : quality?.cover) ?? null,
     uncovered: quality?.uncovered ?? null,
     pair: (isAdaptive ? quality?.overlap_min : quality?.rho) ?? null,
-    // The area that hexagonal cells of these sizes would take, over that of the surface.
-    count: quality ? (2 * Math.sqrt(3) * radii.reduce((sum, r) => sum + r * r, 0)) / quality.area : null,
+    count: radii.length,
     evaluations: evaluations / Math.max(1, radii.length),
-    disc: radii.reduce((sum, r) => sum + r, 0) / Math.max(1, radii.length),
     places: placesOf(particles, places),
   };
 }
@@ -126,21 +151,37 @@ function nearestTo(positions, place) {
 /** The figures of a score by their names, as numbers. @param {Score} score */
 export const namedFigures = (score) => Object.fromEntries(ROWS.map(({ key, name }) => [name, score[key]]));
 
-/** Radii that differ by more than this share are those of other discs. */
-const SAME_DISC = 0.005;
+/**
+ * What chance does to a figure of two scores, as it is written; null if the figure is not judged.
+ * @param {ScoreRow} row @param {readonly Score[]} scores
+ */
+export const chanceOf = ({ chance, digits }, scores) =>
+  chance ? rounded(Math.max(...scores.map(chance)), digits) : null;
 
-/** Whether the discs of two scores are of one size. @param {readonly Score[]} scores */
-export const haveSameDiscs = ([one, other]) => Math.abs(one.disc / other.disc - 1) < SAME_DISC;
+/** @param {number} value @param {number} digits */
+const rounded = (value, digits) => Number(value.toFixed(digits));
 
 /**
- * Returns which of several values is better, as they are written; -1 where none is. A value beyond the ideal is bought
- * with more particles, and decides nothing; nor does what is told of discs of two sizes.
- * @param {readonly (number | null)[]} values @param {ScoreRow} row @param {boolean} [isOneDisc]
+ * Which of two scores has the better figure: −1 where chance alone may make the difference, as it is written.
+ * @param {readonly Score[]} scores @param {ScoreRow} row
  */
-export function bestOf(values, { ideal, worse, isOfDiscs, write }, isOneDisc = true) {
-  if (worse === null || values.some((value) => value === null) || (isOfDiscs && !isOneDisc)) return -1;
-  const known = values.map(Number);
-  if (new Set(known.map(write)).size < 2) return -1;
-  const short = known.map((value) => (worse === 'above' ? value - (ideal ?? 0) : (ideal ?? 0) - value));
-  return Math.min(...short) < 0 ? -1 : short.indexOf(Math.min(...short));
+export function bestOf(scores, row) {
+  const chance = chanceOf(row, scores);
+  const values = scores.map((score) => score[row.key]);
+  if (chance === null || values.includes(null)) return -1;
+  const [one, other] = values.map((value) => rounded(Number(value), row.digits));
+  if (rounded(Math.abs(one - other), row.digits) <= chance) return -1;
+  return one < other === (row.worse === 'above') ? 0 : 1;
+}
+
+/** The figures that decide which sampling is better: the first of them that differs by more than chance. */
+export const DECIDING = /** @type {const} */ (['six', 'hole', 'pair']);
+
+/**
+ * Which of two scores is better, and by which figure; null where they cannot be told apart.
+ * @param {readonly Score[]} scores @param {readonly (keyof ScoreFigures)[]} [keys]
+ */
+export function verdictOf(scores, keys = DECIDING) {
+  const key = keys.find((one) => bestOf(scores, rowOf(one)) >= 0);
+  return key === undefined ? null : { key, side: bestOf(scores, rowOf(key)) };
 }

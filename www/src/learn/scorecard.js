@@ -1,16 +1,19 @@
-/** The scorecard: two scores side by side beside the ideal, with what each figure means and which one decides. */
+/**
+ * The scorecard: two scores side by side beside the ideal, with what each figure means, what chance does to it, and
+ * which one decides.
+ */
 import { signal } from '@preact/signals-core';
 import { fill, h } from '../ui/dom.js';
 import { MISSING } from '../ui/format.js';
-import { bestOf, haveSameDiscs, ROWS } from './score.js';
+import { bestOf, chanceOf, DECIDING, ROWS, rowOf, verdictOf } from './score.js';
 
 /** @import { Score, ScoreFigures, ScorePlace, ScoreRow } from './types.js' */
 
 /**
  * @typedef {object} ScoreWords
  * @property {string} [caption]
- * @property {keyof ScoreFigures} [decides]  the figure that decides between these two
- * @property {boolean} [isMarked]  whether the better figures are marked
+ * @property {keyof ScoreFigures} [decides]  a figure that decides where the two cannot be told apart
+ * @property {boolean} [isMarked]  whether it says which is better
  */
 
 /**
@@ -39,16 +42,23 @@ export function createScorecard(show) {
   }
   return {
     element,
+    /** Shows that its figures are those of an earlier moment, until it is told others. */
+    wait() {
+      element.ariaBusy = 'true';
+    },
     /** @param {readonly string[]} names @param {readonly Score[]} scores @param {ScoreWords} [how] */
     tell(names, scores, { caption, decides, isMarked = true } = {}) {
       pressed.value = '';
-      const isOneDisc = haveSameDiscs(scores);
+      element.ariaBusy = 'false';
+      const verdict = isMarked ? verdictOf(scores, decides ? [...DECIDING, decides] : DECIDING) : null;
       const rows = ROWS.map((row) => {
-        const values = scores.map((score) => score[row.key]);
         // What a sampling costs is marked only where that is what decides.
-        const isJudged = isMarked && (row.ideal !== null || row.key === decides);
-        const best = isJudged ? bestOf(values, row, isOneDisc) : -1;
-        const kind = row.key === decides ? 'decides' : null;
+        const isJudged = row.ideal !== null || row.key === decides;
+        const chance = isJudged ? chanceOf(row, scores) : null;
+        const best = isMarked && isJudged ? bestOf(scores, row) : -1;
+        const kind = row.key === verdict?.key ? 'decides' : null;
+        const byChance =
+          chance === null ? '' : ` Another seed changes it by up to ${(row.writeChance ?? row.write)(chance)}.`;
         return [
           h(
             'tr',
@@ -62,7 +72,16 @@ export function createScorecard(show) {
             h('td', { class: 'ideal' }, row.ideal === null ? MISSING : row.write(row.ideal)),
             scores.map((_, side) => cellOf(scores, row, side, side === best)),
           ),
-          h('tr', { class: 'means' }, h('td', { colspan: 2 + names.length }, row.means)),
+          h(
+            'tr',
+            { class: 'means' },
+            h(
+              'td',
+              { colspan: 2 + names.length },
+              row.means + byChance,
+              isMarked && chance !== null && best < 0 ? h('b', null, ' No difference beyond chance.') : null,
+            ),
+          ),
         ];
       });
       const heads = ['Ideal', ...names].map((name) => h('th', { scope: 'col' }, name));
@@ -75,15 +94,15 @@ export function createScorecard(show) {
           h('thead', null, h('tr', null, h('td'), heads)),
           h('tbody', null, rows),
         ),
-        isOneDisc
-          ? null
-          : h(
-              'p',
-              { class: 'quiet' },
-              'The discs differ in size here, so that what lies outside them decides nothing.',
-            ),
+        isMarked ? h('p', { class: 'outcome' }, outcomeOf(names, verdict)) : null,
         h('p', { class: 'quiet press' }, 'Press a hole or a pair to turn to it.'),
       );
     },
   };
 }
+
+/** What the figures say. @param {readonly string[]} names @param {ReturnType<typeof verdictOf>} verdict */
+const outcomeOf = (names, verdict) =>
+  verdict
+    ? `Better: ${names[verdict.side]}, by the row “${rowOf(verdict.key).name}”.`
+    : 'No difference beyond chance: the two cannot be told apart.';

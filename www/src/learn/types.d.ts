@@ -32,8 +32,8 @@ export interface WhatIf {
   /** what to look for */
   look: string;
   colouring: Colouring;
-  /** the figure that decides */
-  decides: keyof ScoreFigures;
+  /** a figure that decides where the samplings cannot be told apart */
+  decides?: keyof ScoreFigures;
   /** whether it is a card's alone */
   isRare?: boolean;
   knobs?: readonly Knob[];
@@ -107,6 +107,8 @@ export interface Scene {
   particles: LessonParticles;
   /** those that the surface to come is made of; else the particles that are not drawn */
   body?: LessonParticles;
+  /** those of which a press chooses one, if not the ones that are drawn */
+  places?: LessonParticles;
   count?: number;
   colours: (palette: Palette) => Uint32Array;
   marks?: readonly Mark[];
@@ -132,9 +134,7 @@ export interface LabRun {
 export type ScorePlace = { places: readonly (readonly number[])[]; radius: number; normal: readonly number[] };
 /** The figures that are compared; null where one is undefined. */
 export type ScoreFigures = Record<'six' | 'hole' | 'uncovered' | 'pair' | 'count' | 'evaluations', number | null>;
-/** `disc`: the mean radius. */
 export type Score = ScoreFigures & {
-  disc: number;
   places: { hole: ScorePlace | null; pair: ScorePlace | null };
 };
 /** One of them. */
@@ -147,9 +147,13 @@ export interface ScoreRow {
   ideal: number | null;
   /** the side of the ideal on which a value is worse; null if it is told, and not judged */
   worse: 'above' | 'below' | null;
-  /** whether it depends on the size of the discs */
-  isOfDiscs?: boolean;
+  /** by how much it differs from seed to seed; none for what is not judged */
+  chance?: (score: Score) => number;
+  /** decimals that are written and compared */
+  digits: number;
   write: (value: number) => string;
+  /** a difference, if it is not written as a value */
+  writeChance?: (value: number) => string;
 }
 /** The colouring of the two pictures. */
 export type Colouring = 'level' | 'parent' | 'nearest' | 'radius';

@@ -1,26 +1,15 @@
 /** What a sampling is worth against another, and what each choice does to it, told by a run in which it is put back. */
 import { MISSING } from '../ui/format.js';
-import { ROWS, scoreAtEnd } from './score.js';
+import { rowOf, scoreAtEnd, verdictOf } from './score.js';
 import { FAIL, partsOf, turned, USUAL, whatIfOf } from './whatifs.js';
 
 /** @import { Lab, Score, Try } from './types.js' */
 
-const [SIX, HOLE] = ROWS;
-/** @param {Score} score */
-export const share = ({ six }) => (six === null ? MISSING : SIX.write(six));
-/** @param {Score} score */
-export const widest = ({ hole }) => (hole === null ? MISSING : HOLE.write(hole));
+/** A figure of a score as it is written. @param {'six' | 'hole' | 'pair'} key @param {Score} score */
+export const written = (key, score) => (score[key] === null ? MISSING : rowOf(key).write(Number(score[key])));
 
-/**
- * Whether one score is worse than another: fewer particles have six neighbours, or as many, as they are written, and
- * the largest hole is larger. Null where a share is undefined.
- * @param {Score} a @param {Score} b
- */
-export function isWorse(a, b) {
-  if (a.six === null || b.six === null) return null;
-  if (SIX.write(a.six) !== SIX.write(b.six)) return a.six < b.six;
-  return Number(a.hole) > Number(b.hole) && HOLE.write(Number(a.hole)) !== HOLE.write(Number(b.hole));
-}
+/** Whether one score is worse than another, by more than chance. @param {Score} a @param {Score} b */
+export const isWorse = (a, b) => verdictOf([a, b])?.side === 1;
 
 /** What a choice does to the sampling. @param {number} k @param {string} part */
 export function reasonWhy(k, part) {
@@ -34,7 +23,7 @@ export function reasonWhy(k, part) {
     case 2:
       return part === '0'
         ? 'Nothing is pushed into the holes that placing leaves beside its seams, and pairs stay too near.'
-        : 'Pushed that long, some particles leave the rows that the front laid.';
+        : 'Pushed that long, particles go farther from where the front has put them.';
     default:
       return 'Another seed moves the rings, and the seams with them. Their number hardly changes.';
   }
@@ -47,8 +36,8 @@ export async function tryOut(lab, value) {
 }
 
 /**
- * For each choice that is not that of the lesson: what the sampling is with this one alone put back, and whether the
- * choice does harm.
+ * For each choice that is not that of the lesson: what the sampling is with this one alone put back, and by which
+ * figure that is better; null if it is not.
  * @param {Lab} lab @param {Try} own
  */
 export async function blame(lab, own) {
@@ -57,7 +46,8 @@ export async function blame(lab, own) {
     const part = partsOf(own.value)[k];
     if (Number(part) === Number(usual) || part === usual) continue;
     const { score } = await tryOut(lab, turned(own.value, k, usual));
-    found.push({ k, part, usual, score, isHarm: isWorse(own.score, score) });
+    const verdict = verdictOf([own.score, score]);
+    found.push({ k, part, usual, score, harm: verdict?.side === 1 ? verdict.key : null });
   }
   return found;
 }

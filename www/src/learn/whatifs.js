@@ -152,7 +152,6 @@ export const FAIL = 'fail';
 export const WHAT_IFS = [
   {
     id: 'order',
-    decides: 'six',
     name: 'Queue or stack',
     look: 'Which particle comes next decides whether the front grows in rings or runs off like a thread, and so how many seams it leaves.',
     colouring: 'level',
@@ -163,7 +162,6 @@ export const WHAT_IFS = [
   },
   {
     id: FAIL,
-    decides: 'six',
     name: 'Make it fail',
     look: 'A dark particle is too near to another. Where the body shows between discs, a hole is open.',
     colouring: 'nearest',
@@ -180,7 +178,6 @@ export const WHAT_IFS = [
     name: 'Circle or Newton',
     look: 'A tanglecube, which bends much within 2r, with as many particles on either side. With one r Newton’s method would place more, since its children land nearer; so its r is larger here.',
     colouring: 'parent',
-    decides: 'pair',
     values: values([
       ['circle', 'Circle'],
       ['newton', 'Newton’s method'],
@@ -189,9 +186,8 @@ export const WHAT_IFS = [
   },
   {
     id: 'step',
-    decides: 'pair',
     name: 'Size of a step',
-    look: 'How far a particle moves for the push it feels. Ten short steps leave seams that ten long ones close.',
+    look: 'How far a particle moves for the push it feels. Ten steps of any of these sizes end alike, as far as one run of each can tell.',
     colouring: 'nearest',
     values: values([
       ['0.6', '0.6 r²'],
@@ -203,7 +199,6 @@ export const WHAT_IFS = [
   {
     id: 'matched',
     isRare: true,
-    decides: 'pair',
     name: 'Matched particles leave or stay',
     look: 'The paper takes a matched particle out of the neighbours. Two children of one parent can then not be matched with the same particle, and one of them is added beside it.',
     colouring: 'nearest',
@@ -219,7 +214,6 @@ export const WHAT_IFS = [
   {
     id: 'gaps',
     isRare: true,
-    decides: 'hole',
     name: 'Gaps left or filled',
     look: 'A hole that is wide enough for a particle can be given one before the relaxation.',
     colouring: 'nearest',
@@ -263,7 +257,6 @@ export const WHAT_IFS = [
   {
     id: 'law',
     isRare: true,
-    decides: 'hole',
     name: 'Laws of the radius',
     look: 'Where the two curvatures have opposite signs their sum is small, and the paper’s law gives large particles there. With one size for all, small particles are spent on flat places.',
     colouring: 'radius',
@@ -273,7 +266,6 @@ export const WHAT_IFS = [
   {
     id: 'fit',
     isRare: true,
-    decides: 'hole',
     name: 'Room for an adaptive child',
     look: 'A child is added if enough of the angle that it takes is free. Asking for all of it places fewer particles, which keep their distance, and leaves wider gaps for the relaxation.',
     colouring: 'nearest',

@@ -83,7 +83,7 @@ export async function angles() {
       handle('Radius of the particle', own),
       ' among others of radius ',
       handle('Radius of the others', other),
-      () => `: each takes φ = ${inDegrees(takenAngle(own.value, other.value), 1)}.`,
+      () => `: together the two give each the angle φ = ${inDegrees(takenAngle(own.value, other.value), 1)}.`,
     ),
     h('p', { class: 'told', 'aria-live': 'polite' }, () =>
       tell(moment.value, { particle: 0, level: 0, parent: null, radius: own.value }),

@@ -13,6 +13,7 @@ export const FIGURES = {
   cost: async (context) => (await import('./cost.js')).cost(context),
   angles: async () => (await import('./angles.js')).angles(),
   sizes: async (context) => (await import('./sizes.js')).sizes(context),
-  'judge-last': async (context) => (await import('./judge.js')).judge(context, 'last'),
+  'judge-last': async (context) => (await import('./judge.js')).judge(context, 'weigh'),
+  'judge-chance': async (context) => (await import('./judge.js')).judge(context, 'chance'),
   moving: async (context) => (await import('./moving.js')).moving(context),
 };

@@ -7,9 +7,9 @@ import { createScorecard } from '../scorecard.js';
 
 /** @import { Context, Score } from '../types.js' */
 
-/** @param {Context} context @param {'first' | 'last'} which */
+/** @param {Context} context @param {keyof typeof PAIRS} which */
 export async function judge({ lab, stops }, which) {
-  const { stop, names, decides, hasFigures, make } = PAIRS[which];
+  const { stop, names, hasFigures, make } = PAIRS[which];
   const runs = await make(await lab);
   const orbit = new Orbit();
   const letters = ['A', 'B'];
@@ -31,7 +31,7 @@ export async function judge({ lab, stops }, which) {
     const now = isOpen();
     for (const [k, caption] of captions.entries()) caption.textContent = now ? names[k] : letters[k];
     if (!hasFigures) return;
-    const tell = () => scorecard.tell(now ? names : letters, scores, now ? { decides } : { isMarked: false });
+    const tell = () => scorecard.tell(now ? names : letters, scores, { isMarked: now });
     if (scores.length > 0) return tell();
     Promise.all(runs.map(scoreAtEnd)).then((found) => {
       scores = found;

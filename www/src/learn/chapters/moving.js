@@ -7,7 +7,7 @@ import { FrontLane, MOTIONS, ownMotions, STEPS, SystemLane, scoreAt, valueAt } f
 import { createChart, createSelectRow } from '../parts.js';
 import { byLevel, Orbit, sideBySide } from '../picture.js';
 import { createReplay } from '../replay.js';
-import { ROWS } from '../score.js';
+import { rowOf } from '../score.js';
 
 /**
  * @import { Signal } from '../../engine/types.js'
@@ -105,7 +105,10 @@ class Pursuit {
           if (isLast) {
             this.status.value = '';
             await replay.seek();
-          } else if (replay.range.get() >= step) for (const k of [0, 1]) show(k, films[k][step]);
+          } else if (replay.range.get() >= step) {
+            for (const k of [0, 1]) show(k, films[k][step]);
+            replay.scorecard.wait();
+          }
           if (!isLast) await new Promise((done) => setTimeout(done, STEP_MS - (performance.now() - sinceMs)));
         }
       } catch (error) {
@@ -207,7 +210,7 @@ async function endsOf(motion) {
 /** The chart of both lanes. @param {Pursuit} pursuit @param {() => boolean} isOpen */
 function chartOf(pursuit, isOpen) {
   // Written as in the scorecard below.
-  const percent = ROWS[0].write;
+  const percent = rowOf('six').write;
   const { shares } = pursuit;
   const measured = (/** @type {number} */ step) => Math.ceil(step / MEASURED);
   const told = () => {

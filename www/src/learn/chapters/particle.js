@@ -167,15 +167,15 @@ function sideOf(opened, moment) {
 
 /**
  * Charts the fates of the children, level by level.
- * @param {{ readonly value: LabRun }} run @param {() => boolean} hidden
+ * @param {{ readonly value: LabRun }} run
  */
-function fateChart(run, hidden) {
+function fateChart(run) {
   const levels = computed(() => run.value.chapters.filter((chapter) => chapter.kind === 'level'));
   const countsOf = (/** @type {'added' | 'matched'} */ fate) => levels.value.map(({ fates }) => fates[fate]);
   const total = (/** @type {'added' | 'matched'} */ fate) =>
     formatCount(countsOf(fate).reduce((sum, count) => sum + count, 0));
   return createChart({
-    hidden,
+    hidden: () => false,
     chart: () => ({
       kind: 'bars',
       rows: /** @type {const} */ (['added', 'matched']).map((fate) => ({ fate, name: fate, counts: countsOf(fate) })),
@@ -208,7 +208,7 @@ async function asked(own) {
 }
 
 /** A particle amid the front, and the fates of all children. @param {Context} context */
-export async function whoWasFirst({ lab, stops }) {
+export async function whoWasFirst({ lab }) {
   await loadSheet(sheet);
   const own = await lab;
   const { usual, first } = await asked(own);
@@ -275,6 +275,6 @@ export async function whoWasFirst({ lab, stops }) {
     place,
     h('p', { class: 'figure-count' }, () => `A run of ${plural(run.value.end.radii.length, 'particle')}.`),
     status,
-    fateChart(run, () => !stops.isOpen('predict-average')),
+    fateChart(run),
   ];
 }

@@ -1,5 +1,5 @@
 /**
- * The learner is the algorithm: slot by slot they decide what the run decided, for three particles of a plane, and
+ * The learner is the algorithm: slot by slot they decide what the run decided, for two particles of a plane, and
  * where the front meets itself on a cap. The run objects to a decision that is not its own.
  */
 import { signal } from '@preact/signals-core';
@@ -46,7 +46,8 @@ export async function plane(context) {
     const exercise = made.get(k) ?? (await begin(context, PATCHES[k], () => void choose(k + 1)));
     made.set(k, exercise);
     chosen.value = k;
-    fill(place, exercise.element);
+    // Without `fill`, which would end the one that goes: it comes back.
+    place.replaceChildren(exercise.element);
   }
   const buttons = PATCHES.map(({ name }, k) =>
     button({ 'aria-pressed': () => String(chosen.value === k), press: () => void choose(k) }, name),
@@ -288,7 +289,7 @@ class Exercise {
     }
   }
 
-  /** Decides by what is pressed in the drawing: the particle or the slot that is nearest. @param {MouseEvent} event */
+  /** Decides by what is pressed in the drawing: a particle or the slot. @param {MouseEvent} event */
   #press({ clientX, clientY }) {
     const now = this.#now;
     const matrix = this.#box.querySelector('svg')?.getScreenCTM()?.inverse();
@@ -298,16 +299,15 @@ class Exercise {
     const { opened } = now;
     const at = { centre: opened.place, right: frame.u, up: frame.w, radius: opened.subject.radius };
     const { slot } = now.decisions[now.at];
-    const own = farFrom([x, -y], slotPlace(slot));
+    // The whole disc of a particle is the particle; a slot is what is left of its circle.
     const near = { particle: -1, far: 1 };
     for (const { particle } of gathered?.neighbours ?? []) {
       const far = farFrom([x, -y], inPlane(at, triple(opened.positions, particle)));
       if (far < near.far) Object.assign(near, { particle, far });
     }
-    if (near.particle < 0 && own > 1)
-      this.#tell('', `Slot ${slot} comes now. Press its circle for a new particle, or the particle that is there.`);
-    else if (own < near.far) this.#decide({ fate: 'added', particle: null });
-    else this.#decide({ fate: 'matched', particle: near.particle });
+    if (near.particle >= 0) this.#decide({ fate: 'matched', particle: near.particle });
+    else if (farFrom([x, -y], slotPlace(slot)) < 1) this.#decide({ fate: 'added', particle: null });
+    else this.#tell('', `Slot ${slot} comes now. Press its circle for a new particle, or the particle that is there.`);
   }
 }
 

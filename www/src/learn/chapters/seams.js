@@ -5,7 +5,7 @@ import { fill, h, live } from '../../ui/dom.js';
 import { formatCount, formatFixed, formatSignificant, plural } from '../../ui/format.js';
 import { reasonOf } from '../figure.js';
 import { latest } from '../latest.js';
-import { energiesOf, nearestDistances, widestHole } from '../measure.js';
+import { energiesOf, energyWords, nearestDistances, widestHole } from '../measure.js';
 import { createChart, createPlay, createRangeRow, createScale } from '../parts.js';
 import { byValue, Orbit, Picture } from '../picture.js';
 import { pushesOn } from '../pushes.js';
@@ -131,7 +131,9 @@ export async function seams({ lab, stops }) {
     const isAfter = isRelaxing() && place >= front;
     const picked = isAfter ? followed.value : place <= front ? stops.picked('predict-hole') : null;
     const marks = marksAt(course, place, { picked, isRelaxing: isRelaxing() });
-    picture.show({ particles: course.at(place), body: course.body, colours: coloursAt(place), marks });
+    // Before the end of the front a press chooses one of the particles to come, where the surface is still bare, too.
+    const places = place < front ? placed : course.at(place);
+    picture.show({ particles: course.at(place), body: course.body, places, colours: coloursAt(place), marks });
     const hole = scores.value[step()]?.places.hole ?? (step() === 0 ? widest?.hole : null) ?? null;
     picture.ringed.value = place >= front && isFree() ? hole : null;
   });
@@ -168,7 +170,7 @@ export async function seams({ lab, stops }) {
     h('div', { class: 'controls' }, play.element, range.element, words),
     createScale('Distance to the nearest, in 2r', formatFixed(NEAR, 2), formatFixed(FAR, 2)),
     energyChart(course, {
-      hidden: () => !isRelaxing() || !stops.isOpen('predict-energy'),
+      hidden: () => !isRelaxing(),
       at: () => (range.place.value >= front ? step() : null),
       press: (at) => range.set(front + at),
     }),
@@ -243,8 +245,7 @@ function createCard(own, { run, states, steps }, { isOpen, scores, step, show })
   });
   live(box, () => {
     const [before, after] = [scores.value[0], scores.value[step()]];
-    if (before && after)
-      scorecard.tell(['As placed', `After step ${formatCount(step())}`], [before, after], { decides: 'hole' });
+    if (before && after) scorecard.tell(['As placed', `After step ${formatCount(step())}`], [before, after]);
   });
   return box;
 }
@@ -268,7 +269,7 @@ function energyChart({ energies, steps }, { hidden, at, press }) {
       format: three,
     }),
     label: `Energy by step, over that before the first: ${energies.map(three).join(', ')}`,
-    words: 'Energy over that before the first step. The scale begins where ten steps have brought it, not at 0.',
+    words: () => energyWords(energies),
     press,
   });
 }

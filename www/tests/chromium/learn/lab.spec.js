@@ -126,3 +126,78 @@ test('a number of the text is a handle of its figure, and follows it', async ({ 
   await expect(ring).toHaveText(String(now / 6));
   clean();
 });
+
+test('a choice that was left is as it was: its dials show what is run, and go on from there', async ({ page }) => {
+  test.setTimeout(120_000);
+  const { clean } = await openLesson(page, { hash: '#what-if-fail' });
+  const bench = page.locator('#bench');
+  const [relaxation, seed] = ['Relaxation', 'Seed'].map((name) => bench.getByLabel(name, { exact: true }));
+  const tolerance = bench.getByRole('slider', { name: 'Match tolerance' });
+  const right = bench.locator('figcaption').last();
+  await expect(right).toHaveText(/^Stack, 0\.7/, { timeout: 60_000 });
+  await bench.getByLabel('Who comes next').selectOption('queue');
+  await tolerance.press('Home');
+  await relaxation.selectOption('0');
+  await seed.selectOption('3');
+  await expect(right).toHaveText('Queue, 0.4 · 2r, no steps, seed 3', { timeout: 60_000 });
+  await bench.getByLabel('What changes').selectOption('order');
+  await expect(right).toHaveText('Stack', { timeout: 60_000 });
+  await bench.getByLabel('What changes').selectOption('fail');
+  // The picture is of one of those that are kept, and every dial says which.
+  await expect(right).toHaveText(/^(Queue|Stack), 0/, { timeout: 60_000 });
+  const dials = async () => {
+    const chosen = await bench
+      .locator('.controls select')
+      .evaluateAll((all) => all.slice(1).map((one) => /** @type {any} */ (one).selectedOptions[0].label));
+    const [who, steps, from] = chosen.map((words) => words.toLowerCase());
+    return `${who}, ${Number(await tolerance.textContent())} · 2r, ${steps}, ${from}`;
+  };
+  const words = async () => (await right.innerText()).toLowerCase();
+  expect(await dials()).toBe(await words());
+  const next = Number(await tolerance.textContent()) + 0.05;
+  await tolerance.press('ArrowRight');
+  await seed.selectOption('2');
+  await expect(right).toHaveText(new RegExp(`, ${Number(next.toFixed(2))} · 2r.*seed 2`), { timeout: 60_000 });
+  expect(await dials()).toBe(await words());
+  clean();
+});
+
+test('while both are run, what stands there is marked as old', async ({ page }) => {
+  await openLesson(page, { hash: '#what-if-fail' });
+  const bench = page.locator('#bench');
+  await expect(bench.locator('.outcome')).toBeVisible({ timeout: 60_000 });
+  await bench.getByLabel('Relaxation', { exact: true }).selectOption('100');
+  await expect(bench.locator('.pair-box')).toHaveAttribute('aria-busy', 'true');
+  await expect(bench.getByText('Running both')).toBeVisible();
+  await expect(bench.locator('[aria-busy="true"]')).toHaveCount(0, { timeout: 60_000 });
+  await expect(bench.getByRole('columnheader', { name: /a hundred steps/ })).toBeVisible();
+});
+
+test('a picture is pinned while its number is turned, and over no question', async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: '#rings', width: 1280, height: 720 });
+  const stage = await live(page, 'rings');
+  const [number, question] = [
+    page.locator('#rings').getByRole('slider', { name: 'Ring', exact: true }),
+    page.locator('#predict-ring'),
+  ];
+  await page.mouse.wheel(0, 1);
+  await number.evaluate((element) =>
+    scrollBy({ top: element.getBoundingClientRect().bottom - innerHeight + 60, behavior: 'instant' }),
+  );
+  await number.focus();
+  await expect(stage).not.toHaveClass(/pinned/);
+  await number.press('ArrowRight');
+  await expect(stage).toHaveClass(/pinned/);
+  const [picture, asked, own] = [
+    await stage.locator('canvas').boundingBox(),
+    await question.boundingBox(),
+    await number.boundingBox(),
+  ];
+  if (!picture || !asked || !own) throw new Error('There is no box.');
+  for (const box of [asked, own])
+    expect(picture.y + picture.height <= box.y || box.y + box.height <= picture.y).toBe(true);
+  // The focus alone does not keep it there.
+  await expect(number).toBeFocused();
+  await expect(stage).not.toHaveClass(/pinned/);
+  clean();
+});

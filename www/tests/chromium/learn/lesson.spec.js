@@ -11,7 +11,9 @@ import { fingerprint, live, openLesson, overflow, settled, TORUS } from './helpe
  * @import { Locator } from '@playwright/test'
  */
 
-const FIGURES = 'judge-first plane circle first rings seams cost angles sizes judge-last moving'.split(' ');
+const FIGURES = 'judge-first plane circle first rings seams cost angles sizes judge-last judge-chance moving'.split(
+  ' ',
+);
 
 test('every chapter has a live figure, in a folder of a host, too, and is accessible, also in the dark', async ({
   page,
@@ -89,15 +91,18 @@ test('a question is answered from the keyboard alone, by a press on the picture,
   await expect(cost.locator('.check[data-right]')).toHaveText('Placing all particlesright');
   const seams = await live(page, 'seams');
   const hole = page.locator('#predict-hole');
-  // Where the front has not come yet there is nothing to press.
-  await expect(async () => {
-    await seams.getByRole('application').focus();
-    await page.keyboard.press('ArrowLeft');
-    await page.keyboard.press('Enter');
-    await hole.getByRole('button', { name: 'Reveal' }).focus();
-    await page.keyboard.press('Enter');
-    await expect(hole.getByRole('status')).toContainText(/particle distances away|Exactly there/, { timeout: 1000 });
-  }).toPass();
+  // Where the front has not come yet a press is one, too: half-way around, in the middle of the picture.
+  await seams.getByRole('application').focus();
+  const turned = await fingerprint(seams.locator('.picture'));
+  for (let k = 0; k < 22; k += 1) await page.keyboard.press('ArrowLeft');
+  await expect.poll(() => fingerprint(seams.locator('.picture'))).not.toBe(turned);
+  await page.keyboard.press('Enter');
+  await hole.getByRole('button', { name: 'Reveal' }).focus();
+  await page.keyboard.press('Enter');
+  await expect(hole.getByRole('status')).toContainText(/particle distances away|Exactly there/);
+  // The question and its picture stand together.
+  const [asked, drawn] = [await hole.boundingBox(), await seams.boundingBox()];
+  expect(asked && drawn && drawn.y - asked.y - asked.height).toBeLessThan(60);
 });
 
 test('in a comparison one camera turns both pictures, and a press on one sets the seed of the other', async ({
@@ -288,7 +293,6 @@ test('what the text claims of the ellipsoid is what its runs say', async ({ page
   await expect(seams.locator('.figure-count').first()).toContainText('The longest move of this step');
   await expect.poll(() => fingerprint(seams.locator('.picture'))).not.toBe(placed);
   // The energy is charted from where ten steps have brought it.
-  await skip('predict-energy');
   const chart = seams.getByRole('img', { name: /^Energy by step/ });
   await expect(chart).toBeVisible();
   const values = ((await chart.getAttribute('aria-label')) ?? '')
@@ -376,7 +380,7 @@ test('every question is answered by the run, or skipped, and on a phone nothing 
   const { clean } = await openLesson(page, { width: 390, height: 760 });
   for (const name of FIGURES) await live(page, name);
   const questions = page.locator('.predict');
-  await expect(questions).toHaveCount(12);
+  await expect(questions).toHaveCount(11);
   for (const question of await questions.all()) {
     await question.getByRole('button', { name: 'Skip' }).click();
     await expect(question).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
@@ -406,40 +410,51 @@ test('the front grows when it is asked to, at once under reduced motion', async 
 });
 
 test('guesses and answers are there again after a reload, and are forgotten on request', async ({ page }) => {
-  await openLesson(page, { hash: '#predict-average' });
-  const average = page.locator('#predict-average');
-  await average.getByRole('radio', { name: 'About two' }).check();
-  await average.getByRole('button', { name: 'Reveal' }).click();
-  await expect(average).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
-  const words = await average.getByRole('status').textContent();
-  expect(words).toMatch(/^About one\. You said otherwise\./);
+  await openLesson(page, { hash: '#predict-cost' });
+  const cost = page.locator('#predict-cost');
+  await cost.getByRole('radio', { name: 'Both about the same' }).check();
+  await cost.getByRole('button', { name: 'Reveal' }).click();
+  await expect(cost).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
+  const words = await cost.getByRole('status').textContent();
+  expect(words).toMatch(/^Placing all particles\. You said otherwise\./);
   await page.locator('#predict-ring').getByLabel('Particles in ring 12').fill('71');
   await page.keyboard.press('Tab');
   await page.reload();
-  await expect(average).toHaveAttribute('data-state', 'open');
-  await expect(average.getByRole('radio', { name: 'About two' })).toBeChecked();
-  await expect(average.getByRole('status')).toHaveText(words ?? '');
+  await expect(cost).toHaveAttribute('data-state', 'open');
+  await expect(cost.getByRole('radio', { name: 'Both about the same' })).toBeChecked();
+  await expect(cost.getByRole('status')).toHaveText(words ?? '');
   await expect(page.locator('#predict-ring').getByLabel('Particles in ring 12')).toHaveValue('71');
   await expect(page.locator('#predict-ring')).not.toHaveAttribute('data-state', 'open');
   await page.getByRole('button', { name: 'Forget them' }).click();
   await expect(page.locator('#kept')).toBeHidden();
-  await expect(average).not.toHaveAttribute('data-state', 'open');
+  await expect(cost).not.toHaveAttribute('data-state', 'open');
   await expect(page.locator('#predict-ring').getByLabel('Particles in ring 12')).toHaveValue('');
 });
 
-test('the last two samplings have figures without names or marks until they are judged', async ({ page }) => {
+test('the last pairs of samplings have figures without names or marks until they are judged', async ({ page }) => {
   await openLesson(page, { hash: '#judge' });
   const judge = await live(page, 'judge-last');
   await expect(judge.locator('thead')).toHaveText('IdealAB', { timeout: 60_000 });
-  await expect(judge.locator('.best, .decides')).toHaveCount(0);
+  await expect(judge.locator('.best, .decides, .outcome')).toHaveCount(0);
+  // What chance can do stands there before, too.
+  await expect(judge.locator('.means').nth(1)).toContainText('Another seed changes it by up to 5.0 points.');
   const question = page.locator('#predict-last');
-  await question.getByRole('radio', { name: 'Sampling B' }).check();
+  await question.getByRole('radio', { name: 'Sampling A' }).check();
   await question.getByRole('button', { name: 'Reveal' }).click();
-  await expect(question.locator('.predict-judged')).toHaveText('Sampling A. You said otherwise.', { timeout: 60_000 });
-  await expect(judge.locator('.decides')).toContainText('Closest pair');
-  await expect(judge.locator('thead')).toContainText('B, by Newton’s method');
-  // Nothing is better for having larger discs.
-  await expect(judge.getByRole('row', { name: /^Surface outside/ }).locator('.best')).toHaveCount(0);
+  await expect(question.locator('.predict-judged')).toHaveText('Sampling B. You said otherwise.', { timeout: 60_000 });
+  await expect(judge.locator('.decides')).toContainText('Six neighbours');
+  await expect(judge.locator('thead')).toContainText('B, a queue before any');
+  await expect(judge.locator('.outcome')).toHaveText(/^Better: B, a queue before any, by the row “Six neighbours”\.$/);
+  // The other two figures speak for A.
+  await expect(judge.locator('td:has(.best)')).toHaveCount(3);
+  // Two that cannot be told apart: no row has a winner.
+  const even = await live(page, 'judge-chance');
+  await page.locator('#predict-chance').getByRole('radio', { name: 'They cannot be told apart' }).check();
+  await page.locator('#predict-chance').getByRole('button', { name: 'Reveal' }).click();
+  await expect(page.locator('#predict-chance .predict-judged')).toContainText('As you said.', { timeout: 60_000 });
+  await expect(even.locator('.outcome')).toHaveText('No difference beyond chance: the two cannot be told apart.');
+  await expect(even.locator('.best, .decides')).toHaveCount(0);
+  await expect(even.getByText('No difference beyond chance.', { exact: true })).toHaveCount(3);
 });
 
 test('the cards are a page of their own, each with both sides, on the learner’s surface, too', async ({ page }) => {

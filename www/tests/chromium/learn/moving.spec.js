@@ -88,6 +88,25 @@ test('the lane beside it and the surface are chosen: none is born there, and the
   clean();
 });
 
+test('the table goes along with its replay', async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: '#moving' });
+  const figure = await live(page, 'moving');
+  await answer(page);
+  const caption = figure.locator('.compare caption');
+  await expect(caption).toHaveText('a = 1.60', { timeout: 40_000 });
+  await expect(figure.locator('[aria-busy="true"]')).toHaveCount(0, { timeout: 40_000 });
+  await page.emulateMedia({ reducedMotion: 'no-preference' });
+  await figure.getByRole('slider').press('Home');
+  await expect(caption).toHaveText('a = 0.80');
+  await figure.getByRole('button', { name: 'Replay' }).click();
+  // It has figures of the moments in between, and of the last one as soon as they are there.
+  await expect(caption).toHaveText(/a = (0\.9|1\.[0-4])/);
+  await expect(figure.getByRole('slider')).toHaveValue('61', { timeout: 20_000 });
+  await expect(figure.locator('[aria-busy="true"]')).toHaveCount(0, { timeout: 20_000 });
+  await expect(caption).toHaveText('a = 1.60, at rest');
+  clean();
+});
+
 test('the learner’s own surface moves by its parameter', async ({ page }) => {
   const { clean } = await openLesson(page, { hash: `#moving&surface=${TORUS}` });
   const figure = await live(page, 'moving');

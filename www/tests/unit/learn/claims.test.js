@@ -11,10 +11,12 @@ import { cross } from '../../../src/engine/vector.js';
 import { newtonShare, slotOf, slotOn } from '../../../src/learn/bend.js';
 import { childrenOf, PATCHES, runOn } from '../../../src/learn/decisions.js';
 import { FrontLane, lossOf, MOTIONS, STEPS, SystemLane, scoreAt } from '../../../src/learn/flowing.js';
+import { PAIRS, TORUS } from '../../../src/learn/judged.js';
 import { Lab } from '../../../src/learn/lab.js';
 import {
   costOf,
   energiesOf,
+  energyWords,
   nearestDistances,
   openBend,
   parentDistances,
@@ -23,10 +25,10 @@ import {
 } from '../../../src/learn/measure.js';
 import { PREDICTIONS } from '../../../src/learn/predictions.js';
 import { roomEvents } from '../../../src/learn/room.js';
-import { bestOf, haveSameDiscs, ROWS, scoreAtEnd, scoreOf } from '../../../src/learn/score.js';
+import { chanceOf, DECIDING, rowOf, scoreAtEnd, scoreOf, verdictOf } from '../../../src/learn/score.js';
 import { subjectOf } from '../../../src/learn/surface.js';
 import { blame, isWorse, tryOut } from '../../../src/learn/verdict.js';
-import { turned as knobTurned, projected, SEED, USUAL, whatIfOf } from '../../../src/learn/whatifs.js';
+import { turned as knobTurned, projected, SEED, TANGLECUBE, USUAL, whatIfOf } from '../../../src/learn/whatifs.js';
 import { between, createGrid } from '../../../src/ui/neighbours.js';
 import { Core } from '../../../src/wasm/core/core.js';
 import { loadWasm, spawn, spawnCore } from './workers.js';
@@ -113,9 +115,8 @@ test('the tables on the page are those of the paper', () => {
 });
 
 test('what the text states of the paper is in its tables', () => {
-  says('The paper counts 373 for 10,633 particles; about 50,000 were stopped, unfinished, after 1,613.');
+  says('The paper counts 373 for 10,633 particles.');
   expect(section('Ellipsoid, uniform, 13,923')).toMatch(/10,633[\s\S]*\| 373 \|/);
-  expect(section('Ellipsoid, uniform, 55,748')).toMatch(/≈ 50,000, cut off[\s\S]*\| 1,613 \|/);
   says('82 to 96 % of the time in the paper’s Table 2');
   const shares = rowsOf(cards)
     .filter(({ cells }) => cells.length === 3)
@@ -201,51 +202,86 @@ test('at the same r Newton’s method places more; at equal count the circle is 
   const more = newton.end.radii.length / usual.end.radii.length - 1;
   expect(more).toBeGreaterThan(0.002);
   expect(more).toBeLessThan(0.02);
-  says('With as many particles both are alike where the surface bends little within 2<i>r</i>.');
+  says('With as many particles there is no difference beyond chance where the surface bends little.');
   const asMany = await lab.runAsMany({ projection: 'newton', relax_steps: 0 }, usual);
-  const [own, other] = [await scoreAtEnd(usual), await scoreAtEnd(asMany)];
-  expect(Math.abs(Number(own.six) - Number(other.six))).toBeLessThan(0.02);
-  expect(Math.abs(Number(own.pair) - Number(other.pair))).toBeLessThan(0.05);
-  says('on a tanglecube with 400 particles its closest pair is 0.68 of the ideal distance, and Newton’s 0.43');
+  expect(verdictOf([await scoreAtEnd(usual), await scoreAtEnd(asMany)])).toBe(null);
+  says('as on a tanglecube with 400 particles, Newton’s largest hole is wider, and its closest pair is at 0.43');
+  says('of the ideal distance instead of 0.68');
   const [circle, few] = [await projected(lab, 'circle'), await projected(lab, 'newton')];
   expect(Math.abs(circle.end.radii.length / 400 - 1)).toBeLessThan(0.05);
   expect(Math.abs(few.end.radii.length / circle.end.radii.length - 1)).toBeLessThan(0.03);
   const [a, b] = [await scoreAtEnd(circle), await scoreAtEnd(few)];
+  expect(verdictOf([a, b])).toEqual({ key: 'hole', side: 0 });
   expect([a, b].map(({ pair }) => Number(pair).toFixed(2))).toEqual(['0.68', '0.43']);
   says('Relaxation mends most of that.');
   const rested = await circle.lab.run({ projection: 'newton', radius: few.radius });
   const after = await scoreAtEnd(rested);
   expect(Number(after.pair) - Number(b.pair)).toBeGreaterThan(0.5 * (Number(a.pair) - Number(b.pair)));
-  says('Neither is the quicker one.');
-  expect(Math.abs(Number(a.evaluations) / Number(b.evaluations) - 1)).toBeLessThan(0.1);
 });
 
-test('the learner judges two pairs, and the run says which is better', async () => {
+test('the learner judges three pairs, and the runs say which is better, or neither', async () => {
   const first = await PREDICTIONS['predict-first'].answer(lab, null);
   expect(first.right).toBe('b');
   expect(first.words).toContain('Of the particles of B 89.4 % have six neighbours, of those of A 73.9 %.');
+  const scoresOf = async (/** @type {keyof typeof PAIRS} */ which) =>
+    Promise.all((await PAIRS[which].make(lab)).map(scoreAtEnd));
   const last = await PREDICTIONS['predict-last'].answer(lab, null);
-  expect(last.right).toBe('a');
-  says('That less of the surface lies outside the discs of B says nothing, since its discs are larger.');
-  const [circle, newton] = [await projected(lab, 'circle'), await projected(lab, 'newton')];
-  expect(newton.radius).toBeGreaterThan(1.05 * circle.radius);
-  const [a, b] = [await scoreAtEnd(circle), await scoreAtEnd(newton)];
-  expect(Number(a.uncovered)).toBeGreaterThan(Number(b.uncovered));
-  says('more of those of A have six neighbours');
-  expect(Number(a.six)).toBeGreaterThan(Number(b.six));
-  // No row of discs of two sizes is marked, and the deciding one is on the side of the answer.
-  const row = (/** @type {string} */ key) => ROWS.filter((known) => known.key === key)[0];
-  expect(bestOf([a.uncovered, b.uncovered], row('uncovered'), haveSameDiscs([a, b]))).toBe(-1);
-  expect(bestOf([a.pair, b.pair], row('pair'))).toBe(0);
+  expect(last.right).toBe('b');
+  says('The largest hole and the closest pair speak for A.');
+  const weighed = await scoresOf('weigh');
+  expect(verdictOf(weighed)).toEqual({ key: 'six', side: 1 });
+  for (const key of /** @type {const} */ (['hole', 'pair']))
+    expect(verdictOf(weighed, [key]), key).toEqual({ key, side: 0 });
+  says('Ten steps of relaxation would shrink the hole of B.');
+  const rested = await scoreAtEnd(await lab.on(TORUS).run({}));
+  expect(verdictOf([weighed[1], rested], ['hole'])).toEqual({ key: 'hole', side: 1 });
+  says('They cannot give A the order that its seams have cost.');
+  const before = await scoreAtEnd(await lab.on(TORUS).run({ order: 'stack', relax_steps: 0 }));
+  expect(verdictOf([before, weighed[0]], ['six'])).toBe(null);
+  const even = await PREDICTIONS['predict-chance'].answer(lab, null);
+  expect(even.right).toBe('alike');
+  says('No figure differs by more than chance.');
+  for (const key of DECIDING) expect(verdictOf(await scoresOf('chance'), [key]), key).toBe(null);
 });
+
+/** The largest difference of each judged figure among ten seeds, and what is called chance there. */
+async function spreadOf(/** @type {Lab} */ own, /** @type {object} */ change, particles = 1500) {
+  /** @type {import('../../../src/learn/types.js').Score[]} */
+  const scores = [];
+  for (let seed = 0; seed < 10; seed += 1)
+    scores.push(await scoreAtEnd(await own.run({ ...change, seed }, { particles })));
+  return /** @type {const} */ ([...DECIDING, 'evaluations']).map((key) => {
+    const values = scores.map((score) => Number(score[key]));
+    return { key, range: Math.max(...values) - Math.min(...values), chance: Number(chanceOf(rowOf(key), scores)) };
+  });
+}
+
+test('ten seeds of one method differ by no more than what is called chance, and by nearly as much', async () => {
+  says('With 1,500 particles, ten seeds of one method differ by up to 5 points in the share with six neighbours');
+  says('and by more with fewer particles; by 0.15 in the largest hole, and by 0.08 in the closest pair.');
+  const [tanglecube, torus] = [lab.on(TANGLECUBE), lab.on(TORUS)];
+  const all = [
+    await spreadOf(lab, {}),
+    await spreadOf(lab, { relax_steps: 0 }),
+    await spreadOf(lab, { order: 'stack' }),
+    await spreadOf(torus, {}),
+    await spreadOf(tanglecube, { relax_steps: 0 }, 400),
+  ];
+  for (const spread of all) for (const { key, range, chance } of spread) expect(range, key).toBeLessThanOrEqual(chance);
+  for (const k of DECIDING.keys())
+    expect(Math.max(...all.map((spread) => spread[k].range / spread[k].chance)), DECIDING[k]).toBeGreaterThan(0.8);
+  expect(all[4][0].range).toBeGreaterThan(0.05);
+}, 120_000);
 
 test('the energy has fallen by three quarters after the third step, and every chapter says the same of the costs', async () => {
   const energies = await energiesOf(lab);
   expect(energies).toHaveLength(11);
   expect(energies).toEqual([...energies].sort((one, other) => other - one));
-  const { right, words } = await PREDICTIONS['predict-energy'].answer(lab, null);
-  expect(right).toBe('3');
-  expect(words).toMatch(/^It is step 3: .*lower the energy by no more than 4 %/);
+  const fall = 1 - energies[10];
+  expect(1 - energies[3]).toBeGreaterThan(0.75 * fall);
+  expect(1 - energies[2]).toBeLessThan(0.75 * fall);
+  const [ten, , three] = [...energyWords(energies).matchAll(/(\d+) %/g)].map(([, percent]) => Number(percent));
+  expect([ten, three]).toEqual([Math.round(100 * fall), Math.round((100 * (1 - energies[3])) / fall)]);
   // What placing costs is one number, in the chapter and in a comparison of placing alone.
   const { rows, particles } = await costOf(lab);
   const alone = await lab.run({ relax_steps: 0 });
@@ -255,33 +291,40 @@ test('the energy has fallen by three quarters after the third step, and every ch
 
 test('what the card says of the match tolerance is so on either side of it', async () => {
   const at = async (/** @type {number} */ tolerance) => scoreAtEnd(await lab.run({ match_tolerance: tolerance }));
-  const [small, usual, large] = [await at(0.6), await at(0.7), await at(0.8)];
-  says('Below it pairs come nearer and particles crowd, though up to two in a hundred more have six neighbours.');
-  expect(Number(small.pair)).toBeLessThan(Number(usual.pair) - 0.05);
-  expect(Number(small.count)).toBeGreaterThan(Number(usual.count) + 0.05);
-  expect(Number(small.six) - Number(usual.six)).toBeGreaterThan(0);
-  expect(Number(small.six) - Number(usual.six)).toBeLessThan(0.02);
-  says('Above it holes widen.');
-  expect(Number(large.hole)).toBeGreaterThan(Number(usual.hole));
+  const [small, usual, large] = [await at(0.6), await at(0.7), await at(0.95)];
+  says('Below it pairs come nearer and particles crowd.');
+  expect(verdictOf([usual, small])).toEqual({ key: 'pair', side: 0 });
+  expect(Number(small.count)).toBeGreaterThan(1.05 * Number(usual.count));
+  says('Far above it holes widen, and fewer have six neighbours.');
+  for (const key of /** @type {const} */ (['six', 'hole']))
+    expect(verdictOf([usual, large], [key]), key).toEqual({ key, side: 0 });
 });
 
 test('the figure that decides a comparison is better on the side that its words say', async () => {
-  /** The side that is better, by the choice: −1 where both are alike. @type {Record<string, number>} */
-  const better = { order: 0, fail: 0, projection: 0, step: 0, matched: 0, start: 1, placing: 1 };
-  for (const [id, side] of Object.entries(better)) {
-    const whatIf = whatIfOf(id);
+  /** By the choice: the figure, and the side that is better; null where the two cannot be told apart. */
+  const told = {
+    order: ['six', 0],
+    fail: ['six', 0],
+    projection: ['hole', 0],
+    step: null,
+    matched: ['pair', 0],
+    gaps: null,
+    start: ['evaluations', 1],
+    placing: ['evaluations', 1],
+    law: null,
+  };
+  for (const [id, expected] of Object.entries(told)) {
+    const { values, make, decides } = whatIfOf(id);
     const scores = [];
-    for (const { value } of whatIf.values.slice(0, 2)) scores.push(await scoreAtEnd(await whatIf.make(lab, value)));
-    const row = ROWS.filter(({ key }) => key === whatIf.decides)[0];
-    expect(
-      bestOf(
-        scores.map((score) => score[row.key]),
-        row,
-        haveSameDiscs(scores),
-      ),
-      id,
-    ).toBe(side);
+    for (const { value } of values.slice(0, 2)) scores.push(await scoreAtEnd(await make(lab, value)));
+    const verdict = verdictOf(scores, decides ? [...DECIDING, decides] : DECIDING);
+    expect(verdict && [verdict.key, verdict.side], id).toEqual(expected);
   }
+  says('Ten steps of any of these sizes end alike, as far as one run of each can tell.');
+  const { values, make } = whatIfOf('step');
+  const sizes = [];
+  for (const { value } of values) sizes.push(await scoreAtEnd(await make(lab, value)));
+  for (const one of sizes) for (const other of sizes) expect(verdictOf([one, other])).toBe(null);
 });
 
 /**
@@ -301,14 +344,8 @@ function met({ positions, radii, levels }) {
   return apart / pairs;
 }
 
-const TORUS = {
-  formula: '(sqrt(x^2 + y^2) - 0.7)^2 + z^2 = 0.09',
-  parameters: [],
-  bounds: { min: [-1.2, -1.2, -0.5], max: [1.2, 1.2, 0.5] },
-};
-
 test.each(['ellipsoid', 'torus'])('the reasons why a sampling fails are so in its runs, on the %s', async (name) => {
-  const own = name === 'torus' ? lab.beside(/** @type {any} */ (TORUS)) : lab;
+  const own = name === 'torus' ? lab.beside(TORUS) : lab;
   const usual = await tryOut(own, USUAL);
   const [stack, small, large, still, seed, all] = await Promise.all(
     [
@@ -338,12 +375,12 @@ test.each(['ellipsoid', 'torus'])('the reasons why a sampling fails are so in it
   // Which of them alone does most harm.
   says('Not the stack.');
   for (const other of [stack, large, seed, still]) expect(isWorse(small.score, other.score)).toBe(true);
-  says('The ellipsoid can be brought below a half.');
+  says('The ellipsoid can be brought below a half with six neighbours.');
   expect(figures(all).six).toBeLessThan(0.5);
-  // Put back alone, each of the three makes it better.
+  // Put back alone, each of the three makes it better; that of the torus hardly meets itself more often by the stack.
   const blamed = await blame(own, all);
-  expect(blamed.map(({ part, isHarm }) => [part, isHarm])).toEqual([
-    ['stack', true],
+  expect(blamed.map(({ part, harm }) => [part, harm !== null])).toEqual([
+    ['stack', name !== 'torus'],
     ['0.4', true],
     ['0', true],
   ]);
@@ -354,7 +391,7 @@ test.each([
   ['by curvature', true],
 ])('the scorecard of a run of the first page has the figures of its report, %s', async (_name, isAdaptive) => {
   const settings = { size_mode: 'count', target_count: 1500, ...(isAdaptive ? { sampling: 'adaptive' } : {}) };
-  for (const surface of [subjectOf(undefined).surface, /** @type {any} */ (TORUS)]) {
+  for (const surface of [subjectOf(undefined).surface, TORUS]) {
     const { particles, quality } = reported(surface, settings);
     expect(particles.radii.length).toBeGreaterThan(1000);
     const score = await scoreOf(lab.beside(surface), particles, { evaluations: 0, isAdaptive });
@@ -368,21 +405,13 @@ test.each([
   }
 });
 
-test('what is worse is decided by the share of six, and by the hole where the shares are written alike', () => {
-  const score = (/** @type {number | null} */ six, hole = 1.2) => /** @type {any} */ ({ six, hole });
-  expect(isWorse(score(0.5), score(0.6, 9))).toBe(true);
-  expect(isWorse(score(0.6, 9), score(0.5))).toBe(false);
-  expect(isWorse(score(0.5001, 1.3), score(0.5))).toBe(true);
-  expect(isWorse(score(0.5, 1.2), score(0.5, 1.2))).toBe(false);
-  expect(isWorse(score(null), score(0.5))).toBe(null);
-});
-
-test('pushed for a hundred steps, some particles of a saddle leave their rows', async () => {
-  const bounds = { min: [-1, -1, -1], max: [1, 1, 1] };
-  const saddle = lab.beside(/** @type {any} */ ({ formula: 'z - x*y', parameters: [], bounds }));
-  says('Pushed that long, some particles leave the rows that the front laid.');
-  const [usual, long] = [await tryOut(saddle, USUAL), await tryOut(saddle, knobTurned(USUAL, 2, '100'))];
-  expect(isWorse(long.score, usual.score)).toBe(true);
+test('pushed for a hundred steps, particles go farther from where the front has put them', async () => {
+  says('Pushed that long, particles go farther from where the front has put them.');
+  const farOf = async (/** @type {string} */ steps) => {
+    const { placed, end } = (await tryOut(lab, knobTurned(USUAL, 2, steps))).run;
+    return Math.hypot(...end.positions.map((value, k) => value - placed.positions[k]));
+  };
+  expect(await farOf('100')).toBeGreaterThan(1.5 * (await farOf('10')));
 });
 
 /** @param {object} [how] */
@@ -447,9 +476,6 @@ test('a tanglecube falls into eight and joins again, and Witkin and Heckbert’s
 }, 60_000);
 
 test('what the text states of Newton’s method is so on a sphere, by formula and in a run', async () => {
-  says(
-    'On a sphere Newton’s child falls short of 2<i>r</i> by 1.5 % where bend · <i>r</i> is 0.1, and by 23 % where it is 0.5.',
-  );
   expect((100 * (1 - newtonShare(0.1))).toFixed(1)).toBe('1.5');
   expect(Math.round(100 * (1 - newtonShare(0.5)))).toBe(23);
   const formula = 'x^2 + y^2 + z^2 - 1';
@@ -459,7 +485,7 @@ test('what the text states of Newton’s method is so on a sphere, by formula an
     const { placed } = await sphere.run({ projection: 'newton', relax_steps: 0, radius });
     for (const share of parentDistances(placed, radius).slice(1)) expect(share).toBeCloseTo(newtonShare(radius), 2);
   }
-  says('and may leave the plane of the slot');
+  // It may leave the plane of the slot.
   const run = await lab.run({ projection: 'newton', relax_steps: 0 }, { particles: 180, keep: true });
   const events = await run.client.ask('events', { first: 0, count: 1e6 });
   run.client.close();
@@ -497,7 +523,6 @@ test('the figure of the circle has the child where the run landed it, and bends 
   expect(sphere.child[0]).toBeCloseTo(child[0], 6);
   expect(sphere.child[1]).toBeCloseTo(child[1], 6);
   // On an ellipsoid the bend changes on the way: Newton's method lands elsewhere than on the sphere of this bend.
-  says('Where the bend changes on the way, as on an ellipsoid, it lands a little elsewhere');
   const apart = Math.abs(Number(landing) - Number(sphere.landing)) / radius;
   expect(apart).toBeGreaterThan(0.01);
   expect(apart).toBeLessThan(0.1);

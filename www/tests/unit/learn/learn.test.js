@@ -3,7 +3,7 @@ import { expect, test } from 'vitest';
 import { nearestStop, readAddress, writeAddress } from '../../../src/learn/address.js';
 import { Stops } from '../../../src/learn/answers.js';
 import { asFineEverywhere, nearestDistances, ringsOf, sharpestBend, shotAt } from '../../../src/learn/measure.js';
-import { bestOf, ROWS, scoreOf } from '../../../src/learn/score.js';
+import { bestOf, rowOf, scoreOf, verdictOf } from '../../../src/learn/score.js';
 import { subjectOf } from '../../../src/learn/surface.js';
 import { packTask, readWork, tableOf, unpackTask } from '../../../src/learn/task.js';
 import { FAIL, SEED, seedAt, turned, USUAL } from '../../../src/learn/whatifs.js';
@@ -209,17 +209,49 @@ test('at a cost a lane stands where it last had spent no more', () => {
   expect([0, 10, 19, 20, 39, 40, 1e9].map(at)).toEqual([0, 0, 0, 2, 2, 3, 3]);
 });
 
-test('of two figures the better one is marked, unless they are written alike', () => {
-  const row = (/** @type {string} */ key) => ROWS.filter((known) => known.key === key)[0];
-  expect(bestOf([0.894, 0.739], row('six'))).toBe(0);
-  expect(bestOf([1.23, 1.17], row('hole'))).toBe(1);
-  expect(bestOf([0.7141, 0.7139], row('pair'))).toBe(-1);
-  // The count is told, and not judged; what is better than the ideal has more particles; discs of two sizes cover as they do.
-  expect(bestOf([1.08, 0.97], row('count'))).toBe(-1);
-  expect(bestOf([0.071, 0.18], row('uncovered'))).toBe(-1);
-  expect(bestOf([0.12, 0.18], row('uncovered'))).toBe(0);
-  expect(bestOf([0.12, 0.18], row('uncovered'), false)).toBe(-1);
-  expect(bestOf([null, 13], row('evaluations'))).toBe(-1);
+/** A score of 1,500 particles. @param {object} figures @returns {any} */
+const scored = (figures) => ({
+  six: 0.9,
+  hole: 1.2,
+  pair: 0.75,
+  uncovered: 0.1,
+  count: 1500,
+  evaluations: 20,
+  ...figures,
+});
+
+test('of two figures the better one is marked where they differ by more than chance, as they are written', () => {
+  const best = (/** @type {any} */ key, /** @type {number} */ one, /** @type {number} */ other, count = 1500) =>
+    bestOf([scored({ count, [key]: one }), scored({ count, [key]: other })], rowOf(key));
+  expect(best('six', 0.951, 0.9)).toBe(0);
+  expect(best('six', 0.95, 0.9)).toBe(-1);
+  // Rounded to what is written, 94.9 % and 90.0 %.
+  expect(best('six', 0.9494, 0.8996)).toBe(-1);
+  // With a quarter of the particles chance is twice as large.
+  expect(best('six', 0.95, 0.86, 375)).toBe(-1);
+  expect(best('six', 0.95, 0.84, 375)).toBe(0);
+  expect(best('hole', 1.35, 1.2)).toBe(-1);
+  expect(best('hole', 1.36, 1.2)).toBe(1);
+  expect(best('pair', 0.75, 0.67)).toBe(-1);
+  expect(best('pair', 0.75, 0.66)).toBe(0);
+  expect(best('evaluations', 20, 18)).toBe(1);
+  // The count and the cover are told, and not judged.
+  expect(best('count', 1500, 1000)).toBe(-1);
+  expect(best('uncovered', 0.1, 0.9)).toBe(-1);
+  expect(bestOf([scored({ six: null }), scored({})], rowOf('six'))).toBe(-1);
+});
+
+test('order decides where it differs by more than chance, then the hole, then the pair, else nothing', () => {
+  const worse = { six: 0.8, hole: 1.5, pair: 0.6 };
+  const verdict = (/** @type {object} */ one, /** @type {object} */ other) => verdictOf([scored(one), scored(other)]);
+  expect(verdict({ six: worse.six }, { hole: worse.hole, pair: worse.pair })).toEqual({ key: 'six', side: 1 });
+  expect(verdict({ six: 0.91, hole: worse.hole }, { six: 0.89, pair: worse.pair })).toEqual({ key: 'hole', side: 1 });
+  expect(verdict({ hole: 1.3 }, { pair: worse.pair })).toEqual({ key: 'pair', side: 0 });
+  expect(verdict({ six: 0.93, hole: 1.3, pair: 0.7, evaluations: 5 }, {})).toBe(null);
+  expect(verdictOf([scored({ evaluations: 5 }), scored({})], ['six', 'evaluations'])).toEqual({
+    key: 'evaluations',
+    side: 0,
+  });
 });
 
 test('a score is of the report’s own figures, of particles of many sizes of those against each size', async () => {
@@ -236,8 +268,7 @@ test('a score is of the report’s own figures, of particles of many sizes of th
   ]);
   const even = await scoreOf(lab, some, { evaluations: 30, isAdaptive: false });
   expect(even).toMatchObject({ six: 0.9, hole: 1.2, uncovered: 0.1, pair: 0.8, evaluations: 10 });
-  // Three hexagons around discs of radius 0.5 on an area of 4.
-  expect(even.count).toBeCloseTo((3 * 2 * Math.sqrt(3) * 0.25) / 4);
+  expect(even.count).toBe(3);
   expect(even.places.hole).toMatchObject({ places: [[0.9, 0, 0]], radius: 0.4, normal: [1, 0, 0] });
   expect(even.places.pair?.places).toEqual([
     [0, 0, 0],
