@@ -164,7 +164,7 @@ export interface Ledger {
   astray: boolean;
   /** when a job ended last */
   endedMs: number;
-  /** id of the last job sent before a stop; no job up to it continues */
+  /** id of the last job sent before a stop; no job up to it continues, and none follows from it */
   stoppedUpTo: number;
   /** the input on which the worker crashed last, from {@link inputOf} */
   crashedInput: string;
