@@ -14,7 +14,7 @@ import { timingOf } from './pace.js';
  * @import { Store } from '../store.js'
  * @import { Columns, CoreProgress, FieldAnswer, FieldRequest, Mesh, Progress } from '../types.js'
  * @import {
- *   ColumnsMessage, DoneMessage, PastMessage, PictureLike, ReportMessage, RunRequest, Ticket,
+ *   ColumnsMessage, DoneMessage, PastMessage, PictureLike, RecordMessage, ReportMessage, RunRequest, Ticket,
  * } from './types.js'
  */
 
@@ -170,13 +170,12 @@ export class Presenter {
    * @param {Ticket} run
    * @param {number} particles
    */
-  end({ outcome, progress, seconds, reportFollows, record, followed }, { id, request }, particles) {
+  end({ outcome, progress, seconds, reportFollows, followed }, { id, request }, particles) {
     const { store, columns } = this;
     this.#followed = followed;
     this.#isUnfinished = false;
     const { isLive = false, fits = false } = KINDS[request.kind];
     if (request.kind === 'backdrop') return;
-    if (particles > 0) columns.record = record;
     if (particles === 0) {
       // The last surface stays visible until there is another, but it cannot be measured or exported.
       columns.stale = columns.count > 0;
@@ -197,6 +196,12 @@ export class Presenter {
   failure({ id, outcome, message }) {
     this.idle({ run: id, phase: 'done', message: message || null });
     if (outcome === 'refused') this.store.notice.value = refusalNotice(message);
+  }
+
+  /** Takes what the particles on the page were made from. @param {RecordMessage} message */
+  record({ record }) {
+    const { columns } = this;
+    if (columns.count > 0 && !columns.stale) columns.record = record;
   }
 
   /** @param {ReportMessage} message */

@@ -214,6 +214,8 @@ export class Sampler {
         return this.#presenter.past(message, current);
       case 'done':
         return this.#ended(message, current);
+      case 'record':
+        return this.#presenter.record(message);
       case 'report':
         this.#presenter.report(message);
         return this.#happened({ type: 'reported' });

@@ -473,7 +473,7 @@ export class Painter {
     return level !== null && this.levels[i] < level ? Math.max(dim, MUTE) : dim;
   }
 
-  /** Writes PLACE and NORMAL of a particle. Returns whether it is on this side of the cutting plane. @param {number} i */
+  /** Writes PLACE and NORMAL of a particle. Returns whether the cutting plane leaves it. @param {number} i */
   #take(i) {
     const { positions: p, normals: n } = this;
     const { plane } = this.#style;
