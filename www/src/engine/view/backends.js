@@ -35,8 +35,16 @@ async function available(kind) {
       return false;
     }
   }
+  hasWebgl ??= probed();
+  return hasWebgl;
+}
+
+/** Whether there is WebGL2; null before it was tried. @type {boolean | null} */
+let hasWebgl = null;
+
+/** Returns whether there is WebGL2. Each try costs a context, which a browser may take from another picture. */
+function probed() {
   const probe = document.createElement('canvas').getContext('webgl2');
-  // Browsers limit the number of contexts, so the probe releases its own at once.
   probe?.getExtension('WEBGL_lose_context')?.loseContext();
   return probe !== null;
 }

@@ -5,8 +5,9 @@ import { DeviceKeeper } from '../../../src/engine/view/device.js';
 /**
  * A keeper over scripted devices. `broken` kinds cannot be opened; `lost` ones never answer.
  * @param {string[]} [broken] @param {string[]} [lost] @param {Promise<unknown>} [after]
+ * @param {boolean} [isSeen]  whether the picture is known to be in sight
  */
-function kept(broken = [], lost = [], after) {
+function kept(broken = [], lost = [], after, isSeen = true) {
   /** @type {string[]} */
   const log = [];
   /** @type {any[]} */
@@ -35,6 +36,7 @@ function kept(broken = [], lost = [], after) {
         }),
     },
   });
+  if (isSeen) keeper.seen(true);
   const settle = async () => {
     for (let k = 0; k < 10; k += 1) await Promise.resolve();
   };
@@ -177,6 +179,17 @@ describe('the keeper of devices', () => {
     await settle();
     expect(log).toEqual(['close webgpu']);
     expect(keeper.device).toBe(null);
+  });
+
+  test('whose place is not known yet takes no other picture’s context, and opens again once it is in sight', async () => {
+    const { keeper, log, events, settle } = kept(['webgpu'], [], undefined, false);
+    await keeper.start();
+    events.at(-1).onLost('unknown', 'another picture needs it');
+    await settle();
+    expect(log.slice(-2)).toEqual(['close webgl2', 'open canvas2d']);
+    keeper.seen(true);
+    await settle();
+    expect(log.at(-1)).toBe('open webgl2');
   });
 
   test('out of sight draws dots in place of a device that it lost, and opens that again in sight', async () => {
