@@ -9,7 +9,7 @@
  * @module
  */
 import { LOADING_MS } from '../bundle/load.js';
-import { BACKENDS, openDevice } from './backends.js';
+import { BACKENDS, DeviceLost, openDevice } from './backends.js';
 
 /** @import { Device, DeviceOptions } from './types.js' */
 
@@ -104,6 +104,7 @@ export class DeviceKeeper {
         this.#onFallback(kind, `it has not opened within ${LOADING_MS / 1000} s`, true);
       } catch (error) {
         if (this.epoch !== epoch) return;
+        if (error instanceof DeviceLost) return this.lost(error.message);
         this.#onFallback(
           kind,
           error instanceof Error ? error.message : String(/** @type {any} */ (error)?.message ?? error),
