@@ -7,7 +7,7 @@ import { DisposedError, errorOf, InputError, WorkerError } from './errors.js';
 
 /**
  * @import { Answered, Asked, Heard, Line, Made } from './protocol.js'
- * @import { Mesh, Options } from './index.js'
+ * @import { Mesh, Options, Progress } from './index.js'
  */
 
 const FORMATS = ['glb', '3mf', 'stl', 'obj', 'ply'];
@@ -83,7 +83,7 @@ class Client {
   /** @param {Answered} message */
   #receive({ id, value, error, progress }) {
     if (progress) {
-      this.#pending.get(id)?.onProgress?.(progress);
+      this.#tell(id, progress);
     } else if (error?.name === 'WorkerError') {
       this.#failed(errorOf(error));
     } else {
@@ -91,6 +91,16 @@ class Client {
       if (error) pending?.reject(errorOf(error));
       else if (pending) pending.resolve(value);
       else this.#line?.post({ type: 'free', id });
+    }
+  }
+
+  /** Tells of progress. A function that fails ends its sampling. @param {number} id @param {Progress} progress */
+  #tell(id, progress) {
+    try {
+      this.#pending.get(id)?.onProgress?.(progress);
+    } catch (error) {
+      this.#line?.post({ type: 'stop', id });
+      this.#settle(id)?.reject(error);
     }
   }
 

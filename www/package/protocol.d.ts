@@ -2,12 +2,13 @@
 import type { Bounds, FieldRequest, Parameter, Report } from '../src/engine/core-types.js';
 
 type Settings = Record<string, number | string>;
-/** What is asked: `of` is the request that has made the sample. And what is said: `stop` ends a request, `free` gives a sample up. */
+/** What is asked; `of`: the request that has made the sample. */
 export type Asked =
   | { type: 'sample'; id: number; field: SentField; settings: Settings; measure: boolean }
   | { type: 'moved'; id: number; of: number; field: SentField; settings: Settings; measure: boolean }
   | { type: 'mesh'; id: number; of: number }
   | { type: 'file'; id: number; of: number; format: string };
+/** What is said besides: `stop` ends a request, `free` gives a sample up. */
 export type Said = { type: 'stop'; id: number } | { type: 'free'; id: number };
 export type SentField = Partial<FieldRequest> & { parameters: Record<string, number> };
 

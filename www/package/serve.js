@@ -146,7 +146,9 @@ export function serve({ post, pause, load }) {
     asked.set(id, false);
     try {
       loading ??= load();
-      await loading;
+      await loading.catch((error) => {
+        throw new Refusal('WorkerError', `core_bg.wasm, which lies beside the worker, did not load: ${error.message}`);
+      });
       const [value, transfer] = await answer(message);
       post({ id, value }, transfer);
     } catch (error) {

@@ -17,7 +17,10 @@ const FORMULAS = Object.keys(FIELDS);
 /** Largest |f|/|∇f| of a particle on its surface; those of two values of a are farther apart. */
 const ON_SURFACE = 1e-4;
 
-/** Whether all particles lie on the surface of a formula. @param {Console} p @param {string} formula @param {number} a */
+/**
+ * Whether all particles lie on the surface of a formula.
+ * @param {Console} p @param {string} formula @param {number} a
+ */
 function lieOn(p, formula, a) {
   const { positions, count } = p.particles();
   for (let i = 0; i < count; i += 1) {

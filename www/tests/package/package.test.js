@@ -1,6 +1,6 @@
 /** The packed package in Node: its examples, what it gives, and what it says of bad input. */
 import { execFileSync } from 'node:child_process';
-import { readFileSync } from 'node:fs';
+import { readFileSync, renameSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
@@ -167,6 +167,25 @@ describe('what is wrong has a name and says what to do', () => {
     expect(ball.positions.length).toBe(3 * ball.count);
     for (const late of [ball.mesh(), ball.toFile('stl'), ball.moved({ a: 2 })])
       await expect(late).rejects.toMatchObject({ name: 'DisposedError' });
+  });
+
+  test('a core that is not beside the worker, and the next sampling has it', async () => {
+    const core = join(there.project, 'node_modules/marching-particles/core_bg.wasm');
+    const node = pathToFileURL(join(there.project, 'node_modules/marching-particles/node.js'));
+    const { sample } = await import(/* @vite-ignore */ `${node.href}?again`);
+    renameSync(core, `${core}.away`);
+    const failed = await sample(SPHERE).catch((/** @type {unknown} */ error) => error);
+    renameSync(`${core}.away`, core);
+    expect(failed).toMatchObject({ name: 'WorkerError', message: expect.stringContaining('core_bg.wasm') });
+    expect((await sample(SPHERE, { count: 100, params: { a: 1 } })).count).toBeGreaterThan(50);
+  });
+
+  test('a function that is told of progress and throws ends its sampling with its error', async () => {
+    const error = new Error('no more');
+    const onProgress = () => {
+      throw error;
+    };
+    await expect(made.sample(SPHERE, { count: 1_000_000, params: { a: 1 }, onProgress })).rejects.toBe(error);
   });
 
   test('a worker that does not start, or fails: the next sampling has another', async () => {
