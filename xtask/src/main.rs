@@ -1,4 +1,4 @@
-//! Project tasks: serve, test, build, bench, paper.
+//! Project tasks: serve, test, build, package, bench, paper.
 
 mod bench;
 mod browsers;
@@ -10,6 +10,7 @@ mod deny;
 mod fingerprint;
 mod native;
 mod node;
+mod package;
 mod paper;
 mod pictures;
 mod project;
@@ -65,6 +66,8 @@ enum Task {
     Test(check::Options),
     /// Build the static site into dist/ and hold its size to the budgets.
     Build,
+    /// Build and pack the package for npm into target/package, and try it; nothing is published.
+    Package,
     /// Run the benches.
     Bench(bench::Options),
     /// Halve and double constants of the sampler, and print what changes on random surfaces; three
@@ -104,6 +107,7 @@ fn perform(task: Task) -> Result<()> {
             site::build(&project, Purpose::Site)?;
             site::report_sizes(&project)
         }
+        Task::Package => package::package(&project),
         Task::Bench(options) => bench::bench(&project, &options),
         Task::Sensitivity(options) => sensitivity::run(&project, &options),
         Task::Paper(options) => paper::paper(&project, &options),

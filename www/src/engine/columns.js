@@ -102,7 +102,7 @@ export class Columns {
     this.step = null;
     /** The mesh over the particles, while it is drawn. @type {Mesh | null} */
     this.mesh = null;
-    /** What the particles were made from; null before the end of the first run. @type {FileRecord | null} */
+    /** What the particles were made from; null before the end of their run. @type {FileRecord | null} */
     this.record = null;
   }
 
@@ -149,10 +149,11 @@ export class Columns {
     return first && first.length >= 3 * this.count ? first : this.positions;
   }
 
-  /** Drops the figures of the report and the mesh, which no longer describe the particles. */
+  /** Drops the figures of the report, the mesh and the record, which no longer describe the particles. */
   forget() {
     for (const name of MEASURED) this[name] = null;
     this.mesh = null;
+    this.record = null;
   }
 
   /** Grows the columns to hold at least `n` particles and keeps their contents. @param {number} n */

@@ -10,6 +10,13 @@ worker.self = worker;
 worker.postMessage = (/** @type {unknown} */ message, /** @type {{transfer: any}} */ { transfer }) =>
   parentPort?.postMessage(message, transfer);
 Object.defineProperty(worker, 'navigator', { value: workerData.navigator });
+// Node hands a port up to 1000 messages in one task, so that a worker that writes to itself would hear of nothing else
+// for seconds. In a browser each is a task.
+worker.MessageChannel = class {
+  /** @type {{onmessage: ((event: {data: unknown}) => void) | null}} */
+  port1 = { onmessage: null };
+  port2 = { postMessage: (/** @type {unknown} */ data) => void setImmediate(() => this.port1.onmessage?.({ data })) };
+};
 worker.fetch = (/** @type {string} */ url) => fileAt(url, workerData.answers);
 
 // A file that is imported with `?url` is its address, as Vite has it.

@@ -136,25 +136,30 @@ export function trialOf({ stood, shown, current }) {
 /** Returns the run that makes a surface again. @param {Shown} shown @returns {SampleRequest} */
 const restored = ({ request }) => ({ ...request, kind: 'restore' });
 
+/** Returns whether nothing was asked for since the last stop. No run starts then. @param {Ledger} state */
+const isStopped = ({ lastId, stoppedUpTo }) => lastId === stoppedUpTo;
+
 /**
  * Returns the run after a trial that has no surface, which brings the one before it back as a backdrop. Null after any
- * other, or if a later request is on its way.
+ * other, after a stop, or if a later request is on its way.
  * @param {Ledger} state
  * @returns {SampleRequest | null}
  */
-export const backdropOf = ({ asked, shown, stood }) =>
-  stood && shown && asked.length === 0 ? { ...stood.request, kind: 'backdrop' } : null;
+export function backdropOf(state) {
+  const { asked, shown, stood } = state;
+  return stood && shown && asked.length === 0 && !isStopped(state) ? { ...stood.request, kind: 'backdrop' } : null;
+}
 
 /**
  * Returns the run after a request that has failed: it completes the surface that stays, or brings back the one before a
- * trial. Null if that surface is there, or a later request is on its way.
+ * trial. Null if that surface is there, after a stop, or if a later request is on its way.
  * @param {Ledger} state
  * @returns {SampleRequest | null}
  */
 export function restoringOf(state) {
   const { asked, current, shown, stood, crashedInput } = state;
   const isRestored = current !== null && KINDS[current.request.kind].restores && current.stage !== 'over';
-  if (!shown || asked.length > 0 || isRestored) return null;
+  if (!shown || asked.length > 0 || isRestored || isStopped(state)) return null;
   const isTried = stood !== null || runningOf(state)?.request.kind === 'trial';
   if (!isTried && (shown.reported || awaitsWorker(state))) return null;
   const request = restored(stood ?? shown);
@@ -219,11 +224,12 @@ export function relaxed({ request }, steps, description) {
 
 /**
  * Returns the run that is lost with the worker: its current run, or, for a pending report or a relaxation, the run that
- * leads to the same particles again.
+ * leads to the same particles again. Null after a stop.
  * @param {Ledger} state @param {Description | null} description
  * @returns {SampleRequest | null}
  */
 export function lostRun(state, description) {
+  if (isStopped(state)) return null;
   const { shown, current } = state;
   const atWorker = runningOf(state)?.request ?? null;
   if (atWorker && atWorker.kind !== 'relax') return atWorker;

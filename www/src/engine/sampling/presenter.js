@@ -14,7 +14,7 @@ import { timingOf } from './pace.js';
  * @import { Store } from '../store.js'
  * @import { Columns, CoreProgress, FieldAnswer, FieldRequest, Mesh, Progress } from '../types.js'
  * @import {
- *   ColumnsMessage, DoneMessage, PastMessage, PictureLike, ReportMessage, RunRequest, Ticket,
+ *   ColumnsMessage, DoneMessage, PastMessage, PictureLike, RecordMessage, ReportMessage, RunRequest, Ticket,
  * } from './types.js'
  */
 
@@ -25,12 +25,16 @@ export class Presenter {
   /** Whether the particles on the page have followed the surface. */
   #followed;
 
+  /** Whether the particles on the page are those of a run that has not ended. */
+  #isUnfinished;
+
   /** @param {{store: Store, columns: Columns, picture: PictureLike}} page */
   constructor({ store, columns, picture }) {
     this.store = store;
     this.columns = columns;
     this.picture = picture;
     this.#followed = false;
+    this.#isUnfinished = false;
   }
 
   /**
@@ -56,11 +60,12 @@ export class Presenter {
 
   /**
    * Shows that no run is active. The progress then describes the particles on the page, unless they are those of a
-   * surface after which a run has found none.
+   * surface after which a run has found none. Those of a run that was broken off are partial.
    * @param {Partial<Progress>} [more]
    */
   idle(more = {}) {
     const { columns, store } = this;
+    if (this.#isUnfinished) store.partial.value = true;
     store.progress.value = { ...idleProgress(), particles: columns.stale ? 0 : columns.particles, ...more };
   }
 
@@ -108,6 +113,7 @@ export class Presenter {
   /** Replaces the particles on the page by the first ones of a run. @param {Ticket} run */
   first({ request, bounds }) {
     const { store } = this;
+    this.#isUnfinished = true;
     store.report.value = null;
     store.mesh.value = null;
     if (request.kind === 'relax') return;
@@ -164,12 +170,12 @@ export class Presenter {
    * @param {Ticket} run
    * @param {number} particles
    */
-  end({ outcome, progress, seconds, reportFollows, record, followed }, { id, request }, particles) {
+  end({ outcome, progress, seconds, reportFollows, followed }, { id, request }, particles) {
     const { store, columns } = this;
     this.#followed = followed;
+    this.#isUnfinished = false;
     const { isLive = false, fits = false } = KINDS[request.kind];
     if (request.kind === 'backdrop') return;
-    if (particles > 0) columns.record = record;
     if (particles === 0) {
       // The last surface stays visible until there is another, but it cannot be measured or exported.
       columns.stale = columns.count > 0;
@@ -190,6 +196,12 @@ export class Presenter {
   failure({ id, outcome, message }) {
     this.idle({ run: id, phase: 'done', message: message || null });
     if (outcome === 'refused') this.store.notice.value = refusalNotice(message);
+  }
+
+  /** Takes what the particles on the page were made from. @param {RecordMessage} message */
+  record({ record }) {
+    const { columns } = this;
+    if (columns.count > 0 && !columns.stale) columns.record = record;
   }
 
   /** @param {ReportMessage} message */

@@ -133,10 +133,10 @@ export class Sampler {
     }
   }
 
+  /** Stops what was asked for so far. Nothing starts until something else is asked for. */
   stop() {
-    if (!this.store.busy.value) return this.#settle();
+    if (this.store.busy.value) this.client.post({ type: 'stop' });
     this.#happened({ type: 'stopped' });
-    this.client.post({ type: 'stop' });
   }
 
   /** Completes the surface that stays on the page, with its report, after a request has failed. */
@@ -214,6 +214,8 @@ export class Sampler {
         return this.#presenter.past(message, current);
       case 'done':
         return this.#ended(message, current);
+      case 'record':
+        return this.#presenter.record(message);
       case 'report':
         this.#presenter.report(message);
         return this.#happened({ type: 'reported' });

@@ -98,9 +98,9 @@ export interface DoneMessage {
   /** words for `refused`, else empty */
   message: string;
   reportFollows: boolean;
-  /** what the particles that the core holds were made from */
-  record: FileRecord | null;
 }
+/** What the particles of a run that has ended were made from; none of particles that have followed a surface. */
+export type RecordMessage = { type: 'record'; id: number; record: FileRecord };
 export type ReportMessage = { type: 'report'; id: number; report: Report } & Figures;
 export type LoadFault = import('../bundle/types.js').LoadFault;
 export type FromWorker =
@@ -116,6 +116,7 @@ export type FromWorker =
   | ColumnsMessage
   | PastMessage
   | DoneMessage
+  | RecordMessage
   | ReportMessage
   | { type: 'file'; request: number; bytes: Uint8Array<ArrayBuffer> | null }
   | { type: 'measured'; request: number; measures: PlacedMeasures }
@@ -164,7 +165,7 @@ export interface Ledger {
   astray: boolean;
   /** when a job ended last */
   endedMs: number;
-  /** id of the last job sent before a stop; no job up to it continues */
+  /** id of the last job sent before a stop; no job up to it continues, and none follows from it */
   stoppedUpTo: number;
   /** the input on which the worker crashed last, from {@link inputOf} */
   crashedInput: string;

@@ -18,6 +18,9 @@ export const BACKENDS = ['webgpu', 'webgl2', 'canvas2d'];
 /** Time after which a request for an adapter counts as failed. */
 const ADAPTER_MS = 5000;
 
+/** A device was lost while it opened: a browser takes the context of one picture for another at any time. */
+export class DeviceLost extends Error {}
+
 /** @template T @param {Promise<T>} promise @param {number} ms @returns {Promise<T | null>} */
 const within = (promise, ms) => Promise.race([promise, new Promise((resolve) => setTimeout(() => resolve(null), ms))]);
 
@@ -35,8 +38,16 @@ async function available(kind) {
       return false;
     }
   }
+  hasWebgl ??= probed();
+  return hasWebgl;
+}
+
+/** Whether there is WebGL2; null before it was tried. @type {boolean | null} */
+let hasWebgl = null;
+
+/** Returns whether there is WebGL2. Each try costs a context, which a browser may take from another picture. */
+function probed() {
   const probe = document.createElement('canvas').getContext('webgl2');
-  // Browsers limit the number of contexts, so the probe releases its own at once.
   probe?.getExtension('WEBGL_lose_context')?.loseContext();
   return probe !== null;
 }
@@ -53,6 +64,7 @@ const bundle = (kind) =>
  *   this device only
  * @param {Promise<unknown>} [after]  what the bundle is fetched after; the adapter is asked for at once
  * @returns {Promise<Device>}
+ * @throws {DeviceLost} if the device was lost meanwhile
  * @throws if the browser lacks the back end or its bundle fails to start
  */
 export async function openDevice(kind, host, events, after) {
@@ -76,6 +88,8 @@ export async function openDevice(kind, host, events, after) {
     });
   };
   host.append(canvas);
+  /** Whether the renderer was asked for a context of the canvas. */
+  let isAsked = false;
   try {
     /** @type {Renderer | Painter} */
     let renderer;
@@ -86,6 +100,7 @@ export async function openDevice(kind, host, events, after) {
       await after;
       const { default: init, Renderer: Made } = await bundle(kind);
       await init();
+      isAsked = kind === 'webgl2';
       renderer = await Made.create(canvas, lost, (/** @type {string} */ message) => {
         queueMicrotask(() => {
           if (!closed) events.onError(message);
@@ -110,6 +125,7 @@ export async function openDevice(kind, host, events, after) {
   } catch (error) {
     closed = true;
     canvas.remove();
+    if (isAsked && canvas.getContext('webgl2')?.isContextLost()) throw new DeviceLost(String(error));
     throw error;
   }
 }

@@ -9,7 +9,7 @@
  * @module
  */
 import { LOADING_MS } from '../bundle/load.js';
-import { BACKENDS, openDevice } from './backends.js';
+import { BACKENDS, DeviceLost, openDevice } from './backends.js';
 
 /** @import { Device, DeviceOptions } from './types.js' */
 
@@ -30,7 +30,10 @@ export class DeviceKeeper {
   #first;
   #rank;
 
-  /** Whether the picture is in sight. */
+  /**
+   * Whether the picture is known to be in sight. The browser tells of it with its first frame. Until then a device that
+   * is lost is not opened again, or the pictures of a page that opens would take the contexts from one another.
+   */
   #inSight;
 
   /** Whether dots stand for a device that was lost out of sight. */
@@ -61,7 +64,7 @@ export class DeviceKeeper {
     this.losses = [];
     /** Number of devices opened so far. */
     this.opened = 0;
-    this.#inSight = true;
+    this.#inSight = false;
     this.#resting = false;
     this.#standIn = null;
     this.#after = after;
@@ -101,6 +104,7 @@ export class DeviceKeeper {
         this.#onFallback(kind, `it has not opened within ${LOADING_MS / 1000} s`, true);
       } catch (error) {
         if (this.epoch !== epoch) return;
+        if (error instanceof DeviceLost) return this.lost(error.message);
         this.#onFallback(
           kind,
           error instanceof Error ? error.message : String(/** @type {any} */ (error)?.message ?? error),

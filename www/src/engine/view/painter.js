@@ -111,9 +111,15 @@ function seenFromFar(m) {
   return far;
 }
 
+// A frame draws up to some million discs, so that what is found of one is written to the same places every time: arrays
+// of its own would take most of the frame.
+const PLACE = new Float64Array(3);
+const NORMAL = new Float64Array(3);
+const LIGHT = new Float64Array(3);
+const COLOUR = new Float64Array(3);
+
 /**
- * Returns the light on a surface for each component of its colour, as `light_on` in
- * shaders/common.wgsl does.
+ * Writes the light on a surface for each component of its colour to LIGHT, as `light_on` in shaders/common.wgsl does.
  * @param {{keyward: number, skyward: number, edgeOn: number}} cosines  of its normal with the
  *   directions to the key light and to the sky; `edgeOn`: 1 at the outline
  * @param {{rim: number, warmth: number}} how
@@ -125,23 +131,36 @@ function lightOn({ keyward, skyward, edgeOn }, { rim, warmth }) {
     (GROUND_LIGHT + (SKY_LIGHT - GROUND_LIGHT) * sky + KEY_LIGHT * key * key) * (1 - OUTLINE_SHADE * edgeOn ** 3);
   const light = direct + rim * edgeOn ** 4 * sky;
   const warm = warmth * (smoothstep(COOL_TO_WARM, light) - 0.5);
-  return [light * (1 + 0.6 * warm), light * (1 + 0.1 * warm), light * (1 - warm)];
+  LIGHT[0] = light * (1 + 0.6 * warm);
+  LIGHT[1] = light * (1 + 0.1 * warm);
+  LIGHT[2] = light * (1 - warm);
 }
 
 /**
- * Returns a colour in linear light under a light, as an inside by a share, faded to the ground by
- * another.
- * @param {number[]} colour @param {{light: number[], behind: number, away: number, ground:
- *   number[]}} seen
+ * Returns COLOUR, in linear light, under a share of LIGHT, as an inside by the share `behind`, faded to the ground by
+ * the share `away`.
+ * @param {number} share @param {number} behind @param {number} away @param {number[]} ground
  */
-function litBy(colour, { light, behind, away, ground }) {
-  const lit = colour.map((value, k) => value * light[k]);
-  const luminance = luminanceOf(lit);
-  const [r, g, b] = lit.map((value, k) => {
+function lit(share, behind, away, ground) {
+  const r = COLOUR[0] * (LIGHT[0] * share);
+  const g = COLOUR[1] * (LIGHT[1] * share);
+  const b = COLOUR[2] * (LIGHT[2] * share);
+  const luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  const component = (/** @type {number} */ value, /** @type {number} */ k) => {
     const inside = INSIDE_LIGHT * (luminance + (value - luminance) * INSIDE_CHROMA);
     return Math.min(1, value + (inside - value) * behind) * (1 - away) + ground[k] * away;
-  });
-  return packed(r, g, b);
+  };
+  return packed(component(r, 0), component(g, 1), component(b, 2));
+}
+
+/**
+ * Whether nothing of a disc would be seen: it is beside the picture, or a pixel behind what is there.
+ * @param {Target} target @param {{sx: number, sy: number}} at @param {number} px  its radius @param {number} near
+ */
+function isHidden({ depth, width, height }, { sx, sy }, px, near) {
+  if (sx + px < 0 || sy + px < 0 || sx - px > width || sy - px > height) return true;
+  if (px >= POINT_PX) return false;
+  return sx < 0 || sx >= width || sy < 0 || sy >= height || near <= depth[(sy | 0) * width + (sx | 0)];
 }
 
 /**
@@ -371,7 +390,8 @@ export class Painter {
     const light = Math.hypot(toward[0], toward[1], toward[2]) || 1;
     const key = [0, 1, 2].map((k) => (right[k] * toward[0] + up[k] * toward[1] - forward[k] * toward[2]) / light);
     const rim = luminanceOf(ground) > LIGHT_GROUND ? 0 : RIM_LIGHT;
-    const scene = { target: { out, depth, width, height }, axes, key, ground, rim };
+    const bed = (this.#style.body?.colour ?? []).map((v) => linear(v));
+    const scene = { target: { out, depth, width, height }, axes, key, ground, rim, bed };
     if (this.#style.body)
       for (let i = 0; i < this.#body; i += 1) if (this.#births[i] <= timeS) this.#paintBed(i, scene);
     for (let i = 0; i < this.#count; i += 1) if (this.#births[i] <= timeS) this.#paintDisc(i, scene);
@@ -413,9 +433,9 @@ export class Painter {
 
   /**
    * Returns where a place is in the picture; null behind the eye.
-   * @param {number[]} place @param {PaintedScene} scene
+   * @param {number} x @param {number} y @param {number} z @param {PaintedScene} scene
    */
-  #project([x, y, z], { target: { width, height }, axes }) {
+  #project(x, y, z, { target: { width, height }, axes }) {
     const { view: m } = this;
     const w = m[3] * x + m[7] * y + m[11] * z + m[15];
     if (!(w > 1e-9)) return null;
@@ -424,18 +444,21 @@ export class Painter {
     return { sx, sy, w, pxPerWorld: (axes.clipXPerWorld * 0.5 * width) / w };
   }
 
-  /**
-   * Returns the normal of a particle on the side of the eye, the cosine of the viewing angle,
-   * negative for one seen from behind, and the light on it.
-   * @param {number[]} place @param {number[]} outward @param {PaintedScene} scene
-   */
-  #seen([x, y, z], outward, { axes: { up }, key, rim }) {
+  /** Turns NORMAL to the eye, and returns its cosine with the way there, negative if it was turned round. */
+  #face() {
     const { view: m } = this;
-    const toEye = [m[16] - x, m[17] - y, m[18] - z];
-    const facing = dot(toEye, outward) / Math.hypot(toEye[0], toEye[1], toEye[2]);
-    const normal = facing < 0 ? outward.map((c) => -c) : outward;
-    const cosines = { keyward: dot(normal, key), skyward: dot(normal, up), edgeOn: 1 - Math.abs(facing) };
-    return { normal, facing, light: lightOn(cosines, { rim, warmth: this.#style.warmth ?? 0 }) };
+    const x = m[16] - PLACE[0];
+    const y = m[17] - PLACE[1];
+    const z = m[18] - PLACE[2];
+    const facing = (x * NORMAL[0] + y * NORMAL[1] + z * NORMAL[2]) / Math.sqrt(x * x + y * y + z * z);
+    if (facing < 0) for (let k = 0; k < 3; k += 1) NORMAL[k] = -NORMAL[k];
+    return facing;
+  }
+
+  /** Writes the light on a particle to LIGHT. @param {number} facing @param {PaintedScene} scene */
+  #light(facing, { axes: { up }, key, rim }) {
+    const cosines = { keyward: dot(NORMAL, key), skyward: dot(NORMAL, up), edgeOn: 1 - Math.abs(facing) };
+    lightOn(cosines, { rim, warmth: this.#style.warmth ?? 0 });
   }
 
   /** Whether the style shows the level of a particle. @param {number} i */
@@ -450,12 +473,16 @@ export class Painter {
     return level !== null && this.levels[i] < level ? Math.max(dim, MUTE) : dim;
   }
 
-  /** Returns the place and the normal of a particle; null beyond the cutting plane. @param {number} i */
-  #particle(i) {
+  /** Writes PLACE and NORMAL of a particle. Returns whether the cutting plane leaves it. @param {number} i */
+  #take(i) {
     const { positions: p, normals: n } = this;
     const { plane } = this.#style;
-    if (plane && isBeyond(plane, p, 3 * i)) return null;
-    return { place: [p[3 * i], p[3 * i + 1], p[3 * i + 2]], outward: [n[3 * i], n[3 * i + 1], n[3 * i + 2]] };
+    if (plane && isBeyond(plane, p, 3 * i)) return false;
+    for (let k = 0; k < 3; k += 1) {
+      PLACE[k] = p[3 * i + k];
+      NORMAL[k] = n[3 * i + k];
+    }
+    return true;
   }
 
   /**
@@ -466,40 +493,25 @@ export class Painter {
     const { body, dim_backfaces, dim, plane } = this.#style;
     const radius = this.radii[i];
     if (!body || !(radius > 0) || this.levels[i] === NO_LEVEL) return;
-    const particle = this.#particle(i);
-    if (!particle) return;
-    const { place, outward } = particle;
-    const { normal, facing, light } = this.#seen(place, outward, scene);
+    if (!this.#take(i)) return;
+    const facing = this.#face();
     const isOpen = body.is_open || !!plane;
     if (facing < 0 && !isOpen) return;
     const down = isOpen ? 0 : BED_SUNK * radius;
-    const at = this.#project(
-      place.map((c, k) => c - down * normal[k]),
-      scene,
-    );
+    const [x, y, z] = [PLACE[0] - down * NORMAL[0], PLACE[1] - down * NORMAL[1], PLACE[2] - down * NORMAL[2]];
+    const at = this.#project(x, y, z, scene);
     if (!at || at.pxPerWorld * radius < LEAST_BED_PX) return;
     const [least, full] = isOpen ? OPEN_OUTLINE_BED : OUTLINE_BED;
     const share = least + (BED_RADIUS - least) * Math.min(1, Math.abs(facing) / full);
     const isToCome = i >= this.#count || !this.#isShown(i);
-    const value = litBy(
-      body.colour.map((v) => linear(v)),
-      {
-        light,
-        behind: smoothstep(INSIDE_FROM, -facing) * dim_backfaces,
-        away: isToCome ? Math.max(TO_COME, dim) : this.#fadeOf(i),
-        ground: scene.ground,
-      },
-    );
-    const back = (isToCome ? TO_COME_BEHIND : BED_BEHIND) * radius;
-    this.#fill(scene, {
-      at,
-      normal,
-      radius: share * radius,
-      near: 1 / (at.w + back),
-      value,
-      rim: value,
-      hasRim: false,
-    });
+    const near = 1 / (at.w + (isToCome ? TO_COME_BEHIND : BED_BEHIND) * radius);
+    const px = at.pxPerWorld * share * radius;
+    if (isHidden(scene.target, at, px, near)) return;
+    this.#light(facing, scene);
+    COLOUR.set(scene.bed);
+    const behind = smoothstep(INSIDE_FROM, -facing) * dim_backfaces;
+    const value = lit(1, behind, isToCome ? Math.max(TO_COME, dim) : this.#fadeOf(i), scene.ground);
+    this.#fill(scene, { at, px, near, value, rim: value, coreSq: Infinity });
   }
 
   /**
@@ -509,53 +521,52 @@ export class Painter {
   #paintDisc(i, scene) {
     const { dim_backfaces, disc_scale, outline } = this.#style;
     const { axes, ground } = scene;
-    const particle = this.#isShown(i) ? this.#particle(i) : null;
+    if (!this.#isShown(i) || !this.#take(i)) return;
     // A negative radius is that of a dot that faces the eye, as in shaders/discs.wgsl.
     const isDot = this.radii[i] < 0;
     const radius = Math.abs(this.radii[i]) * disc_scale * (isDot ? DOT : 1);
-    const at = particle && this.#project(particle.place, scene);
-    if (!particle || !at || radius === 0) return;
-    const outward = isDot ? axes.forward.map((c) => -c) : particle.outward;
-    const { normal, facing, light } = this.#seen(particle.place, outward, scene);
-    const packedColour = this.colours[i];
-    const colour = [0, 8, 16].map((shift) => LINEAR[(packedColour >> shift) & 255]);
-    const seen = { behind: facing < 0 ? dim_backfaces : 0, away: this.#fadeOf(i), ground };
-    const isOutlined = i === outline;
-    const value = isOutlined ? packed(1 - ground[0], 1 - ground[1], 1 - ground[2]) : litBy(colour, { light, ...seen });
-    const rim = isOutlined ? value : litBy(colour, { light: light.map((v) => v * (1 - RIM_SHADE)), ...seen });
-    // A rim of a tenth of the radius separates overlapping discs.
-    const hasRim = isDot || this.levels[i] !== NO_LEVEL;
+    const at = this.#project(PLACE[0], PLACE[1], PLACE[2], scene);
+    if (!at || radius === 0) return;
     // A dot is drawn nearer to the eye by its radius, so that the discs beside it do not cut it.
     const near = 1 / (isDot ? at.w - radius : at.w);
-    this.#fill(scene, { at, normal, radius, near, value, rim, hasRim });
+    const px = at.pxPerWorld * radius;
+    if (isHidden(scene.target, at, px, near)) return;
+    if (isDot) for (let k = 0; k < 3; k += 1) NORMAL[k] = -axes.forward[k];
+    const facing = this.#face();
+    // A rim of a tenth of the radius separates overlapping discs.
+    const hasRim = px > RIM_FROM_PX && (isDot || this.levels[i] !== NO_LEVEL);
+    const coreSq = hasRim ? 0.81 * px * px : Infinity;
+    if (i === outline) {
+      const value = packed(1 - ground[0], 1 - ground[1], 1 - ground[2]);
+      return this.#fill(scene, { at, px, near, value, rim: value, coreSq });
+    }
+    this.#light(facing, scene);
+    const colour = this.colours[i];
+    for (let k = 0; k < 3; k += 1) COLOUR[k] = LINEAR[(colour >> (8 * k)) & 255];
+    const [behind, away] = [facing < 0 ? dim_backfaces : 0, this.#fadeOf(i)];
+    const value = lit(1, behind, away, ground);
+    this.#fill(scene, { at, px, near, value, rim: hasRim ? lit(1 - RIM_SHADE, behind, away, ground) : value, coreSq });
   }
 
   /**
-   * Fills a disc in its plane.
+   * Fills a disc that is not hidden in its plane, to which NORMAL is normal.
    * @param {PaintedScene} scene
-   * @param {{at: {sx: number, sy: number, w: number, pxPerWorld: number}, normal: number[], radius:
-   *   number, near: number, value: number, rim: number, hasRim: boolean}} disc
+   * @param {{at: {sx: number, sy: number, w: number, pxPerWorld: number}} & Pick<PaintedDisc, 'px' | 'near' | 'value' |
+   *   'rim' | 'coreSq'>} disc
    */
-  #fill({ target, axes }, { at, normal, radius, near, value, rim, hasRim }) {
-    const { out, depth, width, height } = target;
-    const { sx, sy, w, pxPerWorld } = at;
-    const px = pxPerWorld * radius;
-    if (sx + px < 0 || sy + px < 0 || sx - px > width || sy - px > height) return;
+  #fill({ target, axes }, { at: { sx, sy, w, pxPerWorld }, px, near, value, rim, coreSq }) {
     if (px < POINT_PX) {
-      const pixel = (sy | 0) * width + (sx | 0);
-      if (sx >= 0 && sx < width && sy >= 0 && sy < height && near > depth[pixel]) {
-        depth[pixel] = near;
-        out[pixel] = value;
-      }
+      const pixel = (sy | 0) * target.width + (sx | 0);
+      target.depth[pixel] = near;
+      target.out[pixel] = value;
       return;
     }
     // In view axes the disc's plane is a·dx + b·dy + c·dz = 0 with c > 0 towards the eye. In screen pixels, to first
     // order in the size of the disc, it is the ellipse dx² + dy² + dz² ≤ px² with dz = −(a·dx + b·dy)/c.
-    const a = dot(normal, axes.right);
-    const b = -dot(normal, axes.up);
+    const a = dot(NORMAL, axes.right);
+    const b = -dot(NORMAL, axes.up);
     // Seen edge on, a disc keeps a width of at least a twelfth of its length, so that it never vanishes.
-    const c = Math.max(1 / 12, -dot(normal, axes.forward));
-    const coreSq = hasRim && px > RIM_FROM_PX ? 0.81 * px * px : Infinity;
+    const c = Math.max(1 / 12, -dot(NORMAL, axes.forward));
     const depthPerPx = 1 / (pxPerWorld * w * w);
     fillDisc(target, { sx, sy, px, ka: a / c, kb: b / c, near, depthPerPx, value, rim, coreSq });
   }

@@ -110,6 +110,8 @@ export interface PaintedScene {
   ground: number[];
   /** light along the outline */
   rim: number;
+  /** colour of the body in linear light; empty without one */
+  bed: number[];
 }
 export type Theme = 'light' | 'dark';
 export type Palette = ReturnType<typeof palette>;

@@ -1,14 +1,18 @@
 import { describe, expect, test } from 'vitest';
 import { LOADING_MS } from '../../../src/engine/bundle/load.js';
+import { DeviceLost } from '../../../src/engine/view/backends.js';
 import { DeviceKeeper } from '../../../src/engine/view/device.js';
 
 /**
  * A keeper over scripted devices. `broken` kinds cannot be opened; `lost` ones never answer.
  * @param {string[]} [broken] @param {string[]} [lost] @param {Promise<unknown>} [after]
+ * @param {boolean} [isSeen]  whether the picture is known to be in sight
  */
-function kept(broken = [], lost = [], after) {
+function kept(broken = [], lost = [], after, isSeen = true) {
   /** @type {string[]} */
   const log = [];
+  /** Why the next devices are lost while they open. @type {string[]} */
+  const taken = [];
   /** @type {any[]} */
   const events = [];
   /** `late` ends the wait for a device. */
@@ -22,6 +26,7 @@ function kept(broken = [], lost = [], after) {
     open: async (kind, _host, on, wait) => {
       await wait;
       if (lost.includes(kind)) await new Promise(() => {});
+      if (taken.length > 0) throw new DeviceLost(taken.pop());
       if (broken.includes(kind)) throw new Error(`${kind} is not available`);
       events.push(on);
       return /** @type {any} */ ({ kind, renderer: {}, dispose: () => log.push(`close ${kind}`) });
@@ -35,10 +40,11 @@ function kept(broken = [], lost = [], after) {
         }),
     },
   });
+  if (isSeen) keeper.seen(true);
   const settle = async () => {
     for (let k = 0; k < 10; k += 1) await Promise.resolve();
   };
-  return { keeper, log, events, clock, settle };
+  return { keeper, log, taken, events, clock, settle };
 }
 
 describe('the keeper of devices', () => {
@@ -177,6 +183,25 @@ describe('the keeper of devices', () => {
     await settle();
     expect(log).toEqual(['close webgpu']);
     expect(keeper.device).toBe(null);
+  });
+
+  test('that loses its device while it opens tries again, and does not go down to the painter', async () => {
+    const { keeper, log, taken, settle } = kept();
+    taken.push('another picture needs it', 'another picture needs it');
+    await keeper.start();
+    await settle();
+    expect(log).toEqual(['lost webgpu', 'lost webgpu', 'open webgpu']);
+  });
+
+  test('whose place is not known yet takes no other picture’s context, and opens again once it is in sight', async () => {
+    const { keeper, log, events, settle } = kept(['webgpu'], [], undefined, false);
+    await keeper.start();
+    events.at(-1).onLost('unknown', 'another picture needs it');
+    await settle();
+    expect(log.slice(-2)).toEqual(['close webgl2', 'open canvas2d']);
+    keeper.seen(true);
+    await settle();
+    expect(log.at(-1)).toBe('open webgl2');
   });
 
   test('out of sight draws dots in place of a device that it lost, and opens that again in sight', async () => {

@@ -190,37 +190,18 @@ describe('the surface that stays', () => {
     }
   });
 
-  test('from a drag that a mistake broke off, or a stop, gets its figures', () => {
-    for (const end of ['mistake', 'mistake meanwhile', 'stop']) {
-      const { sampler, say, accept, finish, jobs } = page();
+  test('from a drag that a mistake broke off gets its figures', () => {
+    for (const end of ['mistake', 'mistake meanwhile']) {
+      const { sampler, accept, finish, refuse, jobs } = page();
       const ended = () => {
         finish(1, 7);
       };
       sampler.sampleLive(request('x'), 3);
       accept(1);
-      if (end !== 'mistake meanwhile') ended();
+      if (end === 'mistake') ended();
       expect(jobs()).toHaveLength(1);
-      if (end === 'stop') {
-        sampler.stop();
-      } else {
-        sampler.sample(request('x+'));
-        say({
-          type: 'field',
-          id: 2,
-          answer: {
-            ok: false,
-            error: {
-              kind: 'unexpected_end',
-              message: '',
-              start: 0,
-              end: 0,
-              suggestion: null,
-              mended: null,
-              name: null,
-            },
-          },
-        });
-      }
+      sampler.sample(request('x+'));
+      refuse(2);
       if (end === 'mistake meanwhile') ended();
       expect(jobs().at(-1)).toMatchObject({ kind: 'restore', field: { formula: 'x' } });
     }
@@ -273,6 +254,74 @@ describe('the surface that stays', () => {
     expect(store.report.value?.count).toBe(7);
     say(columnsMessage(2, 5));
     expect(store.report.value).toBe(null);
+  });
+});
+
+describe('a stop starts no run', () => {
+  /** Begins a run of x, of which the page has 7 particles, and asks for one of y, which is accepted. */
+  function halfway() {
+    const it = page();
+    it.start(1);
+    it.say(columnsMessage(1, 7));
+    it.start(2, 'y');
+    return it;
+  }
+
+  test('after the field of the next was accepted: the part of the surface that is there stays, dimmed', () => {
+    const { sampler, store, columns, say, jobs } = halfway();
+    sampler.stop();
+    say(done(2, 'stopped'));
+    expect(jobs()).toHaveLength(2);
+    expect(columns).toMatchObject({ count: 7, record: null });
+    expect(store.partial.value).toBe(true);
+    expect([store.busy.value, store.progress.value.phase, told.at(-1)]).toEqual([false, 'done', 'dim']);
+  });
+
+  test('before the field of the next is refused, although the surface of a drag has no figures', () => {
+    const { sampler, accept, finish, refuse, jobs } = page();
+    sampler.sampleLive(request('x'), 3);
+    accept(1);
+    finish(1, 7);
+    sampler.sample(request('x+'));
+    sampler.stop();
+    refuse(2);
+    expect(jobs()).toHaveLength(2);
+  });
+
+  test('before a formula that is typed turns out to have no surface', () => {
+    const { sampler, say, accept, complete, start, jobs } = page();
+    start(1);
+    complete(1, 7);
+    for (const [id, formula] of /** @type {const} */ ([
+      [2, 'y'],
+      [3, 'yz'],
+    ])) {
+      sampler.sample(request(formula, { kind: 'trial' }));
+      accept(id, formula);
+      if (id === 2) complete(id, 5);
+    }
+    sampler.stop();
+    say(done(3, 'complete'));
+    expect(jobs()).toHaveLength(3);
+  });
+
+  test('before the worker fails, and the next that is asked for is sampled', () => {
+    const { sampler, say, jobs } = halfway();
+    sampler.stop();
+    say({ type: 'crashed', id: 2, message: 'unreachable', stack: '' });
+    expect(workers).toHaveLength(2);
+    expect(jobs()).toEqual([]);
+    sampler.sample(request('y'));
+    expect(jobs()).toHaveLength(1);
+  });
+
+  test('at rest, also after a drag, whose last surface has no figures', () => {
+    const { sampler, accept, finish, jobs } = page();
+    sampler.sampleLive(request('x'), 3);
+    accept(1);
+    finish(1, 7);
+    sampler.stop();
+    expect(jobs()).toHaveLength(1);
   });
 });
 

@@ -89,10 +89,11 @@ export const reportMessage = (/** @type {number} */ id, /** @type {number} */ n)
 });
 
 /**
- * `say` posts a message of the worker, `accept` its answer to a field; `start` asks for a run, whose field is accepted; `finish` ends it
- * with n particles, and `complete` with their figures, too.
+ * `say` posts a message of the worker, `accept` and `refuse` its answers to a field; `start` asks for a run, whose field
+ * is accepted; `finish` ends it with n particles, and `complete` with their figures, too.
  * @returns {{sampler: Sampler, store: ReturnType<typeof createStore>, columns: Columns, say: (message: any) => void,
- *   accept: (id: number, formula?: string) => void, start: (id: number, formula?: string) => void,
+ *   accept: (id: number, formula?: string) => void, refuse: (id: number) => void,
+ *   start: (id: number, formula?: string) => void,
  *   finish: (id: number, n: number) => void, complete: (id: number, n: number) => void, jobs: () => any[]}}
  */
 export function page() {
@@ -133,12 +134,14 @@ export function page() {
   const say = (/** @type {any} */ message) => workers.at(-1).onmessage?.({ data: message });
   say({ type: 'ready', description });
   const accept = (/** @type {number} */ id, formula = 'x') => say({ type: 'field', id, answer: answer(formula) });
+  const error = { kind: 'unexpected_end', message: 'no', start: 0, end: 1, suggestion: null, mended: null, name: null };
   return {
     sampler,
     store,
     columns,
     say,
     accept,
+    refuse: (id) => say({ type: 'field', id, answer: { ok: false, error } }),
     start(id, formula = 'x') {
       sampler.sample(request(formula));
       accept(id, formula);

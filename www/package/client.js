@@ -1,0 +1,313 @@
+/**
+ * The package's side of the worker: checks what it is given, asks the worker, and holds the samples.
+ *
+ * @module
+ */
+import { DisposedError, errorOf, InputError, WorkerError } from './errors.js';
+
+/**
+ * @import { Answered, Asked, Heard, Line, Made } from './protocol.js'
+ * @import { Mesh, Options, Progress } from './index.js'
+ */
+
+const FORMATS = ['glb', '3mf', 'stl', 'obj', 'ply'];
+
+/**
+ * @typedef {{resolve: (value: any) => void, reject: (error: unknown) => void, onProgress?: Options['onProgress'],
+ *   settled: () => void}} Pending
+ */
+
+/** One worker, started when it is asked for the first time, and again after it has failed. */
+class Client {
+  #open;
+  #lastId = 0;
+  /** @type {Line | null} */
+  #line = null;
+  /** @type {Map<number, Pending>} */
+  #pending = new Map();
+
+  /** @param {(heard: Heard) => Line} open */
+  constructor(open) {
+    this.#open = open;
+  }
+
+  /** The worker, by which a sample knows whether its particles are still there. */
+  get line() {
+    return this.#line;
+  }
+
+  /**
+   * @param {(id: number) => Asked} question
+   * @param {Pick<Options, 'signal' | 'onProgress'>} [how]
+   * @returns {Promise<{id: number, value: any}>}
+   */
+  ask(question, { signal, onProgress } = {}) {
+    if (signal?.aborted) return Promise.reject(signal.reason);
+    this.#lastId += 1;
+    const id = this.#lastId;
+    return new Promise((resolve, reject) => {
+      const abort = () => {
+        this.#line?.post({ type: 'stop', id });
+        // What the worker has made meanwhile is not wanted any more.
+        this.#settle(id)?.reject(signal?.reason);
+      };
+      this.#pending.set(id, {
+        resolve: (value) => resolve({ id, value }),
+        reject,
+        onProgress,
+        settled: () => signal?.removeEventListener('abort', abort),
+      });
+      signal?.addEventListener('abort', abort);
+      try {
+        this.#line ??= this.#opened();
+        this.#line.hold(true);
+        this.#line.post(question(id));
+      } catch (error) {
+        this.#settle(id)?.reject(new WorkerError(`The worker did not start: ${wordsOf(error)}`));
+      }
+    });
+  }
+
+  #opened() {
+    const line = this.#open({
+      onMessage: (message) => {
+        if (this.#line === line) this.#receive(message);
+      },
+      onFail: (words) => {
+        if (this.#line === line) this.#failed(new WorkerError(`The worker has failed: ${words}.`));
+      },
+    });
+    return line;
+  }
+
+  /** @param {Answered} message */
+  #receive({ id, value, error, progress }) {
+    if (progress) {
+      this.#tell(id, progress);
+    } else if (error?.name === 'WorkerError') {
+      this.#failed(errorOf(error));
+    } else {
+      const pending = this.#settle(id);
+      if (error) pending?.reject(errorOf(error));
+      else if (pending) pending.resolve(value);
+      else this.#line?.post({ type: 'free', id });
+    }
+  }
+
+  /** Tells of progress. A function that fails ends its sampling. @param {number} id @param {Progress} progress */
+  #tell(id, progress) {
+    try {
+      this.#pending.get(id)?.onProgress?.(progress);
+    } catch (error) {
+      this.#line?.post({ type: 'stop', id });
+      this.#settle(id)?.reject(error);
+    }
+  }
+
+  /** Ends the worker: its memory cannot be trusted after an error. @param {Error} error */
+  #failed(error) {
+    this.#line?.end();
+    this.#line = null;
+    for (const id of [...this.#pending.keys()]) this.#settle(id)?.reject(error);
+  }
+
+  /** @param {number} id */
+  #settle(id) {
+    const pending = this.#pending.get(id);
+    this.#pending.delete(id);
+    pending?.settled();
+    if (this.#pending.size === 0) this.#line?.hold(false);
+    return pending;
+  }
+}
+
+/** @param {unknown} error */
+const wordsOf = (error) => (error instanceof Error ? error.message : String(error));
+
+/** The particles of a surface. */
+class Sample {
+  #client;
+  #line;
+  #id;
+  #isThere = true;
+  #how;
+
+  /** @param {Client} client @param {{id: number, value: Made}} answer @param {ReturnType<typeof checked>} how */
+  constructor(client, { id, value }, how) {
+    this.#client = client;
+    this.#line = client.line;
+    this.#id = id;
+    this.#how = how;
+    const { positions, normals, radii, levels, parents, report, bounds, parameters, digest } = value;
+    this.positions = positions;
+    this.normals = normals;
+    this.radii = radii;
+    this.levels = levels;
+    this.parents = parents;
+    /** Rows of the columns. */
+    this.count = radii.length;
+    this.report = report;
+    this.warnings = report?.warnings ?? [];
+    this.bounds = bounds;
+    this.params = Object.fromEntries(parameters.map((p) => [p.name, p.value]));
+    this.digest = digest;
+  }
+
+  /** Joins the particles to triangles. @returns {Promise<Mesh>} */
+  async mesh() {
+    this.#check('mesh');
+    const { value } = await this.#client.ask((id) => ({ type: 'mesh', id, of: this.#id }));
+    return value;
+  }
+
+  /** The mesh as a file. @param {string} format @returns {Promise<Uint8Array>} */
+  async toFile(format) {
+    this.#check('toFile');
+    if (!FORMATS.includes(format)) throw new InputError(`format: one of ${FORMATS.join(', ')}, not ${shown(format)}.`);
+    const { value } = await this.#client.ask((id) => ({ type: 'file', id, of: this.#id, format }));
+    return value.bytes;
+  }
+
+  /**
+   * The particles on the surface of other parameters. They leave this sample, which keeps its columns.
+   * @param {Record<string, number>} params @param {Pick<Options, 'signal' | 'onProgress'>} [options]
+   */
+  async moved(params, options = {}) {
+    this.#check('moved');
+    const parameters = { ...this.params, ...paramsOf(params) };
+    const how = { ...this.#how, ...checkedCalls(options) };
+    if (how.signal?.aborted) throw how.signal.reason;
+    this.#isThere = false;
+    const { settings, measure } = this.#how;
+    const of = this.#id;
+    const question = (/** @type {number} */ id) =>
+      /** @type {const} */ ({ type: 'moved', id, of, field: { parameters }, settings, measure });
+    return new Sample(this.#client, await this.#client.ask(question, how), this.#how);
+  }
+
+  /** Frees the memory of the worker. The columns stay. */
+  dispose() {
+    if (this.#isThere && this.#line === this.#client.line) this.#line?.post({ type: 'free', id: this.#id });
+    this.#isThere = false;
+  }
+
+  [Symbol.dispose ?? Symbol.for('dispose')]() {
+    this.dispose();
+  }
+
+  /** @param {string} method */
+  #check(method) {
+    if (!this.#isThere)
+      throw new DisposedError(`${method}(): this sample was disposed of or has moved; its columns are still there.`);
+    if (this.#line !== this.#client.line)
+      throw new DisposedError(`${method}(): the worker that held the particles has failed. Sample again.`);
+  }
+}
+
+/**
+ * Returns the function `sample` over workers that `open` starts.
+ * @param {(heard: Heard) => Line} open
+ */
+export function createSampler(open) {
+  const client = new Client(open);
+  return async (/** @type {unknown} */ field, /** @type {Options} */ options = {}) => {
+    const how = checked(field, options);
+    const { settings, measure, request } = how;
+    const question = (/** @type {number} */ id) =>
+      /** @type {const} */ ({ type: 'sample', id, field: request, settings, measure });
+    return new Sample(client, await client.ask(question, how), how);
+  };
+}
+
+// ---- what is given
+// -------------------------------------------------------------------------------------------------
+
+/** @param {unknown} value */
+const shown = (value) => (typeof value === 'string' ? `“${value.slice(0, 40)}”` : String(value));
+
+/** @type {(name: string, value: unknown, is: (v: number) => boolean, what: string) => number} */
+function number(name, value, is, what) {
+  if (typeof value === 'number' && Number.isFinite(value) && is(value)) return value;
+  throw new InputError(`${name}: ${what}, not ${shown(value)}.`);
+}
+
+/** @param {string} name @param {unknown} value @param {readonly string[]} choices */
+function choice(name, value, choices) {
+  if (choices.includes(/** @type {string} */ (value))) return /** @type {string} */ (value);
+  throw new InputError(`${name}: one of ${choices.join(', ')}, not ${shown(value)}.`);
+}
+
+/** @param {unknown} params */
+function paramsOf(params) {
+  if (typeof params !== 'object' || params === null || Array.isArray(params))
+    throw new InputError(`params: an object with a number for each name, not ${shown(params)}.`);
+  for (const [name, value] of Object.entries(params)) number(`params.${name}`, value, () => true, 'a number');
+  return /** @type {Record<string, number>} */ (params);
+}
+
+/** @param {unknown} bounds */
+function boundsOf(bounds) {
+  const { min, max } = /** @type {{min: number[], max: number[]}} */ (bounds ?? {});
+  const isPoint = (/** @type {unknown} */ p) => Array.isArray(p) && p.length === 3 && p.every(Number.isFinite);
+  if (!isPoint(min) || !isPoint(max) || min.some((v, k) => v >= max[k]))
+    throw new InputError('bounds: {min: [x, y, z], max: [x, y, z]} with numbers and min below max.');
+  return {
+    min: /** @type {[number, number, number]} */ ([...min]),
+    max: /** @type {[number, number, number]} */ ([...max]),
+  };
+}
+
+const KNOWN = ['count', 'radius', 'bounds', 'params', 'adaptive', 'method', 'seed', 'measure', 'signal', 'onProgress'];
+
+/** @param {Pick<Options, 'signal' | 'onProgress'>} options */
+function checkedCalls({ signal, onProgress }) {
+  if (signal !== undefined && !(signal instanceof AbortSignal))
+    throw new InputError('signal: the signal of an AbortController.');
+  if (onProgress !== undefined && typeof onProgress !== 'function') throw new InputError('onProgress: a function.');
+  return { signal, onProgress };
+}
+
+/**
+ * What the worker is asked for.
+ * @param {unknown} field @param {Options} options
+ */
+function checked(field, options) {
+  if (typeof field !== 'string')
+    throw new InputError(`field: a formula as a text, such as 'x^2 + y^2 + z^2 = 1', not ${shown(typeof field)}.`);
+  if (typeof options !== 'object' || options === null)
+    throw new InputError(`options: an object, not ${shown(options)}.`);
+  const unknown = Object.keys(options).find((name) => !KNOWN.includes(name));
+  if (unknown !== undefined)
+    throw new InputError(`${unknown}: there is no such option. There are ${KNOWN.join(', ')}.`);
+  const { count, radius, bounds, params, adaptive, method, seed, measure = true } = options;
+  if (count !== undefined && radius !== undefined) throw new InputError('count, radius: one of the two, not both.');
+  /** @type {Record<string, number | string>} */
+  const settings = { max_particles: 4_400_000 };
+  if (radius !== undefined)
+    settings.radius_share = number(
+      'radius',
+      radius,
+      (r) => r >= 0.0001 && r <= 0.2,
+      'a share of the box diagonal, 0.0001 to 0.2',
+    );
+  else
+    Object.assign(settings, {
+      size_mode: 'count',
+      count: number(
+        'count',
+        count ?? 20_000,
+        (n) => Number.isInteger(n) && n >= 1 && n <= 4_000_000,
+        'a whole number from 1 to 4,000,000',
+      ),
+    });
+  if (adaptive) settings.sampling = 'adaptive';
+  if (method !== undefined) settings.method = choice('method', method, ['front', 'refined']);
+  if (seed !== undefined)
+    settings.seed = number('seed', seed, (n) => Number.isSafeInteger(n) && n >= 0, 'a whole number from 0 on');
+  const request = {
+    formula: field,
+    parameters: params === undefined ? {} : paramsOf(params),
+    ...(bounds === undefined ? {} : { bounds: boundsOf(bounds) }),
+  };
+  return { request, settings, measure: measure === true, ...checkedCalls(options) };
+}

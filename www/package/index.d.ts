@@ -1,0 +1,98 @@
+// What the package `marching-particles` gives a program.
+
+export interface Bounds {
+  min: [number, number, number];
+  max: [number, number, number];
+}
+export interface Progress {
+  phase: string;
+  particles: number;
+  /** share of the work that is done */
+  fraction: number;
+}
+export interface Options {
+  /** wanted number of particles, met within 3 %; 20,000 where neither it nor `radius` is given */
+  count?: number;
+  /** half of the distance between neighbours, as a share of the box diagonal: 0.0001 to 0.2 */
+  radius?: number;
+  /** the box that is sampled; without it one that fits the surface */
+  bounds?: Bounds;
+  /** values of the names in the formula */
+  params?: Record<string, number>;
+  /** whether particles are small where the surface bends and large where it is flat */
+  adaptive?: boolean;
+  /** `refined` takes longer and is more even */
+  method?: 'front' | 'refined';
+  seed?: number;
+  /** whether a report is made, which takes about as long as the sampling; true without it */
+  measure?: boolean;
+  /** ends the sampling, whose promise is rejected with the signal's reason */
+  signal?: AbortSignal;
+  onProgress?: (progress: Progress) => void;
+}
+export interface Report {
+  count: number;
+  /** the same for the same formula, options and version, on every machine */
+  digest: string;
+  warnings: string[];
+  /** repulsion radius, in the units of the formula */
+  radius: number;
+  components: number | null;
+  [figure: string]: unknown;
+}
+export interface Mesh {
+  /** three rows of the sample's columns for each triangle, counter-clockwise seen from outside */
+  indices: Uint32Array;
+  /** what a closed mesh encloses; null where it is open */
+  volume: number | null;
+  components: { triangles: number; euler: number; open_edges: number }[];
+  /** number of particles in no triangle */
+  leftOut: number;
+}
+export type Format = 'glb' | '3mf' | 'stl' | 'obj' | 'ply';
+
+export interface Sample {
+  /** rows of the columns; a particle on a crease has one on each side of it */
+  readonly count: number;
+  /** three values for each row; in double precision where the box is far from the origin */
+  readonly positions: Float32Array | Float64Array;
+  readonly normals: Float32Array;
+  readonly radii: Float32Array;
+  /** generation levels, and the row of the parent, 0xffffffff for a seed */
+  readonly levels: Uint32Array;
+  readonly parents: Uint32Array;
+  /** null with `measure: false` */
+  readonly report: Report | null;
+  readonly warnings: string[];
+  readonly bounds: Bounds;
+  readonly params: Record<string, number>;
+  readonly digest: string;
+  /** joins the particles to triangles */
+  mesh(): Promise<Mesh>;
+  /** the mesh as a file */
+  toFile(format: Format): Promise<Uint8Array>;
+  /** the particles on the surface of other parameters; they leave this sample, whose columns stay */
+  moved(params: Record<string, number>, options?: Pick<Options, 'signal' | 'onProgress'>): Promise<Sample>;
+  /** frees the memory of the worker; the columns stay */
+  dispose(): void;
+}
+
+/** Covers the surface f = 0 of a formula, such as `x^2 + y^2 + z^2 = a`, with evenly spaced particles. */
+export function sample(formula: string, options?: Options): Promise<Sample>;
+
+/** An argument or an option is not what it has to be. */
+export class InputError extends Error {}
+/** The formula has a mistake between `start` and `end`, in UTF-16 code units. */
+export class FormulaError extends Error {
+  readonly start: number;
+  readonly end: number;
+  /** a text for that place, where one would mend it; `choices`: several, each with another meaning */
+  readonly suggestion: string | null;
+  readonly choices: string[];
+}
+/** No particle could be placed. */
+export class NoSurfaceError extends Error {}
+/** The sample was disposed of, or its particles have moved on with another one. */
+export class DisposedError extends Error {}
+/** The worker has not started, or it has failed. The next sampling starts another one. */
+export class WorkerError extends Error {}

@@ -1,0 +1,14 @@
+/** The package in a browser, and where a bundler builds for one. @module */
+import { createSampler } from './client.js';
+
+export * from './errors.js';
+
+/** @param {import('./protocol.js').Heard} heard @returns {import('./protocol.js').Line} */
+function open({ onMessage, onFail }) {
+  const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'marching-particles' });
+  worker.onmessage = ({ data }) => onMessage(data);
+  worker.onerror = ({ message }) => onFail(message || 'its script did not load');
+  return { post: (message) => worker.postMessage(message), end: () => worker.terminate(), hold: () => {} };
+}
+
+export const sample = createSampler(open);

@@ -1,0 +1,19 @@
+/** The package in Node. @module */
+import { Worker } from 'node:worker_threads';
+import { createSampler } from './client.js';
+
+export * from './errors.js';
+
+/** @param {import('./protocol.js').Heard} heard @returns {import('./protocol.js').Line} */
+function open({ onMessage, onFail }) {
+  const worker = new Worker(new URL('./worker-node.js', import.meta.url), { name: 'marching-particles' });
+  worker.on('message', onMessage);
+  worker.on('error', ({ message }) => onFail(message));
+  return {
+    post: (message) => worker.postMessage(message),
+    end: () => void worker.terminate(),
+    hold: (isHeld) => (isHeld ? worker.ref() : worker.unref()),
+  };
+}
+
+export const sample = createSampler(open);

@@ -1,0 +1,185 @@
+/**
+ * The worker's side of the package: samples formulas in slices, each in a core of its own, and keeps the cores of the
+ * samples that can still be asked for a mesh, a file or moved particles.
+ *
+ * @module
+ */
+import { nextBudget } from '../src/engine/bundle/budget.js';
+import { Core } from '../src/wasm/core/core.js';
+
+/**
+ * @import { Fault } from '../src/engine/core-types.js'
+ * @import { Answered, Asked, Environment, Made, Said } from './protocol.js'
+ */
+
+/** First budget of a loop, in units or slices of the core. */
+const FIRST_BUDGET = 64;
+const PROGRESS_MS = 50;
+/** Largest memory of a run and its report: half of what a browser gives a module. */
+const MEMORY_MB = 2048;
+
+/** An error whose name and facts the other side makes an error of. */
+class Refusal extends Error {
+  /** @param {string} name @param {string} message @param {object} [facts] */
+  constructor(name, message, facts = {}) {
+    super(message);
+    this.name = name;
+    this.facts = facts;
+  }
+}
+
+/** @param {Fault} fault */
+function refusalOf({ kind, message, start, end, suggestion, choices }) {
+  if (['request', 'settings', 'too_many', 'box'].includes(kind)) return new Refusal('InputError', message);
+  return new Refusal('FormulaError', message, { start, end, suggestion, choices });
+}
+
+/**
+ * Answers the messages of one client.
+ * @param {Environment} environment
+ * @returns {(message: Asked | Said) => Promise<void>}
+ */
+export function serve({ post, pause, load }) {
+  /** @type {Promise<unknown> | null} */
+  let loading = null;
+  /** @type {Map<number, Core>} */
+  const cores = new Map();
+  /** Requests under way, and whether each is to stop. @type {Map<number, boolean>} */
+  const asked = new Map();
+
+  /**
+   * Does a work in slices, and returns what it leads to.
+   * @template T
+   * @param {number} id @param {(budget: number) => T | undefined} slice
+   */
+  async function inSlices(id, slice) {
+    for (let budget = FIRST_BUDGET; ; ) {
+      const before = performance.now();
+      const made = slice(budget);
+      if (made !== undefined) return made;
+      budget = nextBudget(budget, performance.now() - before);
+      await pause();
+      if (asked.get(id)) throw new Refusal('AbortError', 'The sampling was aborted.');
+    }
+  }
+
+  /** Steps a run to its end. @param {number} id @param {Core} core */
+  async function run(id, core) {
+    let toldMs = performance.now();
+    const last = await inSlices(id, (budget) => {
+      const progress = core.step(budget);
+      if (progress.phase === 'done') return progress;
+      if (performance.now() - toldMs > PROGRESS_MS) {
+        toldMs = performance.now();
+        const { phase, particles, fraction } = progress;
+        post({ id, progress: { phase, particles, fraction } });
+      }
+      return undefined;
+    });
+    if (last.particles === 0) throw new Refusal('NoSurfaceError', last.message ?? 'There is no surface in the box.');
+  }
+
+  /**
+   * Takes a field, samples it, or lets the particles follow it, and measures them.
+   * @param {Extract<Asked, {type: 'sample' | 'moved'}>} message @param {Core} core
+   */
+  async function made({ id, field, settings, measure, type }, core) {
+    const answer = core.set_field(field);
+    if (!answer.ok) throw refusalOf(answer.error);
+    const unknown = Object.keys(field.parameters).find((name) => !answer.parameters.some((p) => p.name === name));
+    if (unknown !== undefined) throw new Refusal('InputError', `The formula has no parameter “${unknown}” (params).`);
+    const box = await inSlices(id, (budget) => core.fit(settings, type === 'moved', budget));
+    if (!box.ok) throw refusalOf(box.error);
+    if (type === 'sample' || !core.follow(settings, false)) {
+      const start = core.start(settings);
+      if (!start.ok) throw refusalOf(start.error);
+    }
+    await run(id, core);
+    const report = measure ? await inSlices(id, (budget) => core.measure(budget)) : null;
+    return columnsOf(core, { report, bounds: box.bounds, parameters: box.parameters });
+  }
+
+  /** @param {Asked} message @returns {Promise<[object, ArrayBufferLike[]]>} */
+  async function answer(message) {
+    if (message.type === 'sample') {
+      const core = new Core();
+      core.limit_memory(MEMORY_MB);
+      try {
+        const result = await made(message, core);
+        cores.set(message.id, core);
+        return result;
+      } catch (error) {
+        if (error instanceof Refusal) core.free();
+        throw error;
+      }
+    }
+    const core = cores.get(message.of);
+    if (!core) throw new Refusal('DisposedError', 'The particles of this sample are gone.');
+    if (message.type === 'moved') {
+      // The core goes on with the sample that is made of this one.
+      cores.delete(message.of);
+      cores.set(message.id, core);
+      return made(message, core);
+    }
+    const about = await inSlices(message.id, (budget) => core.join(budget));
+    if (message.type === 'mesh') {
+      const indices = core.triangles();
+      const { volume, components, left_out: leftOut } = about;
+      return [{ indices, volume, components, leftOut }, [indices.buffer]];
+    }
+    const bytes = await inSlices(message.id, (budget) => core.mesh_file({ format: message.format }, budget));
+    if (!bytes) throw new Refusal('InputError', `The mesh cannot be written as ${message.format}: it is too large.`);
+    return [{ bytes }, [bytes.buffer]];
+  }
+
+  return async (message) => {
+    if (message.type === 'stop') {
+      if (asked.has(message.id)) asked.set(message.id, true);
+      return;
+    }
+    if (message.type === 'free') {
+      cores.get(message.id)?.free();
+      cores.delete(message.id);
+      return;
+    }
+    const { id } = message;
+    asked.set(id, false);
+    try {
+      loading ??= load();
+      await loading.catch((error) => {
+        throw new Refusal('WorkerError', `core_bg.wasm, which lies beside the worker, did not load: ${error.message}`);
+      });
+      const [value, transfer] = await answer(message);
+      post({ id, value }, transfer);
+    } catch (error) {
+      post({ id, error: wordsOf(error) });
+    }
+    asked.delete(id);
+  };
+}
+
+/**
+ * The columns of the particles, whose buffers are given away, so that there is no second copy.
+ * @param {Core} core @param {Pick<Made, 'report' | 'bounds' | 'parameters'>} about
+ * @returns {[Made, ArrayBufferLike[]]}
+ */
+function columnsOf(core, about) {
+  const exact = core.exact_positions(0);
+  const columns = {
+    positions: exact.length > 0 ? exact : core.positions(0),
+    normals: core.normals(0),
+    radii: core.radii(0),
+    levels: core.levels(0),
+    parents: core.parents(0),
+  };
+  const made = { ...columns, ...about, digest: core.digest() };
+  return [made, Object.values(columns).map(({ buffer }) => buffer)];
+}
+
+/** @param {unknown} error @returns {Answered['error']} */
+function wordsOf(error) {
+  if (error instanceof Refusal) return { name: error.name, message: error.message, facts: error.facts };
+  const words = error instanceof Error ? error.message : String(error);
+  // After a trap the memory of the module cannot be trusted: the client ends this worker.
+  return { name: 'WorkerError', message: `The sampler stopped on an error: ${words}`, facts: {} };
+}

@@ -1,0 +1,218 @@
+/** The packed package in Node: its examples, what it gives, and what it says of bad input. */
+import { execFileSync } from 'node:child_process';
+import { readFileSync, renameSync } from 'node:fs';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import { GYROID, install, programOf } from './packed.js';
+
+const { runs } = JSON.parse(readFileSync(new URL('../../../tests/golden/digests.json', import.meta.url), 'utf8'));
+const golden = runs.find((/** @type {{name: string}} */ { name }) => name === GYROID.golden);
+
+const SPHERE = 'x^2 + y^2 + z^2 = a';
+/** @type {ReturnType<typeof install>} */
+let there;
+/** @type {typeof import('../../package/index.js')} */
+let made;
+
+beforeAll(async () => {
+  there = install(['three', '@types/node']);
+  made = await import(
+    /* @vite-ignore */ pathToFileURL(join(there.project, 'node_modules/marching-particles/node.js')).href
+  );
+}, 120_000);
+afterAll(() => there.remove());
+
+test('a program in Node gets the particles of the native library, and ends', () => {
+  const program = there.write('program.js', programOf('console.log'));
+  expect(execFileSync(process.execPath, [program], { encoding: 'utf8' }).trim()).toBe(golden.digest);
+});
+
+test('a program is checked by strict TypeScript', () => {
+  there.write(
+    'program.ts',
+    `import { FormulaError, sample, type Mesh, type Sample } from 'marching-particles';
+export async function ball(radius: number): Promise<Mesh> {
+  const ball: Sample = await sample('${SPHERE}', { count: 500, params: { a: radius ** 2 }, method: 'refined' });
+  const first: number = ball.positions[0] + ball.normals[0];
+  if (first > 0) await ball.moved({ a: 2 });
+  return ball.mesh();
+}
+export const placeOf = (error: unknown): number | null => (error instanceof FormulaError ? error.start : null);
+// @ts-expect-error There is no such method.
+void sample('x', { method: 'best' });
+`,
+  );
+  const config = { strict: true, noEmit: true, module: 'nodenext', target: 'es2023', types: ['node'] };
+  there.write('tsconfig.json', JSON.stringify({ compilerOptions: config, files: ['program.ts'] }));
+  const tsc = new URL('../../node_modules/typescript/bin/tsc', import.meta.url);
+  execFileSync(process.execPath, [tsc.pathname, '-p', there.project], { stdio: 'pipe' });
+});
+
+describe('a sample', () => {
+  test('has columns, figures, a mesh and files', async () => {
+    const ball = await made.sample(SPHERE, { count: 1000, params: { a: 4 }, seed: 3 });
+    expect(ball.report).toMatchObject({ digest: ball.digest, components: 1 });
+    expect([ball.positions.length, ball.normals.length]).toEqual([3 * ball.count, 3 * ball.count]);
+    for (let i = 0; i < 3 * ball.count; i += 3)
+      expect(Math.hypot(...ball.positions.subarray(i, i + 3))).toBeCloseTo(2, 4);
+    const mesh = await ball.mesh();
+    expect(mesh.components).toMatchObject([{ triangles: 2 * ball.count - 4, euler: 2 }]);
+    expect(mesh.volume).toBeCloseTo((32 / 3) * Math.PI, 0);
+    expect(new TextDecoder().decode((await ball.toFile('glb')).subarray(0, 4))).toBe('glTF');
+    expect(new TextDecoder().decode(await ball.toFile('obj'))).toContain('\nf ');
+  });
+
+  test('moves with its surface, and keeps its columns', async () => {
+    const ball = await made.sample(SPHERE, { count: 1000, params: { a: 1 }, measure: false });
+    expect(ball.report).toBe(null);
+    const wider = await ball.moved({ a: 1.02 });
+    expect(wider.params).toEqual({ a: 1.02 });
+    expect(Math.hypot(...wider.positions.subarray(0, 3))).toBeCloseTo(Math.sqrt(1.02), 4);
+    expect(Math.hypot(...ball.positions.subarray(0, 3))).toBeCloseTo(1, 4);
+    await expect(ball.mesh()).rejects.toMatchObject({ name: 'DisposedError' });
+  });
+
+  test('tells of its progress, and beside another one is the same', async () => {
+    /** @type {number[]} */
+    const fractions = [];
+    const options = { radius: 0.003, params: { a: 1 }, measure: false };
+    const onProgress = (/** @type {{fraction: number}} */ { fraction }) => fractions.push(fraction);
+    const [one, two] = await Promise.all([
+      made.sample(SPHERE, { ...options, onProgress }),
+      made.sample(SPHERE, options),
+    ]);
+    expect(one.digest).toBe(two.digest);
+    expect(fractions.length).toBeGreaterThan(0);
+    expect(fractions).toEqual([...fractions].sort((a, b) => a - b));
+  });
+
+  test('is an object of three.js, on the same arrays', async () => {
+    const path = join(there.project, 'node_modules/marching-particles/three.js');
+    const { toBufferGeometry, toInstancedMesh, toPoints } = await import(/* @vite-ignore */ pathToFileURL(path).href);
+    const three = await import('three');
+    const ball = await made.sample(SPHERE, { count: 300, params: { a: 1 } });
+    const mesh = await ball.mesh();
+    const geometry = toBufferGeometry(ball, mesh);
+    expect(geometry.getAttribute('position').array).toBe(ball.positions);
+    expect(geometry.getIndex().array).toBe(mesh.indices);
+    expect(toPoints(ball).geometry.getAttribute('normal').count).toBe(ball.count);
+    const discs = toInstancedMesh(ball, new three.CircleGeometry(), new three.MeshBasicMaterial());
+    const matrix = new three.Matrix4();
+    discs.getMatrixAt(7, matrix);
+    const [x, y, z] = matrix.elements.slice(8, 11);
+    expect(Math.hypot(x, y, z)).toBeCloseTo(ball.radii[7], 6);
+    expect(x / ball.radii[7]).toBeCloseTo(ball.normals[21], 4);
+  });
+});
+
+describe('a signal', () => {
+  test('ends a sampling within 50 ms, and the next one is not kept waiting', async () => {
+    await made.sample(SPHERE, { count: 100, params: { a: 1 } });
+    const controller = new AbortController();
+    const long = made.sample(SPHERE, { count: 1_000_000, params: { a: 1 }, signal: controller.signal });
+    await new Promise((resolve) => setTimeout(resolve, 200));
+    const before = performance.now();
+    controller.abort();
+    controller.abort();
+    await expect(long).rejects.toBe(controller.signal.reason);
+    expect(performance.now() - before).toBeLessThan(50);
+    const next = await made.sample(SPHERE, { count: 100, params: { a: 1 }, measure: false });
+    expect(next.count).toBeGreaterThan(50);
+    // A million take longer than that on any machine.
+    expect(performance.now() - before).toBeLessThan(2000);
+  });
+
+  test('that was given before asks the worker for nothing', async () => {
+    const reason = new Error('no longer wanted');
+    await expect(made.sample(SPHERE, { signal: AbortSignal.abort(reason) })).rejects.toBe(reason);
+  });
+});
+
+describe('what is wrong has a name and says what to do', () => {
+  const box = (/** @type {number} */ least) => ({ min: [least, -1, -1], max: [1, 1, 1] });
+  test.each([
+    ['InputError', 'a formula as a text', 5, {}],
+    ['InputError', 'a formula as a text', () => 1, {}],
+    ['InputError', 'options: an object', SPHERE, null],
+    ['InputError', 'no such option', SPHERE, { size: 3 }],
+    ['InputError', 'count: a whole number', SPHERE, { count: NaN }],
+    ['InputError', 'one of the two', SPHERE, { count: 100, radius: 0.01 }],
+    ['InputError', 'bounds: {min', SPHERE, { bounds: box(NaN) }],
+    ['InputError', 'bounds: {min', SPHERE, { bounds: box(2) }],
+    ['InputError', 'params.a: a number', SPHERE, { params: { a: '1' } }],
+    ['InputError', 'no parameter “b”', SPHERE, { params: { b: 1 } }],
+    ['InputError', 'method: one of', SPHERE, { method: 'best' }],
+    ['InputError', 'seed: a whole number', SPHERE, { seed: -1 }],
+    ['InputError', 'signal: the signal', SPHERE, { signal: {} }],
+    ['InputError', 'onProgress: a function', SPHERE, { onProgress: 1 }],
+    ['FormulaError', 'missing', 'x^2 +', {}],
+    ['NoSurfaceError', 'no zero', 'x^2 + 1', {}],
+  ])('%s: %s', async (name, words, field, options) => {
+    const answer = made.sample(/** @type {any} */ (field), /** @type {any} */ (options));
+    await expect(answer).rejects.toMatchObject({ name, message: expect.stringContaining(words) });
+  });
+
+  test('a mistake in a formula has its place and what would mend it', async () => {
+    const error = await made.sample('x^2 + sqtr(y) - 1').catch((/** @type {unknown} */ error) => error);
+    expect(error).toBeInstanceOf(made.FormulaError);
+    expect(error).toMatchObject({ start: 6, suggestion: 'sqrt', choices: [] });
+  });
+
+  test('a sample that was disposed of', async () => {
+    const ball = await made.sample(SPHERE, { count: 100, params: { a: 1 } });
+    await expect(ball.toFile(/** @type {any} */ ('doc'))).rejects.toMatchObject({ name: 'InputError' });
+    ball.dispose();
+    ball.dispose();
+    expect(ball.positions.length).toBe(3 * ball.count);
+    for (const late of [ball.mesh(), ball.toFile('stl'), ball.moved({ a: 2 })])
+      await expect(late).rejects.toMatchObject({ name: 'DisposedError' });
+  });
+
+  test('a core that is not beside the worker, and the next sampling has it', async () => {
+    const core = join(there.project, 'node_modules/marching-particles/core_bg.wasm');
+    const node = pathToFileURL(join(there.project, 'node_modules/marching-particles/node.js'));
+    const { sample } = await import(/* @vite-ignore */ `${node.href}?again`);
+    renameSync(core, `${core}.away`);
+    const failed = await sample(SPHERE).catch((/** @type {unknown} */ error) => error);
+    renameSync(`${core}.away`, core);
+    expect(failed).toMatchObject({ name: 'WorkerError', message: expect.stringContaining('core_bg.wasm') });
+    expect((await sample(SPHERE, { count: 100, params: { a: 1 } })).count).toBeGreaterThan(50);
+  });
+
+  test('a function that is told of progress and throws ends its sampling with its error', async () => {
+    const error = new Error('no more');
+    const onProgress = () => {
+      throw error;
+    };
+    await expect(made.sample(SPHERE, { count: 1_000_000, params: { a: 1 }, onProgress })).rejects.toBe(error);
+  });
+
+  test('a worker that does not start, or fails: the next sampling has another', async () => {
+    // The client by itself, over a worker that does what the test wants.
+    const { createSampler } = await import('../../package/client.js');
+    /** @type {import('../../package/protocol.js').Heard[]} */
+    const heard = [];
+    let isBroken = true;
+    const sample = createSampler((events) => {
+      if (isBroken) throw new Error('blocked by the policy of the page');
+      heard.push(events);
+      return { post: () => {}, end: () => {}, hold: () => {} };
+    });
+    await expect(sample(SPHERE)).rejects.toMatchObject({
+      name: 'WorkerError',
+      message: 'The worker did not start: blocked by the policy of the page',
+    });
+    isBroken = false;
+    for (const fail of [
+      () => heard[0].onFail('its script did not load'),
+      () => heard[1].onMessage({ id: 3, error: { name: 'WorkerError', message: 'unreachable', facts: {} } }),
+    ]) {
+      const asked = sample(SPHERE);
+      await Promise.resolve();
+      fail();
+      await expect(asked).rejects.toMatchObject({ name: 'WorkerError' });
+    }
+    expect(heard).toHaveLength(2);
+  });
+});

@@ -1,0 +1,18 @@
+//! The package for npm: built, packed and tried, not published.
+
+use anyhow::Result;
+
+use crate::bundle::{self, Bundle, Declarations, Purpose};
+use crate::node;
+use crate::project::Project;
+
+/// Packs the package with the core of the site into `target/package`, and runs its tests in Node,
+/// which pack and install it themselves.
+pub(crate) fn package(project: &Project) -> Result<()> {
+    node::prepare(project)?;
+    bundle::build(project, &[Bundle::Core], Purpose::Site, Declarations::Hold)?;
+    node::script(project, "package: files and tarball", "package", &[])?;
+    node::script(project, "package: tests in Node", "package:test", &[])?;
+    println!("  packed target/package/marching-particles.tgz");
+    Ok(())
+}
