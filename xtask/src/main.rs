@@ -13,6 +13,7 @@ mod node;
 mod paper;
 mod pictures;
 mod project;
+mod python;
 mod readers;
 mod rust_source;
 mod serve;
