@@ -446,6 +446,15 @@ impl Formula {
         self.compiled.transformed_jet(p)
     }
 
+    /// How far rounding may part [`Field::jet`] from [`Formula::transformed_jet`] at each of
+    /// `points`, with the order of the operations within one node left aside: value, gradient, then
+    /// Hessian (xx, xy, xz, yy, yz, zz).
+    #[doc(hidden)]
+    #[must_use]
+    pub fn rounding(&self, points: &[DVec3]) -> Vec<[f64; 10]> {
+        self.compiled.rounding(points)
+    }
+
     /// Returns this formula with other branches.
     fn with_branches(&self, branches: Branches) -> Arc<dyn Creased> {
         let compiled = self.compiled.clone();
