@@ -56,8 +56,8 @@ pub(crate) enum Part {
     /// Files of every format in the programs that people read them with; skipped, with the reason,
     /// without Python.
     Readers,
-    /// The Python package: a wheel is built, installed and tested; skipped, with the reason, without
-    /// Python 3.9.
+    /// The Python package: a wheel is built, installed and tested; skipped, with the reason,
+    /// without Python 3.9.
     Python,
     /// Pictures of the renderer, drawn natively by Vulkan, against those that are kept.
     Pictures,
@@ -111,8 +111,8 @@ pub(crate) struct Options {
     fast: bool,
     /// Everything that the published site is held to: besides the usual parts the documentation,
     /// the bundles and the site as they are published, Firefox and WebKit, files in the programs
-    /// that read them, the Python package, pictures drawn natively, all random cases, and a soak. With parts: these, on
-    /// the published bundles and with all random cases.
+    /// that read them, the Python package, pictures drawn natively, all random cases, and a soak.
+    /// With parts: these, on the published bundles and with all random cases.
     #[arg(long)]
     all: bool,
     /// The parts to run; the usual ones if none is named.

@@ -134,8 +134,8 @@ class Sample:
         return trimesh.Trimesh(mesh.points, mesh.faces, vertex_normals=mesh.normals, process=False)
 
     def to_pyvista(self):
-        """The welded mesh as a ``pyvista.PolyData``, with the point data ``Normals``, ``radius`` and
-        ``level``."""
+        """The welded mesh as a ``pyvista.PolyData``, with the point data ``Normals``, ``radius``
+        and ``level``."""
         import pyvista
 
         mesh = self.weld()
@@ -175,8 +175,8 @@ def sample(
         radius: Repulsion radius, half the distance between neighbours. Without count, radius and
             spacing it is 0.6 % of the diagonal of the box.
         spacing: Distance between neighbours, twice the radius.
-        bounds: The box, ``((x0, y0, z0), (x1, y1, z1))``. Without it a box is fitted to the surface;
-            of a function only by its signs on grids, so give it where it is known.
+        bounds: The box, ``((x0, y0, z0), (x1, y1, z1))``. Without it a box is fitted to the
+            surface; of a function only by its signs on grids, so give it where it is known.
         params: Values of the parameters of a formula, by name; others are 1.
         gradient: A function of the points that returns the gradients of the function ``field``, (n,
             3). Without it they are found by differences, with several times as many calls.
@@ -214,7 +214,8 @@ def sample(
     elif radius is not None:
         radius = _length("radius", radius)
     if method not in METHODS:
-        raise ValueError(f"method is {method!r}, but must be one of {', '.join(map(repr, METHODS))}")
+        known = ", ".join(map(repr, METHODS))
+        raise ValueError(f"method is {method!r}, but must be one of {known}")
     if progress is not None and not callable(progress):
         raise TypeError(f"progress must be a function, and not {type(progress).__name__}")
     if bounds is not None:
@@ -222,7 +223,8 @@ def sample(
         bounds = numbers("bounds", bounds, (2, 3), what)
         if not (bounds[0] < bounds[1]).all():
             axis = "xyz"[int(np.argmin(bounds[0] < bounds[1]))]
-            raise ValueError(f"bounds must be {what}: along {axis} the lower is not below the upper")
+            fault = f"along {axis} the lower is not below the upper"
+            raise ValueError(f"bounds must be {what}: {fault}")
         bounds = tuple(bounds[0].tolist()), tuple(bounds[1].tolist())
     core = _core.sample(
         field_of(field, params, gradient),
