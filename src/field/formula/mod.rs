@@ -80,6 +80,8 @@ pub use control::Grip;
 pub use error::{FormulaError, FormulaErrorKind, Mended, utf16_offset};
 pub use lex::name_pattern;
 pub use mathml::{MathGroup, MathNode, MathToken};
+#[doc(hidden)]
+pub use spelling::similar;
 
 use super::{Creased, Evaluator, Facts, Field, Frame, Jet, UnitCell};
 use crate::math::Bounds;
