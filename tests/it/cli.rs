@@ -1,8 +1,9 @@
 //! Tests of the command-line tool, which run the binary.
 
 use serde_json::Value;
+use std::io::Write;
 use std::path::PathBuf;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 fn run(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_marching-particles"))
@@ -414,7 +415,14 @@ fn formula_error_is_marked_under_its_span() {
 
 #[test]
 fn each_invalid_argument_has_its_message() {
-    assert!(fails(2, &["sample", "--surface", "teapot"]).contains("ellipsoid"));
+    assert!(
+        fails(2, &["sample", "--surface", "teapot"]).contains("`marching-particles surfaces` lists them")
+    );
+    assert_eq!(
+        fails(2, &["sample", "--surface", "elipsoid"]).trim(),
+        "error: there is no surface `elipsoid`: did you mean `ellipsoid`?"
+    );
+    assert!(fails(2, &["sample", "--count", "0"]).contains("0 is not in 1..=4000000"));
     assert!(fails(2, &["sample", "--surface", "sphere", "--param", "q=1"]).contains("its parameters: r"));
     assert!(fails(2, &["sample", "--param", "a"]).contains("NAME=VALUE"));
     assert!(fails(2, &["sample", "--radius", "0"]).contains("positive"));
@@ -476,6 +484,68 @@ fn a_run_that_meets_the_limit_prints_what_it_has_and_says_how_many_would_fit() {
 fn a_file_that_cannot_be_written_is_named_before_anything_is_sampled() {
     let message = fails(1, &["sample", "--count", "4000000", "--out", "/nonexistent/points.ply"]);
     assert!(message.contains("/nonexistent/points.ply"), "{message}");
+}
+
+#[test]
+fn standard_output_takes_a_file_and_standard_input_points() {
+    let named = file("piped.ply");
+    let given = ["sample", "--surface", "sphere", "--radius", "5%"];
+    let path = named.to_str().expect("a plain path");
+    assert!(run(&[&given[..], &["--out", path]].concat()).status.success());
+    let wanted = std::fs::read(&named).expect("the file is there");
+    let piped = run(&[&given[..], &["--out", "-", "--format", "ply"]].concat());
+    assert_eq!(piped.stdout, wanted);
+    assert!(stderr(&piped).contains("digest ") && stderr(&piped).contains("wrote -"));
+
+    let mut child = Command::new(env!("CARGO_BIN_EXE_marching-particles"))
+        .args(["sample", "--points", "-", "--radius", "5%", "--json"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the tool was built with this test");
+    child.stdin.take().expect("a pipe").write_all(&wanted).expect("it is read");
+    let output = child.wait_with_output().expect("it ends");
+    let json: Value = serde_json::from_slice(&output.stdout).expect("a line of JSON");
+    assert_eq!(json["model"]["name"], "standard input");
+
+    let mesh = [&given[..], &["--mesh", "-"]].concat();
+    assert!(fails(2, &mesh).contains("--format; known here are glb, "));
+    assert!(fails(2, &[&mesh[..], &["--format", "csv"]].concat()).contains("known here are glb, "));
+    assert!(fails(2, &[&given[..], &["--format", "ply"]].concat()).contains("--out - or --mesh -"));
+    let twice = [&mesh[..], &["--out", "-", "--format", "ply"]].concat();
+    assert!(fails(2, &twice).contains("- is to be written twice"));
+}
+
+#[test]
+fn a_quiet_run_prints_nothing_but_errors() {
+    let path = file("quiet.xyz");
+    let quiet = ["sample", "--radius", "5%", "--quiet", "--out", path.to_str().expect("a plain path")];
+    let output = run(&quiet);
+    assert!(output.status.success() && path.exists());
+    assert_eq!((stdout(&output), stderr(&output)), (String::new(), String::new()));
+    assert!(fails(2, &["sample", "--quiet", "--count", "0"]).contains("1..=4000000"));
+}
+
+#[test]
+fn an_open_mesh_for_a_printer_is_told() {
+    let open = ["--formula", "x^2 + y^2 = 1", "--box", "2", "--radius", "5%", "--mesh"];
+    assert!(run_text(&open, "open.stl").contains("warning: the mesh is open, with 2 border loops"));
+    assert!(!run_text(&open, "open.obj").contains("the mesh is open"));
+    let closed = [&["--closed"], &open[..]].concat();
+    assert!(!run_text(&closed, "closed.stl").contains("the mesh is open"));
+}
+
+#[test]
+fn shells_complete_options_and_each_command_has_a_manual_page() {
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = stdout(&run(&["completions", shell]));
+        assert!(script.contains("chord-error") && script.contains("sweep"), "{shell}");
+    }
+    let directory = file("man");
+    assert!(run(&["man", directory.to_str().expect("a plain path")]).status.success());
+    let page = |name: &str| std::fs::read_to_string(directory.join(name)).expect("a page");
+    assert!(page("marching-particles.1").contains("completions"));
+    assert!(page("marching-particles-sample.1").contains(r"\-\-chord\-error"));
 }
 
 #[test]
@@ -613,7 +683,7 @@ fn a_file_of_two_gigabytes_is_refused_before_it_is_read() {
 
 #[test]
 fn a_formula_has_a_box_that_fits_and_a_surface_that_is_cut_is_told_with_what_to_do() {
-    let fast = ["--radius", "2%", "--relax", "0", "--quiet"];
+    let fast = ["--radius", "2%", "--relax", "0"];
     let text = |more: &[&str]| String::from_utf8_lossy(&run(&[more, &fast].concat()).stdout).into_owned();
     let tangle = ["sample", "--formula", "x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8"];
     let whole = text(&tangle);

@@ -8,7 +8,7 @@ use marching_particles::field::formula::{
     FUNCTIONS, Formula, FormulaErrorKind as Kind, MAX_FORMULA_BYTES, MathGroup, MathNode,
 };
 use marching_particles::field::gallery::SURFACES;
-use marching_particles::field::{Enclosure, Field, Jet};
+use marching_particles::field::{Enclosure, Field};
 use marching_particles::math::{Bounds, Sym3};
 use proptest::prelude::*;
 
@@ -326,29 +326,8 @@ proptest! {
         point in prop::array::uniform3(-2.0..2.0_f64),
     ) {
         let Ok(field) = Formula::as_written(&text, &[]) else { return Ok(()) };
-        let p = DVec3::from_array(point);
-        let other = field.transformed_jet(p);
-        let jet = field.jet(p);
-        // The effect of rounding depends on the formula. Its measure here is the change of the
-        // result when the point moves by some thousand units in the last place.
-        let near = field.jet(p * (1.0 + 1e-12));
-        let (exact, moved, other) = (numbers(&jet), numbers(&near), numbers(&other));
-        let size = 1.0 + exact.iter().map(|v| v.abs()).sum::<f64>();
-        let steady = exact.iter().zip(&moved).all(|(a, b)| (a - b).abs() < 1e-7 * size);
-        if steady && size < 1e9 {
-            for (a, b) in exact.iter().zip(&other) {
-                // If a branch that is not taken overflows, the transformed derivative may be NaN,
-                // but not wrong.
-                prop_assert!(b.is_nan() || (a - b).abs() < 1e-6 * size, "{text}: {exact:?} but {other:?}");
-            }
-        }
+        harness::check_derivatives(&field, &[DVec3::from_array(point)]);
     }
-}
-
-/// Value, gradient and Hessian in one array.
-fn numbers(jet: &Jet) -> [f64; 10] {
-    let (g, h) = (jet.gradient, jet.hessian);
-    [jet.value, g.x, g.y, g.z, h.xx, h.xy, h.xz, h.yy, h.yz, h.zz]
 }
 
 /// Parses `text`; if that fails, the error must be usable.

@@ -17,6 +17,7 @@ use crate::native;
 use crate::node;
 use crate::pictures;
 use crate::project::{Project, cargo};
+use crate::python;
 use crate::readers;
 use crate::site;
 use crate::step;
@@ -55,6 +56,9 @@ pub(crate) enum Part {
     /// Files of every format in the programs that people read them with; skipped, with the reason,
     /// without Python.
     Readers,
+    /// The Python package: a wheel is built, installed and tested; skipped, with the reason,
+    /// without Python 3.9.
+    Python,
     /// Pictures of the renderer, drawn natively by Vulkan, against those that are kept.
     Pictures,
     /// A core of the browser tests in Firefox and WebKit; skipped, with the reason, where they
@@ -69,7 +73,7 @@ const USUAL: [Part; 7] =
     [Part::Format, Part::Lint, Part::Native, Part::LintWasm, Part::Parity, Part::Page, Part::Chromium];
 
 /// Everything.
-const ALL: [Part; 15] = [
+const ALL: [Part; 16] = [
     Part::Format,
     Part::Deny,
     Part::Lint,
@@ -78,6 +82,7 @@ const ALL: [Part; 15] = [
     Part::LintWasm,
     Part::Gltf,
     Part::Readers,
+    Part::Python,
     Part::Pictures,
     Part::Parity,
     Part::Release,
@@ -106,8 +111,8 @@ pub(crate) struct Options {
     fast: bool,
     /// Everything that the published site is held to: besides the usual parts the documentation,
     /// the bundles and the site as they are published, Firefox and WebKit, files in the programs
-    /// that read them, pictures drawn natively, all random cases, and a soak. With parts: these, on
-    /// the published bundles and with all random cases.
+    /// that read them, the Python package, pictures drawn natively, all random cases, and a soak.
+    /// With parts: these, on the published bundles and with all random cases.
     #[arg(long)]
     all: bool,
     /// The parts to run; the usual ones if none is named.
@@ -204,6 +209,7 @@ impl Checks<'_> {
                 Part::Release => release(self.project),
                 Part::Gltf => gltf(self.project),
                 Part::Readers => readers::test(self.project),
+                Part::Python => python::test(self.project),
                 Part::Pictures => pictures::test(self.project),
                 Part::Page => self.page(),
                 Part::Chromium if self.purpose == Purpose::Site => self.chromium(&[("ALL", "1")]),

@@ -26,8 +26,8 @@ pub(crate) fn test(project: &Project) -> Result<()> {
     let mut command = Command::new(cargo());
     command
         .current_dir(&project.root)
-        .args(["deny", "--locked", "--offline", "--log-level", "warn", "check", "--hide-inclusion-graph"])
-        .args(["licenses", "bans", "sources"]);
+        .args(["deny", "--workspace", "--locked", "--offline", "--log-level", "warn"])
+        .args(["check", "--hide-inclusion-graph", "licenses", "bans", "sources"]);
     step::run(LABEL, &mut command, "deny.toml has the rules.").map(drop)
 }
 

@@ -14,6 +14,7 @@ mod package;
 mod paper;
 mod pictures;
 mod project;
+mod python;
 mod readers;
 mod rust_source;
 mod sensitivity;

@@ -2,16 +2,15 @@
 //! Open3D, libigl, meshio, pygltflib, pandas and NumPy, in a Python environment of the project's
 //! own. Without Python the check is skipped, and the reason is printed.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Result, bail};
 
 use crate::debian;
-use crate::fingerprint::Fingerprint;
 use crate::native;
-use crate::project::{Project, cargo, on_path};
+use crate::project::{Project, cargo};
+use crate::python::{self, Environment};
 use crate::step;
 
 const LABEL: &str = "files: the programs that read them";
@@ -26,7 +25,7 @@ const LIBRARIES: [&str; 5] = ["libgl1", "libopengl0", "libusb-1.0-0", "libgomp1"
 ///
 /// If the environment cannot be made, or a program finds a file faulty.
 pub(crate) fn test(project: &Project) -> Result<()> {
-    let python = match python() {
+    let python = match python::interpreter() {
         Ok(python) => python,
         Err(error) => {
             println!("  {LABEL} … SKIPPED: {error:#}");
@@ -47,42 +46,16 @@ pub(crate) fn test(project: &Project) -> Result<()> {
     Ok(())
 }
 
-/// Finds a Python that makes environments with pip in them.
-fn python() -> Result<PathBuf> {
-    let found = ["python3", "python"].into_iter().find_map(on_path);
-    let python = found.context("Python is not on the search path (https://www.python.org/downloads)")?;
-    let mut modules = Command::new(&python);
-    modules.args(["-c", "import ensurepip, venv"]);
-    step::capture(&mut modules, "")
-        .context("Python has no pip to install packages with (Debian: python3-venv)")?;
-    Ok(python)
-}
-
 /// The Python of an environment with the programs of the list.
-fn environment(project: &Project, python: &Path) -> Result<PathBuf> {
+fn environment(project: &Project, interpreter: &Path) -> Result<PathBuf> {
     let list = project.root.join("tests/readers/requirements.txt");
-    let version = step::capture(Command::new(python).arg("--version"), "")?;
-    let wanted = Fingerprint::default().file(&list)?.text("python", version.trim()).finish();
     let folder = project.scratch("readers")?.join("python");
-    let own = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    let stamp = folder.join(".installed");
-    if !fs::read_to_string(&stamp).is_ok_and(|have| have == wanted) {
-        let mut create = Command::new(python);
-        create.args(["-m", "venv", "--clear"]).arg(&folder);
-        step::run("files: Python environment", &mut create, "")?;
-        let mut install = Command::new(&own);
-        install
-            .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"])
-            .arg(&list);
-        let advice = format!("Is PyPI reachable, and has it these versions for {}?", version.trim());
-        step::run("files: the programs that read them (pip install)", &mut install, &advice)?;
-        if imports(&own).is_err() {
-            debian::install("libraries of MeshLab and Open3D", &LIBRARIES)?;
-            if let Err(error) = imports(&own) {
-                bail!("{error:#}\n\nInstall the libraries that it misses.");
-            }
+    let own = Environment::kept(interpreter, folder, &list, "files")?.program("python");
+    if imports(&own).is_err() {
+        debian::install("libraries of MeshLab and Open3D", &LIBRARIES)?;
+        if let Err(error) = imports(&own) {
+            bail!("{error:#}\n\nInstall the libraries that it misses.");
         }
-        fs::write(&stamp, wanted).with_context(|| format!("could not write {}", stamp.display()))?;
     }
     Ok(own)
 }

@@ -3,12 +3,13 @@
 use crate::options::{SamplingOptions, list, number, whole};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 use marching_particles::export::VERTICES;
 use marching_particles::field::{model, rbf::Pull};
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::job::CENTRES;
 use marching_particles::session::{BoxCell, BoxFaces, BoxMode, FileRecord, SolidSettings};
-use marching_particles::{Format, Measured, Placement, Unit, UpAxis, Vertices, gallery};
+use marching_particles::{Format, Measured, MeshFormat, Placement, Unit, UpAxis, Vertices, gallery};
 use std::path::PathBuf;
 
 /// Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles
@@ -63,10 +64,25 @@ pub(crate) enum Command {
     Sample(Box<SampleArguments>),
     /// List the named surfaces
     Surfaces(Surfaces),
+    /// Print a script that completes commands and options in a shell
+    #[command(after_help = COMPLETIONS_AFTER)]
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Write manual pages, one for each command
+    Man {
+        /// Directory for the pages, such as ~/.local/share/man/man1
+        directory: PathBuf,
+    },
     /// Move a surface by a parameter, and write the particles that follow it to numbered files
     #[command(long_about = SWEEP_LONG)]
     Sweep(Box<SweepArguments>),
 }
+
+const COMPLETIONS_AFTER: &str = "\
+Example:
+  marching-particles completions bash > ~/.local/share/bash-completion/completions/marching-particles";
 
 const SWEEP_LONG: &str = "\
 Move a surface by a parameter, and write the particles that follow it to numbered files.
@@ -104,7 +120,7 @@ pub(crate) struct SweepArguments {
     #[arg(long, value_name = "WORD", value_parser = one_of(&Format::ALL), default_value = "ply", help_heading = "Output")]
     pub(crate) format: (&'static str, Format),
 
-    /// Show no progress bar (there is none without a terminal)
+    /// Print nothing but errors, and show no progress bar (there is none without a terminal)
     #[arg(long, short, help_heading = "Output")]
     pub(crate) quiet: bool,
 }
@@ -143,6 +159,7 @@ Examples:
   marching-particles sample --formula \"x^2 + y^2 + z^2 = 1\" --mesh ball.3mf --scale 25 --unit mm
   marching-particles sample --like part.glb --radius 0.3% --mesh finer.glb
   marching-particles sample --points scan.ply --centres 400 --out even.ply --mesh even.glb
+  marching-particles sample --surface torus --mesh - --format glb --quiet | viewer
   marching-particles sample --formula \"(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3\" --relax 0
 
 Exit codes:
@@ -183,6 +200,11 @@ pub(crate) struct SampleArguments {
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) mesh: Vec<PathBuf>,
 
+    /// Format of what goes to standard output, whose name in --out or --mesh is `-`. The report
+    /// then goes to standard error
+    #[arg(long, value_name = "WORD", value_parser = file_formats(), help_heading = "Output")]
+    pub(crate) format: Option<String>,
+
     /// Vertices of the files of --mesh on sharp edges, where the sides have normals of their own:
     /// in glb, obj and ply. stl and 3mf have no normals
     #[arg(long, value_name = "WORD", value_parser = vertices(), default_value = "joined", help_heading = "Output")]
@@ -209,7 +231,8 @@ pub(crate) struct SampleArguments {
     #[arg(long, help_heading = "Output")]
     pub(crate) json: bool,
 
-    /// Show no progress bar (there is none without a terminal)
+    /// Print nothing but errors, and the line of --json; show no progress bar (there is none
+    /// without a terminal)
     #[arg(long, short, help_heading = "Output")]
     pub(crate) quiet: bool,
 }
@@ -226,8 +249,8 @@ pub(crate) struct SurfaceArguments {
     pub(crate) formula: Option<String>,
 
     /// File of points or of a mesh: PLY, OBJ, STL, OFF, PCD, or text with a point a line (XYZ, PTS,
-    /// CSV), up to 50 MB. A smooth surface is fitted to all of them. Normals come from the file,
-    /// else from its faces, else they are estimated
+    /// CSV), up to 50 MB; `-` is standard input. A smooth surface is fitted to all of them. Normals
+    /// come from the file, else from its faces, else they are estimated
     #[arg(long, value_name = "FILE", conflicts_with_all = ["surface", "formula", "parameters"], help_heading = "Surface")]
     pub(crate) points: Option<PathBuf>,
 
@@ -319,6 +342,14 @@ fn one_of<T: Copy + Send + Sync>(
     PossibleValuesParser::new(table.iter().map(|(name, _)| *name)).try_map(|given| {
         table.iter().find(|(name, _)| *name == given).copied().ok_or("there is no such name")
     })
+}
+
+/// Extensions of all formats of files.
+fn file_formats() -> PossibleValuesParser {
+    let particles = Format::ALL.iter().map(|(name, _)| *name);
+    let meshes =
+        MeshFormat::ALL.iter().map(|(name, _)| *name).filter(|name| Format::of_extension(name).is_none());
+    PossibleValuesParser::new(particles.chain(meshes))
 }
 
 /// One of the ways to write vertices, with what it does.

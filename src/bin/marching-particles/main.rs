@@ -12,7 +12,11 @@ mod surfaces;
 mod sweep;
 
 use arguments::{Arguments, Command};
-use clap::Parser;
+use clap::{CommandFactory, Parser};
+use clap_complete::Shell;
+use failure::Failure;
+use std::io;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -20,6 +24,8 @@ fn main() -> ExitCode {
         Command::Sample(arguments) => sample::run(*arguments),
         Command::Surfaces(arguments) => surfaces::run(&arguments),
         Command::Sweep(arguments) => sweep::run(*arguments),
+        Command::Completions { shell } => completions(shell),
+        Command::Man { directory } => man(&directory),
     };
     match result {
         Ok(code) => code,
@@ -28,4 +34,23 @@ fn main() -> ExitCode {
             failure.code()
         }
     }
+}
+
+/// Prints the script with which a shell completes the arguments.
+fn completions(shell: Shell) -> Result<ExitCode, Failure> {
+    let mut command = Arguments::command();
+    let name = command.get_name().to_owned();
+    // It is made at once, since the generator panics when its reader goes.
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut command, name, &mut script);
+    io::Write::write_all(&mut io::stdout(), &script)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes the manual pages of all commands.
+fn man(directory: &Path) -> Result<ExitCode, Failure> {
+    let failed = |error| Failure::File { path: PathBuf::from(directory), error };
+    std::fs::create_dir_all(directory).map_err(failed)?;
+    clap_mangen::generate_to(Arguments::command(), directory).map_err(failed)?;
+    Ok(ExitCode::SUCCESS)
 }

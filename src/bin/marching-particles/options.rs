@@ -56,12 +56,18 @@ pub(crate) fn number(text: &str) -> Result<f64, String> {
 
 /// A whole number from an argument.
 pub(crate) fn whole(text: &str, range: &RangeInclusive<u64>) -> Result<u64, String> {
+    whole_up_to(text, range, *range.end())
+}
+
+/// A whole number from an argument. Up to `taken` it is left to what it is for to refuse one above
+/// the range.
+fn whole_up_to(text: &str, range: &RangeInclusive<u64>, taken: u64) -> Result<u64, String> {
     let number = number(text)?;
     let (least, most) = (*range.start(), *range.end());
     if number.fract() != 0.0 {
         return Err(format!("{} is not a whole number", shortest_text(number)));
     }
-    if number < least as f64 || number > most as f64 {
+    if number < least as f64 || number > taken as f64 {
         return Err(format!("{} is not in {least}..={most}", shortest_text(number)));
     }
     Ok(number as u64)
@@ -230,8 +236,8 @@ fn option(setting: &Setting) -> Arg {
             // Counts that are too large are refused with what they are counts of, by the settings
             // themselves.
             let largest = if max > f64::from(u32::MAX) { u64::MAX } else { u32::MAX.into() };
-            let range = min as u64..=largest;
-            arg.value_name("N").value_parser(move |text: &str| whole(text, &range))
+            let range = min as u64..=max as u64;
+            arg.value_name("N").value_parser(move |text: &str| whole_up_to(text, &range, largest))
         }
         SettingKind::Number if setting.is_share() => arg.value_name("SHARE%|LENGTH").value_parser(length),
         SettingKind::Number => arg.value_name("NUMBER").value_parser(number),

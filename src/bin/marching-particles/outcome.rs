@@ -46,6 +46,9 @@ pub(crate) struct Outcome {
     pub(crate) peak_sampling_mb: Option<f64>,
     /// Names of the files written, with replacement characters for invalid Unicode.
     pub(crate) files: Vec<String>,
+    /// Whether one of the files is of a format that is printed in.
+    #[serde(skip)]
+    pub(crate) is_printed: bool,
 }
 
 /// Counts of a mesh, as the output gives them.

@@ -6,12 +6,16 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
+/// The name of standard output among files, and of standard input.
+pub(crate) const STANDARD: &str = "-";
+
 /// A file that is written beside its path and takes the place of what is there when it is complete.
-/// One that is dropped before is removed, and what is there stays.
+/// One that is dropped before is removed, and what is there stays. Standard output has nothing
+/// beside it.
 #[derive(Debug)]
 pub(crate) struct OutputFile {
     path: PathBuf,
-    beside: NamedTempFile,
+    beside: Option<NamedTempFile>,
 }
 
 impl OutputFile {
@@ -37,6 +41,9 @@ impl OutputFile {
     }
 
     fn open(path: &Path) -> io::Result<Self> {
+        if path == Path::new(STANDARD) {
+            return Ok(Self { path: path.to_owned(), beside: None });
+        }
         let path = resolved(path)?;
         let mut builder = Builder::new();
         builder.prefix(".marching-particles-");
@@ -47,12 +54,16 @@ impl OutputFile {
         #[cfg(unix)]
         builder.permissions(there.map_or_else(new_file, |there| there.permissions()));
         let directory = path.parent().unwrap_or(Path::new("."));
-        Ok(Self { beside: builder.tempfile_in(directory)?, path })
+        Ok(Self { beside: Some(builder.tempfile_in(directory)?), path })
     }
 
     /// Writes the file and puts it in its place.
     pub(crate) fn write(self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
         let Self { path, beside } = self;
+        let Some(beside) = beside else {
+            let mut out = BufWriter::new(io::stdout().lock());
+            return Ok(write(&mut out).and_then(|()| out.flush())?);
+        };
         let mut out = BufWriter::new(beside);
         let written = write(&mut out)
             .and_then(|()| out.into_inner().map_err(io::IntoInnerError::into_error))

@@ -1,13 +1,14 @@
 //! Fields from points: those of a file or of a built-in model.
 
 use crate::failure::Failure;
+use crate::output::STANDARD;
 use indicatif::ProgressBar;
 use marching_particles::field::model;
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::{Job, JobError};
 use marching_particles::pointcloud::read::check_size;
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::Path;
 
 /// Slices of work between two updates of the progress bar: 1 to 5 ms.
@@ -15,6 +16,9 @@ const BUDGET: u32 = 100;
 
 /// Fits a field to the points of a file.
 pub(crate) fn of_file(path: &Path, centres: u32, bar: &ProgressBar) -> Result<Fit, Failure> {
+    if path == Path::new(STANDARD) {
+        return of_standard_input(centres, bar);
+    }
     let wrong = |error: JobError| Failure::Usage(format!("{}: {error}", path.display()));
     let unreadable = |error| Failure::Unreadable { path: path.to_owned(), error };
     let file = File::open(path).map_err(unreadable)?;
@@ -23,10 +27,23 @@ pub(crate) fn of_file(path: &Path, centres: u32, bar: &ProgressBar) -> Result<Fi
     if metadata.is_file() {
         check_size(metadata.len()).map_err(|error| wrong(error.into()))?;
     }
-    let mut bytes = Vec::new();
-    file.take(u64::from(model::MAX_FILE_BYTES) + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    let bytes = read(file).map_err(unreadable)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     solve(Job::file(&name, bytes, centres), bar).map_err(wrong)
+}
+
+/// Fits a field to the points that come by standard input, in a format that they tell themselves.
+fn of_standard_input(centres: u32, bar: &ProgressBar) -> Result<Fit, Failure> {
+    const NAME: &str = "standard input";
+    let bytes = read(io::stdin()).map_err(|error| Failure::Unreadable { path: NAME.into(), error })?;
+    solve(Job::file(NAME, bytes, centres), bar).map_err(|error| Failure::Usage(format!("{NAME}: {error}")))
+}
+
+/// All of a file, but no more than one byte above the limit.
+fn read(file: impl Read) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    file.take(u64::from(model::MAX_FILE_BYTES) + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// Fits a field to a built-in model.

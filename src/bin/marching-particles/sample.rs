@@ -3,10 +3,11 @@
 use crate::arguments::{BoxChoice, SampleArguments, SurfaceArguments};
 use crate::failure::{Failure, LIMIT};
 use crate::outcome::{MeshCounts, Outcome, Seconds};
-use crate::output::{OutputFile, record_path};
+use crate::output::{OutputFile, STANDARD, record_path};
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
 use marching_particles::export::VERTICES;
+use marching_particles::field::formula;
 use marching_particles::field::model::{self, ModelInfo};
 use marching_particles::math::shortest_text;
 use marching_particles::pointcloud::fit::Fit;
@@ -17,6 +18,7 @@ use marching_particles::{
     Bounds, Error, Field, Format, MeshFile, MeshFormat, Method, Parameter, ParticleFile, Phase, Reach,
     RecordText, Run, Settings, StopReason, Vertices, gallery,
 };
+use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -56,11 +58,15 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         arguments.complete(record);
     }
     let arguments = &arguments;
-    let formats = formats(&arguments.out, Format::of_extension, &Format::ALL)?;
-    let mesh_formats = self::formats(&arguments.mesh, MeshFormat::of_extension, &MeshFormat::ALL)?;
+    let formats = formats(arguments, &arguments.out, Format::of_extension, &Format::ALL)?;
+    let mesh_formats = self::formats(arguments, &arguments.mesh, MeshFormat::of_extension, &MeshFormat::ALL)?;
+    let is_piped = arguments.out.iter().chain(&arguments.mesh).any(|path| is_standard(path));
+    if arguments.format.is_some() && !is_piped {
+        return Err(Failure::Usage("--format is for standard output: --out - or --mesh -".to_owned()));
+    }
     check_vertices(arguments)?;
     let records: Vec<PathBuf> = (arguments.out.iter().zip(&formats))
-        .filter(|(_, format)| **format == Format::Csv)
+        .filter(|(path, format)| **format == Format::Csv && !is_standard(path))
         .map(|(path, _)| record_path(path))
         .collect();
     let paths: Vec<&PathBuf> = arguments.out.iter().chain(&arguments.mesh).chain(&records).collect();
@@ -107,6 +113,8 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         error => Failure::Nothing(refusal_of_run(&error)),
     })?;
     let mesh = is_joined.then(|| MeshCounts::new(&sample));
+    let is_printed =
+        mesh_formats.iter().any(|format| matches!(format, MeshFormat::Stl | MeshFormat::ThreeMf));
     let record = RecordText::new(&serde_json::to_string(&made).map_err(std::io::Error::other)?);
     timed(&mut seconds.writing, || {
         for (format, output) in formats.into_iter().zip(outputs.by_ref()) {
@@ -142,11 +150,13 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         peak_mb: peak_mb(),
         peak_sampling_mb,
         files: paths.iter().map(|path| path.display().to_string()).collect(),
+        is_printed,
     };
-    let mut out = std::io::stdout().lock();
+    let mut out: Box<dyn Write> =
+        if is_piped { Box::new(std::io::stderr()) } else { Box::new(std::io::stdout()) };
     if arguments.json {
         writeln!(out, "{}", serde_json::to_string(&outcome).map_err(std::io::Error::other)?)?;
-    } else {
+    } else if !arguments.quiet {
         summary::write(&mut out, &outcome)?;
     }
     if capped {
@@ -189,7 +199,7 @@ fn check_vertices(arguments: &SampleArguments) -> Result<(), Failure> {
     let choice = VERTICES.iter().find(|choice| choice.value == arguments.vertices);
     let known = choice.map_or(&[][..], |choice| choice.formats);
     let is_of = |path: &PathBuf| {
-        let extension = path.extension().unwrap_or_default().to_string_lossy();
+        let extension = extension(arguments, path);
         known.iter().any(|known| extension.eq_ignore_ascii_case(known))
     };
     if arguments.vertices == Vertices::default() || arguments.mesh.iter().any(is_of) {
@@ -204,6 +214,7 @@ fn check_vertices(arguments: &SampleArguments) -> Result<(), Failure> {
 
 /// Format of each file. It is checked before any work is done.
 fn formats<T>(
+    arguments: &SampleArguments,
     paths: &[PathBuf],
     of_extension: impl Fn(&str) -> Option<T>,
     all: &[(&str, T)],
@@ -211,17 +222,30 @@ fn formats<T>(
     paths
         .iter()
         .map(|path| {
-            let extension = path.extension().unwrap_or_default().to_string_lossy();
-            of_extension(&extension).ok_or_else(|| {
+            of_extension(&extension(arguments, path)).ok_or_else(|| {
                 let known: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
-                Failure::Usage(format!(
-                    "{} has no extension that names a format; known are {}",
-                    path.display(),
-                    known.join(", ")
-                ))
+                let known = known.join(", ");
+                Failure::Usage(if is_standard(path) {
+                    format!("standard output takes its format from --format; known here are {known}")
+                } else {
+                    format!("{} has no extension that names a format; known are {known}", path.display())
+                })
             })
         })
         .collect()
+}
+
+/// Whether a file to write is standard output.
+fn is_standard(path: &Path) -> bool {
+    path == Path::new(STANDARD)
+}
+
+/// The extension that names the format of a file.
+fn extension<'a>(arguments: &'a SampleArguments, path: &'a Path) -> Cow<'a, str> {
+    match &arguments.format {
+        Some(format) if is_standard(path) => format.into(),
+        _ => path.extension().unwrap_or_default().to_string_lossy(),
+    }
 }
 
 /// Fit to a file of points or a built-in model, if one is requested.
@@ -338,8 +362,11 @@ fn refused_field(arguments: &SurfaceArguments, fault: Fault) -> Failure {
 
 fn unknown_surface(id: &str) -> String {
     let surfaces = gallery::SURFACES.iter().map(|surface| surface.id);
-    let known: Vec<&str> = surfaces.chain(model::MODELS.iter().map(|model| model.id)).collect();
-    format!("there is no surface `{id}`; known are {}", known.join(", "))
+    let known = surfaces.chain(model::MODELS.iter().map(|model| model.id));
+    match formula::similar(id, known) {
+        Some(guess) => format!("there is no surface `{id}`: did you mean `{guess}`?"),
+        None => format!("there is no surface `{id}`; `marching-particles surfaces` lists them"),
+    }
 }
 
 /// Steps a run to its end and adds the times of the phases to `seconds`.

@@ -82,6 +82,13 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     for warning in of_points.cloned().chain(of_run) {
         writeln!(out, "warning: {warning}")?;
     }
+    if let Some(mesh) = outcome.mesh.as_ref().filter(|mesh| outcome.is_printed && mesh.volume.is_none()) {
+        let loops = counted(mesh.borders + mesh.holes, "border loop", "border loops");
+        writeln!(
+            out,
+            "warning: the mesh is open, with {loops}, and cannot be printed; --closed closes what the box cuts"
+        )?;
+    }
     for file in &outcome.files {
         writeln!(out, "wrote {file}")?;
     }

@@ -67,6 +67,9 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
         }
         _ => String::new(),
     };
+    if arguments.quiet {
+        return Ok(ExitCode::SUCCESS);
+    }
     let mut out = std::io::stdout().lock();
     let directory = arguments.out.display();
     writeln!(out, "{} files in {directory}: {least} to {most} particles, {next} in all{again}", frames + 1)?;

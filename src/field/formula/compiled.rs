@@ -7,7 +7,7 @@ use super::operations::Unary;
 use super::program::Program;
 use super::{MAX_OPERATIONS, Parameter, build, derivative, interval, scalar};
 use crate::field::Jet;
-use crate::math::Sym3;
+use crate::math::{Bounds, Interval, Sym3};
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 
@@ -163,5 +163,40 @@ impl Compiled {
             gradient: DVec3::from_array([1, 2, 3].map(result)),
             hessian: Sym3 { xx, xy, xz, yy, yz, zz },
         }
+    }
+
+    /// How far rounding may part [`Compiled::jet`] from [`Compiled::transformed_jet`] at each of
+    /// `points`: value, gradient, then Hessian.
+    ///
+    /// Both ways of deriving f are bounded at the point in interval arithmetic, which rounds
+    /// outward at every operation, and the widths add up. A difference that cancels is as wide as
+    /// its terms.
+    /// The bounds take subnormal results for exact, and what overflows has no size: where there is
+    /// such a result, any difference is possible.
+    pub(super) fn rounding(&self, points: &[DVec3]) -> Vec<[f64; 10]> {
+        let (mut graph, mut outputs) = self.with_hessian();
+        graph.keep_sums();
+        let forward = [0, 1, 2].map(|axis| derivative::forward(&mut graph, &[self.root], axis)[0]);
+        let columns = [0, 1, 2].map(|axis| derivative::forward(&mut graph, &forward, axis));
+        outputs.push(self.root);
+        outputs.extend(forward);
+        outputs.extend(scalar::PAIRS.map(|(i, j)| columns[j][i]));
+        let nodes = graph.needed_by(&outputs);
+        let mut rows = Vec::new();
+        let widths = points.iter().map(|&p| {
+            interval::bounds(&graph, &nodes, &self.values, &Bounds::point(p), &mut rows);
+            let bounds = |id: Id| rows[id as usize].at(0).bounds;
+            let is_extreme = |id: &Id| {
+                let Interval { lo, hi } = bounds(*id);
+                lo <= hi && [lo, hi].iter().any(|end| end.is_subnormal() || end.is_infinite())
+            };
+            let leaves_range = nodes.iter().any(is_extreme);
+            let width = |n: usize| {
+                let Interval { lo, hi } = bounds(outputs[n]);
+                if lo <= hi && !leaves_range { hi - lo } else { f64::INFINITY }
+            };
+            core::array::from_fn(|n| width(n) + width(n + 10))
+        });
+        widths.collect()
     }
 }

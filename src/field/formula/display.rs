@@ -58,7 +58,9 @@ pub(super) fn plain_equation(equation: &Equation) -> String {
         write(&mut out, &definition.body);
         out.push_str("; ");
     }
-    if equation.looks_like_definition() {
+    // A lone name before the `=` may be read as that of the function.
+    let is_lone = matches!(equation.left.kind, ExprKind::Parameter(_) | ExprKind::Constant(_));
+    if equation.looks_like_definition() || is_lone && equation.right.is_some() {
         out.push('(');
         write(&mut out, &equation.left);
         out.push(')');

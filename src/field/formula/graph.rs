@@ -136,6 +136,8 @@ pub(super) struct Graph {
     /// independence of the coordinate. It does not in the formula itself: `0*ln(x)` is undefined
     /// for negative x.
     zero_annihilates: bool,
+    /// Whether sums stay in the order in which they are asked for.
+    keeps_sums: bool,
 }
 
 impl Graph {
@@ -276,6 +278,11 @@ impl Graph {
         self.zero_annihilates = true;
     }
 
+    /// Leaves sums in their order from now on: in another order they round differently.
+    pub(super) fn keep_sums(&mut self) {
+        self.keeps_sums = true;
+    }
+
     /// Index of the node, if it exists.
     pub(super) fn find(&self, node: Node) -> Option<Id> {
         self.place(node).ok().map(|at| self.sorted[at])
@@ -380,6 +387,9 @@ impl Graph {
             _ => {}
         }
         let (a, b) = self.ordered(a, b);
+        if self.keeps_sums {
+            return self.folded(Node::Binary(Binary::Add, a, b));
+        }
         // (v + u) + w = v + (u + w) for uniform u and w saves one operation per point.
         if self.is_uniform(b)
             && let Node::Binary(Binary::Add, v, u) = self.node(a)

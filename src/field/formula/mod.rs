@@ -80,6 +80,8 @@ pub use control::Grip;
 pub use error::{FormulaError, FormulaErrorKind, Mended, utf16_offset};
 pub use lex::name_pattern;
 pub use mathml::{MathGroup, MathNode, MathToken};
+#[doc(hidden)]
+pub use spelling::similar;
 
 use super::{Creased, Evaluator, Facts, Field, Frame, Jet, UnitCell};
 use crate::math::Bounds;
@@ -444,6 +446,15 @@ impl Formula {
     #[must_use]
     pub fn transformed_jet(&self, p: DVec3) -> Jet {
         self.compiled.transformed_jet(p)
+    }
+
+    /// How far rounding may part [`Field::jet`] from [`Formula::transformed_jet`] at each of
+    /// `points`, with the order of the operations within one node left aside: value, gradient, then
+    /// Hessian (xx, xy, xz, yy, yz, zz).
+    #[doc(hidden)]
+    #[must_use]
+    pub fn rounding(&self, points: &[DVec3]) -> Vec<[f64; 10]> {
+        self.compiled.rounding(points)
     }
 
     /// Returns this formula with other branches.

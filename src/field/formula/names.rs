@@ -57,6 +57,10 @@ impl Parser<'_> {
             let message = "Euler's number is written `e`. Or add a slider `E`";
             return Err(FormulaError::new(ErrorKind::UnknownName, span, message).suggest("e").unknown(&name));
         }
+        if name == "return" {
+            let message = "`return` stands before the last expression alone: choose another name";
+            return Err(FormulaError::new(ErrorKind::UnexpectedSymbol, span, message));
+        }
         if !self.names.iter().any(|(known, _)| *known == name) {
             self.names.push((name.clone(), span.clone()));
         }

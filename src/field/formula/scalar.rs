@@ -22,7 +22,7 @@ pub(super) struct ForwardJet<const N: usize> {
 const ENTRIES: usize = 6;
 
 /// Axes of the entries of the Hessian.
-const PAIRS: [(usize, usize); ENTRIES] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+pub(super) const PAIRS: [(usize, usize); ENTRIES] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
 impl<const N: usize> ForwardJet<N> {
     fn uniform(value: f64) -> Self {
@@ -79,9 +79,24 @@ impl<const N: usize> ForwardJet<N> {
         out
     }
 
-    fn reciprocal(&self, axes: u8) -> Self {
-        let value = 1.0 / self.value;
-        self.apply([value, -value * value, 2.0 * value * value * value], axes)
+    /// The quotient by a divisor that depends on `axes`. The rules for it divide by the divisor
+    /// once: its square may overflow where the quotient does not.
+    fn div(&self, divisor: &Self, axes: u8) -> Self {
+        let has = |k: usize| axes >> k & 1 == 1;
+        // What does not depend on an axis has the derivative 0 there, also where the rest is
+        // infinite.
+        let product = |k: usize, factor: f64, slope: f64| if has(k) { factor * slope } else { 0.0 };
+        let mut out = Self::uniform(self.value / divisor.value);
+        for k in 0..3 {
+            out.first[k] = (self.first[k] - product(k, out.value, divisor.first[k])) / divisor.value;
+        }
+        for (n, (i, j)) in PAIRS.into_iter().enumerate().take(N) {
+            let curve = if has(i) { product(j, out.value, divisor.second[n]) } else { 0.0 };
+            let crossed =
+                product(j, out.first[i], divisor.first[j]) + product(i, out.first[j], divisor.first[i]);
+            out.second[n] = (self.second[n] - curve - crossed) / divisor.value;
+        }
+        out
     }
 }
 
@@ -186,7 +201,7 @@ fn binary<const N: usize>(
         Binary::Add => a.add(&b),
         Binary::Sub => a.add(&b.scale(-1.0)),
         Binary::Mul => a.mul(&b),
-        Binary::Div => ForwardJet { value: a.value / b.value, ..a.mul(&b.reciprocal(of_b)) },
+        Binary::Div => a.div(&b, of_b),
         Binary::Min if a.value <= b.value => a,
         Binary::Max if a.value >= b.value => a,
         Binary::Min | Binary::Max if a.value.is_nan() || b.value.is_nan() => a.add(&b).scale(f64::NAN),
@@ -212,10 +227,10 @@ fn binary<const N: usize>(
             // conditioned.
             let angle = operation.evaluate(a.value, b.value);
             let jet = if a.value.abs() <= b.value.abs() {
-                let ratio = a.mul(&b.reciprocal(of_b));
+                let ratio = a.div(&b, of_b);
                 ratio.apply(Unary::Atan.jet(ratio.value), axes)
             } else {
-                let ratio = b.mul(&a.reciprocal(of_a));
+                let ratio = b.div(&a, of_a);
                 ratio.apply(Unary::Atan.jet(ratio.value), axes).scale(-1.0)
             };
             ForwardJet { value: angle, ..jet }
@@ -235,7 +250,7 @@ fn smooth_minimum<const N: usize>(
     let value = smin(blend, a.value, b.value, k.value);
     let k = if k.value > MIN_BLEND_WIDTH { *k } else { ForwardJet::uniform(MIN_BLEND_WIDTH) };
     let difference = a.add(&b.scale(-1.0));
-    let u = difference.mul(&k.reciprocal(axes));
+    let u = difference.div(&k, axes);
     if u.value >= 1.0 {
         return ForwardJet { value, ..*b };
     }

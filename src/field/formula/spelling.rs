@@ -252,7 +252,7 @@ fn written(pieces: &[Piece<'_>], is_called: bool, has_stranger: bool) -> Option<
 /// Word of `known` that `name` is probably a misspelling of: one that differs in case only, or by
 /// one edit (two for a long name). Ties go to the word with the same first letter, then to the one
 /// with the fewest letters that `name` has not: `siin` is rather `sin` than `sign`.
-pub(super) fn similar<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+pub fn similar<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let length = name.chars().count();
     let allowed = if length > 5 { 2 } else { 1 };
     known

@@ -335,8 +335,7 @@ impl Parser<'_> {
 
     /// Consumes a `return`.
     fn take_return(&mut self) -> bool {
-        let is_return = word(&self.tokens, self.next) == Some("return")
-            && !matches!(self.second().token, Token::Separator | Token::End | Token::Equals);
+        let is_return = word(&self.tokens, self.next) == Some("return");
         self.next += usize::from(is_return);
         is_return
     }

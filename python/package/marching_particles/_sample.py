@@ -1,0 +1,247 @@
+"""Sampling, and its result."""
+
+from __future__ import annotations
+
+import json
+import os
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from . import _core
+from ._fields import field_of, integer, numbers
+
+METHODS = ("front", "refined")
+
+
+class Warning(NamedTuple):
+    """What the user of a sample should know.
+
+    Attributes:
+        code: A name by which a program tells warnings apart.
+        severity: ``"note"``, ``"caution"`` (the result may be incomplete, or less even than it
+            could be) or ``"fault"`` (a part of the surface is missing or wrong).
+        message: The sentence.
+    """
+
+    code: str
+    severity: str
+    message: str
+
+
+class Mesh(NamedTuple):
+    """Triangles with one vertex for each particle: closed where the surface is.
+
+    Attributes:
+        points: Array (n, 3), float64.
+        normals: Array (n, 3), float32, of unit length and outward. On a sharp edge they are means
+            of those of its sides.
+        faces: Array (m, 3), int32, counter-clockwise seen from outside.
+        rows: Array (n,), int32: the row of the sample that each vertex is.
+    """
+
+    points: np.ndarray
+    normals: np.ndarray
+    faces: np.ndarray
+    rows: np.ndarray
+
+
+class Sample:
+    """The particles of a run.
+
+    The arrays have a row for each particle. One on a sharp edge has a row on each side of it, with
+    the normal of that side; :meth:`weld` has it once. They are made when first asked for, and kept.
+    """
+
+    def __init__(self, core):
+        self._core = core
+
+    def __len__(self):
+        """Number of particles."""
+        return self.report["count"]
+
+    def __repr__(self):
+        return f"<Sample of {len(self):,} particles>"
+
+    @cached_property
+    def points(self):
+        """Positions, array (n, 3), float64, in the coordinates of the field."""
+        return self._core.points()
+
+    @cached_property
+    def normals(self):
+        """Unit normals along the gradient, array (n, 3), float32: outward where f < 0 inside."""
+        return self._core.normals()
+
+    @cached_property
+    def radii(self):
+        """Repulsion radii, array (n,), float32: neighbours sit about two radii apart."""
+        return self._core.radii()
+
+    @cached_property
+    def levels(self):
+        """Generation levels, array (n,), int32: 0 for the first particle of a front."""
+        return self._core.levels()
+
+    @cached_property
+    def faces(self):
+        """Triangles over the rows of ``points``, array (m, 3), int32, counter-clockwise seen from
+        outside. Across sharp edges they share no row: :meth:`weld` joins them."""
+        return self._core.faces()
+
+    @cached_property
+    def report(self):
+        """The report on the run, as a dict: count, radii, proof, quality and more. A measure that
+        has no value is None."""
+        return json.loads(self._core.report())
+
+    @cached_property
+    def warnings(self):
+        """What may be wrong with the particles, a list of :class:`Warning`."""
+        return [Warning(*warning) for warning in self._core.warnings()]
+
+    @property
+    def mesh_warnings(self):
+        """What may be wrong with the mesh, a list of :class:`Warning`: holes, particles in no
+        triangle."""
+        return [Warning(*warning) for warning in self._core.mesh_warnings()]
+
+    @property
+    def bounds(self):
+        """The box that was sampled, ``((x0, y0, z0), (x1, y1, z1))``."""
+        return self._core.bounds()
+
+    def weld(self):
+        """The :class:`Mesh` with one vertex for each particle."""
+        return Mesh(*self._core.weld())
+
+    def save(self, path):
+        """Writes a file: the mesh as ``.glb``, ``.3mf``, ``.stl`` or ``.obj``, the particles as
+        ``.ply``, ``.csv``, ``.npy`` or ``.xyz``.
+
+        Raises:
+            ValueError: If the extension is none of these.
+            OSError: If the file cannot be written.
+        """
+        self._core.save(os.fspath(path))
+
+    def to_trimesh(self):
+        """The welded mesh as a ``trimesh.Trimesh``, with vertex normals."""
+        import trimesh
+
+        mesh = self.weld()
+        return trimesh.Trimesh(mesh.points, mesh.faces, vertex_normals=mesh.normals, process=False)
+
+    def to_pyvista(self):
+        """The welded mesh as a ``pyvista.PolyData``, with the point data ``Normals``, ``radius``
+        and ``level``."""
+        import pyvista
+
+        mesh = self.weld()
+        faces = np.column_stack([np.full(len(mesh.faces), 3, dtype=mesh.faces.dtype), mesh.faces])
+        data = pyvista.PolyData(mesh.points, faces.ravel())
+        data.point_data["Normals"] = mesh.normals
+        data.point_data["radius"] = self.radii[mesh.rows]
+        data.point_data["level"] = self.levels[mesh.rows]
+        return data
+
+
+def sample(
+    field,
+    *,
+    count=None,
+    radius=None,
+    spacing=None,
+    bounds=None,
+    params=None,
+    gradient=None,
+    adaptive=False,
+    method="front",
+    seed=0,
+    measure=True,
+    progress=None,
+):
+    """Samples the surface f = 0 with evenly spaced particles.
+
+    The same arguments give the same particles, on every machine. Lengths are in the units of the
+    field's coordinates. Ctrl-C ends a run.
+
+    Args:
+        field: A formula such as ``"x^2 + y^2 + z^2 = a"``; a function of a float64 array (n, 3) of
+            points that returns n values, NaN where it has none; or a :class:`Model` from
+            :func:`fit_points`. f < 0 inside. What a function raises comes through unchanged.
+        count: Number of particles, met to within 3 %; 1 to 4,000,000.
+        radius: Repulsion radius, half the distance between neighbours. Without count, radius and
+            spacing it is 0.6 % of the diagonal of the box.
+        spacing: Distance between neighbours, twice the radius.
+        bounds: The box, ``((x0, y0, z0), (x1, y1, z1))``. Without it a box is fitted to the
+            surface; of a function only by its signs on grids, so give it where it is known.
+        params: Values of the parameters of a formula, by name; others are 1.
+        gradient: A function of the points that returns the gradients of the function ``field``, (n,
+            3). Without it they are found by differences, with several times as many calls.
+        adaptive: Whether the radius follows the curvature. The size is then that of ``count``, or
+            one that keeps close to the surface.
+        method: ``"front"``, or ``"refined"``: slower, with more particles that have six neighbours.
+        seed: Seed of the point where the front begins, 0 to 2**64 - 1.
+        measure: Whether the particles are measured. It may take longer than the sampling; without
+            it the report has no quality figures.
+        progress: A function that is called with the share of the work done, 0 to 1.
+
+    Returns:
+        A :class:`Sample`.
+
+    Raises:
+        FormulaError: If the formula cannot be read, or has no such parameter.
+        FieldError: If a function returns something else than numbers of the right shape.
+        EmptySurface: If no particle could be placed.
+        ValueError: If an argument is out of its range.
+        TypeError: If an argument is of a wrong type.
+        MemoryError: If there is not enough memory for the particles.
+    """
+    sizes = {"count": count, "radius": radius, "spacing": spacing}
+    given = [name for name, value in sizes.items() if value is not None]
+    if len(given) > 1:
+        raise ValueError(f"{' and '.join(given)} exclude each other: give one of them")
+    if adaptive and given in (["radius"], ["spacing"]):
+        raise ValueError(
+            f"{given[0]} is for particles of one size: with adaptive=True give count, or no size"
+        )
+    if count is not None:
+        count = integer("count", count, *_core.COUNTS)
+    if spacing is not None:
+        radius = _length("spacing", spacing) / 2
+    elif radius is not None:
+        radius = _length("radius", radius)
+    if method not in METHODS:
+        known = ", ".join(map(repr, METHODS))
+        raise ValueError(f"method is {method!r}, but must be one of {known}")
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress must be a function, and not {type(progress).__name__}")
+    if bounds is not None:
+        what = "the lower and the upper corner of a box, ((x0, y0, z0), (x1, y1, z1))"
+        bounds = numbers("bounds", bounds, (2, 3), what)
+        if not (bounds[0] < bounds[1]).all():
+            axis = "xyz"[int(np.argmin(bounds[0] < bounds[1]))]
+            fault = f"along {axis} the lower is not below the upper"
+            raise ValueError(f"bounds must be {what}: {fault}")
+        bounds = tuple(bounds[0].tolist()), tuple(bounds[1].tolist())
+    core = _core.sample(
+        field_of(field, params, gradient),
+        count=count,
+        radius=radius,
+        bounds=bounds,
+        adaptive=bool(adaptive),
+        refined=method == "refined",
+        seed=integer("seed", seed, 0, 2**64 - 1),
+        measure=bool(measure),
+        progress=progress,
+    )
+    return Sample(core)
+
+
+def _length(name, value):
+    length = float(numbers(name, value, (), "a number"))
+    if length <= 0:
+        raise ValueError(f"{name} is {length}, but must be positive")
+    return length

@@ -1,0 +1,58 @@
+//! Errors of the core as exceptions of Python.
+
+use marching_particles::{Error, FieldError, FormulaError, JobError, SettingsError};
+use pyo3::PyErr;
+use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+
+/// The exceptions of the package, which its Python half defines.
+mod python {
+    use pyo3::import_exception;
+
+    import_exception!(marching_particles._errors, EmptySurface);
+    import_exception!(marching_particles._errors, FieldError);
+    import_exception!(marching_particles._errors, FormulaError);
+}
+
+/// The exception of a formula. Python counts characters where Rust counts bytes.
+pub(crate) fn of_formula(error: &FormulaError, text: &str) -> PyErr {
+    let characters = |byte: usize| text.get(..byte).map_or(0, |before| before.chars().count());
+    let span = (characters(error.span.start), characters(error.span.end));
+    let choices = error.choices.to_vec();
+    python::FormulaError::new_err((
+        error.message.clone(),
+        text.to_owned(),
+        span,
+        error.suggestion.clone(),
+        choices,
+    ))
+}
+
+/// The exception of a run.
+pub(crate) fn of_run(error: &Error) -> PyErr {
+    match error {
+        Error::Field(error) => of_field(error),
+        Error::NoBox { .. } => {
+            let message = error.to_string();
+            let message = message.trim_end_matches(" (`Settings::in_box`)");
+            python::EmptySurface::new_err(format!("{message}: pass bounds=((x0, y0, z0), (x1, y1, z1))"))
+        }
+        Error::Nothing { message, .. } => python::EmptySurface::new_err(message.clone()),
+        Error::Settings(SettingsError::Memory { .. }) => PyMemoryError::new_err(error.to_string()),
+        Error::Settings(error) => PyValueError::new_err(error.to_string()),
+        _ => PyRuntimeError::new_err(error.to_string()),
+    }
+}
+
+/// The exception that a function has raised, itself.
+fn of_field(error: &FieldError) -> PyErr {
+    match error.get().downcast_ref::<PyErr>() {
+        Some(raised) => Python::attach(|py| raised.clone_ref(py)),
+        None => python::FieldError::new_err(error.to_string()),
+    }
+}
+
+/// The exception of a fit.
+pub(crate) fn of_job(error: &JobError) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}

@@ -1,0 +1,101 @@
+//! What is sampled: a formula, functions of Python, or a surface through points.
+
+use crate::errors;
+use marching_particles::glam::DVec3;
+use marching_particles::pointcloud::job::Job;
+use marching_particles::{BatchField, Bounds, Formula};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2, PyReadonlyArrayDyn};
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+/// Slices of a fit between two looks for Ctrl-C, of about a millisecond each.
+const FIT_SLICES: u32 = 50;
+
+/// A field, with the box of its surface where it is known.
+#[pyclass(frozen, module = "marching_particles._core")]
+pub(crate) struct Field {
+    pub(crate) field: Arc<dyn marching_particles::Field>,
+    pub(crate) bounds: Option<Bounds>,
+}
+
+#[pymethods]
+impl Field {
+    /// The field of a formula with these values of its parameters.
+    #[staticmethod]
+    fn formula(text: &str, parameters: Vec<(String, f64)>) -> PyResult<Self> {
+        let mut formula = Formula::parse(text).map_err(|error| errors::of_formula(&error, text))?;
+        for (name, value) in parameters {
+            formula = formula.with(&name, value).map_err(|error| errors::of_formula(&error, text))?;
+        }
+        Ok(Self { field: Arc::new(formula), bounds: None })
+    }
+
+    /// The field of a function that takes an array of points (n, 3) and returns a float64 array of
+    /// n values, and of one that returns gradients (n, 3). Both arrays are C-contiguous.
+    #[staticmethod]
+    #[pyo3(signature = (values, gradients=None))]
+    fn function(values: Py<PyAny>, gradients: Option<Py<PyAny>>) -> Self {
+        let field = BatchField::new(move |points: &[DVec3], f: &mut [f64]| call(&values, points, f));
+        let field: Arc<dyn marching_particles::Field> = match gradients {
+            None => Arc::new(field),
+            Some(gradients) => Arc::new(field.with_gradients(move |points: &[DVec3], out: &mut [DVec3]| {
+                call(&gradients, points, bytemuck::cast_slice_mut(out))
+            })),
+        };
+        Self { field, bounds: None }
+    }
+
+    /// The field of a surface through points, with the report on it as JSON.
+    #[staticmethod]
+    #[pyo3(signature = (points, normals, centres))]
+    fn points(
+        py: Python<'_>,
+        points: PyReadonlyArray2<'_, f64>,
+        normals: Option<PyReadonlyArray2<'_, f64>>,
+        centres: u32,
+    ) -> PyResult<(Self, String)> {
+        let file = ply(points.as_slice()?, normals.as_ref().map(|normals| normals.as_slice()).transpose()?);
+        py.detach(|| {
+            let raised = |error| errors::of_job(&error);
+            let mut job = Job::file("points.ply", file, centres).map_err(raised)?;
+            while !job.step(FIT_SLICES).map_err(raised)?.done {
+                Python::attach(|py| py.check_signals())?;
+            }
+            let fit = job.complete().map_err(raised)?;
+            let report = serde_json::to_string(&fit.info).expect("a report is data");
+            Ok((Self { field: Arc::new(fit.field()), bounds: Some(fit.bounds) }, report))
+        })
+    }
+
+    /// Corners of the box of the surface, if it is known.
+    #[getter]
+    fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
+        self.bounds.map(|bounds| (bounds.min, bounds.max))
+    }
+}
+
+/// Calls a function of Python, which may keep the array of points: it is a copy.
+fn call(function: &Py<PyAny>, points: &[DVec3], out: &mut [f64]) -> PyResult<()> {
+    Python::attach(|py| {
+        let flat: &[f64] = bytemuck::cast_slice(points);
+        let array = PyArray1::from_slice(py, flat).reshape([points.len(), 3])?;
+        let result = function.bind(py).call1((array,))?;
+        let result: PyReadonlyArrayDyn<'_, f64> = result.extract()?;
+        out.copy_from_slice(result.as_slice()?);
+        Ok(())
+    })
+}
+
+/// Points as a file, which is what the core fits surfaces to.
+fn ply(points: &[f64], normals: Option<&[f64]>) -> Vec<u8> {
+    let names = if normals.is_some() { &["x", "y", "z", "nx", "ny", "nz"][..] } else { &["x", "y", "z"] };
+    let mut file = format!("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", points.len() / 3);
+    names.iter().for_each(|name| file.push_str(&format!("property double {name}\n")));
+    file.push_str("end_header\n");
+    let mut bytes = file.into_bytes();
+    for (i, point) in points.chunks_exact(3).enumerate() {
+        let normal = normals.map_or(&[][..], |normals| &normals[3 * i..3 * i + 3]);
+        bytes.extend(point.iter().chain(normal).flat_map(|number| number.to_le_bytes()));
+    }
+    bytes
+}

@@ -1,0 +1,165 @@
+//! A run, and the particles it leads to.
+
+use crate::errors;
+use crate::field::Field;
+use marching_particles::{Bounds, Measured, Radius, Run, Settings, Severity, Vertices, Warning};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::io::ErrorKind;
+use std::path::PathBuf;
+
+/// Units of work between two looks for Ctrl-C: milliseconds of a formula.
+const BUDGET: u32 = 5_000;
+/// Slices of a measurement between two looks, of 10 to 50 microseconds each.
+const REPORT_SLICES: u32 = 500;
+
+/// Samples a field. The GIL is released but for calls of functions of Python.
+#[pyfunction]
+#[pyo3(signature = (field, *, count, radius, bounds, adaptive, refined, seed, measure, progress))]
+#[expect(clippy::too_many_arguments, reason = "they are named, and Python's")]
+pub(crate) fn sample(
+    py: Python<'_>,
+    field: &Field,
+    count: Option<u32>,
+    radius: Option<f64>,
+    bounds: Option<([f64; 3], [f64; 3])>,
+    adaptive: bool,
+    refined: bool,
+    seed: u64,
+    measure: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Sample> {
+    let mut settings = match (count, radius) {
+        (Some(count), _) => Settings::with_count(count),
+        (None, Some(length)) => Settings::with_radius(Radius::Length(length)),
+        (None, None) => Settings::default(),
+    }
+    .seeded(seed);
+    settings = if adaptive { settings.adaptive() } else { settings };
+    settings = if refined { settings.refined() } else { settings };
+    settings.bounds = bounds.map(|(min, max)| Bounds { min, max }).or(field.bounds);
+    py.detach(|| run(field, &settings, measure, progress.as_ref()))
+}
+
+fn run(field: &Field, settings: &Settings, measure: bool, progress: Option<&Py<PyAny>>) -> PyResult<Sample> {
+    let raised = |error| errors::of_run(&error);
+    let mut run = Run::start(&*field.field, settings).map_err(raised)?;
+    loop {
+        let now = run.step(BUDGET);
+        if now.stop_reason.is_some() {
+            break;
+        }
+        Python::attach(|py| {
+            py.check_signals()?;
+            progress.map_or(Ok(()), |progress| progress.call1(py, (now.fraction,)).map(drop))
+        })?;
+    }
+    run.check_field().map_err(raised)?;
+    if measure && run.count() > 0 {
+        let mut reporting = run.measure(Measured::Particles);
+        while reporting.step(REPORT_SLICES).is_none() {
+            Python::attach(|py| py.check_signals())?;
+        }
+    }
+    let sample = if measure { run.finish() } else { run.finish_unmeasured() };
+    let sample = sample.map_err(raised)?;
+    Python::attach(|py| progress.map_or(Ok(()), |progress| progress.call1(py, (1.0,)).map(drop)))?;
+    Ok(Sample(sample))
+}
+
+/// The particles of a run. Every method makes its arrays anew: the Python half keeps them.
+#[pyclass(frozen, module = "marching_particles._core")]
+pub(crate) struct Sample(marching_particles::Sample);
+
+/// Rows of three numbers as an array, without a copy.
+fn rows<T: numpy::Element + bytemuck::Pod>(
+    py: Python<'_>,
+    rows: Vec<[T; 3]>,
+) -> PyResult<Bound<'_, PyArray2<T>>> {
+    let count = rows.len();
+    PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])
+}
+
+/// Indices as Python's libraries take them. There are far fewer than 2³¹ rows.
+fn signed(triangles: Vec<[u32; 3]>) -> Vec<[i32; 3]> {
+    triangles.into_iter().map(|triangle| triangle.map(u32::cast_signed)).collect()
+}
+
+fn told(warnings: &[Warning]) -> Vec<(&'static str, &'static str, String)> {
+    let severity = |warning: &Warning| match warning.severity() {
+        Severity::Note => "note",
+        Severity::Fault => "fault",
+        _ => "caution",
+    };
+    warnings.iter().map(|warning| (warning.code(), severity(warning), warning.to_string())).collect()
+}
+
+type Mesh<'py> = (
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray2<f32>>,
+    Bound<'py, PyArray2<i32>>,
+    Bound<'py, PyArray1<i32>>,
+);
+
+#[pymethods]
+impl Sample {
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let particles = self.0.particles();
+        rows(py, (0..particles.len()).map(|i| particles.place(i).to_array()).collect())
+    }
+
+    fn normals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        rows(py, self.0.normals().to_vec())
+    }
+
+    fn radii<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        PyArray1::from_slice(py, &self.0.particles().radius)
+    }
+
+    fn levels<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i32>> {
+        PyArray1::from_iter(py, self.0.particles().level.iter().map(|level| level.cast_signed()))
+    }
+
+    fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i32>>> {
+        rows(py, py.detach(|| signed(self.0.buffers(Vertices::Columns).triangles)))
+    }
+
+    /// Points, normals and faces of the mesh with one vertex for each particle, and the row that
+    /// each vertex is.
+    fn weld<'py>(&self, py: Python<'py>) -> PyResult<Mesh<'py>> {
+        let mesh = py.detach(|| self.0.buffers(Vertices::Joined));
+        let points = mesh.positions.iter().map(|p| p.to_array()).collect();
+        let normals = mesh.normals.iter().map(|n| n.to_array()).collect();
+        let vertices = PyArray1::from_iter(py, mesh.rows.iter().map(|row| row.cast_signed()));
+        Ok((rows(py, points)?, rows(py, normals)?, rows(py, signed(mesh.triangles))?, vertices))
+    }
+
+    /// The report as JSON.
+    fn report(&self) -> String {
+        serde_json::to_string(self.0.report()).expect("a report is data")
+    }
+
+    /// Code, severity and sentence of each warning about the particles.
+    fn warnings(&self) -> Vec<(&'static str, &'static str, String)> {
+        told(&self.0.report().warnings)
+    }
+
+    /// Those about the mesh.
+    fn mesh_warnings(&self, py: Python<'_>) -> Vec<(&'static str, &'static str, String)> {
+        told(&py.detach(|| self.0.mesh_warnings()))
+    }
+
+    /// Corners of the box that was sampled.
+    fn bounds(&self) -> ([f64; 3], [f64; 3]) {
+        let bounds = self.0.bounds();
+        (bounds.min, bounds.max)
+    }
+
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        py.detach(|| self.0.save(path)).map_err(|error| match error.kind() {
+            ErrorKind::InvalidInput => PyValueError::new_err(error.to_string()),
+            _ => error.into(),
+        })
+    }
+}

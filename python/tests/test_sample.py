@@ -1,0 +1,238 @@
+"""What a sample is, for each kind of field."""
+
+import ast
+import doctest
+import inspect
+import re
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import marching_particles as mp
+
+BOX = ((-1.5, -1.5, -1.5), (1.5, 1.5, 1.5))
+
+
+def sphere(points):
+    return np.linalg.norm(points, axis=1) - 1
+
+
+def edges_twice(faces):
+    """Whether every edge of the faces has two of them, one in each direction."""
+    edges = {tuple(edge) for face in faces for edge in zip(face, np.roll(face, -1))}
+    return len(edges) == 3 * len(faces) and all((b, a) in edges for a, b in edges)
+
+
+def test_the_example_of_the_package_holds():
+    assert doctest.testmod(mp).failed == 0 and doctest.testmod(mp).attempted == 3
+
+
+@pytest.mark.parametrize("page", ["README.md", "../README.md"])
+def test_the_examples_of_the_pages_run(page, tmp_path, monkeypatch):
+    text = (Path(__file__).parents[1] / page).read_text(encoding="utf-8")
+    blocks = re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
+    assert blocks
+    monkeypatch.chdir(tmp_path)
+    points = np.random.default_rng(0).normal(size=(500, 3))
+    points /= np.linalg.norm(points, axis=1, keepdims=True)
+    names = {"points": points, "normals": points}
+    for block in blocks:
+        exec(block, names)
+    assert list(tmp_path.glob("*.glb"))
+
+
+def test_a_formula_gives_particles_on_its_surface_in_arrays_of_the_promised_types():
+    sample = mp.sample("x^2 + y^2 + z^2 = a", params={"a": 4}, count=1000, seed=3)
+    n = len(sample)
+    assert abs(n - 1000) <= 30
+    assert sample.points.shape == (n, 3) and sample.points.dtype == np.float64
+    assert sample.normals.shape == (n, 3) and sample.normals.dtype == np.float32
+    assert sample.radii.shape == (n,) and sample.radii.dtype == np.float32
+    assert sample.levels.shape == (n,) and sample.levels.dtype == np.int32
+    assert sample.faces.shape == (2 * n - 4, 3) and sample.faces.dtype == np.int32
+    np.testing.assert_allclose(np.linalg.norm(sample.points, axis=1), 2, atol=1e-4)
+    np.testing.assert_allclose(sample.normals, sample.points / 2, atol=1e-4)
+    assert edges_twice(sample.faces)
+    assert sample.report["components"] == 1 and sample.warnings == []
+    assert sample.points is sample.points
+
+
+def test_the_same_arguments_give_the_same_particles_and_another_seed_others():
+    one, same, other = (mp.sample("x^2+y^2+z^2=1", count=300, seed=seed) for seed in (1, 1, 2))
+    np.testing.assert_array_equal(one.points, same.points)
+    assert one.report["digest"] == same.report["digest"] != other.report["digest"]
+
+
+def test_the_spacing_is_twice_the_radius():
+    radius = mp.sample("x^2+y^2+z^2=1", radius=0.1)
+    spacing = mp.sample("x^2+y^2+z^2=1", spacing=0.2)
+    np.testing.assert_array_equal(radius.points, spacing.points)
+    np.testing.assert_allclose(radius.radii, 0.1, rtol=1e-6)
+
+
+def test_adaptive_radii_follow_the_curvature():
+    sample = mp.sample("x^2/9 + y^2 + z^2 = 1", count=2000, adaptive=True)
+    assert sample.radii.max() > 1.5 * sample.radii.min()
+
+
+def test_a_function_is_called_with_points_and_its_gradient_saves_calls():
+    shapes, calls = set(), [0, 0]
+
+    def counted(k):
+        def value(points):
+            shapes.add((points.dtype, points.ndim, points.shape[1], points.flags.c_contiguous))
+            calls[k] += len(points)
+            return sphere(points)
+
+        return value
+
+    by_differences = mp.sample(counted(0), count=500, bounds=BOX)
+    given = mp.sample(
+        counted(1),
+        count=500,
+        bounds=BOX,
+        gradient=lambda points: points / np.maximum(sphere(points) + 1, 1e-9)[:, None],
+    )
+    assert shapes == {(np.dtype(np.float64), 2, 3, True)}
+    for sample in (by_differences, given):
+        np.testing.assert_allclose(np.linalg.norm(sample.points, axis=1), 1, atol=1e-4)
+    assert calls[1] < calls[0] / 2
+
+
+def test_a_function_may_keep_its_points_and_return_lists_integers_and_single_precision():
+    kept, copies = [], []
+
+    def value(points):
+        kept.append(points)
+        copies.append(points.copy())
+        return (sphere(points) * 2**20).astype(np.int64).tolist()
+
+    mp.sample(value, count=100, bounds=BOX)
+    assert all(np.array_equal(*pair) for pair in zip(kept, copies))
+    single = mp.sample(lambda p: sphere(p).astype(np.float32), count=100, bounds=BOX, measure=False)
+    assert abs(len(single) - 100) <= 3
+
+
+def test_nan_is_where_a_function_has_no_value():
+    def upper_half(points):
+        return np.where(points[:, 2] > 0, sphere(points), np.nan)
+
+    sample = mp.sample(upper_half, count=500, bounds=BOX)
+    assert sample.points[:, 2].min() > -1e-6
+
+
+def test_a_model_goes_through_its_points():
+    random = np.random.default_rng(0)
+    points = random.normal(size=(2000, 3))
+    points *= (np.array([3, 2, 2]) / np.linalg.norm(points, axis=1, keepdims=True))
+    model = mp.fit_points(points, points / np.array([9, 4, 4]), centres=100)
+    assert model.report["points"] == 2000 and model.report["normals"] == "given"
+    assert np.all(np.array(model.bounds[0]) < -np.array([3, 2, 2]) + 0.1)
+    sample = mp.sample(model, count=500)
+    on_ellipsoid = np.sum((sample.points / np.array([3, 2, 2])) ** 2, axis=1)
+    np.testing.assert_allclose(on_ellipsoid, 1, atol=0.02)
+    assert mp.fit_points(points, centres=100).report["normals"] == "estimated"
+
+
+def test_an_edge_has_rows_on_both_sides_and_is_welded():
+    cube = mp.sample("max(|x|, |y|, |z|) = 1", count=1000)
+    mesh = cube.weld()
+    assert len(cube.points) > len(mesh.points) == len(cube)
+    assert edges_twice(mesh.faces) and not edges_twice(cube.faces)
+    assert len(mesh.points) - 3 * len(mesh.faces) // 2 + len(mesh.faces) == 2
+    np.testing.assert_array_equal(cube.points[mesh.rows], mesh.points)
+    # Each face has the normal of its rows, and faces outward.
+    a, b, c = (cube.points[cube.faces[:, k]] for k in range(3))
+    facing = np.einsum("ij,ij->i", np.cross(b - a, c - a), cube.normals[cube.faces[:, 0]])
+    assert (facing > 0).all()
+
+
+def test_without_measuring_there_are_no_figures():
+    measured, quick = (mp.sample("x^2+y^2+z^2=1", count=300, measure=m) for m in (True, False))
+    assert measured.report["quality"]["six"] > 0.5
+    assert quick.report["quality"] is None
+    np.testing.assert_array_equal(measured.points, quick.points)
+
+
+def test_the_refined_method_gives_more_particles_six_neighbours():
+    def six(method):
+        return mp.sample("x^2+y^2/2+z^2=1", count=2000, method=method).report["quality"]["six"]
+
+    assert six("refined") > six("front")
+
+
+def test_progress_rises_to_one():
+    shares = []
+    mp.sample("x^2+y^2+z^2=1", count=20_000, progress=shares.append)
+    assert shares == sorted(shares) and len(shares) > 3 and shares[-1] == 1
+
+
+def test_files_are_what_their_extensions_say(tmp_path):
+    sample = mp.sample("x^2+y^2+z^2=1", count=200)
+    sample.save(tmp_path / "ball.glb")
+    sample.save(str(tmp_path / "ball.npy"))
+    assert (tmp_path / "ball.glb").read_bytes()[:4] == b"glTF"
+    np.testing.assert_array_equal(np.load(tmp_path / "ball.npy")[:, 3:], sample.normals)
+
+
+def test_meshes_of_other_libraries():
+    sample = mp.sample("max(|x|, |y|, |z|) = 1", count=500)
+    trimesh = pytest.importorskip("trimesh")
+    mesh = sample.to_trimesh()
+    assert isinstance(mesh, trimesh.Trimesh)
+    assert mesh.is_watertight and mesh.is_winding_consistent and abs(mesh.volume - 8) < 0.2
+
+
+def test_a_mesh_of_pyvista():
+    pyvista = pytest.importorskip("pyvista")
+    data = mp.sample("max(|x|, |y|, |z|) = 1", count=500).to_pyvista()
+    assert isinstance(data, pyvista.PolyData) and data.is_manifold
+    assert data.point_data["radius"].shape == (data.n_points,)
+
+
+def test_other_threads_go_on_while_a_formula_is_sampled():
+    ticks, done = [], threading.Event()
+
+    def tick():
+        while not done.is_set():
+            ticks.append(time.monotonic())
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    begin = time.monotonic()
+    mp.sample("x^2+y^2+z^2=1", count=30_000)
+    end = time.monotonic()
+    done.set()
+    thread.join()
+    during = [t for t in ticks if begin < t < end]
+    # Without the GIL for the whole run there would be no tick in it but at its ends.
+    assert len(during) > 20 and max(np.diff(during)) < 0.5 * (end - begin)
+
+
+def test_the_stub_has_the_signatures_of_the_package():
+    stub = ast.parse((Path(mp.__file__).parent / "__init__.pyi").read_text())
+    names = {node.name: node for node in stub.body if hasattr(node, "name")}
+    assert set(mp.__all__) - {"__version__"} == set(names)
+    for name in ("sample", "fit_points"):
+        arguments = names[name].args
+        defaults = zip(arguments.kwonlyargs, arguments.kw_defaults)
+        given = {argument.arg: ast.literal_eval(default) for argument, default in defaults}
+        signature = inspect.signature(getattr(mp, name)).parameters.values()
+        assert given == {p.name: p.default for p in signature if p.kind is p.KEYWORD_ONLY}
+    for kind in ("Sample", "Model", "Mesh", "Warning"):
+        body = names[kind].body
+        stated = {getattr(node, "name", None) or node.target.id for node in body}
+        real = getattr(mp, kind)
+        known = {name for name in vars(real) if not name.startswith("_")} | {"__len__"}
+        # Those of a model are set when it is made.
+        fields = {"bounds", "report", "warnings"} if kind == "Model" else set()
+        fields |= set(getattr(real, "_fields", ()))
+        assert stated | {"__len__"} == known | fields
+
+
+def test_the_package_is_marked_as_typed():
+    assert (Path(mp.__file__).parent / "py.typed").exists()
