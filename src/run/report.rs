@@ -215,7 +215,8 @@ impl Reporting<'_> {
 }
 
 impl<F: Field> Run<F> {
-    /// Of the particles, and of those of the front if they are still to be measured and `with_front`.
+    /// Of the particles, and of those of the front if they are still to be measured and
+    /// `with_front`.
     fn measuring_input(&self, with_front: bool) -> MeasuringInput {
         MeasuringInput {
             front: self.measuring.open_front().filter(|_| with_front),
@@ -255,9 +256,9 @@ impl<F: Field> Run<F> {
         }))
     }
 
-    /// [`Run::report_with`] in slices, the front measured, too, up to `budget` of them, with the run
-    /// free between them: the report, once it is complete. A measurement that anything comes between is given up, and the
-    /// next call begins anew.
+    /// [`Run::report_with`] in slices, the front measured, too, up to `budget` of them, with the
+    /// run free between them: the report, once it is complete. A measurement that anything comes
+    /// between is given up, and the next call begins anew.
     pub(crate) fn measure_copy(&mut self, budget: u32) -> Option<Report>
     where
         F: Clone + 'static,
