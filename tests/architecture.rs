@@ -100,7 +100,7 @@ const ROOMS: [Room; 4] = [
             ("progress", &["fates", "phase", "refine"]),
             ("attempt", &["settings", "projection", "constraint", "discovery", "sizing", "front", "refine"]),
             ("desk", &["phase", "probe"]),
-            ("methods", &["desk", "phase", "probe", "refine", "relaxation"]),
+            ("methods", &["desk", "phase", "refine", "relaxation"]),
             // The steps of the methods, which alone know every room.
             (
                 "steps",

@@ -56,14 +56,14 @@ fn run(field: &Field, settings: &Settings, measure: bool, progress: Option<&Py<P
         })?;
     }
     run.check_field().map_err(raised)?;
-    if measure && run.count() > 0 {
-        let mut reporting = run.measure(Measured::Particles);
+    let measured = if measure { Measured::Particles } else { Measured::Nothing };
+    if run.count() > 0 {
+        let mut reporting = run.measure(measured);
         while reporting.step(REPORT_SLICES).is_none() {
             Python::attach(|py| py.check_signals())?;
         }
     }
-    let sample = if measure { run.finish() } else { run.finish_unmeasured() };
-    let sample = sample.map_err(raised)?;
+    let sample = run.finish_with(measured).map_err(raised)?;
     Python::attach(|py| progress.map_or(Ok(()), |progress| progress.call1(py, (1.0,)).map(drop)))?;
     Ok(Sample(sample))
 }

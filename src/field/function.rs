@@ -25,7 +25,7 @@ use glam::DVec3;
 ///
 /// A function that takes long is asked less often in a box that is given, with its gradient, by a
 /// coarser survey ([`Settings::survey_cells`](crate::Settings::survey_cells)) and without measuring
-/// ([`Run::finish_unmeasured`](crate::Run::finish_unmeasured)); [`FnField::limit_calls`] sets an
+/// ([`Measured::Nothing`](crate::Measured::Nothing)); [`FnField::limit_calls`] sets an
 /// end.
 ///
 /// ```

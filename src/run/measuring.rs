@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// that bounds both, at twice the number allowed by default.
 const MAX_KEPT: usize = 400_000;
 
-/// What is measured for a report.
+/// The particles that a report measures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Measured {
     /// Nothing. The report has no figures of quality, no number of components of the sample, and
@@ -26,8 +26,8 @@ pub enum Measured {
     /// The particles.
     #[default]
     Particles,
-    /// The particles and, where they were relaxed, those of the front before, for comparison. It
-    /// takes twice as long.
+    /// The particles and, where they were relaxed, those of the front before, for comparison: twice
+    /// as many.
     FrontToo,
 }
 

@@ -408,17 +408,8 @@ impl<F: Field> Run<F> {
         self.finish_with(Measured::Particles)
     }
 
-    /// [`Run::finish`] without measuring, which may take longer than the sampling:
-    /// [`Measured::Nothing`].
-    ///
-    /// # Errors
-    ///
-    /// The error of [`Run::finish`].
-    pub fn finish_unmeasured(self) -> Result<Sample, Error> {
-        self.finish_with(Measured::Nothing)
-    }
-
-    /// [`Run::finish`], with so much measured.
+    /// [`Run::finish`], with other particles measured, or none: measuring can take longer than
+    /// sampling.
     ///
     /// # Errors
     ///

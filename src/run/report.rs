@@ -215,8 +215,8 @@ impl Reporting<'_> {
 }
 
 impl<F: Field> Run<F> {
-    /// Of the particles, and of those of the front if they are still to be measured and
-    /// `with_front`.
+    /// The input of a measurement of the particles and, `with_front`, of those of the front, unless
+    /// they have been measured.
     fn measuring_input(&self, with_front: bool) -> MeasuringInput {
         MeasuringInput {
             front: self.measuring.open_front().filter(|_| with_front),
@@ -232,11 +232,8 @@ impl<F: Field> Run<F> {
         self.report_with(Measured::Particles)
     }
 
-    /// [`Run::report`], with so much measured.
+    /// [`Run::report`], with other particles measured, or none.
     pub fn report_with(&mut self, measured: Measured) -> Report {
-        if measured == Measured::Nothing {
-            self.measuring = Measuring::default();
-        }
         slices::complete(self.measure(measured).0)
     }
 
@@ -244,9 +241,10 @@ impl<F: Field> Run<F> {
     pub fn measure(&mut self, measured: Measured) -> Reporting<'_> {
         Reporting(Box::pin(async move {
             let with_front = measured == Measured::FrontToo;
-            let is_known =
-                self.measuring.facing.is_some() && !(with_front && self.measuring.open_front().is_some());
-            if measured != Measured::Nothing && !is_known {
+            let is_open = with_front && self.measuring.open_front().is_some();
+            if measured == Measured::Nothing {
+                self.measuring = Measuring::default();
+            } else if self.measuring.facing.is_none() || is_open {
                 self.measuring.stop();
                 let input = self.measuring_input(with_front);
                 let result = input.in_slices(self.field.function(), self.sampler.frame()).await;

@@ -5,7 +5,6 @@
 use super::Sampler;
 use super::desk::{Desk, Stopped};
 use super::phase::StopReason;
-use super::probe::Probe;
 use super::refine::{Components, Refinement, Refusal};
 use super::relaxation::{Grading, Sweep};
 
@@ -35,8 +34,7 @@ async fn place(desk: &Desk) -> Result<StopReason, Stopped> {
             Verdict::Refine(mut components) => {
                 let refined = refine(desk, &mut components);
                 let refusal = desk.leaving(refined, Sampler::leave_refinement).await?;
-                let stands = move |sampler: &mut Sampler| sampler.judge_refinement(components, refusal);
-                if desk.now(stands).await? {
+                if desk.now(move |sampler| sampler.judge_refinement(components, refusal)).await? {
                     break StopReason::Complete;
                 }
             }
@@ -129,7 +127,8 @@ fn refusal(result: Result<(), Halt>) -> Result<Option<Refusal>, Stopped> {
 }
 
 /// Refines the components of a coarse front: brings the few particles into order, and keeps it
-/// while their number is multiplied by four from level to level. Returns why it cannot, if so.
+/// while their number is multiplied by four from level to level. Returns the reason, if the front
+/// is refused.
 async fn refine(desk: &Desk, components: &mut Components) -> Result<Option<Refusal>, Stopped> {
     refusal(make_levels(desk, components).await)
 }
@@ -145,15 +144,14 @@ async fn make_levels(desk: &Desk, components: &mut Components) -> Result<(), Hal
             }
             make_passes(desk, mesh).await?;
             let mut rings = mesh.begin_order();
-            let rings = desk.until_on(mesh, move |_, mesh, _, left| mesh.put_in_order(&mut rings, left));
-            let rings = rings.await?;
-            components.end_level(k, rings);
+            let ordered =
+                desk.until_on(mesh, move |_, mesh, _, left| mesh.put_in_order(&mut rings, left)).await?;
+            components.end_level(k, ordered);
         }
-        let show = move |sampler: &mut Sampler,
-                         components: &mut Components,
-                         _: &mut Probe,
-                         left: &mut u32| { sampler.show_level(components, to_come, left) };
-        desk.until_on(components, show).await?;
+        desk.until_on(components, move |sampler, components, _, left| {
+            sampler.show_level(components, to_come, left)
+        })
+        .await?;
     }
     Ok(())
 }
@@ -162,19 +160,18 @@ async fn make_levels(desk: &Desk, components: &mut Components) -> Result<(), Hal
 async fn divide(desk: &Desk, mesh: &mut Refinement) -> Result<(), Halt> {
     let mut division = mesh.begin_division();
     let mut coarse = desk.until_on(mesh, move |_, mesh, _, left| mesh.divide(&mut division, left)).await?;
-    let land = move |sampler: &mut Sampler, mesh: &mut Refinement, probe: &mut Probe, left: &mut u32| {
-        sampler.land(mesh, &mut coarse, probe, left)
-    };
-    Ok(desk.until_on(mesh, land).await??)
+    desk.until_on(mesh, move |sampler, mesh, probe, left| sampler.land(mesh, &mut coarse, probe, left))
+        .await??;
+    Ok(())
 }
 
 /// Makes the passes of a level, or of a frame of a mesh that follows a surface, by its recipe.
 async fn make_passes(desk: &Desk, mesh: &mut Refinement) -> Result<(), Halt> {
     while let Some(mut rest) = mesh.begin_pass() {
-        let pass = move |sampler: &mut Sampler, mesh: &mut Refinement, probe: &mut Probe, left: &mut u32| {
+        desk.until_on(mesh, move |sampler, mesh, probe, left| {
             sampler.make_pass(mesh, &mut rest, probe, left)
-        };
-        desk.until_on(mesh, pass).await??;
+        })
+        .await??;
     }
     Ok(())
 }

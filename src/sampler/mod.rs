@@ -102,7 +102,7 @@ pub struct Sampler {
     stop_reason: Option<StopReason>,
     /// The next seed of the survey.
     seeds: SurveyCursor,
-    /// How far the refinement of a coarse front is, while there is one.
+    /// The progress of the refinement of a coarse front, while there is one.
     refined: RefineProgress,
     components: ComponentSearch,
     tools: Tools,

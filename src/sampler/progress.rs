@@ -89,7 +89,7 @@ pub struct Counts {
     pub refusal: Option<Refusal>,
 }
 
-/// How far a refinement is.
+/// The progress of a refinement.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct RefineProgress {
     /// Number of levels, that of the coarse front included.

@@ -212,7 +212,7 @@ fn what_is_known_at_the_start_is_told_before_the_first_step_and_measuring_can_be
     let measured = measured.finish().unwrap();
     let mut plain = run();
     while plain.step(1_000).stop_reason.is_none() {}
-    let plain = plain.finish_unmeasured().unwrap();
+    let plain = plain.finish_with(Measured::Nothing).unwrap();
     assert_eq!(plain.report().digest, measured.report().digest);
     assert!(plain.report().measures.quality.is_none() && measured.report().measures.quality.is_some());
     assert!(plain.measured().residual.is_empty() && measured.measured().residual.len() == count);

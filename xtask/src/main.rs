@@ -71,8 +71,8 @@ enum Task {
     Package,
     /// Run the benches.
     Bench(bench::Options),
-    /// Halve and double constants of the sampler, and print what changes on random surfaces; three
-    /// minutes each.
+    /// Halve and double constants of the sampler, and print what changes on random surfaces; a
+    /// minute or two each.
     Sensitivity(sensitivity::Options),
     /// Run the paper's jobs and write its tables (docs/tables/paper.md) and figures (docs/paper).
     Paper(paper::Options),

@@ -26,10 +26,9 @@ const CONSTANTS: [&str; 13] = [
     "sampler/refine/net.rs:MAX_MOVE",
     "sampler/constraint/mod.rs:LONGEST",
 ];
-/// What the bench is built from.
-const SOURCES: [&str; 8] =
-    ["Cargo.toml", "Cargo.lock", "README.md", "src", "benches", "tests", "shaders", "xtask"];
-/// Names of the bench's figures, in the order of its columns.
+/// Folders of which the bench needs nothing.
+const LEFT_OUT: [&str; 4] = ["target", "www", ".git", "corpus"];
+/// Number of the bench's figures, each a column.
 const FIGURES: usize = 6;
 
 /// Which constants to vary.
@@ -51,9 +50,7 @@ struct Outcome {
 /// much its figures change.
 pub(crate) fn run(project: &Project, options: &Options) -> Result<()> {
     let tree = project.scratch("sensitivity")?;
-    for name in SOURCES {
-        copy(&project.root.join(name), &tree.join(name))?;
-    }
+    copy(&project.root, &tree)?;
     let default = || CONSTANTS.map(str::to_owned).to_vec();
     let constants = if options.constants.is_empty() { default() } else { options.constants.clone() };
     // A name that is wrong is told before anything is built.
@@ -79,7 +76,9 @@ fn copy(from: &Path, to: &Path) -> Result<()> {
         fs::create_dir_all(to)?;
         for entry in fs::read_dir(from)? {
             let entry = entry?;
-            copy(&entry.path(), &to.join(entry.file_name()))?;
+            if !LEFT_OUT.iter().any(|name| entry.file_name() == *name) {
+                copy(&entry.path(), &to.join(entry.file_name()))?;
+            }
         }
     } else if fs::read(from)? != fs::read(to).unwrap_or_default() {
         // Unchanged files keep their dates, so that cargo does not compile them again.

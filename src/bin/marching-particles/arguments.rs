@@ -35,7 +35,7 @@ Examples:
   marching-particles sample --surface ellipsoid --adaptive --chord-error 0.01%
   marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --box 1.2 --radius 1%";
 
-/// How much is measured.
+/// The particles that the report measures.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum ReportKind {
     /// Nothing: no figures of quality, no components and Euler number of the sample, no warnings
@@ -43,7 +43,7 @@ pub(crate) enum ReportKind {
     None,
     /// The particles
     Short,
-    /// The particles, and the front before its relaxation, for comparison; takes twice as long
+    /// The particles, and those of the front before its relaxation, for comparison: twice as many
     Full,
 }
 
@@ -223,7 +223,7 @@ pub(crate) struct SampleArguments {
     #[arg(long, value_name = "AXIS", value_parser = one_of(&UpAxis::ALL), default_value = "z", help_heading = "Output")]
     pub(crate) up: (&'static str, UpAxis),
 
-    /// How much is measured. Measuring can take longer than sampling
+    /// The particles that the report measures, which can take longer than sampling
     #[arg(long, value_name = "WORD", value_enum, default_value_t = ReportKind::Short, help_heading = "Output")]
     pub(crate) report: ReportKind,
 

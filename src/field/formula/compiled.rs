@@ -165,8 +165,9 @@ impl Compiled {
         }
     }
 
-    /// How far rounding may part [`Compiled::jet`] from [`Compiled::transformed_jet`] at each of
-    /// `points`: value, gradient, then Hessian.
+    /// Bounds on the differences that rounding makes between [`Compiled::jet`] and
+    /// [`Compiled::transformed_jet`] at each of `points`: of the value, the gradient and the
+    /// Hessian.
     ///
     /// Both ways of deriving f are bounded at the point in interval arithmetic, which rounds
     /// outward at every operation, and the widths add up. A difference that cancels is as wide as

@@ -448,9 +448,9 @@ impl Formula {
         self.compiled.transformed_jet(p)
     }
 
-    /// How far rounding may part [`Field::jet`] from [`Formula::transformed_jet`] at each of
-    /// `points`, with the order of the operations within one node left aside: value, gradient, then
-    /// Hessian (xx, xy, xz, yy, yz, zz).
+    /// Bounds on the differences that rounding makes between [`Field::jet`] and
+    /// [`Formula::transformed_jet`] at each of `points`, with the order of the operations within
+    /// one node left aside: of the value, the gradient, and the Hessian (xx, xy, xz, yy, yz, zz).
     #[doc(hidden)]
     #[must_use]
     pub fn rounding(&self, points: &[DVec3]) -> Vec<[f64; 10]> {

@@ -12,8 +12,8 @@ pub(super) const AGREEMENT: f64 = 0.2;
 /// A vertex is at the box if it is nearer to one of the faces than this many spacings. Larger: more
 /// holes are taken for borders.
 const AT_BOX: f64 = 1.5;
-/// Rounds at most in which holes are filled and, where that fails, made larger by a vertex. Hardly
-/// any mesh takes more than half of them.
+/// Rounds at most in which holes are filled and, where that fails, made larger by a vertex: a limit
+/// on time.
 const ROUNDS: u32 = 12;
 /// Largest number of edges of a hole that is filled. A longer loop is taken for a border of the
 /// surface. Smaller: more holes stay; larger: more borders of the surface are closed.

@@ -1,4 +1,4 @@
-//! What a front is to place.
+//! The plan of a front.
 
 use crate::math::Bounds;
 use crate::sampler::discovery::survey::Survey;
@@ -7,7 +7,7 @@ use crate::sampler::projection::{Tolerance, tolerance};
 use crate::sampler::sheet::SheetRule;
 use crate::sampler::sizing::Sizing;
 
-/// What a front is to place: where, and of which sizes.
+/// The plan of a front says in which box it grows, and how large its particles are.
 #[derive(Clone, Default)]
 pub(crate) struct FrontPlan {
     /// The box in which the front grows.

@@ -29,8 +29,8 @@ const FLIP_SLACK: f32 = 1e-5;
 /// Neighbours nearer to each other than this share of the spacing move apart in Lloyd's method.
 /// Smaller: the closest pairs are nearer, and the smallest angles smaller.
 const SHORT: f32 = 0.86;
-/// Share of what is missing by which each of the two moves: as several edges of a particle are
-/// short, half of it would be too much. With less or more, the closest pairs are nearer.
+/// Share of the missing length by which each of the two moves. Two halves would restore one edge,
+/// but a particle has several short ones, and would be moved too far.
 const PUSH: f32 = 1.0 / 3.0;
 
 /// The springs between neighbours: their energy is Σ (l − θa)² over the edges.
