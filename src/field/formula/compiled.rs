@@ -3,7 +3,7 @@
 use super::ast::Equation;
 use super::error::FormulaError;
 use super::graph::{Graph, Id, Node};
-use super::operations::Unary;
+use super::operations::{Binary, Unary};
 use super::program::Program;
 use super::{MAX_OPERATIONS, Parameter, build, derivative, interval, scalar};
 use crate::field::Jet;
@@ -172,8 +172,9 @@ impl Compiled {
     /// Both ways of deriving f are bounded at the point in interval arithmetic, which rounds
     /// outward at every operation, and the widths add up. A difference that cancels is as wide as
     /// its terms.
-    /// The bounds take subnormal results for exact, and what overflows has no size: where there is
-    /// such a result, any difference is possible.
+    ///
+    /// The bounds take results that are subnormal or underflow to 0 for exact, and what overflows
+    /// has no size: where there is such a result, any difference is possible.
     pub(super) fn rounding(&self, points: &[DVec3]) -> Vec<[f64; 10]> {
         let (mut graph, mut outputs) = self.with_hessian();
         graph.keep_sums();
@@ -187,9 +188,24 @@ impl Compiled {
         let widths = points.iter().map(|&p| {
             interval::bounds(&graph, &nodes, &self.values, &Bounds::point(p), &mut rows);
             let bounds = |id: Id| rows[id as usize].at(0).bounds;
+            // Whether a result that is 0 is so because it is too small: no operand is 0.
+            let underflows = |id: Id| {
+                let node = graph.node(id);
+                let is_product = matches!(
+                    node,
+                    Node::Binary(Binary::Mul | Binary::Div | Binary::Pow, ..)
+                        | Node::Power(..)
+                        | Node::Unary(Unary::Exp, _)
+                );
+                let mut is_held = false;
+                node.operands(|operand| is_held |= bounds(operand).holds(0.0));
+                is_product && !is_held
+            };
             let is_extreme = |id: &Id| {
                 let Interval { lo, hi } = bounds(*id);
-                lo <= hi && [lo, hi].iter().any(|end| end.is_subnormal() || end.is_infinite())
+                let is_extreme =
+                    |end: &f64| end.is_subnormal() || end.is_infinite() || *end == 0.0 && underflows(*id);
+                lo <= hi && [lo, hi].iter().any(is_extreme)
             };
             let leaves_range = nodes.iter().any(is_extreme);
             let width = |n: usize| {

@@ -90,6 +90,13 @@ export class Framing {
     this.#isAnother = typed && (this.#isAnother || another);
   }
 
+  /** Notes that a surface was restored with its camera, which stays: what was written before is gone. */
+  restored() {
+    this.#isWritten = false;
+    this.#isTyped = false;
+    this.#isAnother = false;
+  }
+
   /** Fits the surface that is to come, wherever the hand has left the camera. */
   enlarged() {
     this.#follow();

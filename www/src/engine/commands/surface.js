@@ -113,6 +113,7 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
       if (another) showAll(store);
       change(store, shape);
       if (camera) {
+        framing.restored();
         viewer.camera.set(camera);
         changeView(store, { camera });
         viewer.frames.ask();

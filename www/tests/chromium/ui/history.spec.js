@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { afresh, open, settled, state, typeFormula } from './helpers.js';
+import { afresh, atRest, open, settled, state, typeFormula } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -93,6 +93,29 @@ test('the history', async ({ page }) => {
     expect((await state(page)).settings).toEqual(first.settings);
     expect((await state(page)).surface).toBe(first.surface);
   });
+  await clean();
+});
+
+test('what is undone while it is typed is seen as it was, and can be redone', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  await page.locator('.tile[data-surface="torus"]').click();
+  await settled(page);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.orbit(0.7, 0.2));
+  const angles = async () => {
+    const { yaw, pitch } = (await state(page)).view.camera;
+    return [yaw, pitch];
+  };
+  await atRest(page);
+  const before = await angles();
+  await typeFormula(page, 'x^2 + y^2 + z^2 = 0.3');
+  await undo(page).click();
+  await expect.poll(async () => (await state(page)).formula).toContain('sqrt');
+  await settled(page);
+  // A fit follows the end of a run.
+  await page.waitForTimeout(500);
+  await atRest(page);
+  expect(await angles()).toEqual(before);
+  await expect(redo(page)).toHaveAttribute('aria-disabled', 'false');
   await clean();
 });
 
