@@ -173,8 +173,8 @@ impl Compiled {
     /// outward at every operation, and the widths add up. A difference that cancels is as wide as
     /// its terms.
     ///
-    /// The bounds take results that are subnormal or underflow to 0 for exact, and what overflows
-    /// has no size: where there is such a result, any difference is possible.
+    /// Within a node, jets form powers up to the third, which may leave the range of the numbers:
+    /// where a result is beyond 10¹⁰⁰ or, other than 0, below 10⁻¹⁰⁰, any difference is possible.
     pub(super) fn rounding(&self, points: &[DVec3]) -> Vec<[f64; 10]> {
         let (mut graph, mut outputs) = self.with_hessian();
         graph.keep_sums();
@@ -188,24 +188,21 @@ impl Compiled {
         let widths = points.iter().map(|&p| {
             interval::bounds(&graph, &nodes, &self.values, &Bounds::point(p), &mut rows);
             let bounds = |id: Id| rows[id as usize].at(0).bounds;
-            // Whether a result that is 0 is so because it is too small: no operand is 0.
-            let underflows = |id: Id| {
+            let is_held = |end: f64| end == 0.0 || (1e-100..=1e100).contains(&end.abs());
+            // Such a power is 0 because it is too small.
+            let underflows = |id: Id, end: f64| {
                 let node = graph.node(id);
-                let is_product = matches!(
+                let is_power = matches!(
                     node,
-                    Node::Binary(Binary::Mul | Binary::Div | Binary::Pow, ..)
-                        | Node::Power(..)
-                        | Node::Unary(Unary::Exp, _)
+                    Node::Power(..) | Node::Binary(Binary::Pow, ..) | Node::Unary(Unary::Exp, _)
                 );
-                let mut is_held = false;
-                node.operands(|operand| is_held |= bounds(operand).holds(0.0));
-                is_product && !is_held
+                let mut holds_zero = false;
+                node.operands(|operand| holds_zero |= bounds(operand).holds(0.0));
+                end == 0.0 && is_power && (!holds_zero || matches!(node, Node::Unary(..)))
             };
             let is_extreme = |id: &Id| {
                 let Interval { lo, hi } = bounds(*id);
-                let is_extreme =
-                    |end: &f64| end.is_subnormal() || end.is_infinite() || *end == 0.0 && underflows(*id);
-                lo <= hi && [lo, hi].iter().any(is_extreme)
+                lo <= hi && [lo, hi].iter().any(|&end| !is_held(end) || underflows(*id, end))
             };
             let leaves_range = nodes.iter().any(is_extreme);
             let width = |n: usize| {

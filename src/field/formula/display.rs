@@ -116,7 +116,13 @@ fn write(out: &mut String, expr: &Expr) {
             }
         }
         ExprKind::Power(base, exponent) => {
-            write_at(out, base, Precedence::Atom);
+            // `E^` may be meant for Euler's number, which is refused.
+            let is_e = matches!(&base.kind, ExprKind::Parameter(name) if name == "E");
+            if is_e {
+                out.push_str("(E)");
+            } else {
+                write_at(out, base, Precedence::Atom);
+            }
             out.push('^');
             let mut exponent = &**exponent;
             while let ExprKind::Negated(inner) = &exponent.kind {

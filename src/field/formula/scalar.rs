@@ -209,18 +209,22 @@ fn binary<const N: usize>(
         Binary::Pow => {
             let value = operation.evaluate(a.value, b.value);
             let slope = |n: f64| operation.evaluate(a.value, b.value - n);
-            if of_b == 0 {
+            let fixed = || {
                 let d1 = b.value * slope(1.0);
                 let d2 = b.value * (b.value - 1.0) * slope(2.0);
-                return a.apply([value, d1, d2], axes);
-            }
-            // a^b = exp(b ln a)
-            let logarithm = if of_a == 0 {
-                ForwardJet::uniform(libm::log(a.value))
-            } else {
-                a.apply(Unary::Ln.jet(a.value), of_a)
+                a.apply([value, d1, d2], of_a)
             };
-            b.mul(&logarithm).apply([value; 3], axes)
+            if of_b == 0 {
+                return fixed();
+            }
+            // With the exponent's value n, a^b = a^n exp((b − n) ln a).
+            let change = ForwardJet { value: 0.0, ..b };
+            if of_a == 0 {
+                return change.scale(libm::log(a.value)).apply([value; 3], of_b);
+            }
+            let logarithm = a.apply(Unary::Ln.jet(a.value), of_a);
+            let factor = change.mul(&logarithm).apply([1.0; 3], axes);
+            ForwardJet { value, ..fixed().mul(&factor) }
         }
         Binary::Atan2 => {
             // The derivatives are those of atan(a/b), or of −atan(b/a) where that is better
