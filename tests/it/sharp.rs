@@ -3,6 +3,7 @@
 
 use crate::cases;
 use crate::solid_table::{SOLIDS, Solid};
+use core::f64::consts::PI;
 use glam::{DMat3, DQuat, DVec3, DVec4};
 use marching_particles::{Formula, Method, Sample, Settings, sample};
 use rand_core::{Rng, SeedableRng};
@@ -56,6 +57,40 @@ fn the_mesh_of_a_solid_is_closed_and_keeps_its_edges_and_refined_it_has_fewer_de
 #[test]
 fn the_mesh_of_a_solid_whose_sizes_differ_is_closed_and_keeps_its_edges() {
     check(Settings::with_count(6_000).adaptive());
+}
+
+#[test]
+fn parts_that_meet_without_an_edge_are_one_patch_beside_edges() {
+    /// The distance to a box of 2 × 1.4 × 1.
+    const BOX: &str = "hypot(max(abs(x) - 1, 0), max(abs(y) - 0.7, 0), max(abs(z) - 0.5, 0)) \
+                       + min(max(abs(x) - 1, abs(y) - 0.7, abs(z) - 0.5), 0)";
+    const ROD: &str = "min(max(hypot(x, y) - 0.5, abs(z) - 1), hypot(x, y, z - 1) - 0.5)";
+    let shell = 2.312 + 0.044 * PI + 0.004 / 3.0 * PI;
+    let half_capsule = 0.25 * PI + PI / 12.0;
+    let cases = [
+        // A rounded box around one with edges.
+        (format!("abs({BOX}) - 0.1"), (2, 4), Some(shell), [12, 8]),
+        (format!("max({BOX} - 0.2, 0.4 - hypot(x, y))"), (1, 0), None, [2, 0]),
+        (format!("max({ROD}, 0.2 - hypot(x, z - 0.3))"), (1, 0), None, [3, 0]),
+        ("max(hypot(x - clamp(x, -1, 1), y, z) - 0.5, y)".into(), (1, 2), Some(half_capsule), [1, 0]),
+        ("max(hypot(max(hypot(x, y) - 0.6, 0), max(abs(z) - 0.5, 0)) - 0.3, x)".into(), (1, 2), None, [1, 0]),
+    ];
+    for (formula, (components, euler), volume, creases) in cases {
+        let field = Formula::parse(&formula).expect("a formula");
+        let sample = sample(field, &Settings::with_count(6_000).refined()).expect("a sample");
+        assert!(sample.report().growth.refined_levels.is_some(), "{formula}");
+        let topology = &sample.mesh().topology;
+        let found = topology.components.iter().map(|component| component.euler()).sum::<i64>();
+        let borders: u32 = topology.components.iter().map(|component| component.border_edges).sum();
+        assert_eq!((topology.components.len(), found, borders), (components, euler, 0), "{formula}");
+        let proof = &sample.report().proof;
+        assert_eq!([proof.creases, proof.corners], creases.map(Some), "{formula}");
+        assert_eq!(proof.undecided_cells, Some(0), "{formula}");
+        if let Some(exact) = volume {
+            let found = sample.volume().expect("a closed mesh");
+            assert!((found / exact - 1.0).abs() < 0.005, "{formula}: volume {found} for {exact}");
+        }
+    }
 }
 
 #[test]

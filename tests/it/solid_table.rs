@@ -27,7 +27,7 @@ const fn solid(
 /// 5π/12.
 const TWO_BALLS: f64 = 8.0 * PI / 3.0 - 5.0 * PI / 12.0;
 
-pub(crate) const SOLIDS: [Solid; 19] = [
+pub(crate) const SOLIDS: [Solid; 21] = [
     solid("cube", "max(abs(x), abs(y), abs(z)) - 1", 2, 8.0, [12, 8]),
     solid(
         "turned cube",
@@ -116,5 +116,22 @@ pub(crate) const SOLIDS: [Solid; 19] = [
         2,
         2.809_211_7,
         [9, 6],
+    ),
+    // Of the next two, parts meet without an edge: wall and ball of the first on a circle of its
+    // flat end, which the ball covers.
+    solid(
+        "rod with a round end",
+        "min(max(hypot(x, y) - 0.5, abs(z) - 1), hypot(x, y, z - 1) - 0.5)",
+        2,
+        0.5 * PI + PI / 12.0,
+        [1, 0],
+    ),
+    solid(
+        "half a rounded box",
+        "max(z, hypot(max(abs(x) - 1, 0), max(abs(y) - 0.7, 0), max(abs(z) - 0.5, 0)) \
+         + min(max(abs(x) - 1, abs(y) - 0.7, abs(z) - 0.5), 0) - 0.2)",
+        2,
+        2.64 + 0.088 * PI + 0.016 / 3.0 * PI,
+        [1, 0],
     ),
 ];

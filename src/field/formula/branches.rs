@@ -8,12 +8,14 @@
 //! as both sides of |x| are in |x|².
 //!
 //! An absolute value to a power above 1 has a gradient at 0 and is no choice. Neither is one that
-//! no coordinate enters, nor one of which it was found that it makes [no crease](super::creases).
+//! no coordinate enters.
 
 use super::compiled::Compiled;
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::interval::{self, Range};
 use super::operations::{Binary, Unary};
+use super::patches::Patch;
+use super::scalar;
 use crate::field::Enclosure;
 use crate::math::Bounds;
 use glam::DVec3;
@@ -47,6 +49,9 @@ pub(super) enum NodeRole {
     /// One thing where the condition holds, another elsewhere.
     Choice(ChoiceCondition),
 }
+
+/// A condition on the way from f to a branch, and whether it holds.
+pub(super) type Side = (ChoiceCondition, bool);
 
 /// The operand of a choice that counts where its condition holds, or elsewhere; none if its value
 /// is a number there.
@@ -114,12 +119,12 @@ pub(super) struct BranchPart {
 /// The part of f that follows from another part, once each condition of that one is known to hold
 /// or not.
 #[derive(Clone, Copy, Debug)]
-struct TakenPart {
+pub(super) struct TakenPart {
     /// Index of the part.
-    index: usize,
+    pub(super) index: usize,
     /// Whether the conditions hold together in no more than ties, as u ≥ 0 and u ≤ 0 do. Others
     /// hold around such a place.
-    is_tie: bool,
+    pub(super) is_tie: bool,
     /// Whether zeros of f need it: not those in ties, where other parts give f as well.
     has_zeros: bool,
 }
@@ -208,8 +213,6 @@ fn holds_in(ordered: &[[Id; 2]], map: &[Id], pair: [Id; 2]) -> bool {
 pub(super) struct Base {
     pub(super) graph: Graph,
     pub(super) roles: Vec<NodeRole>,
-    /// Choices that make no crease, and are none therefore, ascending.
-    smooth: Vec<Id>,
     /// Values of the nodes that depend on no coordinate; NaN for the others.
     uniforms: Vec<f64>,
     /// Whether there are conditions that hold together in ties alone, as far as ways have been met.
@@ -230,7 +233,7 @@ impl Base {
                 _ => None,
             };
             let role = match node {
-                _ if is_uniform || self.smooth.binary_search(&id).is_ok() => NodeRole::Plain,
+                _ if is_uniform => NodeRole::Plain,
                 Node::Binary(Binary::Min, a, b) => NodeRole::Choice(ChoiceCondition::AtMost(a, b)),
                 Node::Binary(Binary::Max, a, b) => NodeRole::Choice(ChoiceCondition::AtMost(b, a)),
                 Node::Smin(_, a, b, k) if uniform(k) <= MIN_BLEND_WIDTH => {
@@ -481,6 +484,8 @@ pub(super) struct Branches {
     pub(super) parts: Vec<BranchPart>,
     /// The part of each branch, by its number.
     numbered: Vec<usize>,
+    /// The patches of several branches.
+    pub(super) patches: Vec<Patch>,
     /// The factors of the branches of the surface in a box, each by its branch and its number
     /// there, if it was found that some meet in creases in that box.
     pub(super) factors: Vec<(u32, usize)>,
@@ -494,6 +499,7 @@ pub(super) struct Branches {
     before: Vec<NodeRole>,
     doubles: Vec<f64>,
     ranges: Vec<interval::Row<1>>,
+    pub(super) jets: Vec<scalar::ForwardJet<0>>,
 }
 
 impl Branches {
@@ -532,26 +538,18 @@ impl Branches {
             // The numbers of the nodes in the graph of these alone.
             branches.products =
                 products.iter().filter_map(|id| nodes.binary_search(id).ok()).map(|k| k as Id).collect();
-            branches.begin(graph, root, values, &[]);
+            branches.begin(graph, root, values);
         }
         branches
     }
 
-    fn begin(&mut self, graph: &Graph, root: Id, values: &[f64], smooth: &[Id]) {
+    fn begin(&mut self, graph: &Graph, root: Id, values: &[f64]) {
         let (graph, root) = graph.part(root);
-        let base = Base { graph, smooth: smooth.to_vec(), ..Base::default() };
+        let base = Base { graph, ..Base::default() };
         let products = core::mem::take(&mut self.products);
         *self = Self { base, products, ..Self::default() };
         self.base.extend(values);
         self.part(root);
-    }
-
-    /// Forgets all branches. From now on the nodes `smooth` of f, ascending, are no choices.
-    pub(super) fn begin_again(&mut self, values: &[f64], smooth: &[Id]) {
-        if let Some(root) = self.parts.first().map(|part| part.root) {
-            let graph = core::mem::take(&mut self.base.graph);
-            self.begin(&graph, root, values, smooth);
-        }
     }
 
     /// Index of the part with this root.
@@ -584,7 +582,7 @@ impl Branches {
 
     /// Returns the part that follows from part `of` where its conditions hold or do not, as `holds`
     /// says.
-    fn taken(&mut self, of: usize, holds: &[bool], values: &[f64]) -> TakenPart {
+    pub(super) fn taken(&mut self, of: usize, holds: &[bool], values: &[f64]) -> TakenPart {
         let known = &self.parts[of].taken;
         let place = match known.binary_search_by(|(way, _)| way.as_slice().cmp(holds)) {
             Ok(place) => return known[place].1,
@@ -599,12 +597,32 @@ impl Branches {
 
     /// The ways in which the conditions of part `of` hold or do not, at most `limit`, those that
     /// hold first.
-    fn ways(
+    pub(super) fn ways(
         &self,
         of: usize,
         limit: usize,
         decide: &mut dyn FnMut(ChoiceCondition) -> Holds,
     ) -> Vec<Vec<bool>> {
+        self.walks(of, limit, decide).into_iter().map(|walk| walk.holds).collect()
+    }
+
+    /// The [`Branches::ways`], with their conditions.
+    pub(super) fn sides(
+        &self,
+        of: usize,
+        limit: usize,
+        decide: &mut dyn FnMut(ChoiceCondition) -> Holds,
+    ) -> Vec<Vec<Side>> {
+        let walks = self.walks(of, limit, decide).into_iter();
+        walks.map(|walk| walk.conditions.into_iter().zip(walk.holds).collect()).collect()
+    }
+
+    fn walks(
+        &self,
+        of: usize,
+        limit: usize,
+        decide: &mut dyn FnMut(ChoiceCondition) -> Holds,
+    ) -> Vec<BranchWalk> {
         let part = &self.parts[of];
         let mut first = BranchWalk::default();
         first.begin(part, &self.base.graph);
@@ -613,7 +631,7 @@ impl Branches {
             && let Some(mut walk) = open.pop()
         {
             walk.run(&part.nodes, &self.base, decide, &mut |_, _| {}, &mut open);
-            found.push(walk.holds);
+            found.push(walk);
         }
         found
     }
@@ -752,11 +770,14 @@ impl Branches {
         self.base.extend(values);
         if self.base.roles == self.before {
             let compiled = self.parts.iter_mut().filter_map(|part| part.compiled.as_mut());
+            let of_patches = self.patches.iter_mut().map(|patch| &mut patch.compiled);
             compiled
+                .chain(of_patches)
                 .chain(&mut self.split)
                 .for_each(|compiled| Arc::make_mut(compiled).set_parameters(values));
         } else {
-            self.begin_again(values, &[]);
+            let (graph, root) = (core::mem::take(&mut self.base.graph), self.parts[0].root);
+            self.begin(&graph, root, values);
         }
     }
 }

@@ -23,7 +23,7 @@ pub(super) struct Compiled {
     pub(super) root: Id,
     gradient: [Id; 3],
     /// Values of the parameters.
-    values: Vec<f64>,
+    pub(super) values: Vec<f64>,
     /// Whether f is the same everywhere for any values of the parameters.
     pub(super) is_constant: bool,
     pub(super) value_program: Program,

@@ -69,14 +69,12 @@ struct TieCell {
 impl Branches {
     /// Cells of another box, no wider than `width`, outside of which the surface has no crease.
     pub(super) async fn crease_cells(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
-        let found = self.search_creases(values, bounds, width).await;
-        found.map_or_else(Vec::new, |found| found.cells)
+        self.search_creases(values, bounds, width, None).await.creases
     }
 
     /// Cells of the box, no wider than `width`, outside of which the surface of a function has no
-    /// crease, and the branches of the function as they are there. It has no choices if there is no
-    /// cell; else only those whose operands meet smoothly on the surface are none. Products are
-    /// told by their factors if these cross.
+    /// crease, and the branches of the function, joined to patches; none if no choice makes a
+    /// crease. Products are told by their factors if these cross.
     pub(super) async fn found_in(
         f: &Compiled,
         values: &[f64],
@@ -95,22 +93,28 @@ impl Branches {
     }
 
     async fn take_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
-        let Some(FoundCreases { cells, are_there, smooth }) =
-            self.search_creases(values, bounds, width).await
-        else {
-            return Vec::new();
-        };
-        self.begin_again(values, &smooth);
-        if are_there {
-            self.crease(values, bounds);
+        let TieCells { creases, seams } = self.search_creases(values, bounds, width, Some(2.0 * width)).await;
+        if creases.is_empty() {
+            *self = Self::default();
+            return creases;
         }
-        cells
+        let is_smooth = self.join_tangent(values, bounds, &seams).await;
+        self.crease(values, bounds);
+        if is_smooth { Vec::new() } else { creases }
     }
 
-    /// Searches a box for creases; none if f has no choices, or is a product whose factors do not
-    /// cross there.
-    async fn search_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Option<FoundCreases> {
-        let part = self.parts.first().filter(|part| part.number.is_none())?;
+    /// Cells of a box outside of which f has no crease, and no seam if these are asked for. There
+    /// are none if f has no choices that make creases, or is a product whose factors do not cross
+    /// there.
+    async fn search_creases(
+        &mut self,
+        values: &[f64],
+        bounds: &Bounds,
+        width: f64,
+        width_of_seams: Option<f64>,
+    ) -> TieCells {
+        let mut found = TieCells::default();
+        let Some(part) = self.parts.first().filter(|part| part.number.is_none()) else { return found };
         let is_choice = |id: &Id| matches!(self.base.roles[*id as usize], NodeRole::Choice(_));
         let choices: Vec<Id> = part.nodes.iter().copied().filter(is_choice).collect();
         let ties = ties_of(&mut self.base, part, &choices, values);
@@ -120,24 +124,27 @@ impl Branches {
         if self.products.iter().any(|&id| kinds[id as usize] == Some(TieKind::Crease)) {
             self.products.iter().for_each(|&id| kinds[id as usize] = Some(TieKind::Crease));
         } else if !self.products.is_empty() {
-            return None;
+            return found;
         }
-        let creasing: Vec<Id> =
-            (0..).zip(&kinds).filter(|(_, kind)| **kind == Some(TieKind::Crease)).map(|(id, _)| id).collect();
-        let cells = search.cells(&creasing, width).await;
-        let smooth = |id: &Id| creasing.is_empty() || kinds[*id as usize] == Some(TieKind::Seam);
-        let smooth = choices.into_iter().filter(smooth).collect();
-        Some(FoundCreases { cells, are_there: !creasing.is_empty(), smooth })
+        let of = |is_wanted: fn(TieKind) -> bool| -> Vec<Id> {
+            (0..).zip(&kinds).filter(|(_, kind)| kind.is_some_and(is_wanted)).map(|(id, _)| id).collect()
+        };
+        let creasing = of(|kind| kind == TieKind::Crease);
+        found.creases = search.cells(&creasing, width).await;
+        if let Some(width) = width_of_seams.filter(|_| !creasing.is_empty()) {
+            found.seams = search.cells(&of(|_| true), width).await;
+        }
+        found
     }
 }
 
-/// The creases of f in a box, as [`Branches::search_creases`] finds them.
-struct FoundCreases {
-    /// Cells outside of which there are none.
-    cells: Vec<Bounds>,
-    are_there: bool,
-    /// Choices that make no crease in the box.
-    smooth: Vec<Id>,
+/// Cells of a box in which choices may be tied on the surface.
+#[derive(Default)]
+struct TieCells {
+    /// Cells with the choices that crease the surface somewhere.
+    creases: Vec<Bounds>,
+    /// Cells with all choices that are tied on the surface somewhere.
+    seams: Vec<Bounds>,
 }
 
 /// f where a choice is tied: functions that are f where the choice is taken and its operands are

@@ -196,16 +196,16 @@ impl Patches for FormulaEvaluator<'_> {
     /// The numbers are the same whatever was asked before, but for those beyond the first 256.
     fn branch_at(&mut self, p: DVec3) -> u32 {
         let place = self.frame.place(p);
-        self.on_branches(|branches, values| branches.at(values, place))
+        self.on_branches(|branches, values| branches.patch_at(values, place))
     }
 
     fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
         let bounds = self.frame.outward(bounds);
-        self.on_branches(|branches, values| branches.within(values, &bounds))
+        self.on_branches(|branches, values| branches.patches_within(values, &bounds))
     }
 
     fn branch(&mut self, branch: u32) -> &mut dyn Evaluator {
-        let compiled = self.on_branches(|branches, values| branches.compiled(branch, values));
+        let compiled = self.on_branches(|branches, values| branches.patch(branch, values));
         let (formula, frame) = (self.formula, self.frame);
         let own = self.branch.get_or_insert_with(|| Box::new(Self::of(formula, frame, None, true)));
         let is_same = match (&own.instead, &compiled) {
@@ -250,7 +250,8 @@ impl Bounded for FormulaEvaluator<'_> {
 
     fn is_zero_of(&mut self, factor: usize, zero: DVec3) -> bool {
         let branch = self.bounds().factors[factor].branch;
-        branch.is_none_or(|branch| self.branch_at(zero) == branch)
+        let place = self.frame.place(zero);
+        branch.is_none_or(|branch| self.on_branches(|branches, values| branches.at(values, place)) == branch)
     }
 
     fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]) {

@@ -62,11 +62,13 @@ mod mathml;
 mod names;
 mod operations;
 mod parse;
+mod patches;
 mod periods;
 mod powers;
 mod program;
 mod repair;
 mod scalar;
+
 mod solids;
 mod spelling;
 mod statements;

@@ -2,9 +2,10 @@
 //! give way to each other, and the corners where more than two meet; and the [tips] of cones.
 //!
 //! A formula with maxima, minima and absolute values has a surface of *patches*. On each one smooth
-//! branch gives f ([`Patches::branch_at`](crate::field::Patches::branch_at)). Two patches meet
-//! along a *crease*, the curve on which both branches are zero; it ends at a corner, at the box, or
-//! runs back into itself. Where the factors of a product cross, four patches meet: each factor is
+//! branch gives f, or several that meet without an edge
+//! ([`Patches::branch_at`](crate::field::Patches::branch_at)). Two patches meet along a *crease*,
+//! the curve on which both branches are zero; it ends at a corner, at the box, or runs back into
+//! itself. Where the factors of a product cross, four patches meet: each factor is
 //! two branches, one on either side of the other factor.
 //!
 //! 1. *Search.* The field says in which small cells of the box creases can be. There Newton's

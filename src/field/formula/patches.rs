@@ -1,0 +1,306 @@
+//! Branches that meet without an edge, as a cylinder and the ball that rounds its end do, or the
+//! faces and the rounded edges of a box. They are one patch of the surface: its function is f with
+//! those choices open that only its own branches make.
+//!
+//! In small cells of the box in which choices may be tied, points are brought onto the surface.
+//! Between two on which different branches give f the place where one gives way to the other is
+//! found by halving, and the normals on both sides of it are compared. Branches that meet at an
+//! angle anywhere stay apart.
+
+use super::branches::{Branches, ChoiceCondition, Holds, NodeRole, Side, taken};
+use super::compiled::Compiled;
+use super::graph::{Id, Node};
+use super::operations::Unary;
+use super::scalar;
+use crate::field::SHARP;
+use crate::math::Bounds;
+use crate::math::newton::{self, STEPS, Slope, StepLimits, step_to_surface};
+use crate::slices::pause;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// Distance between two points at which the normals of two branches are compared, as a share of the
+/// diagonal of the box.
+const APART: f64 = 1e-6;
+/// Maximum number of times that the way between two points is halved. Beside an angle of 90° it is
+/// shortened by a third each time at least.
+const MOST_HALVINGS: u32 = 64;
+/// A point is on the surface when a step is shorter than this share of the reach.
+const AT_REST: f64 = 1e-9;
+/// Maximum number of ways through the choices of f that are looked at.
+const MOST_WAYS: usize = 256;
+
+/// A part of the surface on which several branches meet without an edge.
+#[derive(Clone, Debug)]
+pub(super) struct Patch {
+    /// Its branches, ascending. It has the number of the first.
+    pub(super) branches: Vec<u32>,
+    /// The function whose zeros it is.
+    pub(super) compiled: Arc<Compiled>,
+}
+
+/// What is known of the branches that give f on the surface.
+#[derive(Debug, Default)]
+struct Meetings {
+    /// Those that were met.
+    seen: Vec<u32>,
+    /// Pairs that meet without an edge somewhere, the smaller number first.
+    tangent: Vec<[u32; 2]>,
+    /// Pairs that meet at an angle somewhere.
+    sharp: Vec<[u32; 2]>,
+    /// Whether of some pair neither was found.
+    is_open: bool,
+}
+
+/// A point of the surface, with the branch that gives f there.
+#[derive(Clone, Copy)]
+struct Landed {
+    position: DVec3,
+    branch: u32,
+}
+
+impl Branches {
+    /// Joins the branches that meet without an edge on the surface in the box to patches. They meet
+    /// in these cells. Says whether the surface has no edge there at all.
+    pub(super) async fn join_tangent(&mut self, values: &[f64], bounds: &Bounds, cells: &[Bounds]) -> bool {
+        let Meetings { seen, tangent, sharp, is_open } = self.meetings(values, bounds, cells).await;
+        let mut patches: Vec<u32> =
+            seen.iter().copied().max().map_or(Vec::new(), |last| (0..=last).collect());
+        for &pair in &tangent {
+            let of = |pair: [u32; 2]| ascending(pair.map(|branch| patches[branch as usize]));
+            let [to, from] = of(pair);
+            if to != from && !sharp.iter().any(|&edge| of(edge) == [to, from]) {
+                patches.iter_mut().filter(|patch| **patch == from).for_each(|patch| *patch = to);
+            }
+        }
+        for &first in &seen {
+            pause().await;
+            let branches: Vec<u32> = seen.iter().copied().filter(|&b| patches[b as usize] == first).collect();
+            if branches.len() > 1
+                && let Some(root) = self.root_of(&branches, &seen, values)
+            {
+                let (graph, root) = self.base.graph.part(root);
+                let compiled = Arc::new(Compiled::from_graph(graph, root, values));
+                self.patches.push(Patch { branches, compiled });
+            }
+        }
+        let is_whole = self.patches.iter().any(|patch| patch.branches == seen);
+        is_whole && sharp.is_empty() && !is_open
+    }
+
+    /// The number of the patch on which a branch gives f.
+    fn patch_of(&self, branch: u32) -> u32 {
+        let patch = self.patches.iter().find(|patch| patch.branches.contains(&branch));
+        patch.map_or(branch, |patch| patch.branches[0])
+    }
+
+    /// The number of the patch whose branch is that at `p`.
+    pub(super) fn patch_at(&mut self, values: &[f64], p: DVec3) -> u32 {
+        let branch = self.at(values, p);
+        self.patch_of(branch)
+    }
+
+    /// The patches of the branches that are [`Branches::within`] a box.
+    pub(super) fn patches_within(&mut self, values: &[f64], bounds: &Bounds) -> Option<Vec<u32>> {
+        let branches = self.within(values, bounds)?;
+        let mut patches: Vec<u32> = branches.into_iter().map(|branch| self.patch_of(branch)).collect();
+        patches.sort_unstable();
+        patches.dedup();
+        Some(patches)
+    }
+
+    /// The function of the patch of this number; none if f is smooth everywhere.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such patch.
+    pub(super) fn patch(&mut self, number: u32, values: &[f64]) -> Option<Arc<Compiled>> {
+        match self.patches.iter().find(|patch| patch.branches[0] == number) {
+            Some(patch) => Some(Arc::clone(&patch.compiled)),
+            None => self.compiled(number, values),
+        }
+    }
+
+    /// Finds out how the branches of the surface meet in these cells of the box.
+    async fn meetings(&mut self, values: &[f64], bounds: &Bounds, cells: &[Bounds]) -> Meetings {
+        let mut found = Meetings::default();
+        for cell in cells {
+            pause().await;
+            let is_sharp = |branches: &Vec<u32>| {
+                let mut pairs = (1..branches.len()).flat_map(|k| (0..k).map(move |j| [j, k]));
+                pairs.all(|pair| found.sharp.contains(&pair.map(|k| branches[k])))
+            };
+            if !self.within(values, cell).as_ref().is_some_and(is_sharp) {
+                self.look_into(values, bounds, cell, &mut found);
+            }
+        }
+        found.seen.sort_unstable();
+        for pairs in [&mut found.tangent, &mut found.sharp] {
+            pairs.sort_unstable();
+            pairs.dedup();
+        }
+        found.tangent.retain(|pair| !found.sharp.contains(pair));
+        found
+    }
+
+    /// Brings points of a cell onto the surface, and looks how the branches that give f there meet.
+    fn look_into(&mut self, values: &[f64], bounds: &Bounds, cell: &Bounds, found: &mut Meetings) {
+        let reach = 2.0 * cell.diagonal();
+        let mut landed: Vec<Landed> = Vec::new();
+        // They lie a little outside of the corners, so that no seam passes between two cells.
+        let around = Bounds::new(cell.lo() - 0.65 * cell.size(), cell.hi() + 0.85 * cell.size());
+        for start in around.spread(2) {
+            let Some(place) = self.landed(values, start, reach).filter(|place| bounds.holds(place.position))
+            else {
+                continue;
+            };
+            if !found.seen.contains(&place.branch) {
+                found.seen.push(place.branch);
+            }
+            if landed.iter().all(|other| other.branch != place.branch) {
+                landed.push(place);
+            }
+        }
+        for k in 1..landed.len() {
+            for j in 0..k {
+                let pair = ascending([landed[j].branch, landed[k].branch]);
+                if found.sharp.contains(&pair) {
+                    continue;
+                }
+                match self.between(values, [landed[j], landed[k]], APART * bounds.diagonal()) {
+                    Some((pair, true)) => found.sharp.push(pair),
+                    Some((pair, false)) => found.tangent.push(pair),
+                    None => found.is_open = true,
+                }
+            }
+        }
+    }
+
+    /// Two branches that give way to each other between two points of the surface, and whether they
+    /// do so at an angle; none if the surface is not found between them.
+    fn between(&mut self, values: &[f64], ends: [Landed; 2], apart: f64) -> Option<([u32; 2], bool)> {
+        let [mut from, mut to] = ends;
+        let mut halvings = 0..MOST_HALVINGS;
+        while from.position.distance(to.position) > apart {
+            halvings.next()?;
+            let distance = from.position.distance(to.position);
+            let middle = self.landed(values, 0.5 * (from.position + to.position), 0.5 * distance)?;
+            if middle.branch == from.branch {
+                from = middle;
+            } else {
+                to = middle;
+            }
+        }
+        let [u, v] = [from, to].map(|end| self.slope(values, end.position).1.normalize_or_zero());
+        // A gradient that is none says nothing.
+        let is_known = u != DVec3::ZERO && v != DVec3::ZERO;
+        is_known.then(|| (ascending([from.branch, to.branch]), u.distance(v) > SHARP))
+    }
+
+    /// The point of the surface to which Newton's method leads from `start`, within `reach`.
+    fn landed(&mut self, values: &[f64], start: DVec3, reach: f64) -> Option<Landed> {
+        let limits = StepLimits { reach, at_rest: AT_REST * reach, ..StepLimits::steps(STEPS) };
+        let (position, ()) =
+            newton::land(start, limits, |p| Some((step_to_surface(self.slope(values, p)), ())))?;
+        Some(Landed { position, branch: self.at(values, position) })
+    }
+
+    /// f and its gradient, by the branch at a point: f itself may have none where a choice is tied.
+    fn slope(&mut self, values: &[f64], p: DVec3) -> Slope {
+        let number = self.at(values, p);
+        let Some(branch) = self.compiled(number, values) else { return (f64::NAN, DVec3::ZERO) };
+        scalar::jets(&branch.graph, branch.root, &branch.values, p, &mut self.jets);
+        self.jets[branch.root as usize].first_order()
+    }
+
+    /// The node of a patch of these branches: f, in which a choice takes the operands that it takes
+    /// where they give f. None if branches give f there that were seen, but are not among them.
+    fn root_of(&mut self, members: &[u32], seen: &[u32], values: &[f64]) -> Option<Id> {
+        let mut allowed: Vec<Side> = Vec::new();
+        let ways = self.sides(0, MOST_WAYS, &mut |_| Holds::Somewhere);
+        if ways.len() == MOST_WAYS {
+            return None;
+        }
+        for way in ways {
+            let reached = self.reached(&way, values)?;
+            if reached.iter().any(|branch| members.contains(branch)) {
+                allowed.extend(way);
+            }
+        }
+        let only = |condition: ChoiceCondition| match [true, false]
+            .map(|holds| allowed.contains(&(condition, holds)))
+        {
+            [true, false] => Holds::Always,
+            [false, true] => Holds::Never,
+            _ => Holds::Somewhere,
+        };
+        // Choices that take either side independently allow more than the ways of the members.
+        for way in self.sides(0, MOST_WAYS, &mut |condition| only(condition)) {
+            let is_other = |branch: &u32| seen.contains(branch) && !members.contains(branch);
+            if self.reached(&way, values)?.iter().any(is_other) {
+                return None;
+            }
+        }
+        let nodes = self.parts[0].nodes.clone();
+        let mut map: Vec<Id> = (0..self.base.graph.len() as Id).collect();
+        let graph = &mut self.base.graph;
+        let zero = graph.constant(0.0);
+        for id in nodes {
+            let new = |id: Id| map[id as usize];
+            let node = graph.node(id);
+            let NodeRole::Choice(condition) = self.base.roles[id as usize] else {
+                map[id as usize] = graph.built(node.mapped(new));
+                continue;
+            };
+            let mut operand = |holds: bool| match taken(node, holds).map(new) {
+                Some(u) if !holds && matches!(node, Node::Unary(Unary::Abs, _)) => graph.neg(u),
+                _ if matches!(node, Node::Unary(Unary::Sign, _)) => {
+                    graph.constant(if holds { 1.0 } else { -1.0 })
+                }
+                Some(operand) => operand,
+                None => zero,
+            };
+            map[id as usize] = match only(condition) {
+                Holds::Always => operand(true),
+                Holds::Never => operand(false),
+                Holds::Somewhere => {
+                    let [u, v] = [true, false].map(operand);
+                    match condition {
+                        ChoiceCondition::AtMost(a, b) => graph.select(a, b, u, v),
+                        ChoiceCondition::NotNegative(a) => graph.select(zero, a, u, v),
+                    }
+                }
+            };
+        }
+        let root = map[self.parts[0].root as usize];
+        self.base.extend(values);
+        Some(root)
+    }
+
+    /// The branches to which a way through the choices of f leads; none if there are too many.
+    fn reached(&mut self, way: &[Side], values: &[f64]) -> Option<Vec<u32>> {
+        let mut reached = Vec::new();
+        let mut open = vec![(0, way.iter().map(|&(_, holds)| holds).collect::<Vec<bool>>())];
+        while let Some((of, holds)) = open.pop() {
+            let part = self.taken(of, &holds, values);
+            if part.is_tie {
+                continue;
+            }
+            match self.parts[part.index].number {
+                Some(number) => reached.push(number),
+                None => {
+                    let ways = self.ways(part.index, MOST_WAYS, &mut |_| Holds::Somewhere);
+                    open.extend(ways.into_iter().map(|holds| (part.index, holds)));
+                }
+            }
+            if open.len() + reached.len() > MOST_WAYS {
+                return None;
+            }
+        }
+        Some(reached)
+    }
+}
+
+fn ascending([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
