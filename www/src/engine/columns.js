@@ -171,20 +171,22 @@ export class Columns {
     this.slots = grown(this.slots, room);
   }
 
-  /** Adds rows to the numbers of their levels. @param {number} first @param {number} last */
+  /** Adds rows to the numbers of their levels; from 0 on, these begin anew. @param {number} first @param {number} last */
   #count(first, last) {
     const { levels, parents, slots } = this;
+    if (first === 0) {
+      this.lastLevel = 0;
+      this.tally = noTally();
+    }
     for (let i = first; i < last; i += 1) if (levels[i] > this.lastLevel) this.lastLevel = levels[i];
     const { tally } = this;
     if (this.lastLevel >= tally.fresh.length) {
-      const room = Math.max(this.lastLevel + 1, 2 * tally.fresh.length);
-      this.tally = {
-        fresh: grown(tally.fresh, room),
-        seeds: grown(tally.seeds, room),
-        fates: grown(tally.fates, FATES * (room + 1)),
-      };
+      const room = 2 * this.lastLevel + 1;
+      tally.fresh = grown(tally.fresh, room);
+      tally.seeds = grown(tally.seeds, room);
+      tally.fates = grown(tally.fates, FATES * (room + 1));
     }
-    const { fresh, seeds, fates } = this.tally;
+    const { fresh, seeds, fates } = tally;
     for (let i = first; i < last; i += 1) {
       const level = levels[i];
       // A particle on a crease has a row, and children, on either side.
@@ -194,13 +196,6 @@ export class Columns {
       }
       for (let k = 0; k < MOST_SLOTS; k += 1) fates[FATES * (level + 1) + fateOf(slots[i], k)] += 1;
     }
-  }
-
-  /** Counts all rows anew. */
-  #recount() {
-    this.lastLevel = 0;
-    this.tally = noTally();
-    this.#count(0, this.count);
   }
 
   /**
@@ -215,12 +210,10 @@ export class Columns {
       return false;
     // A relaxation moves the particles and leaves their levels and parents; then they are not counted again.
     const known = this.count;
-    const twins = range.creases?.twins ?? this.twins;
     const isSame =
       total >= known &&
-      isRepeated(range, this, Math.min(n, known - first)) &&
-      twins.length === this.twins.length &&
-      isEqual(twins, this.twins, twins.length);
+      this.twins.length + (range.creases?.twins.length ?? 0) === 0 &&
+      isRepeated(range, this, Math.min(n, known - first));
     this.#reserve(total);
     this.positions.set(range.positions, 3 * first);
     if (range.exact?.length) {
@@ -235,8 +228,7 @@ export class Columns {
     this.count = total;
     this.particles = range.progress?.particles ?? this.particles;
     if (range.creases) Object.assign(this, range.creases);
-    if (isSame) this.#count(known, total);
-    else this.#recount();
+    this.#count(isSame ? known : 0, total);
     if (n > 0) this.forget();
     return true;
   }
@@ -312,20 +304,14 @@ export class Columns {
 const noTally = () => ({ fresh: new Uint32Array(0), seeds: new Uint32Array(0), fates: new Uint32Array(0) });
 
 /**
- * Whether two columns have the same first `n` values.
- * @param {Uint32Array} a @param {Uint32Array} b @param {number} n
- */
-function isEqual(a, b, n) {
-  for (let i = 0; i < n; i += 1) if (a[i] !== b[i]) return false;
-  return true;
-}
-
-/**
  * Whether the first `n` rows of a range have the levels and parents of the rows in their place.
  * @param {ColumnRange} range @param {Columns} columns @param {number} n
  */
-const isRepeated = ({ first, levels, parents }, columns, n) =>
-  isEqual(levels, columns.levels.subarray(first), n) && isEqual(parents, columns.parents.subarray(first), n);
+function isRepeated({ first, levels, parents }, columns, n) {
+  for (let i = 0; i < n; i += 1)
+    if (levels[i] !== columns.levels[first + i] || parents[i] !== columns.parents[first + i]) return false;
+  return true;
+}
 
 /**
  * Returns an empty column of the same kind.

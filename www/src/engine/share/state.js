@@ -135,7 +135,8 @@ export function validBounds(v, limits) {
   const farthest = Math.max(...[...min, ...max].map(Math.abs));
   const fits = diagonal >= limits.diagonal_min && diagonal <= limits.diagonal_max;
   if (!fits || farthest > limits.farthest_corner * diagonal) return undefined;
-  return v.enlarged === 'larger' || v.enlarged === 'endless' ? { min, max, enlarged: v.enlarged } : { min, max };
+  const { enlarged } = v;
+  return { min, max, ...(enlarged === 'larger' || enlarged === 'endless' ? { enlarged } : {}) };
 }
 
 /** A plane with a unit normal. @param {unknown} v @returns {CuttingPlane | undefined} */

@@ -31,8 +31,8 @@ const CREASE_LIFT = 0.3;
 /** Radius on the screen below which a disc is drawn as one pixel. */
 const POINT_PX = 0.7;
 
-/** Most discs that one call of {@link Painter.draw} paints: some 40 ms, so that a press is answered between two. */
-export const MOST_PAINTED = 2 ** 18;
+/** Most discs that one call of {@link Painter.draw} paints: some 20 ms, so that a press is answered between two. */
+export const MOST_PAINTED = 2 ** 17;
 
 /** Radius on the screen above which a disc has a darker rim. */
 const RIM_FROM_PX = 4;

@@ -57,7 +57,7 @@ export class Viewer {
   #lastS;
   #sight;
 
-  /** Whether the last frame has drawn a part of its picture. Nothing of it changes before it is complete. */
+  /** Whether the last frame was a part of one. What the device has does not change before the picture is complete. */
   #isPart = false;
 
   /** Distance from which the last fit would have shown the whole ball. */
@@ -427,8 +427,8 @@ export class Viewer {
     if (this.camera.state !== before) this.#events.onCamera(this.camera.state);
     let outcome;
     try {
-      if (!this.#isPart) this.#tell(device, nowS);
-      outcome = device.renderer.draw(nowS);
+      if (!this.#isPart || !this.upload.isWhole) this.#tell(device, nowS);
+      outcome = this.upload.isWhole ? device.renderer.draw(nowS) : 'part';
     } catch (error) {
       // The renderer has trapped. Its instance must not be called again.
       this.keeper.giveUp(error instanceof Error ? error.message : String(error));
@@ -445,8 +445,7 @@ export class Viewer {
     const dimming = this.dimmer.moving(nowS);
     if (dimming) this.due.style = true;
     const { upload } = this;
-    if (moving || revealing || dimming || upload.glide.active || upload.fading(nowS) || !upload.isWhole)
-      this.frames.ask();
+    if (moving || revealing || dimming || upload.glide.active || upload.fading(nowS)) this.frames.ask();
     if (outcome === 'drawn') {
       this.keeper.drew();
       this.#events.onFrame();
