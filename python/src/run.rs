@@ -2,7 +2,7 @@
 
 use crate::errors;
 use crate::field::Field;
-use marching_particles::{Bounds, Measured, Radius, Run, Settings, Severity, Vertices, Warning};
+use marching_particles::{Bounds, Measured, Radius, Run, Settings, Vertices, Warning};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -87,12 +87,8 @@ fn signed(triangles: Vec<[u32; 3]>) -> Vec<[i32; 3]> {
 }
 
 fn told(warnings: &[Warning]) -> Vec<(&'static str, &'static str, String)> {
-    let severity = |warning: &Warning| match warning.severity() {
-        Severity::Note => "note",
-        Severity::Fault => "fault",
-        _ => "caution",
-    };
-    warnings.iter().map(|warning| (warning.code(), severity(warning), warning.to_string())).collect()
+    let told = |warning: &Warning| (warning.code(), warning.severity().name(), warning.to_string());
+    warnings.iter().map(told).collect()
 }
 
 type Mesh<'py> = (

@@ -108,7 +108,7 @@ pub struct Start {
     /// Estimated area of the surface in the box.
     pub area: f64,
     /// Warnings that are known before the first particle is placed.
-    #[cfg_attr(test, ts(type = "Array<string>"))]
+    #[cfg_attr(test, ts(as = "Vec<warning::Told>"))]
     pub warnings: Vec<Warning>,
 }
 

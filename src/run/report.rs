@@ -56,7 +56,7 @@ pub struct Report {
     /// Why the run ended.
     pub stop_reason: Option<StopReason>,
     /// Warnings about the field, the settings and the result.
-    #[cfg_attr(test, ts(type = "Array<string>"))]
+    #[cfg_attr(test, ts(as = "Vec<super::warning::Told>"))]
     pub warnings: Vec<Warning>,
     /// Digest of the particles, 16 hexadecimal digits.
     pub digest: String,

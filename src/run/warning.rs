@@ -97,6 +97,8 @@ pub enum Warning {
         not_converged: u64,
         /// Number of children that met a place without a value or a normal.
         undefined: u64,
+        /// Whether the particles were measured and close the surface all the same.
+        is_closed: bool,
     },
     /// Particles face another sheet within their diameter.
     CloseSheets {
@@ -212,15 +214,30 @@ pub enum Warning {
 }
 
 /// A severity says what a warning means for the result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[non_exhaustive]
 pub enum Severity {
-    /// The result is whole; the warning tells what was found or done.
+    /// Nothing is known to be amiss, and nothing needs to be done: the warning tells what was found
+    /// or done, or what a figure of the report says, too.
     Note,
     /// The result may be incomplete, or less even than it could be.
     Caution,
     /// A part of the surface is missing or wrong.
     Fault,
+}
+
+impl Severity {
+    /// Its name, as reports in JSON have it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Note => "note",
+            Self::Caution => "caution",
+            Self::Fault => "fault",
+        }
+    }
 }
 
 impl Warning {
@@ -248,7 +265,7 @@ impl Warning {
             Self::Count { .. } => ("count", Caution),
             Self::NotRefined(_) => ("not_refined", Caution),
             Self::Unpaired { .. } => ("unpaired", Caution),
-            Self::Children { .. } => ("children", Caution),
+            Self::Children { is_closed, .. } => ("children", if *is_closed { Note } else { Caution }),
             Self::CloseSheets { .. } => ("close_sheets", Caution),
             Self::Meets { .. } => ("meets", Note),
             Self::Crosses { .. } => ("crosses", Note),
@@ -262,6 +279,8 @@ impl Warning {
             Self::MeshLeavesOut { .. } => ("mesh_leaves_out", Caution),
             Self::LargerInside(_) => ("larger_inside", Note),
             Self::FileDiffers { .. } => ("file_differs", Caution),
+            // The completeness among the figures says so, too, and no setting helps.
+            Self::Unproven { doubt: Doubt::Cells { .. }, .. } => ("unproven", Note),
             Self::Unproven { .. } => ("unproven", Caution),
             Self::Digits { .. } => ("digits", Caution),
             Self::Overflow => ("overflow", Caution),
@@ -269,10 +288,22 @@ impl Warning {
     }
 }
 
+/// A warning, as reports in JSON have it.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Warning"))]
+pub(super) struct Told {
+    /// A name by which a program tells warnings apart.
+    code: &'static str,
+    /// What the warning means for the result.
+    severity: Severity,
+    /// What happened and what to do; the sentences after the first are details.
+    message: String,
+}
+
 impl Serialize for Warning {
-    /// Writes the warning as its sentence.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
+        let told = Told { code: self.code(), severity: self.severity(), message: self.to_string() };
+        told.serialize(serializer)
     }
 }
 
@@ -376,7 +407,9 @@ impl<F: Field> Run<F> {
         let FateCounts { not_converged, undefined, .. } =
             if counts.refined_levels.is_some() { FateCounts::default() } else { counts.fates };
         if not_converged > 0 || undefined > 0 {
-            warnings.push(Warning::Children { not_converged, undefined });
+            // The figures of other particles say nothing of these.
+            let is_closed = self.measuring.facing.is_some() && self.measuring.measured.opening.is_none();
+            warnings.push(Warning::Children { not_converged, undefined, is_closed });
         }
         if self.has_moved() {
             warnings.push(Warning::Moved);
@@ -493,13 +526,20 @@ impl fmt::Display for Warning {
                 };
                 write!(f, "The faces across {axis} are closed, but not the same: {reason}")
             }
-            Self::Children { not_converged, undefined } => {
+            Self::Children { not_converged, undefined, is_closed } => {
                 let [not_converged, undefined] = [*not_converged, *undefined].map(|count| count as usize);
                 let places = counted(not_converged + undefined, "place", "places");
-                write!(
-                    f,
-                    "At {places} the surface is too sharp or thin for this radius: choose a smaller one."
-                )?;
+                if *is_closed {
+                    write!(
+                        f,
+                        "At {places} the surface is sharp or thin; the particles around them close it."
+                    )?;
+                } else {
+                    write!(
+                        f,
+                        "At {places} the surface is too sharp or thin for this radius: choose a smaller one."
+                    )?;
+                }
                 let found = those_that_are([
                     (not_converged, format!("no surface at the right distance ({not_converged})")),
                     (undefined, format!("no value or no normal ({undefined})")),
@@ -728,7 +768,8 @@ mod tests {
             Warning::Count { count: 8_406, wanted: 8_000 },
             Warning::Unpaired { axis: 0, repeats: true },
             Warning::Unpaired { axis: 2, repeats: false },
-            Warning::Children { not_converged: 12_345, undefined: 123 },
+            Warning::Children { not_converged: 12_345, undefined: 123, is_closed: false },
+            Warning::Children { not_converged: 12_345, undefined: 123, is_closed: true },
             Warning::CloseSheets { count: 12_345 },
             Warning::Meets { crossings: 12, touches: 34, position, length },
             Warning::Crosses { curves: 12, position, length },

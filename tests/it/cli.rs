@@ -257,7 +257,7 @@ fn a_solid_in_which_f_is_larger_is_turned_and_told() {
         text.contains("volume 4.1") && text.contains("turned to face outward: f is larger inside"),
         "{text}"
     );
-    assert!(text.contains("f > 0") && text.contains("warning: f is larger inside"), "{text}");
+    assert!(text.contains("f > 0") && text.contains("note: f is larger inside"), "{text}");
     let text = run_text(&["--formula", "x^2 + y^2 + z^2 - 1", "--count", "1500", "--mesh"], "as-it-is.stl");
     assert!(!text.contains("larger inside") && text.contains("f < 0"), "{text}");
 }

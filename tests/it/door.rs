@@ -175,6 +175,21 @@ fn warnings_have_names_that_stay_and_say_how_much_they_weigh() {
     );
     assert!(Severity::Note < Severity::Caution && Severity::Caution < Severity::Fault);
     assert_eq!(Warning::Touches.severity(), Severity::Note);
+    for severity in [Severity::Note, Severity::Caution, Severity::Fault] {
+        assert_eq!(serde_json::to_value(severity).unwrap(), severity.name());
+    }
+    let told = serde_json::to_value(Warning::Touches).unwrap();
+    assert_eq!((&told["code"], &told["severity"]), (&"touches".into(), &"note".into()), "{told}");
+    assert_eq!(told["message"], Warning::Touches.to_string());
+}
+
+#[test]
+fn what_a_heart_always_does_is_a_note() {
+    let heart = Formula::parse("(x^2 + 9/4*y^2 + z^2 - 1)^3 - x^2*z^3 - 9/80*y^2*z^3").unwrap();
+    let sample = sample(heart, &Settings::with_count(6000)).unwrap();
+    let warnings = &sample.report().warnings;
+    assert!(warnings.iter().any(|warning| warning.code() == "children"), "{warnings:?}");
+    assert!(warnings.iter().all(|warning| warning.severity() == Severity::Note), "{warnings:?}");
 }
 
 #[test]

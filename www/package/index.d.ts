@@ -30,11 +30,18 @@ export interface Options {
   signal?: AbortSignal;
   onProgress?: (progress: Progress) => void;
 }
+export interface Warning {
+  /** a name by which a program tells warnings apart */
+  code: string;
+  /** `note`: nothing needs to be done; `caution`: the result may be incomplete; `fault`: a part is missing or wrong */
+  severity: 'note' | 'caution' | 'fault';
+  message: string;
+}
 export interface Report {
   count: number;
   /** the same for the same formula, options and version, on every machine */
   digest: string;
-  warnings: string[];
+  warnings: Warning[];
   /** repulsion radius, in the units of the formula */
   radius: number;
   components: number | null;
@@ -63,7 +70,7 @@ export interface Sample {
   readonly parents: Uint32Array;
   /** null with `measure: false` */
   readonly report: Report | null;
-  readonly warnings: string[];
+  readonly warnings: Warning[];
   readonly bounds: Bounds;
   readonly params: Record<string, number>;
   readonly digest: string;

@@ -4,7 +4,7 @@ use crate::outcome::{MeshCounts, Outcome};
 use marching_particles::field::model::{ModelInfo, NormalSource};
 use marching_particles::math::{counted, grouped, significant};
 use marching_particles::session::{ReportRow, describe};
-use marching_particles::{Cut, Inside};
+use marching_particles::{Cut, Inside, Severity};
 use serde_json::Value;
 use std::io::{self, Write};
 
@@ -78,9 +78,12 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
         }
     }
     let of_points = outcome.model.iter().flat_map(|model| &model.warnings);
-    let of_run = report.warnings.iter().map(ToString::to_string);
-    for warning in of_points.cloned().chain(of_run) {
+    for warning in of_points {
         writeln!(out, "warning: {warning}")?;
+    }
+    for warning in &report.warnings {
+        let kind = if warning.severity() == Severity::Note { "note" } else { "warning" };
+        writeln!(out, "{kind}: {warning}")?;
     }
     if let Some(mesh) = outcome.mesh.as_ref().filter(|mesh| outcome.is_printed && mesh.volume.is_none()) {
         let loops = counted(mesh.borders + mesh.holes, "border loop", "border loops");

@@ -5,7 +5,7 @@
  * @module
  */
 
-import { FATE, MOST_SLOTS, SLOT_BITS } from './core-numbers.js';
+import { FATE, MOST_SLOTS, NO_PARENT, SLOT_BITS } from './core-numbers.js';
 import { vec } from './vector.js';
 
 /** @import { Bounds, ColumnRange, Figures, FileRecord, Mesh } from './types.js' */
@@ -47,6 +47,7 @@ export class Columns {
     this.segments = new Uint32Array(0);
     /** The last generation level. */
     this.lastLevel = 0;
+    this.tally = noTally();
     /**
      * Whether the particles belong to an earlier field. They stay on the page because the present field has no surface.
      */
@@ -113,6 +114,7 @@ export class Columns {
     this.twins = new Uint32Array(0);
     this.segments = new Uint32Array(0);
     this.lastLevel = 0;
+    this.tally = noTally();
     this.stale = false;
     this.curved = 0;
     this.adaptive = adaptive;
@@ -169,6 +171,33 @@ export class Columns {
     this.slots = grown(this.slots, room);
   }
 
+  /** Adds rows to the numbers of their levels; from 0 on, these begin anew. @param {number} first @param {number} last */
+  #count(first, last) {
+    const { levels, parents, slots } = this;
+    if (first === 0) {
+      this.lastLevel = 0;
+      this.tally = noTally();
+    }
+    for (let i = first; i < last; i += 1) if (levels[i] > this.lastLevel) this.lastLevel = levels[i];
+    const { tally } = this;
+    if (this.lastLevel >= tally.fresh.length) {
+      const room = 2 * this.lastLevel + 1;
+      tally.fresh = grown(tally.fresh, room);
+      tally.seeds = grown(tally.seeds, room);
+      tally.fates = grown(tally.fates, FATES * (room + 1));
+    }
+    const { fresh, seeds, fates } = tally;
+    for (let i = first; i < last; i += 1) {
+      const level = levels[i];
+      // A particle on a crease has a row, and children, on either side.
+      if (!this.isFurther(i)) {
+        fresh[level] += 1;
+        if (parents[i] === NO_PARENT) seeds[level] += 1;
+      }
+      for (let k = 0; k < MOST_SLOTS; k += 1) fates[FATES * (level + 1) + fateOf(slots[i], k)] += 1;
+    }
+  }
+
   /**
    * Writes a range. Ranges arrive in order, so `first` never exceeds the number of particles present.
    * @param {ColumnRange} range
@@ -179,6 +208,12 @@ export class Columns {
     const { first, total } = range;
     if (first > this.count || first + n > total || range.positions.length !== 3 * n || range.normals.length !== 3 * n)
       return false;
+    // A relaxation moves the particles and leaves their levels and parents; then they are not counted again.
+    const known = this.count;
+    const isSame =
+      total >= known &&
+      this.twins.length + (range.creases?.twins.length ?? 0) === 0 &&
+      isRepeated(range, this, Math.min(n, known - first));
     this.#reserve(total);
     this.positions.set(range.positions, 3 * first);
     if (range.exact?.length) {
@@ -189,11 +224,11 @@ export class Columns {
     this.radii.set(range.radii, first);
     this.levels.set(range.levels, first);
     this.parents.set(range.parents, first);
-    this.slots.fill(0, Math.max(first, this.count), first + n);
+    this.slots.fill(0, Math.max(first, known), first + n);
     this.count = total;
     this.particles = range.progress?.particles ?? this.particles;
     if (range.creases) Object.assign(this, range.creases);
-    for (const level of range.levels) if (level > this.lastLevel) this.lastLevel = level;
+    this.#count(isSame ? known : 0, total);
     if (n > 0) this.forget();
     return true;
   }
@@ -227,9 +262,19 @@ export class Columns {
   /** Writes newer slot fates of particles from `from` on. @param {number} from @param {Uint32Array} slots */
   writeSlots(from, slots) {
     if (from + slots.length > this.count) return;
+    const { fates } = this.tally;
+    for (let i = 0; i < slots.length; i += 1) {
+      const [before, now] = [this.slots[from + i], slots[i]];
+      if (before === now) continue;
+      const base = FATES * (this.levels[from + i] + 1);
+      for (let k = 0; k < MOST_SLOTS; k += 1) {
+        const fate = fateOf(now, k);
+        fates[base + fateOf(before, k)] -= 1;
+        fates[base + fate] += 1;
+        if (fate === FATE.outside) this.isOpen = true;
+      }
+    }
     this.slots.set(slots, from);
-    for (let i = 0; i < slots.length && !this.isOpen; i += 1)
-      for (let k = 0; k < MOST_SLOTS; k += 1) if (fateOf(slots[i], k) === FATE.outside) this.isOpen = true;
   }
 
   /**
@@ -250,6 +295,22 @@ export class Columns {
     }
     return { min, max };
   }
+}
+
+/**
+ * Returns numbers of each level, as of no particles: of its particles, of the seeds among them, and of the slots of the
+ * level before by their fates. There is one more level of the last, for the fates of its slots.
+ */
+const noTally = () => ({ fresh: new Uint32Array(0), seeds: new Uint32Array(0), fates: new Uint32Array(0) });
+
+/**
+ * Whether the first `n` rows of a range have the levels and parents of the rows in their place.
+ * @param {ColumnRange} range @param {Columns} columns @param {number} n
+ */
+function isRepeated({ first, levels, parents }, columns, n) {
+  for (let i = 0; i < n; i += 1)
+    if (levels[i] !== columns.levels[first + i] || parents[i] !== columns.parents[first + i]) return false;
+  return true;
 }
 
 /**

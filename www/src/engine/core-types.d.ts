@@ -1105,7 +1105,7 @@ export type Report = {
   /** Why the run ended. */
   stop_reason: StopReason | null,
   /** Warnings about the field, the settings and the result. */
-  warnings: Array<string>,
+  warnings: Array<Warning>,
   /** Digest of the particles, 16 hexadecimal digits. */
   digest: string,
   /** Repulsion radius of the run; with adaptive sampling the one at which as many particles of
@@ -1251,6 +1251,9 @@ export type SettingScale = "linear" | "log";
 /** The value of a setting. */
 export type SettingValue = number | number | string;
 
+/** A severity says what a warning means for the result. */
+export type Severity = "note" | "caution" | "fault";
+
 /** Fate of a slot around a particle. Slots are in the order of their angles: six in a hexagon
 * (paper §4.4), up to ten where radii vary (§5). */
 export type SlotFate = "open" | "parent" | "added" | "matched" | "not_converged" | "outside" | "undefined" | "capped";
@@ -1272,7 +1275,7 @@ export type Start = {
   /** Estimated area of the surface in the box. */
   area: number,
   /** Warnings that are known before the first particle is placed. */
-  warnings: Array<string>,
+  warnings: Array<Warning>,
 };
 
 /** Why a run ended. */
@@ -1312,7 +1315,7 @@ export type Unsampled = {
   position: [number, number, number],
   /** Largest distance from the witness at which a point of the component was found. */
   reach: number,
-  /** Whether the component was followed no further than that, so that it may be larger. */
+  /** Whether the component was explored no further than that, so that it may be larger. */
   goes_on: boolean,
 };
 
@@ -1333,4 +1336,14 @@ export type VerticesChoice = {
   help: string,
   /** Extensions of the formats for which it makes a difference. */
   formats: Array<string>,
+};
+
+/** A warning, as reports in JSON have it. */
+export type Warning = {
+  /** A name by which a program tells warnings apart. */
+  code: string,
+  /** What the warning means for the result. */
+  severity: Severity,
+  /** What happened and what to do; the sentences after the first are details. */
+  message: string,
 };

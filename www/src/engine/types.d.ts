@@ -146,6 +146,10 @@ export type CuttingPlane = { normal: Vec3; offset: number };
  * is a model's id, or {@link FILE_SURFACE} for the file opened last, `formula` is empty; a formula typed then is based
  * on the default surface. The points of a file are not in the state, so a link to a file shows the default surface.
  */
+/** A clip box. `enlarged`: nobody has set it; it was enlarged by a press, around an `endless` surface or another. */
+export interface ChosenBounds extends Bounds {
+  enlarged?: 'larger' | 'endless';
+}
 export interface State {
   v: 1;
   surface: string;
@@ -155,7 +159,7 @@ export interface State {
   /** how many of the points of a model or a file are fitted; null for the default number, and for a formula */
   centres: number | null;
   /** null: the surface's own box, or one that fits the formula */
-  bounds: Bounds | null;
+  bounds: ChosenBounds | null;
   plane: CuttingPlane | null;
   /** on the surface of a model or a file, one after the other; none on a surface from a formula */
   pulls: Pull[];

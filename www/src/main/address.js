@@ -24,6 +24,7 @@ export function keepAddress(engine, { hasEntries }) {
    * @type {string | null}
    */
   let entry = null;
+  let isOpen = false;
   /** Number of fragments that are being read, one after the other. */
   let reading = 0;
   let last = Promise.resolve();
@@ -64,6 +65,11 @@ export function keepAddress(engine, { hasEntries }) {
   effect(() => {
     // Reading the whole state makes the effect run after any change of it, and after a typed formula has settled.
     void [engine.state.value, engine.trial.value, engine.typing.value, engine.fieldError.value];
+    // The surface with which the page opens is that of its entry, also if another is chosen before the first write.
+    if (!isOpen && engine.description.value && engine.state.value.surface !== '') {
+      isOpen = true;
+      entry = nameOf(engine.state.value);
+    }
     clearTimeout(timer);
     timer = setTimeout(write, ADDRESS_MS);
   });

@@ -21,7 +21,7 @@ import { change, changeView, description, showAll } from '../store.js';
 
 /**
  * @import { Parts } from '../parts.js'
- * @import { Bounds, EngineCommands, Shape, State } from '../types.js'
+ * @import { EngineCommands, Shape, State } from '../types.js'
  */
 
 /**
@@ -32,12 +32,6 @@ import { change, changeView, description, showAll } from '../store.js';
  * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'pull' | 'setPulls' | 'declareParameter' |
  *   'readNumber' | 'setBounds' | 'enlargement' | 'setPlane' | 'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands
  */
-
-/** The boxes that were enlarged by a press, and what they cut before. @type {WeakMap<Bounds, 'larger' | 'endless'>} */
-const ENLARGED = new WeakMap();
-
-/** Whether a box was enlarged by a press: around an `endless` surface, or another. @param {Bounds | null} box */
-const enlargement = (box) => (box && ENLARGED.get(box)) ?? null;
 
 /**
  * Returns whether a text takes the place of another: less than half of the other stands.
@@ -96,7 +90,7 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
         const isOwn = surfaceOf(store.description.value, surface)?.formula === formula;
         const own = isOwn ? { parameters: {} } : {};
         // So does an enlarged box, which nobody set for another formula.
-        const next = { ...own, formula: text, bounds: enlargement(bounds) ? null : bounds };
+        const next = { ...own, formula: text, bounds: bounds?.enlarged ? null : bounds };
         const about = description(store);
         change(store, fresh ? freshShape(about, state.value.settings, about.surfaces[0].id, text) : next);
         framing.written({ typed: true, another: fresh || replaces(formula, text) });
@@ -173,14 +167,15 @@ export function inputCommands({ store, scheduler, framing }) {
     setBounds(bounds, { live = false, enlarges = false } = {}) {
       const valid = bounds === null ? null : validBounds(bounds, description(store).limits);
       if (valid === undefined) return;
+      if (valid) delete valid.enlarged;
       if (valid && enlarges) {
-        const isEndless = store.report.value?.cut === 'endless' || enlargement(state.value.bounds) === 'endless';
-        ENLARGED.set(valid, isEndless ? 'endless' : 'larger');
+        const isEndless = store.report.value?.cut === 'endless' || state.value.bounds?.enlarged === 'endless';
+        valid.enlarged = isEndless ? 'endless' : 'larger';
         framing.enlarged();
       }
       resample(live, { bounds: valid });
     },
-    enlargement: () => enlargement(state.value.bounds),
+    enlargement: () => state.value.bounds?.enlarged ?? null,
     setPlane(plane, { live = false } = {}) {
       const valid = plane === null ? null : validPlane(plane);
       if (valid === undefined) return;

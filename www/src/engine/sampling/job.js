@@ -98,7 +98,7 @@ export async function runJob(core, job, env, memory) {
     memory.held = 0;
     return;
   }
-  const stopped = last.stop_reason === 'cancelled';
+  const stopped = last.stop_reason === 'cancelled' || (memory.gaveUp && memory.meshed === job.id);
   const reported = (!KINDS[job.kind].isLive || stopped) && core.count() > 0;
   run.done(stopped ? 'stopped' : 'complete', '', reported);
   run.record();
@@ -377,8 +377,9 @@ class Execution {
     if (last.relax_step > 0) sent.curved = 0;
     const wanted = env.mesh() && core.count() > 0;
     const mesh = wanted ? await join(core, env) : null;
-    if (wanted && !mesh) return false;
-    if (mesh) memory.meshed = job.id;
+    if (wanted && !mesh && env.interrupt() === 'replace') return false;
+    // One that was stopped is not begun again before it is asked for again.
+    if (wanted) [memory.meshed, memory.gaveUp] = [job.id, !mesh];
     if (core.count() > sent.count || sent.stale) this.#sendColumns(last, mesh);
     else if (mesh) env.post(...meshColumn(core, job.id, mesh));
     if (!sent.settled) {

@@ -16,7 +16,8 @@ import { BEAT_MS } from './protocol.js';
 const FIRST_BUDGET = 32;
 
 /**
- * Returns what the slices lead to, or null if another job replaces the particles before they are done.
+ * Returns what the slices lead to, or null if they are stopped, or another job replaces the particles, before they are
+ * done.
  * @template T
  * @param {(budget: number) => T | undefined} step  does so many slices; undefined before the last one
  * @param {SliceEnv} env
@@ -27,7 +28,7 @@ async function inSlices(step, { nowMs, pause, post, interrupt }) {
   let beatMs = nowMs();
   for (;;) {
     await pause();
-    if (interrupt() === 'replace') return null;
+    if (interrupt() !== null) return null;
     const before = nowMs();
     const made = step(budget);
     if (made !== undefined) return made;
@@ -40,7 +41,7 @@ async function inSlices(step, { nowMs, pause, post, interrupt }) {
 }
 
 /**
- * Returns the mesh, or null if another job replaces the particles before it is complete.
+ * Returns the mesh, or null if it is stopped, or another job replaces the particles, before it is complete.
  * @param {Pick<Core, 'join' | 'triangles'>} core
  * @param {SliceEnv} env
  * @returns {Promise<Mesh | null>}
@@ -51,8 +52,8 @@ export async function join(core, env) {
 }
 
 /**
- * Returns the complete mesh as a file: its bytes, null inside if it cannot be written; or null if another job replaces
- * the particles before it is.
+ * Returns the complete mesh as a file: its bytes, null inside if it cannot be written; or null if it is stopped, or
+ * another job replaces the particles, before it is.
  * @param {Pick<Core, 'mesh_file'>} core
  * @param {Partial<FileRequest>} request
  * @param {SliceEnv} env

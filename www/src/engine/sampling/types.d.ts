@@ -111,7 +111,7 @@ export type FromWorker =
   | { type: 'field'; id: number; answer: FieldAnswer }
   | { type: 'dropped'; id: number }
   | { type: 'box'; id: number; answer: FieldOk }
-  | { type: 'started'; id: number; radius: number; predicted: number; warnings: string[] }
+  | { type: 'started'; id: number; radius: number; predicted: number; warnings: Report['warnings'] }
   | { type: 'progress'; id: number; progress: CoreProgress }
   | ColumnsMessage
   | PastMessage
@@ -214,7 +214,8 @@ export type SliceEnv = Pick<Env, 'nowMs' | 'pause' | 'post' | 'interrupt'>;
  * What the worker holds: the id of the job whose particles the core has, 0 for none, and of the job whose mesh the page
  * has.
  */
-export type Memory = { held: number; meshed: number };
+/** `gaveUp`: the joining of the mesh over the particles `meshed` was stopped */
+export type Memory = { held: number; meshed: number; gaveUp: boolean };
 /** The measurements of a finished run. */
 export type Measured = {
   seconds: Seconds;

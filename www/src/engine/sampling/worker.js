@@ -57,7 +57,7 @@ const pause = () =>
 
 /** @type {Core | null} */
 let core = null;
-const memory = { held: 0, meshed: 0 };
+const memory = { held: 0, meshed: 0, gaveUp: false };
 
 /** @param {Core} ours @returns {Env} */
 const surroundings = (ours) => ({
@@ -158,6 +158,7 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
       break;
     case 'mesh':
       mesh = data.on;
+      if (mesh && memory.gaveUp) [memory.meshed, memory.gaveUp] = [0, false];
       void pump();
       break;
     case 'export':

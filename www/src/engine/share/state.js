@@ -12,7 +12,8 @@ import { homeView, validView } from './view.js';
 
 /**
  * @import {
- *   Bounds, CuttingPlane, Description, FieldRequest, Limits, Parameter, Pull, Settings, State, Shape, SurfaceInfo,
+ *   Bounds, ChosenBounds, CuttingPlane, Description, FieldRequest, Limits, Parameter, Pull, Settings, State, Shape,
+ *   SurfaceInfo,
  * } from '../types.js'
  */
 
@@ -102,6 +103,9 @@ export const modelOf = (description, id) => description?.models.find((model) => 
  */
 export const fromPoints = (description, id) => id === FILE_SURFACE || modelOf(description, id) !== undefined;
 
+/** The box alone. @param {Bounds} bounds @returns {Bounds} */
+const boxOf = ({ min, max }) => ({ min, max });
+
 /**
  * Returns the request that sets the state's field in the core.
  * @param {State} state @param {Description} description
@@ -111,18 +115,18 @@ export const fromPoints = (description, id) => id === FILE_SURFACE || modelOf(de
 export function fieldRequest(state, description, points) {
   if (points !== undefined) {
     const { surface, pulls, bounds } = state;
-    return { points, surface, ...(pulls.length ? { pulls } : {}), ...(bounds ? { bounds } : {}) };
+    return { points, surface, ...(pulls.length ? { pulls } : {}), ...(bounds ? { bounds: boxOf(bounds) } : {}) };
   }
   const surface = surfaceOf(description, state.surface);
   /** @type {FieldRequest} */
   const request = { surface: state.surface, parameters: { ...state.parameters } };
   if (state.formula !== surface?.formula) request.formula = state.formula;
   if (state.declared.length) request.declare = state.declared;
-  if (state.bounds) request.bounds = state.bounds;
+  if (state.bounds) request.bounds = boxOf(state.bounds);
   return request;
 }
 
-/** A box that the core takes. @param {unknown} v @param {Limits} limits @returns {Bounds | undefined} */
+/** A box that the core takes. @param {unknown} v @param {Limits} limits @returns {ChosenBounds | undefined} */
 export function validBounds(v, limits) {
   if (!isRecord(v)) return undefined;
   const [min, max] = [vec3(v.min), vec3(v.max)];
@@ -130,7 +134,9 @@ export function validBounds(v, limits) {
   const diagonal = Math.hypot(...max.map((m, k) => m - min[k]));
   const farthest = Math.max(...[...min, ...max].map(Math.abs));
   const fits = diagonal >= limits.diagonal_min && diagonal <= limits.diagonal_max;
-  return fits && farthest <= limits.farthest_corner * diagonal ? { min, max } : undefined;
+  if (!fits || farthest > limits.farthest_corner * diagonal) return undefined;
+  const { enlarged } = v;
+  return { min, max, ...(enlarged === 'larger' || enlarged === 'endless' ? { enlarged } : {}) };
 }
 
 /** A plane with a unit normal. @param {unknown} v @returns {CuttingPlane | undefined} */

@@ -26,6 +26,10 @@ export class FrameLoop {
   #retry;
   #onVisible;
 
+  /** Whether the last frame was a part of one, and whether another was asked for since the first part. */
+  #isPart = false;
+  #isLate = false;
+
   /** @param {(nowS: number, dtS: number) => FrameResult} draw  draws one frame and may request the next */
   constructor(draw) {
     this.#draw = draw;
@@ -46,8 +50,13 @@ export class FrameLoop {
     document.addEventListener('visibilitychange', this.#onVisible);
   }
 
-  /** Requests a frame. */
+  /** Requests a frame. What changes while one is drawn in parts is seen in the next. */
   ask() {
+    this.#isLate ||= this.#isPart;
+    this.#request();
+  }
+
+  #request() {
     if (this.asked === 0 && !document.hidden) this.asked = requestAnimationFrame(() => this.#frame());
   }
 
@@ -68,6 +77,11 @@ export class FrameLoop {
     const step = Math.min(now - this.#lastS, LONGEST_STEP_S);
     this.#lastS = now;
     const result = this.#draw(now, step);
+    // Who waits for the frame waits for the whole of it.
+    this.#isPart = result === 'part';
+    if (this.#isPart) return this.#request();
+    if (this.#isLate) this.#request();
+    this.#isLate = false;
     if (result === 'drawn') {
       this.drawn += 1;
       this.#skipped = 0;

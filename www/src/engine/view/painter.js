@@ -17,7 +17,7 @@ import { isBeyond } from './picking.js';
 
 /**
  * @import { Renderer } from '../../wasm/render-webgpu/render.js'
- * @import { PaintedDisc, PaintedScene, Style, Target } from './types.js'
+ * @import { PaintedDisc, PaintedScene, Pass, Style, Target } from './types.js'
  */
 
 /** Tables from a byte to linear light, and from linear light in steps of 1/1023 to a byte. */
@@ -30,6 +30,9 @@ const DOT = 0.5;
 const CREASE_LIFT = 0.3;
 /** Radius on the screen below which a disc is drawn as one pixel. */
 const POINT_PX = 0.7;
+
+/** Most discs that one call of {@link Painter.draw} paints: some 20 ms, so that a press is answered between two. */
+export const MOST_PAINTED = 2 ** 17;
 
 /** Radius on the screen above which a disc has a darker rim. */
 const RIM_FROM_PX = 4;
@@ -229,6 +232,9 @@ export class Painter {
   #image;
   #depth;
 
+  /** The picture that is painted over several calls, null between two. @type {Pass | null} */
+  #pass;
+
   /** @param {HTMLCanvasElement} canvas */
   static async create(canvas) {
     const context = canvas.getContext('2d', { alpha: false });
@@ -264,6 +270,7 @@ export class Painter {
     };
     this.#image = new ImageData(1, 1);
     this.#depth = new Float32Array(1);
+    this.#pass = null;
     this.width = 0;
     this.height = 0;
   }
@@ -335,14 +342,20 @@ export class Painter {
     this.#style = { ...this.#style, ...JSON.parse(json) };
   }
 
-  /** @param {number} timeS @param {boolean} [transparent]  leaves the ground out */
+  /**
+   * Paints a picture, or a part of it: then it returns 'part', and the next calls go on with it. What is painted must
+   * not change before the last one.
+   * @param {number} timeS @param {boolean} [transparent]  leaves the ground out
+   */
   draw(timeS, transparent = false) {
     if (this.width === 0 || this.height === 0) return 'skipped';
     if (this.#image.width !== this.width || this.#image.height !== this.height) {
       this.#image = new ImageData(this.width, this.height);
       this.#depth = new Float32Array(this.width * this.height);
     }
-    this.#paint(this.#image, this.#depth, transparent, timeS);
+    this.#pass ??= this.#begin(this.#image, this.#depth, transparent, timeS);
+    if (!this.#advance(this.#pass, MOST_PAINTED)) return 'part';
+    this.#pass = null;
     this.context.putImageData(this.#image, 0, 0);
     return 'drawn';
   }
@@ -362,7 +375,9 @@ export class Painter {
       if (wider > 1) this.view[4 * k] /= wider;
       else this.view[4 * k + 1] *= wider;
     }
-    this.#paint(image, new Float32Array(widthPx * heightPx), transparent, Infinity);
+    // One that is being painted for the screen begins anew: its view and style have changed.
+    this.#pass = null;
+    this.#advance(this.#begin(image, new Float32Array(widthPx * heightPx), transparent, Infinity), Infinity);
     this.view = onScreen;
     return new Uint8Array(image.data.buffer);
   }
@@ -372,15 +387,20 @@ export class Painter {
     this.#body = 0;
     this.#image = new ImageData(1, 1);
     this.#depth = new Float32Array(1);
+    this.#pass = null;
   }
 
   free() {}
 
-  /** @param {ImageData} image @param {Float32Array} depth @param {boolean} transparent @param {number} timeS */
-  #paint(image, depth, transparent, timeS) {
+  /**
+   * Begins a picture.
+   * @param {ImageData} image @param {Float32Array} depth @param {boolean} transparent @param {number} timeS
+   * @returns {Pass}
+   */
+  #begin(image, depth, transparent, timeS) {
     const { width, height } = image;
     const out = new Uint32Array(image.data.buffer);
-    const { background, box, key_light_view: toward } = this.#style;
+    const { background, key_light_view: toward } = this.#style;
     const ground = background.slice(0, 3).map((v) => linear(v));
     out.fill(transparent ? 0 : packed(ground[0], ground[1], ground[2]));
     // The depth buffer holds 1/w, which is linear in screen coordinates on a plane. Larger values are nearer.
@@ -392,11 +412,26 @@ export class Painter {
     const rim = luminanceOf(ground) > LIGHT_GROUND ? 0 : RIM_LIGHT;
     const bed = (this.#style.body?.colour ?? []).map((v) => linear(v));
     const scene = { target: { out, depth, width, height }, axes, key, ground, rim, bed };
-    if (this.#style.body)
-      for (let i = 0; i < this.#body; i += 1) if (this.#births[i] <= timeS) this.#paintBed(i, scene);
-    for (let i = 0; i < this.#count; i += 1) if (this.#births[i] <= timeS) this.#paintDisc(i, scene);
-    this.#paintCreases(scene.target, ground);
-    if (box) this.#paintBox(scene.target, box);
+    return { scene, timeS, beds: this.#style.body ? this.#body : 0, next: 0 };
+  }
+
+  /**
+   * Paints the next discs of a picture: the body, the particles, and after the last one the lines.
+   * @param {Pass} pass @param {number} most
+   * @returns whether the picture is complete
+   */
+  #advance(pass, most) {
+    const { scene, timeS, beds } = pass;
+    const end = beds + this.#count;
+    const last = Math.min(end, pass.next + most);
+    for (let k = pass.next; k < Math.min(last, beds); k += 1) if (this.#births[k] <= timeS) this.#paintBed(k, scene);
+    for (let k = Math.max(pass.next, beds); k < last; k += 1)
+      if (this.#births[k - beds] <= timeS) this.#paintDisc(k - beds, scene);
+    pass.next = last;
+    if (last < end) return false;
+    this.#paintCreases(scene.target, scene.ground);
+    if (this.#style.box) this.#paintBox(scene.target, this.#style.box);
+    return true;
   }
 
   /** Returns a position as {@link paintLine} takes it. @param {ArrayLike<number>} p */

@@ -59,7 +59,8 @@ export interface Colouring {
  * The outcome of a frame. `skipped`: the screen did not accept the picture; `none`: there was no device or no visible
  * canvas.
  */
-export type FrameResult = 'drawn' | 'skipped' | 'none';
+/** `part`: the next frame goes on with the same picture. */
+export type FrameResult = 'drawn' | 'part' | 'skipped' | 'none';
 export interface Style {
   /** sRGB 0 … 1 */
   background: [number, number, number, number];
@@ -112,6 +113,15 @@ export interface PaintedScene {
   rim: number;
   /** colour of the body in linear light; empty without one */
   bed: number[];
+}
+/** A picture that the painter has begun. */
+export interface Pass {
+  scene: PaintedScene;
+  timeS: number;
+  /** discs of the body, which come before those of the particles */
+  beds: number;
+  /** the next disc to be painted */
+  next: number;
 }
 export type Theme = 'light' | 'dark';
 export type Palette = ReturnType<typeof palette>;

@@ -57,6 +57,9 @@ export class Viewer {
   #lastS;
   #sight;
 
+  /** Whether the last frame was a part of one. What the device has does not change before the picture is complete. */
+  #isPart = false;
+
   /** Distance from which the last fit would have shown the whole ball. */
   #wholeDistance = 0;
 
@@ -399,6 +402,7 @@ export class Viewer {
   /** @param {Device} device  without any particle yet @param {boolean} isStandIn */
   #opened(device, isStandIn) {
     this.screen.drawnBy(device.kind);
+    this.#isPart = false;
     this.upload.restart();
     this.#faces.restart();
     this.#creases.restart();
@@ -423,12 +427,17 @@ export class Viewer {
     if (this.camera.state !== before) this.#events.onCamera(this.camera.state);
     let outcome;
     try {
-      this.#tell(device, nowS);
-      outcome = device.renderer.draw(nowS);
+      if (!this.#isPart || !this.upload.isWhole) this.#tell(device, nowS);
+      outcome = this.upload.isWhole ? device.renderer.draw(nowS) : 'part';
     } catch (error) {
       // The renderer has trapped. Its instance must not be called again.
       this.keeper.giveUp(error instanceof Error ? error.message : String(error));
       return 'none';
+    }
+    this.#isPart = outcome === 'part';
+    if (this.#isPart) {
+      if (this.camera.state !== before) this.frames.ask();
+      return 'part';
     }
     // Without particles the colours have no range; the legend before stays.
     if (this.due.legend && this.columns.count > 0) this.#tellLegend();
@@ -436,8 +445,7 @@ export class Viewer {
     const dimming = this.dimmer.moving(nowS);
     if (dimming) this.due.style = true;
     const { upload } = this;
-    if (moving || revealing || dimming || upload.glide.active || upload.fading(nowS) || !upload.isWhole)
-      this.frames.ask();
+    if (moving || revealing || dimming || upload.glide.active || upload.fading(nowS)) this.frames.ask();
     if (outcome === 'drawn') {
       this.keeper.drew();
       this.#events.onFrame();
@@ -537,6 +545,7 @@ export class Viewer {
     const now = this.#now();
     // A saved picture shows the particles at their final positions, not during an animation.
     if (this.upload.glide.active) this.upload.restart();
+    this.#isPart = false;
     do this.#tell(device, now);
     while (!this.upload.isWhole);
     const [width, height] = renderer.picture_size(widthPx, heightPx);

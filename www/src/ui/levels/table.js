@@ -1,6 +1,6 @@
-/** Counts the particles and slot fates of each generation level, and describes them in words. */
-import { FATES, fateOf } from '../../engine/columns.js';
-import { FATE, MOST_SLOTS, NO_PARENT } from '../../engine/core-numbers.js';
+/** The numbers of particles and slot fates of each generation level, and the words that describe them. */
+import { FATES } from '../../engine/columns.js';
+import { FATE } from '../../engine/core-numbers.js';
 import { formatCount, plural } from '../format.js';
 
 /**
@@ -8,27 +8,16 @@ import { formatCount, plural } from '../format.js';
  * @import { LevelTable } from './types.js'
  */
 
-/** @typedef {Pick<Columns, 'count' | 'levels' | 'parents' | 'slots' | 'adaptive' | 'lastLevel' | 'twins'>} Particles */
-
-/** @param {Particles} particles @returns {LevelTable} */
-export function levelTable({ count, levels, parents, slots, adaptive, lastLevel, twins }) {
-  const last = count > 0 ? lastLevel : 0;
+/** @param {Pick<Columns, 'count' | 'tally' | 'adaptive' | 'lastLevel' | 'twins'>} particles @returns {LevelTable} */
+export function levelTable({ count, tally, adaptive, lastLevel: last, twins }) {
+  // Of no particles there are no numbers.
   const fresh = new Uint32Array(last + 1);
+  fresh.set(tally.fresh.subarray(0, last + 1));
   const seeds = new Uint32Array(last + 1);
-  // There is one more level, for the fates of the last level's children.
-  const fates = new Uint32Array(FATES * (last + 2));
-  for (let i = 0; i < count; i += 1) {
-    const level = levels[i];
-    // A particle on a crease has a row, and children, on either side.
-    if (i >= twins.length || twins[i] === i) {
-      fresh[level] += 1;
-      if (parents[i] === NO_PARENT) seeds[level] += 1;
-    }
-    for (let k = 0; k < MOST_SLOTS; k += 1) fates[FATES * (level + 1) + fateOf(slots[i], k)] += 1;
-  }
+  seeds.set(tally.seeds.subarray(0, last + 1));
   const total = new Uint32Array(last + 1);
   for (let k = 0, sum = 0; k <= last; k += 1) total[k] = sum += fresh[k];
-  return { count, last, fresh, total, seeds, fates, adaptive, creased: twins.length > 0 };
+  return { count, last, fresh, total, seeds, fates: tally.fates.slice(), adaptive, creased: twins.length > 0 };
 }
 
 /** Fates of the children that were not placed, in the order of the description. */

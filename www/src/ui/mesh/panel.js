@@ -33,6 +33,7 @@ export function createMeshPanel(engine, { toast, close }) {
   const made = computed(() => (engine.busy.value || engine.empty.value ? null : engine.mesh.value));
   const verdict = () => {
     if (made.value) return verdictOf(made.value);
+    if (engine.partial.value && !engine.busy.value) return 'Stopped before the mesh was complete.';
     return engine.busy.value || !engine.empty.value ? 'Making the mesh …' : 'There is no surface to make a mesh of.';
   };
   const note = h('p', { class: 'quiet' });

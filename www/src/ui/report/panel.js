@@ -42,7 +42,9 @@ export function mountReport(body, engine, description, title) {
     body.classList.toggle('stale', stale.value || counted.value > 0);
   });
 
-  const told = computed(() => report.value?.warnings ?? []);
+  const warningsOf = (/** @type {boolean} */ areNotes) =>
+    computed(() => report.value?.warnings.filter(({ severity }) => (severity === 'note') === areNotes) ?? []);
+  const [told, noted] = [warningsOf(false), warningsOf(true)];
   // What a folded report says.
   const line = h('span', { class: 'quiet now' }, () => {
     if (!report.value) return '';
@@ -50,8 +52,15 @@ export function mountReport(body, engine, description, title) {
     return told.value.length > 0 ? `${particles}\n${plural(told.value.length, 'warning')}` : particles;
   });
   title.after(line);
-  const warnings = h('ul', { class: 'section warnings', hidden: () => told.value.length === 0 }, () =>
-    told.value.map((text) => createWarning(withCounts(text))),
+  const items = (/** @type {typeof told} */ list) => () =>
+    list.value.map(({ message }) => createWarning(withCounts(message)));
+  const warnings = h('ul', { class: 'section warnings', hidden: () => told.value.length === 0 }, items(told));
+  // What the surface always does, and nobody needs to do anything about.
+  const notes = h(
+    'details',
+    { class: 'section notes quiet', hidden: () => noted.value.length === 0 },
+    h('summary', null, () => plural(noted.value.length, 'note')),
+    h('ul', { class: 'warnings' }, items(noted)),
   );
   const isWhoseHidden = () => report.value === null || whoseFigures(engine) === '';
   const whose = h('p', { class: 'quiet whose', hidden: isWhoseHidden }, () => whoseFigures(engine));
@@ -81,6 +90,7 @@ export function mountReport(body, engine, description, title) {
     whose,
     warnings,
     createPlain(report, counted),
+    notes,
     createAll(
       border,
       createTable(report, description.report, { counted, stale, show: createShow(engine, said) }),

@@ -14,7 +14,7 @@ test('the box around a formula', async ({ page }) => {
     await expect(cut(page)).toContainText('continues outside the box');
     await cut(page).getByRole('button', { name: 'Enlarge' }).click();
     await settled(page);
-    expect((await state(page)).bounds).toEqual({ min: [-8, -8, -8], max: [8, 8, 8] });
+    expect((await state(page)).bounds).toMatchObject({ min: [-8, -8, -8], max: [8, 8, 8] });
     // A larger box is no cure for what has no end.
     await expect(cut(page)).toContainText('no end');
     await expect(cut(page).getByRole('button', { name: 'Enlarge' })).toHaveCount(0);
@@ -57,6 +57,13 @@ test('the box around a formula', async ({ page }) => {
 
   await test.step('an enlarged box ends with its formula; one that was typed stays, and the page says so', async () => {
     const kept = page.locator('.foot .kept');
+    await expect(kept).toContainText('Enlarged box');
+    // Also after its link was opened again.
+    await page.evaluate(async () => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      await engine.openLink(await engine.link());
+    });
+    await settled(page);
     await expect(kept).toContainText('Enlarged box');
     await typeFormula(page, 'x^2+y^2+z^2=1');
     await settled(page);

@@ -139,8 +139,6 @@ test('Back leads from surface to surface, each as it was seen, and at last leave
     return { surface, formula, parameters, yaw: Number(view.camera.yaw.toFixed(4)), theme: view.theme };
   };
   const first = await length();
-  // The entry in which the page opens has its surface once the address was written, half a second later.
-  await page.waitForTimeout(1000);
   await page.locator('.tile[data-surface="torus"]').click();
   await settled(page);
   await expect.poll(length).toBe(first + 1);
@@ -184,4 +182,18 @@ test('Back leads from surface to surface, each as it was seen, and at last leave
   await page.goBack();
   expect(page.url()).toBe('about:blank');
   await clean();
+});
+
+test('a surface that is chosen while the page opens is an entry after the first', async ({ page }) => {
+  await page.goto('./?backend=canvas2d');
+  const first = await page.evaluate(async () => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    while (engine.state.value.surface === '') await new Promise((go) => setTimeout(go));
+    engine.setSurface('torus');
+    return history.length;
+  });
+  await settled(page);
+  await expect.poll(() => page.evaluate(() => history.length)).toBe(first + 1);
+  await page.goBack();
+  await expect.poll(async () => (await state(page)).surface).toBe('ellipsoid');
 });

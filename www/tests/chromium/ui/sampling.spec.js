@@ -314,6 +314,18 @@ test('the report, what can be taken away, and what is said where there is no sur
     expect((await report(page)).count).toBeGreaterThan(100);
   });
 
+  await test.step('what a surface always does is a note, which no folded report counts', async () => {
+    await afresh(page);
+    await typeFormula(page, '(x^2+9/4*y^2+z^2-1)^3 - x^2*z^3 - 9/80*y^2*z^3 = 0');
+    await settled(page);
+    await expect(page.locator('.panel-report .now').first()).toHaveText(/^[\d,]+ particles$/);
+    await expect(page.locator('.panel-report .section.warnings')).toBeHidden();
+    const notes = page.locator('.notes');
+    await expect(notes.locator('> summary')).toHaveText('2 notes');
+    await notes.locator('> summary').click();
+    await expect(notes.locator('li').first()).toContainText('the particles around them close it');
+  });
+
   await test.step('while a run counts particles nothing says that there is no surface, and report and caption agree', async () => {
     await afresh(page);
     await typeFormula(page, '1 = 1');

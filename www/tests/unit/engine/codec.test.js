@@ -95,6 +95,16 @@ describe('a link', () => {
     expect(of({ surface: FILE_SURFACE, pulls: many(33) })).toEqual([[], ['pulls']]);
   });
 
+  test('holds that a box was enlarged by a press, which the core is not told', async () => {
+    /** @type {NonNullable<State['bounds']>} */
+    const bounds = { min: [-1, -2, -3], max: [1, 2, 3], enlarged: 'endless' };
+    const { state } = await decode(await encode({ ...elaborate(), bounds }, description), description);
+    expect(state.bounds).toEqual(bounds);
+    expect(fieldRequest(state, description).bounds).toEqual(elaborate().bounds);
+    const other = sanitize({ bounds: { ...bounds, enlarged: 'twice' } }, description, true).state;
+    expect(other.bounds).toEqual(elaborate().bounds);
+  });
+
   test('of the default state is empty', async () => {
     expect(await encode(defaultState(description), description)).toBe('');
     expect((await decode('', description)).state).toEqual(defaultState(description));

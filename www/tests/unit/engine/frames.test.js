@@ -77,3 +77,35 @@ describe('a frame', () => {
     expect(frames).toHaveLength(21);
   });
 });
+
+describe('a frame that is drawn in parts', () => {
+  test('goes on by itself, counts once, and is waited for as a whole', () => {
+    /** @type {import('../../../src/engine/view/types.js').FrameResult[]} */
+    const results = ['part', 'part', 'drawn'];
+    const loop = new FrameLoop(() => results.shift() ?? 'none');
+    const drawn = vi.fn();
+    loop.afterNext(drawn);
+    loop.ask();
+    for (let k = 0; k < 3; k += 1) {
+      expect(drawn).not.toHaveBeenCalled();
+      frames[k]();
+    }
+    expect(drawn).toHaveBeenCalledOnce();
+    expect(loop.drawn).toBe(1);
+    expect(frames).toHaveLength(3);
+  });
+
+  test('is followed by another if anything has changed meanwhile', () => {
+    /** @type {import('../../../src/engine/view/types.js').FrameResult[]} */
+    const results = ['part', 'drawn', 'drawn'];
+    const loop = new FrameLoop(() => results.shift() ?? 'none');
+    loop.ask();
+    frames[0]();
+    loop.ask();
+    expect(frames).toHaveLength(2);
+    frames[1]();
+    expect(frames).toHaveLength(3);
+    frames[2]();
+    expect(frames).toHaveLength(3);
+  });
+});

@@ -33,7 +33,7 @@ async function run(
     room = () => true,
     curvature = () => false,
     mesh = false,
-    memory = { held: 0, meshed: 0 },
+    memory = { held: 0, meshed: 0, gaveUp: false },
   } = {},
 ) {
   /** @type {FromWorker[]} */
@@ -218,7 +218,7 @@ describe('a job', () => {
 
   test('the particles of the run before follow if its settings are among those that may', async () => {
     const core = fakeCore({ particles: 500 });
-    const memory = { held: 0, meshed: 0 };
+    const memory = { held: 0, meshed: 0, gaveUp: false };
     const live = /** @type {const} */ ({ kind: 'live' });
     const following = [{ count: 500 }];
     for (const [id, count, followed] of /** @type {const} */ ([
@@ -253,7 +253,7 @@ describe('a job', () => {
 
   test('that is stopped before its particles have come to the new surface shows none of them', async () => {
     const core = fakeCore({ particles: 3000 });
-    const memory = { held: 0, meshed: 0 };
+    const memory = { held: 0, meshed: 0, gaveUp: false };
     await run(core, sampleJob(), { memory });
     const settings = /** @type {any} */ ({ count: 3000 });
     const job = sampleJob({ id: 8, kind: 'live', settings, following: [settings] });
@@ -336,7 +336,7 @@ describe('a job', () => {
     expect(ranges.filter(({ mesh }) => mesh).map(({ mesh }) => mesh?.triangles)).toEqual([Uint32Array.of(0, 1, 2)]);
     expect(ranges.findIndex(({ mesh }) => mesh)).toBe(ranges.length - 1);
     expect(ranges.length).toBeGreaterThan(2);
-    expect(memory).toEqual({ held: 7, meshed: 7 });
+    expect(memory).toEqual({ held: 7, meshed: 7, gaveUp: false });
     // The mesh does not wait for the figures.
     expect(posted.map(({ type }) => type).slice(-4)).toEqual(['columns', 'past', 'done', 'report']);
   });
@@ -367,6 +367,20 @@ describe('a job', () => {
     expect(memory.held).toBe(0);
   });
 
+  test('that is stopped while its particles are joined ends with them, without a mesh', async () => {
+    const core = fakeCore({ particles: 500, slices: 100_000 });
+    const { posted, memory } = await run(core, sampleJob({ kind: 'change' }), {
+      mesh: true,
+      interrupt: () => (core.calls.includes('join') ? 'stop' : null),
+    });
+    expect(core.calls.filter((call) => call === 'join')).toHaveLength(1);
+    expect(of(posted, 'columns').map(({ total, mesh }) => [total, mesh])).toContainEqual([500, null]);
+    expect(of(posted, 'columns').every(({ mesh }) => mesh === null)).toBe(true);
+    expect(of(posted, 'done')[0]).toMatchObject({ outcome: 'stopped', reportFollows: true });
+    // The worker does not begin it again by itself.
+    expect(memory).toEqual({ held: 7, meshed: 7, gaveUp: true });
+  });
+
   test('joins in steps that leave room for a stop', async () => {
     const core = fakeCore({ particles: 500, slices: 20_000, usPerSlice: 50 });
     const longest = longestOf(core, 'join');
@@ -394,7 +408,11 @@ describe('a job', () => {
     expect(of(again.posted, 'done')[0].outcome).toBe('complete');
     expect(of(again.posted, 'columns').at(-1)?.progress?.relax_step).toBe(5);
     for (const range of of(again.posted, 'columns')) expect(range.first).toBe(0);
-    const lost = await run(core, { kind: 'relax', id: 9, of: 7, steps: 1 }, { memory: { held: 0, meshed: 0 } });
+    const lost = await run(
+      core,
+      { kind: 'relax', id: 9, of: 7, steps: 1 },
+      { memory: { held: 0, meshed: 0, gaveUp: false } },
+    );
     expect(of(lost.posted, 'done')[0].outcome).toBe('lost');
   });
 
@@ -437,7 +455,7 @@ async function work(core, first, meanwhile = () => {}) {
   const posted = [];
   const post = (/** @type {FromWorker} */ message) => void posted.push(structuredClone(message));
   const jobs = new Jobs(post, () => core.clock.ms);
-  const memory = { held: 0, meshed: 0 };
+  const memory = { held: 0, meshed: 0, gaveUp: false };
   jobs.add(first);
   for (let job = jobs.take(core); job; job = jobs.take(core)) {
     await runJob(

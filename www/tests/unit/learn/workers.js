@@ -31,7 +31,7 @@ export function spawn() {
 /** A worker of the sampler that runs in this thread. @returns {any} */
 export function spawnCore() {
   const core = new Core();
-  const memory = { held: 0, meshed: 0 };
+  const memory = { held: 0, meshed: 0, gaveUp: false };
   const post = (/** @type {any} */ data) => queueMicrotask(() => worker.onmessage({ data }));
   const jobs = new Jobs(post, () => performance.now());
   const env = {

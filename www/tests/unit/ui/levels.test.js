@@ -45,7 +45,83 @@ const front = () =>
     { level: 2, parent: 3 },
   ]);
 
+/** The table by its definition, from all rows. @param {Columns} columns */
+function countedAnew({ count, levels, parents, slots, twins }) {
+  const last = levels.subarray(0, count).reduce((a, b) => Math.max(a, b), 0);
+  const [fresh, seeds] = [new Array(last + 1).fill(0), new Array(last + 1).fill(0)];
+  const fates = new Array(8 * (last + 2)).fill(0);
+  for (let i = 0; i < count; i += 1) {
+    if (i >= twins.length || twins[i] === i) {
+      fresh[levels[i]] += 1;
+      if (parents[i] === NO_PARENT) seeds[levels[i]] += 1;
+    }
+    for (let k = 0; k < 10; k += 1) fates[8 * (levels[i] + 1) + ((slots[i] >>> (3 * k)) & 7)] += 1;
+  }
+  return { last, fresh, seeds, fates };
+}
+
 describe('the table of levels', () => {
+  test('is kept up to date as rows come, move, are settled, change and go', () => {
+    const columns = new Columns();
+    let seed = 1;
+    const random = (/** @type {number} */ n) => {
+      seed = (seed * 48_271) % 2_147_483_647;
+      return seed % n;
+    };
+    /** @param {number} first @param {number} total @param {Uint32Array<ArrayBuffer>} [twins] */
+    function write(first, total, twins) {
+      const n = total - first;
+      const creases = twins ? { twins, segments: new Uint32Array(0) } : null;
+      columns.write({
+        first,
+        total,
+        positions: new Float32Array(3 * n),
+        normals: new Float32Array(3 * n),
+        radii: new Float32Array(n),
+        levels: Uint32Array.from({ length: n }, () => random(9)),
+        parents: Uint32Array.from({ length: n }, () => (random(5) === 0 ? NO_PARENT : 0)),
+        creases,
+      });
+    }
+    const settle = (/** @type {number} */ from) =>
+      columns.writeSlots(
+        from,
+        Uint32Array.from({ length: columns.count - from }, () => random(2 ** 31)),
+      );
+    /** @param {string} what */
+    function check(what) {
+      const { last, fresh, seeds, fates } = levelTable(columns);
+      const wanted = countedAnew(columns);
+      expect([...fresh], what).toEqual(wanted.fresh);
+      expect([...seeds], what).toEqual(wanted.seeds);
+      expect([...fates].slice(0, wanted.fates.length), what).toEqual(wanted.fates);
+      expect(last, what).toBe(wanted.last);
+    }
+    write(0, 50);
+    check('first rows');
+    settle(0);
+    write(50, 3000);
+    settle(20);
+    check('more rows, and fates of earlier ones');
+    // A relaxation sends all rows again; here nothing but a place has changed.
+    const { tally } = columns;
+    const [levels, parents] = [columns.levels.slice(0, 3000), columns.parents.slice(0, 3000)];
+    const [positions, radii] = [new Float32Array(9000).fill(1), new Float32Array(3000)];
+    columns.write({ first: 0, total: 3000, positions, normals: positions, radii, levels, parents });
+    expect(columns.tally, 'not counted again').toBe(tally);
+    check('moved');
+    write(0, 3000);
+    check('other rows');
+    write(0, 40);
+    check('fewer rows');
+    write(40, 60, Uint32Array.from([0, 0, 2, 2]));
+    check('creases');
+    write(60, 70, Uint32Array.from([0, 0]));
+    check('fewer creases');
+    columns.clear();
+    expect([...levelTable(columns).fresh]).toEqual([0]);
+  });
+
   test('counts the particles of each level and of all up to it', () => {
     const table = levelTable(front());
     expect([...table.fresh]).toEqual([1, 3, 2]);
