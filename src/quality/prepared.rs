@@ -8,7 +8,9 @@ use super::triangles::{Triangles, area};
 use crate::field::Evaluator;
 use crate::math::{Bounds, IndexTable, SINGLE_ROUNDING, hash};
 use crate::slices::pause;
+use crate::spatial::tree::Tree;
 use glam::Vec3;
+use std::sync::Arc;
 
 /// The points without duplicates and non-finite positions, and their triangles.
 pub(super) struct Prepared {
@@ -26,13 +28,15 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
-    /// Prepares the points; `bounds` is the box that was sampled, where it is known.
+    /// Prepares the points; `bounds` is the box that was sampled, and `tree` the one over all
+    /// points, where they are known.
     pub(super) async fn new(
         position: &[Vec3],
         normal: &[Vec3],
         field: &mut dyn Evaluator,
         bounds: Option<&Bounds>,
         options: &MeasureOptions<'_>,
+        tree: Option<&Arc<Tree>>,
     ) -> Self {
         let rows = options.rows;
         // The further rows of a particle on a crease.
@@ -45,7 +49,8 @@ impl Prepared {
         drop_equal(position, is_further, &mut drop, &mut has_duplicate);
         pause().await;
         loop {
-            let mut points = MeasuredPoints::new(position, normal, field, &has_duplicate, &drop, rows).await;
+            let mut points =
+                MeasuredPoints::new(position, normal, field, &has_duplicate, &drop, rows, tree).await;
             let spacing = spacing_of(&points).await;
             let patched = rows.filter(|_| !points.creases.is_empty());
             let (triangles, mesh) = if let Some(rows) = patched {
@@ -164,8 +169,8 @@ mod tests {
         let sphere = Formula::as_written("x^2+y^2+z^2-1", &[]).expect("a formula");
         let sphere = &mut *sphere.evaluator(Frame::default());
         let options = MeasureOptions::default();
-        let prepared = complete(Prepared::new(&points, &points, sphere, None, &options));
-        let (found, position) = (prepared.mesh, prepared.points.tree.position);
+        let prepared = complete(Prepared::new(&points, &points, sphere, None, &options, None));
+        let (found, position) = (prepared.mesh, &prepared.points.tree.position);
         assert_eq!(found.len(), 2 * points.len() - 4);
         let mut edges: Vec<[u32; 2]> = found.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
         edges.sort_unstable();
