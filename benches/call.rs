@@ -61,8 +61,12 @@ fn main() {
         [count] => vec![(count, 1)],
         _ => vec![(50_000, 9), (1_000_000, 3)],
     };
+    let has_ids = std::env::args().any(|argument| gallery::find(&argument).is_some());
     for (count, rounds) in sizes {
-        for id in ["ellipsoid", "gyroid"] {
+        for id in ["ellipsoid", "gyroid"]
+            .into_iter()
+            .filter(|id| !has_ids || std::env::args().any(|argument| argument == *id))
+        {
             parts(id, count, rounds as usize);
         }
     }

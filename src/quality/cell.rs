@@ -34,18 +34,26 @@ struct Polygon {
     /// `label[k]` names the point whose bisector carries the edge from corner `k` to corner
     /// `k + 1`.
     label: [u32; CORNERS],
+    /// Squared distance of each corner.
+    distance_sq: [f64; CORNERS],
     count: usize,
 }
 
 impl Polygon {
     fn new() -> Self {
-        Self { corner: [DVec2::ZERO; CORNERS], label: [SQUARE; CORNERS], count: 0 }
+        Self {
+            corner: [DVec2::ZERO; CORNERS],
+            label: [SQUARE; CORNERS],
+            distance_sq: [0.0; CORNERS],
+            count: 0,
+        }
     }
 
     #[inline]
-    fn push(&mut self, corner: DVec2, label: u32) {
+    fn push(&mut self, corner: DVec2, label: u32, distance_sq: f64) {
         self.corner[self.count] = corner;
         self.label[self.count] = label;
+        self.distance_sq[self.count] = distance_sq;
         self.count += 1;
     }
 }
@@ -62,7 +70,8 @@ impl VoronoiCell {
         let now = &mut self.polygon[usize::from(self.is_second)];
         now.count = 0;
         for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
-            now.push(DVec2::new(x * half, y * half), SQUARE);
+            let corner = DVec2::new(x * half, y * half);
+            now.push(corner, SQUARE, corner.length_squared());
         }
         self.reach_sq = 2.0 * half * half;
     }
@@ -116,15 +125,17 @@ impl VoronoiCell {
         next.count = 0;
         let mut k = inner;
         loop {
-            next.push(now.corner[k], now.label[k]);
+            next.push(now.corner[k], now.label[k], now.distance_sq[k]);
             if k == outer {
                 break;
             }
             k = after(k);
         }
-        next.push(cross(outer, first), label);
-        next.push(cross(inner, last), now.label[last]);
-        *reach_sq = next.corner[..next.count].iter().fold(0.0, |reach, v| v.length_squared().max(reach));
+        for (corner, label) in [(cross(outer, first), label), (cross(inner, last), now.label[last])] {
+            next.push(corner, label, corner.length_squared());
+        }
+        *reach_sq =
+            next.distance_sq[..next.count].iter().fold(0.0, |reach, &d| if d > reach { d } else { reach });
         *is_second = !*is_second;
     }
 
@@ -133,10 +144,10 @@ impl VoronoiCell {
     /// the cell was clipped by every point nearer than √`known_sq`. Edges of the starting square
     /// are left out, and corners on them are not certain.
     pub(super) fn edges(&self, known_sq: f64) -> impl Iterator<Item = (u32, bool)> {
-        let Polygon { corner, label, count } = &self.polygon[usize::from(self.is_second)];
+        let Polygon { label, distance_sq, count, .. } = &self.polygon[usize::from(self.is_second)];
         (0..*count).filter(|&k| label[k] != SQUARE).map(move |k| {
             let next = if k + 1 == *count { 0 } else { k + 1 };
-            let certain = label[next] != SQUARE && 4.0 * corner[next].length_squared() <= known_sq;
+            let certain = label[next] != SQUARE && 4.0 * distance_sq[next] <= known_sq;
             (label[k], certain)
         })
     }

@@ -257,7 +257,7 @@ async fn figures_of(
     if n == 0 {
         return DistinctFigures { figures, ..measured };
     }
-    figures.area = options.area.unwrap_or_else(|| triangles::area(&points.tree.position, mesh));
+    figures.area = prepared.area;
     figures.d_hex = hexagonal_spacing(figures.area, points.count() + duplicates);
     pause().await;
     figures.accuracy = accuracy::measure(&points.residual, &points.normal_angles, figures.d_hex);

@@ -17,6 +17,9 @@ use glam::{DVec2, DVec3, Vec3, Vec4};
 const MAX_LIFT: f32 = 0.2;
 /// The square of twice [`MAX_LIFT`], for the sum of both heights.
 const LEVEL: f32 = (2.0 * MAX_LIFT) * (2.0 * MAX_LIFT);
+/// Points up to this distance, squared and in units of that of the nearest one, are sorted first: in
+/// an even sample they are those that bound the cell. Smaller or larger: more points are sorted.
+const FIRST_SQ: f32 = 2.5;
 /// Marks, in [`OneRings::neighbour`], that the Voronoi corner between this neighbour and the next
 /// one is proven.
 const PROVEN: u32 = 1 << 31;
@@ -108,7 +111,6 @@ impl OneRings {
                 nearest_sq = creases.nearest(tree, i).0;
             }
             self.nearest.push(nearest_sq.sqrt());
-            keys.sort_unstable();
             let facing_away = if faces_another {
                 let of_patch = |&j: &usize| creases.is_one_patch(i, j);
                 sheets.facing_away(i, nearby.points.index.iter().map(|&j| j as usize).filter(of_patch))
@@ -313,8 +315,8 @@ impl Wide {
     /// point `i` of a leaf, nearest first, or of all if there are fewer. Returns whether it has: a
     /// box that holds them may hold too many others.
     fn nearest(&mut self, sheets: &Sheets, leaf: &Leaf, i: usize, keys: &mut Vec<u64>) -> bool {
-        /// First reach, in units of that of the leaf: on half a plane it holds some 250 points.
-        const FIRST: f32 = 6.0;
+        /// First reach, in units of that of the leaf: on half a plane it holds some 180 points.
+        const FIRST: f32 = 5.0;
         /// Number of points in a box above which the tree finds the nearest ones sooner.
         const MANY: usize = 16 * MOST_POINTS;
         let Sheets { tree, normal, creases, .. } = *sheets;
@@ -345,7 +347,7 @@ impl Wide {
                 keys.sort_unstable();
                 return true;
             }
-            self.reach *= 2.0;
+            self.reach *= 1.5;
             self.nearby.gather(sheets, leaf.lo - self.reach, leaf.hi + self.reach);
         }
     }
@@ -365,39 +367,62 @@ fn is_one_sheet(sheets: &Sheets, i: usize, j: usize, distance_sq: f32) -> bool {
 /// Rotates an offset into the plane spanned by `u` and `v`, which keeps its length; `None` for one
 /// perpendicular to the plane.
 #[inline]
-pub(super) fn unroll(offset: DVec3, u: DVec3, v: DVec3) -> Option<DVec2> {
+fn unroll(offset: DVec3, u: DVec3, v: DVec3) -> Option<DVec2> {
     let flat = DVec2::new(offset.dot(u), offset.dot(v));
     let flat_sq = flat.length_squared();
     (flat_sq > 0.0).then(|| flat * (offset.length_squared() / flat_sq).sqrt())
 }
 
-/// Clips the cell of point `i` by the points of the sorted `keys` that are on no other sheet, until
-/// no farther one can matter. Returns whether the cell is closed and proven complete, if every
+/// Moves the keys below `bound` to the front, and returns them and the others.
+fn partition(keys: &mut [u64], bound: u64) -> (&mut [u64], &mut [u64]) {
+    let mut count = 0;
+    // No branch depends on the keys.
+    for k in 0..keys.len() {
+        keys.swap(k, count);
+        count += usize::from(keys[count] < bound);
+    }
+    keys.split_at_mut(count)
+}
+
+/// Clips the cell of point `i` by the points of `keys` that are on no other sheet, nearest first,
+/// until no farther one can matter. Returns whether the cell is closed and proven complete, if every
 /// point nearer than √`known_sq` is among them.
 fn fill(
     cell: &mut VoronoiCell,
     tree: &Tree,
     normal: Vec3,
     i: usize,
-    keys: &[u64],
+    keys: &mut [u64],
     known_sq: f64,
     is_stranger: &mut impl FnMut(usize) -> bool,
 ) -> bool {
     let p = tree.position[i].as_dvec3();
     let (u, v) = tangent_frame(normal);
     let (u, v) = (u.as_dvec3(), v.as_dvec3());
-    let farthest_sq = keys.last().map_or(1.0, |&last| f64::from(unkey(last).0));
+    let (mut nearest_sq, mut farthest_sq) = (f32::INFINITY, 0.0);
+    for &candidate in &*keys {
+        let (distance_sq, _) = unkey(candidate);
+        (nearest_sq, farthest_sq) = (distance_sq.min(nearest_sq), distance_sq.max(farthest_sq));
+    }
     // A square whose sides lie beyond half the known distance has no proven corner on its sides.
-    let known = if known_sq.is_finite() { known_sq } else { farthest_sq * 1e6 };
+    let known = if known_sq.is_finite() { known_sq } else { f64::from(farthest_sq) * 1e6 };
     cell.start(known.sqrt().max(f64::MIN_POSITIVE));
-    for &candidate in keys {
-        let (distance_sq, j) = unkey(candidate);
-        // Keys are rounded to single precision. The slack costs a few needless cuts only.
-        if f64::from(distance_sq) > 4.001 * cell.reach_sq() {
-            break;
+    // Keys are rounded to single precision. The slack costs a few needless cuts only.
+    let is_beyond = |cell: &VoronoiCell, key: u64| f64::from(unkey(key).0) > 4.001 * cell.reach_sq();
+    let (first, rest) = partition(keys, key(FIRST_SQ * nearest_sq, 0));
+    for part in [first, rest] {
+        if part.iter().min().is_none_or(|&nearest| is_beyond(cell, nearest)) {
+            continue;
         }
-        if let Some(q) = unroll(tree.position[j as usize].as_dvec3() - p, u, v) {
-            cell.clip(q, j, || !is_stranger(j as usize));
+        part.sort_unstable();
+        for &candidate in &*part {
+            if is_beyond(cell, candidate) {
+                break;
+            }
+            let (_, j) = unkey(candidate);
+            if let Some(q) = unroll(tree.position[j as usize].as_dvec3() - p, u, v) {
+                cell.clip(q, j, || !is_stranger(j as usize));
+            }
         }
     }
     let mut corners = 0;
@@ -406,3 +431,6 @@ fn fill(
         certain
     }) && corners >= 3
 }
+
+#[cfg(test)]
+mod tests;

@@ -21,6 +21,8 @@ pub(super) struct Prepared {
     pub(super) triangles: Triangles,
     /// The triangles that count, without conflicts (see [`Triangles::settled`]).
     pub(super) mesh: Vec<[u32; 3]>,
+    /// The area of the surface, as given or of these triangles.
+    pub(super) area: f64,
     pub(super) duplicates: usize,
     pub(super) not_finite: usize,
     /// Whether each point is left out, by the index given.
@@ -72,7 +74,7 @@ impl Prepared {
             pause().await;
             if !drop_close(&points, (SINGLE_ROUNDING * d_hex) as f32, &mut drop) {
                 let duplicates = position.len() - not_finite - points.tree.len();
-                return Self { points, spacing, triangles, mesh, duplicates, not_finite, drop };
+                return Self { points, spacing, triangles, mesh, area, duplicates, not_finite, drop };
             }
         }
     }

@@ -229,10 +229,16 @@ impl Tree {
                 continue;
             }
             if meets {
-                out.extend((node.first..node.end).filter(|&i| {
-                    let p = self.position[i as usize].extend(0.0);
-                    (p.cmpge(lo) & p.cmple(hi)).all()
-                }));
+                // Every point is written, and the next one over it where it is not in the box: no
+                // branch depends on it.
+                let mut count = out.len();
+                out.resize(count + (node.end - node.first) as usize, 0);
+                for (i, p) in (node.first..).zip(&self.position[node.first as usize..node.end as usize]) {
+                    let p = p.extend(0.0);
+                    out[count] = i;
+                    count += usize::from((p.cmpge(lo) & p.cmple(hi)).all());
+                }
+                out.truncate(count);
             }
             if depth == 0 {
                 return;
