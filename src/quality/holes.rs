@@ -39,6 +39,7 @@ pub(super) struct Cover<'a> {
     pub(super) creases: &'a CreaseRows,
     /// The triangles; those of one patch follow each other.
     pub(super) mesh: &'a [[u32; 3]],
+    pub(super) mesh_area: f64,
     pub(super) border: Option<&'a Border>,
     pub(super) wanted: Option<&'a WantedRadii>,
     /// Radius of the disc of each point, in the order given; none if they are not known.
@@ -286,8 +287,8 @@ impl HoleSearch {
     /// equal shares of their area, and projected onto the surface.
     async fn add_samples(&mut self, field: &mut dyn Evaluator, cover: &Cover<'_>, count: usize) {
         let position = &cover.tree.position;
-        let total: f64 = cover.mesh.iter().map(|&t| area_vector(position, t).length()).sum();
-        let share = total / count as f64;
+        // Twice the areas, as `area_vector` has them.
+        let share = 2.0 * cover.mesh_area / count as f64;
         let mut random = Pcg32::seed_from_u64(0);
         let mut unit = move || f64::from(random.next_u32()) * (1.0 / 4_294_967_296.0);
         let mut batch = Batch::default();
@@ -371,6 +372,7 @@ mod tests {
                 tree: &tree,
                 creases: &CreaseRows::default(),
                 mesh: &mesh,
+                mesh_area: 0.0,
                 border: None,
                 wanted: None,
                 discs: &[],
@@ -399,6 +401,7 @@ mod tests {
             tree: &tree,
             creases: &CreaseRows::default(),
             mesh: &[[0, 1, 2].map(place)],
+            mesh_area: 0.0,
             border: None,
             wanted: Some(&wanted),
             discs: &[],

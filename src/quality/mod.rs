@@ -284,6 +284,7 @@ async fn figures_of(
             tree: &points.tree,
             creases: &points.creases,
             mesh,
+            mesh_area: prepared.mesh_area,
             border,
             wanted,
             discs: options.rows.map_or(&[], |rows| &rows.radius),

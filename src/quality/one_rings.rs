@@ -17,8 +17,8 @@ use glam::{DVec2, DVec3, Vec3, Vec4};
 const MAX_LIFT: f32 = 0.2;
 /// The square of twice [`MAX_LIFT`], for the sum of both heights.
 const LEVEL: f32 = (2.0 * MAX_LIFT) * (2.0 * MAX_LIFT);
-/// Points up to this distance, squared and in units of that of the nearest one, are sorted first: in
-/// an even sample they are those that bound the cell. Smaller or larger: more points are sorted.
+/// Points up to this distance, squared and in units of that of the nearest one, are sorted first:
+/// in an even sample they are those that bound the cell. Smaller or larger: more are sorted.
 const FIRST_SQ: f32 = 2.5;
 /// Marks, in [`OneRings::neighbour`], that the Voronoi corner between this neighbour and the next
 /// one is proven.
@@ -84,7 +84,7 @@ impl OneRings {
         let Sheets { tree, normal, creases, .. } = *sheets;
         let reach = leaf.reach();
         let reach_sq = reach * reach;
-        nearby.gather(sheets, leaf.lo - reach, leaf.hi + reach);
+        nearby.gather(sheets, leaf.lo - reach, leaf.hi + reach, |_| true);
         wide.reach = 0.0;
         for i in leaf.range.clone() {
             let p = tree.position[i];
@@ -143,7 +143,7 @@ impl OneRings {
                     };
                     tree.nearest_many(p, MOST_POINTS, accept, keys);
                 }
-                known_sq = match keys.last() {
+                known_sq = match keys.iter().max() {
                     Some(&last) if keys.len() == MOST_POINTS => f64::from(unkey(last).0),
                     _ => f64::INFINITY, // Every point is known.
                 };
@@ -210,12 +210,14 @@ struct Nearby {
     normal: Vec<[Lanes; 3]>,
     /// How the points of each block of lanes lie to the point that was asked for last.
     block: Vec<BlockRelation>,
-    /// The points that are near it: block and lane of each, as one number.
+    /// The points that are near it are the first `count` of these: block and lane of each, as one
+    /// number.
     hits: Vec<u32>,
+    count: usize,
 }
 
 /// How the points of a block of lanes lie to another one, a bit for each.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct BlockRelation {
     distance_sq: [Vec4; 2],
     is_level: u32,
@@ -236,9 +238,9 @@ struct Relation {
 }
 
 impl Nearby {
-    /// Replaces the content by the points in the closed box from `lo` to `hi`.
-    fn gather(&mut self, sheets: &Sheets, lo: Vec3, hi: Vec3) {
-        self.points.gather(sheets.tree, lo, hi);
+    /// Replaces the content by the points in the closed box from `lo` to `hi` that are to be kept.
+    fn gather(&mut self, sheets: &Sheets, lo: Vec3, hi: Vec3, is_kept: impl Fn(u32) -> bool) {
+        self.points.gather_those(sheets.tree, lo, hi, is_kept);
         self.normal.clear();
         self.normal.extend(self.points.index.chunks(LANES).map(|chunk| {
             let mut lanes = [Lanes::splat(0.0); 3];
@@ -248,19 +250,18 @@ impl Nearby {
             }
             lanes
         }));
+        self.block.resize(self.normal.len(), BlockRelation::default());
+        self.hits.resize(LANES * self.normal.len(), 0);
     }
 
     /// Finds the points nearer to `p` than √`reach_sq`, and how they lie to it and to the plane
     /// with this normal.
     fn look_around(&mut self, p: Vec3, normal: Vec3, reach_sq: f32) {
-        self.block.clear();
-        self.hits.clear();
-        self.hits.resize(LANES * self.normal.len(), 0);
         let mut count = 0;
-        for (k, (position, normals)) in self.points.position.iter().zip(&self.normal).enumerate() {
-            let mut block =
-                BlockRelation { distance_sq: [Vec4::ZERO; 2], is_level: 0, faces_alike: 0, faces_away: 0 };
+        let blocks = self.points.position.iter().zip(&self.normal).zip(&mut self.block);
+        for (k, ((position, normals), block)) in blocks.enumerate() {
             let mut near = 0;
+            (block.is_level, block.faces_alike, block.faces_away) = (0, 0, 0);
             for (half, distance_sq) in block.distance_sq.iter_mut().enumerate() {
                 let shift = 4 * half;
                 let four = |lanes: &Lanes| Vec4::from_slice(&lanes.0[shift..shift + 4]);
@@ -275,19 +276,18 @@ impl Nearby {
                 block.faces_alike |= cosine.cmpgt(Vec4::ZERO).bitmask() << shift;
                 block.faces_away |= cosine.cmplt(Vec4::ZERO).bitmask() << shift;
             }
-            self.block.push(block);
             let lanes = &LANES_OF[near as usize];
             for (hit, lane) in self.hits[count..count + LANES].iter_mut().zip(lanes.lane) {
                 *hit = (LANES * k) as u32 + lane;
             }
             count += lanes.count;
         }
-        self.hits.truncate(count);
+        self.count = count;
     }
 
     /// The points that were found near, and how each lies to the one that was asked for.
     fn hits(&self) -> impl Iterator<Item = (u32, Relation)> {
-        self.hits.iter().map(|&hit| {
+        self.hits[..self.count].iter().map(|&hit| {
             let (block, lane) = (&self.block[hit as usize / LANES], hit as usize % LANES);
             let holds = |bits: u32| bits >> lane & 1 != 0;
             let relation = Relation {
@@ -311,19 +311,32 @@ struct Wide {
 }
 
 impl Wide {
+    /// Gathers the points in the box around the leaf that may face as one of its points does.
+    fn gather(&mut self, sheets: &Sheets, leaf: &Leaf) {
+        /// For the rounding of the normals.
+        const SLACK: f32 = 1e-3;
+        let own = &sheets.normal[leaf.range.clone()];
+        let mean = own.iter().sum::<Vec3>().normalize_or_zero();
+        let cosine = own.iter().map(|n| n.dot(mean)).fold(1.0, f32::min);
+        // Normals within an angle of the mean, and one within 90° of any of them.
+        let least = if cosine > 0.0 { -(1.0 - cosine * cosine).max(0.0).sqrt() - SLACK } else { -2.0 };
+        let is_kept = |j: u32| sheets.normal[j as usize].dot(mean) >= least;
+        self.nearby.gather(sheets, leaf.lo - self.reach, leaf.hi + self.reach, is_kept);
+    }
+
     /// Replaces `keys` by those of the [`MOST_POINTS`] nearest points on the sheet and patch of
-    /// point `i` of a leaf, nearest first, or of all if there are fewer. Returns whether it has: a
+    /// point `i` of a leaf, in any order, or of all if there are fewer. Returns whether it has: a
     /// box that holds them may hold too many others.
     fn nearest(&mut self, sheets: &Sheets, leaf: &Leaf, i: usize, keys: &mut Vec<u64>) -> bool {
-        /// First reach, in units of that of the leaf: on half a plane it holds some 180 points.
-        const FIRST: f32 = 5.0;
+        /// First reach, in units of that of the leaf: on half a plane it holds some 300 points.
+        const FIRST: f32 = 6.5;
         /// Number of points in a box above which the tree finds the nearest ones sooner.
         const MANY: usize = 16 * MOST_POINTS;
         let Sheets { tree, normal, creases, .. } = *sheets;
         loop {
             if self.reach == 0.0 {
                 self.reach = FIRST * leaf.reach();
-                self.nearby.gather(sheets, leaf.lo - self.reach, leaf.hi + self.reach);
+                self.gather(sheets, leaf);
             }
             if self.nearby.points.index.len() > MANY || !(self.reach > 0.0) {
                 return false;
@@ -344,11 +357,10 @@ impl Wide {
                 keys.truncate(MOST_POINTS);
             }
             if keys.len() == MOST_POINTS || has_all {
-                keys.sort_unstable();
                 return true;
             }
             self.reach *= 1.5;
-            self.nearby.gather(sheets, leaf.lo - self.reach, leaf.hi + self.reach);
+            self.gather(sheets, leaf);
         }
     }
 }

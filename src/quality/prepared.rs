@@ -21,6 +21,8 @@ pub(super) struct Prepared {
     pub(super) triangles: Triangles,
     /// The triangles that count, without conflicts (see [`Triangles::settled`]).
     pub(super) mesh: Vec<[u32; 3]>,
+    /// The area of these triangles.
+    pub(super) mesh_area: f64,
     /// The area of the surface, as given or of these triangles.
     pub(super) area: f64,
     pub(super) duplicates: usize,
@@ -69,12 +71,23 @@ impl Prepared {
                 (triangles, mesh)
             };
             pause().await;
-            let area = options.area.unwrap_or_else(|| area(&points.tree.position, &mesh));
+            let mesh_area = area(&points.tree.position, &mesh);
+            let area = options.area.unwrap_or(mesh_area);
             let d_hex = hexagonal_spacing(area, position.len() - not_finite - further);
             pause().await;
             if !drop_close(&points, (SINGLE_ROUNDING * d_hex) as f32, &mut drop) {
                 let duplicates = position.len() - not_finite - points.tree.len();
-                return Self { points, spacing, triangles, mesh, area, duplicates, not_finite, drop };
+                return Self {
+                    points,
+                    spacing,
+                    triangles,
+                    mesh,
+                    mesh_area,
+                    area,
+                    duplicates,
+                    not_finite,
+                    drop,
+                };
             }
         }
     }

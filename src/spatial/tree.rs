@@ -261,8 +261,14 @@ pub(crate) struct PointsInBox {
 impl PointsInBox {
     /// Replaces the content by the points in the closed box from `lo` to `hi`.
     pub(crate) fn gather(&mut self, tree: &Tree, lo: Vec3, hi: Vec3) {
+        self.gather_those(tree, lo, hi, |_| true);
+    }
+
+    /// [`PointsInBox::gather`], of the points that are to be kept.
+    pub(crate) fn gather_those(&mut self, tree: &Tree, lo: Vec3, hi: Vec3, is_kept: impl Fn(u32) -> bool) {
         self.index.clear();
         tree.within_box(lo, hi, &mut self.index);
+        self.index.retain(|&i| is_kept(i));
         self.position.clear();
         self.position.extend(self.index.chunks(LANES).map(|chunk| {
             let mut lanes = [Lanes::splat(f32::INFINITY); 3];
