@@ -338,7 +338,7 @@ impl Wide {
                 self.reach = FIRST * leaf.reach();
                 self.gather(sheets, leaf);
             }
-            if self.nearby.points.index.len() > MANY || !(self.reach > 0.0) {
+            if self.nearby.points.index.len() > MANY || self.reach <= 0.0 {
                 return false;
             }
             let has_all = tree.is_within(leaf.lo - self.reach, leaf.hi + self.reach);
@@ -397,8 +397,8 @@ fn partition(keys: &mut [u64], bound: u64) -> (&mut [u64], &mut [u64]) {
 }
 
 /// Clips the cell of point `i` by the points of `keys` that are on no other sheet, nearest first,
-/// until no farther one can matter. Returns whether the cell is closed and proven complete, if every
-/// point nearer than √`known_sq` is among them.
+/// until no farther one can matter. Returns whether the cell is closed and proven complete, if
+/// every point nearer than √`known_sq` is among them.
 fn fill(
     cell: &mut VoronoiCell,
     tree: &Tree,
@@ -411,16 +411,14 @@ fn fill(
     let p = tree.position[i].as_dvec3();
     let (u, v) = tangent_frame(normal);
     let (u, v) = (u.as_dvec3(), v.as_dvec3());
-    let (mut nearest_sq, mut farthest_sq) = (f32::INFINITY, 0.0);
-    for &candidate in &*keys {
-        let (distance_sq, _) = unkey(candidate);
-        (nearest_sq, farthest_sq) = (distance_sq.min(nearest_sq), distance_sq.max(farthest_sq));
-    }
+    let distance_sq = |key: Option<&u64>| key.map_or(1.0, |&key| unkey(key).0);
     // A square whose sides lie beyond half the known distance has no proven corner on its sides.
-    let known = if known_sq.is_finite() { known_sq } else { f64::from(farthest_sq) * 1e6 };
+    let farthest_sq = || f64::from(distance_sq(keys.iter().max()));
+    let known = if known_sq.is_finite() { known_sq } else { farthest_sq() * 1e6 };
     cell.start(known.sqrt().max(f64::MIN_POSITIVE));
     // Keys are rounded to single precision. The slack costs a few needless cuts only.
     let is_beyond = |cell: &VoronoiCell, key: u64| f64::from(unkey(key).0) > 4.001 * cell.reach_sq();
+    let nearest_sq = distance_sq(keys.iter().min());
     let (first, rest) = partition(keys, key(FIRST_SQ * nearest_sq, 0));
     for part in [first, rest] {
         if part.iter().min().is_none_or(|&nearest| is_beyond(cell, nearest)) {

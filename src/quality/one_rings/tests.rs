@@ -29,7 +29,7 @@ fn naive(sheets: &Sheets, i: usize) -> Vec<usize> {
     for (_, j) in all {
         let offset = (tree.position[j] - p).as_dvec3();
         let flat = DVec2::new(offset.dot(u.as_dvec3()), offset.dot(v.as_dvec3()));
-        let q = flat.normalize() * offset.length();
+        let q = flat.normalize_or_zero() * offset.length();
         let side = |c: DVec2| c.dot(q) - 0.5 * q.length_squared();
         let mut cut = Vec::new();
         for (k, &(c, behind)) in cell.iter().enumerate() {
@@ -67,7 +67,7 @@ fn rings_and_triangles_are_those_found_by_looking_at_all_points() {
         let points = complete(crossings(field, &Bounds::cube(half)));
         assert!(points.len() > 900, "{text}: {}", points.len());
         let tree = Tree::new(&points[..900]);
-        let gradient = |p: &Vec3| field.value_and_gradient(p.as_dvec3()).1.normalize().as_vec3();
+        let gradient = |p: &Vec3| field.value_and_gradient(p.as_dvec3()).1.normalize_or_zero().as_vec3();
         let normal: Vec<Vec3> = tree.position.iter().map(gradient).collect();
         let (height, creases) = (vec![0.0; tree.len()], CreaseRows::default());
         let sheets = Sheets { tree: &tree, normal: &normal, height: &height, creases: &creases };
