@@ -1,5 +1,6 @@
 //! Components, borders and Euler number of a list of triangles, counted from the list alone.
 
+use crate::math::NONE;
 use crate::slices::{self, LIGHT, MEDIUM, pause, ranges};
 use core::ops::Range;
 
@@ -44,6 +45,8 @@ pub struct Topology {
     pub pinched_vertices: Vec<u32>,
     /// Edges of one triangle alone, the smaller end first.
     pub(crate) lone_edges: Vec<[u32; 2]>,
+    /// The component of each vertex; [`NONE`] for one without a triangle.
+    pub(crate) component_of: Vec<u32>,
 }
 
 /// The corners of all triangles, sorted by their vertex.
@@ -211,16 +214,17 @@ impl Topology {
     }
 
     async fn count_components(&mut self, corners: &Corners, stars: &[StarCounts]) {
-        let mut seen = vec![false; stars.len()];
+        let mut component_of = vec![NONE; stars.len()];
         let mut open = Vec::new();
         let mut looked_at = 0_usize;
         for first in 0..stars.len() {
-            if seen[first] || corners.range(first).is_empty() {
+            if component_of[first] != NONE || corners.range(first).is_empty() {
                 continue;
             }
+            let number = self.components.len() as u32;
             let mut component = Component::default();
             let (mut corner_count, mut edge_ends) = (0, 0_u64);
-            seen[first] = true;
+            component_of[first] = number;
             open.push(first as u32);
             while let Some(v) = open.pop() {
                 looked_at += 1;
@@ -235,7 +239,8 @@ impl Topology {
                 edge_ends += u64::from(star.degree);
                 for &[next, previous] in corners {
                     for w in [next, previous] {
-                        if !core::mem::replace(&mut seen[w as usize], true) {
+                        if component_of[w as usize] == NONE {
+                            component_of[w as usize] = number;
                             open.push(w);
                         }
                     }
@@ -245,6 +250,7 @@ impl Topology {
             component.edges = (edge_ends / 2) as u32;
             self.components.push(component);
         }
+        self.component_of = component_of;
     }
 }
 

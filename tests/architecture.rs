@@ -29,7 +29,7 @@ const ROOMS: [Room; 4] = [
             // made them.
             ("spatial", &["math", "slices"]),
             ("particles", &["math"]),
-            ("topology", &["slices"]),
+            ("topology", &["math", "slices"]),
             ("mesh", &["math", "slices", "spatial", "particles", "topology"]),
             ("sampler", &["math", "slices", "field", "differential", "spatial", "particles", "mesh"]),
             // Figures about a set of particles must not depend on what made them.

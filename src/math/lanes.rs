@@ -49,6 +49,13 @@ impl Lanes {
         self.map(f32::sqrt)
     }
 
+    /// The smaller of every pair of lanes, of numbers that are not NaN.
+    #[inline]
+    #[must_use]
+    pub fn min(self, other: Self) -> Self {
+        self.zip(other, |a, b| if b < a { b } else { a })
+    }
+
     /// Absolute value of every lane.
     #[inline]
     #[must_use]

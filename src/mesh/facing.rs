@@ -1,7 +1,7 @@
 //! The inside of the closed parts of a mesh, and which parts have to be turned so that they face
 //! outward.
 
-use crate::math::{Forest, NONE, key_of, sort_by_key, sort_pairs};
+use crate::math::{key_of, sort_by_key, sort_pairs};
 use crate::slices::{LIGHT, pause};
 use crate::topology::Topology;
 use glam::{DVec3, Vec3};
@@ -61,7 +61,8 @@ impl Part {
 /// Linear in the triangles. Where the signs of the volumes differ, which part holds which is found
 /// by a ray from each.
 pub(crate) async fn facing(position: &[Vec3], triangles: &[[u32; 3]], topology: &Topology) -> Facing {
-    let (parts, part_of) = parts(position, triangles, topology).await;
+    let parts = parts(position, triangles, topology).await;
+    let part_of = &topology.component_of;
     let is_inward = |k: usize| parts[k].faces_inward();
     let closed: Vec<usize> = (0..parts.len()).filter(|&k| parts[k].is_closed).collect();
     if closed.is_empty() {
@@ -73,7 +74,7 @@ pub(crate) async fn facing(position: &[Vec3], triangles: &[[u32; 3]], topology: 
     }
     let mut outer: Vec<usize> = (0..parts.len()).collect();
     if inward < closed.len() {
-        outer = outermost(position, triangles, &parts, &part_of).await;
+        outer = outermost(position, triangles, &parts, part_of).await;
     }
     let turned = |k: &&usize| is_inward(outer[**k]);
     let inside = match closed.iter().filter(turned).count() {
@@ -88,31 +89,23 @@ pub(crate) async fn facing(position: &[Vec3], triangles: &[[u32; 3]], topology: 
     Facing { turned: turned.collect(), inside: Some(inside) }
 }
 
-/// The parts of a mesh, and the part of each vertex; [`NONE`] for one in no triangle.
-async fn parts(position: &[Vec3], triangles: &[[u32; 3]], topology: &Topology) -> (Vec<Part>, Vec<u32>) {
-    let mut forest = Forest::new(position.len());
-    for slice in triangles.chunks(LIGHT) {
-        for &[a, b, c] in slice {
-            forest.join(a, b);
-            forest.join(b, c);
-        }
-        pause().await;
-    }
-    let mut parts: Vec<Part> = Vec::new();
-    let mut part_of = vec![NONE; position.len()];
+/// The parts of a mesh, which are the components of its topology.
+async fn parts(position: &[Vec3], triangles: &[[u32; 3]], topology: &Topology) -> Vec<Part> {
+    let part_of = &topology.component_of;
+    let mut parts: Vec<Option<Part>> = topology.components.iter().map(|_| None).collect();
     for slice in triangles.chunks(LIGHT) {
         for &triangle in slice {
-            let first = forest.find(triangle[0]) as usize;
-            if part_of[first] == NONE {
-                part_of[first] = parts.len() as u32;
-                let origin = position[first].as_dvec3();
-                parts.push(Part { origin, volume: 0.0, is_closed: true, last: first as u32 });
-            }
-            let part = &mut parts[part_of[first] as usize];
+            let first = triangle[0] as usize;
+            let origin = position[first].as_dvec3();
+            let part = parts[part_of[first] as usize].get_or_insert(Part {
+                origin,
+                volume: 0.0,
+                is_closed: true,
+                last: first as u32,
+            });
             let [a, b, c] = triangle.map(|v| position[v as usize].as_dvec3() - part.origin);
             part.volume += a.dot(b.cross(c)) / 6.0;
             for v in triangle {
-                part_of[v as usize] = part_of[first];
                 if position[v as usize].x > position[part.last as usize].x {
                     part.last = v;
                 }
@@ -120,6 +113,8 @@ async fn parts(position: &[Vec3], triangles: &[[u32; 3]], topology: &Topology) -
         }
         pause().await;
     }
+    // Every component has a triangle.
+    let mut parts: Vec<Part> = parts.into_iter().flatten().collect();
     for &[a, _] in &topology.lone_edges {
         parts[part_of[a as usize] as usize].is_closed = false;
     }
@@ -145,7 +140,7 @@ async fn parts(position: &[Vec3], triangles: &[[u32; 3]], topology: &Topology) -
     }
     // A part without a volume has no inside.
     parts.iter_mut().for_each(|part| part.is_closed &= part.volume.abs() > 0.0);
-    (parts, part_of)
+    parts
 }
 
 /// For each part, the closed part that holds it and is held by none: itself if there is no such

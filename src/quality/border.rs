@@ -119,23 +119,22 @@ impl Face {
             self.points[column] = self.node(column, row).as_vec3();
         }
         field.values(&self.points, &mut self.value);
-        let mut crossing = |a: [usize; 2], fa: f32, b: [usize; 2], fb: f32| {
-            // This is false where either is NaN.
-            if fa < 0.0 && fb >= 0.0 || fa >= 0.0 && fb < 0.0 {
-                let [a, b] = [a, b].map(|[column, row]| self.node(column, row));
-                let p = a.lerp(b, f64::from(fa) / (f64::from(fa) - f64::from(fb)));
-                if is_cut(field, p, (b - a).length(), self.axis, self.sign, self.d_hex) {
-                    curve.push(p.as_vec3());
-                }
+        let mut add = |a: [usize; 2], fa: f32, b: [usize; 2], fb: f32| {
+            let [a, b] = [a, b].map(|[column, row]| self.node(column, row));
+            let p = a.lerp(b, f64::from(fa) / (f64::from(fa) - f64::from(fb)));
+            if is_cut(field, p, (b - a).length(), self.axis, self.sign, self.d_hex) {
+                curve.push(p.as_vec3());
             }
         };
+        // This is false where either is NaN.
+        let changes = |fa: f32, fb: f32| fa < 0.0 && fb >= 0.0 || fa >= 0.0 && fb < 0.0;
         for column in 0..=self.columns {
             let value = self.value[column];
-            if row > 0 {
-                crossing([column, row - 1], self.above[column], [column, row], value);
+            if row > 0 && changes(self.above[column], value) {
+                add([column, row - 1], self.above[column], [column, row], value);
             }
-            if column > 0 {
-                crossing([column - 1, row], self.value[column - 1], [column, row], value);
+            if column > 0 && changes(self.value[column - 1], value) {
+                add([column - 1, row], self.value[column - 1], [column, row], value);
             }
         }
         core::mem::swap(&mut self.above, &mut self.value);

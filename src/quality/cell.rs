@@ -15,38 +15,63 @@ const SQUARE: u32 = u32::MAX;
 /// points share one corner and no edge.
 const TOUCH: f64 = 1e-10;
 
-/// The Voronoi cell of the origin, which is clipped by one bisector after another. Its corners are
-/// in counter-clockwise order.
+/// The Voronoi cell of the origin, which is clipped by one bisector after another.
 #[derive(Debug)]
 pub(super) struct VoronoiCell {
+    /// The cell, and memory for what the next bisector leaves of it: the cell is the second one
+    /// where `is_second`.
+    polygon: [Polygon; 2],
+    is_second: bool,
+    /// Signed distance of each corner from the bisector of the clip under way, times |q|.
+    side: [f64; CORNERS],
+    reach_sq: f64,
+}
+
+/// A convex polygon around the origin, its corners in counter-clockwise order.
+#[derive(Debug)]
+struct Polygon {
     corner: [DVec2; CORNERS],
     /// `label[k]` names the point whose bisector carries the edge from corner `k` to corner
     /// `k + 1`.
     label: [u32; CORNERS],
-    /// Signed distance of each corner from the bisector of the clip under way, times |q|.
-    side: [f64; CORNERS],
+    /// Squared distance of each corner.
+    distance_sq: [f64; CORNERS],
     count: usize,
-    reach_sq: f64,
+}
+
+impl Polygon {
+    fn new() -> Self {
+        Self {
+            corner: [DVec2::ZERO; CORNERS],
+            label: [SQUARE; CORNERS],
+            distance_sq: [0.0; CORNERS],
+            count: 0,
+        }
+    }
+
+    #[inline]
+    fn push(&mut self, corner: DVec2, label: u32, distance_sq: f64) {
+        self.corner[self.count] = corner;
+        self.label[self.count] = label;
+        self.distance_sq[self.count] = distance_sq;
+        self.count += 1;
+    }
 }
 
 impl VoronoiCell {
     /// Returns an empty cell; call [`VoronoiCell::start`] first.
     pub(super) fn new() -> Self {
-        Self {
-            corner: [DVec2::ZERO; CORNERS],
-            label: [SQUARE; CORNERS],
-            side: [0.0; CORNERS],
-            count: 0,
-            reach_sq: 0.0,
-        }
+        let polygon = [Polygon::new(), Polygon::new()];
+        Self { polygon, is_second: false, side: [0.0; CORNERS], reach_sq: 0.0 }
     }
 
     /// Starts again from the square of half-width `half`.
     pub(super) fn start(&mut self, half: f64) {
-        self.count = 4;
-        for (k, (x, y)) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].into_iter().enumerate() {
-            self.corner[k] = DVec2::new(x * half, y * half);
-            self.label[k] = SQUARE;
+        let now = &mut self.polygon[usize::from(self.is_second)];
+        now.count = 0;
+        for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+            let corner = DVec2::new(x * half, y * half);
+            now.push(corner, SQUARE, corner.length_squared());
         }
         self.reach_sq = 2.0 * half * half;
     }
@@ -62,17 +87,19 @@ impl VoronoiCell {
     /// Where there is such a part, `is_neighbour` is asked before.
     #[inline]
     pub(super) fn clip(&mut self, q: DVec2, label: u32, is_neighbour: impl FnOnce() -> bool) {
-        let n = self.count;
+        let Self { polygon: [one, other], is_second, side, reach_sq } = self;
+        let (now, next) = if *is_second { (other, one) } else { (one, other) };
+        let n = now.count;
         let offset = 0.5 * q.length_squared();
-        let mut worst = 0;
-        for k in 0..n {
-            self.side[k] = self.corner[k].dot(q) - offset;
-            if self.side[k] > self.side[worst] {
-                worst = k;
+        let (mut worst, mut farthest) = (0, f64::NEG_INFINITY);
+        for (k, (side, corner)) in side.iter_mut().zip(&now.corner[..n]).enumerate() {
+            *side = corner.dot(q) - offset;
+            if *side > farthest {
+                (worst, farthest) = (k, *side);
             }
         }
         // A full cell stays as it is: its corners are either right or not certain.
-        if self.side[worst] <= TOUCH * q.length_squared() || n + 1 >= CORNERS || !is_neighbour() {
+        if farthest <= TOUCH * q.length_squared() || n + 1 >= CORNERS || !is_neighbour() {
             return;
         }
         // The corners that are cut off are consecutive, from `first` to `last`, because the cell is
@@ -80,40 +107,36 @@ impl VoronoiCell {
         let before = |k: usize| if k == 0 { n - 1 } else { k - 1 };
         let after = |k: usize| if k + 1 == n { 0 } else { k + 1 };
         let mut first = worst;
-        while self.side[before(first)] > 0.0 && before(first) != worst {
+        while side[before(first)] > 0.0 && before(first) != worst {
             first = before(first);
         }
         let mut last = worst;
-        while self.side[after(last)] > 0.0 && after(last) != first {
+        while side[after(last)] > 0.0 && after(last) != first {
             last = after(last);
         }
         let (outer, inner) = (before(first), after(last));
-        if self.side[outer] > 0.0 || self.side[inner] > 0.0 {
+        if side[outer] > 0.0 || side[inner] > 0.0 {
             return; // Everything is cut off: numerically, q is the origin.
         }
         let cross = |inside: usize, outside: usize| {
-            let (a, b) = (self.side[inside], self.side[outside]);
-            self.corner[inside] + (self.corner[outside] - self.corner[inside]) * (a / (a - b))
+            let (a, b) = (side[inside], side[outside]);
+            now.corner[inside] + (now.corner[outside] - now.corner[inside]) * (a / (a - b))
         };
-        let enter = cross(outer, first);
-        let leave = cross(inner, last);
-        let leave_label = self.label[last];
-        // The new corners are: inner … outer, enter, leave.
-        let kept = if outer >= inner { outer - inner + 1 } else { outer + n - inner + 1 };
-        if inner <= outer {
-            self.corner.copy_within(inner..=outer, 0);
-            self.label.copy_within(inner..=outer, 0);
-        } else {
-            self.corner[..n].rotate_left(inner);
-            self.label[..n].rotate_left(inner);
+        next.count = 0;
+        let mut k = inner;
+        loop {
+            next.push(now.corner[k], now.label[k], now.distance_sq[k]);
+            if k == outer {
+                break;
+            }
+            k = after(k);
         }
-        self.corner[kept] = enter;
-        self.label[kept] = label;
-        self.corner[kept + 1] = leave;
-        self.label[kept + 1] = leave_label;
-        self.count = kept + 2;
-        self.reach_sq =
-            self.corner[..self.count].iter().fold(0.0, |reach: f64, v| reach.max(v.length_squared()));
+        for (corner, label) in [(cross(outer, first), label), (cross(inner, last), now.label[last])] {
+            next.push(corner, label, corner.length_squared());
+        }
+        *reach_sq =
+            next.distance_sq[..next.count].iter().fold(0.0, |reach, &d| if d > reach { d } else { reach });
+        *is_second = !*is_second;
     }
 
     /// Returns every edge in counter-clockwise order: its label, and whether the corner at its end
@@ -121,10 +144,11 @@ impl VoronoiCell {
     /// the cell was clipped by every point nearer than √`known_sq`. Edges of the starting square
     /// are left out, and corners on them are not certain.
     pub(super) fn edges(&self, known_sq: f64) -> impl Iterator<Item = (u32, bool)> {
-        (0..self.count).filter(|&k| self.label[k] != SQUARE).map(move |k| {
-            let next = if k + 1 == self.count { 0 } else { k + 1 };
-            let certain = self.label[next] != SQUARE && 4.0 * self.corner[next].length_squared() <= known_sq;
-            (self.label[k], certain)
+        let Polygon { label, distance_sq, count, .. } = &self.polygon[usize::from(self.is_second)];
+        (0..*count).filter(|&k| label[k] != SQUARE).map(move |k| {
+            let next = if k + 1 == *count { 0 } else { k + 1 };
+            let certain = label[next] != SQUARE && 4.0 * distance_sq[next] <= known_sq;
+            (label[k], certain)
         })
     }
 }

@@ -12,11 +12,12 @@ use crate::slices::{MEDIUM, pause};
 /// one is in no triangle, and if their distance is not [`LONG`] at either.
 pub(super) async fn label(points: &MeasuredPoints, spacing: &[f32], mesh: &[[u32; 3]]) -> (Vec<u32>, usize) {
     let n = points.tree.len();
-    let distance = |i: usize, j: usize| points.tree.position[i].distance(points.tree.position[j]);
+    let distance_sq = |i: usize, j: usize| points.tree.position[i].distance_squared(points.tree.position[j]);
     let mut forest = Forest::new(n);
     let mut is_used = vec![false; n];
     let mut join = |i: usize, j: usize| {
-        if distance(i, j) <= LONG * spacing[i].min(spacing[j]) {
+        let most = LONG * spacing[i].min(spacing[j]);
+        if distance_sq(i, j) <= most * most {
             forest.join(i as u32, j as u32);
         }
     };

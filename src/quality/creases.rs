@@ -201,7 +201,7 @@ impl CreaseRows {
             (particles.local[row], particles.normal[row]) = (tree.position[k], normal[k]);
             place[row] = k as u32;
         }
-        let mesh = build::in_slices(&particles, bounds).await;
+        let mesh = build::in_slices(&particles, bounds, None).await;
         mesh.into_corners().into_iter().map(|triangle| triangle.map(|row| place[row as usize])).collect()
     }
 }

@@ -17,13 +17,14 @@ const SIX: f32 = (6.0 / (E * E)) as f32;
 /// relaxation, whose σ is r; neighbours farther away add less than 2 %.
 pub(super) async fn of_points(points: &MeasuredPoints, wanted: Option<&WantedRadii>, d_hex: f64) -> Vec<f32> {
     let n = points.tree.len();
+    let inverse = 1.0 / d_hex;
     let mut energy = Vec::with_capacity(n);
     for range in ranges(n, MEDIUM) {
         energy.extend(range.map(|i| {
             let pair = |j: usize| {
                 let share = match wanted {
                     Some(wanted) => wanted.ratio(points, i, j),
-                    None => points.distance(i, j) / d_hex,
+                    None => points.distance(i, j) * inverse,
                 } as f32;
                 exp(-2.0 * share * share)
             };

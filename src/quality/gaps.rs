@@ -27,15 +27,15 @@ const NEAR: f32 = 0.02;
 /// Returns the spacing at every point.
 pub(super) async fn spacing_of(points: &MeasuredPoints) -> Vec<f32> {
     let n = points.tree.len();
-    let mut lengths = Vec::new();
+    let mut lengths_sq = Vec::new();
     let mut spacing = Vec::with_capacity(n);
     for range in ranges(n, MEDIUM) {
         spacing.extend(range.map(|i| {
             let p = points.tree.position[i];
-            lengths.clear();
-            lengths.extend(points.rings.of(i).map(|j| p.distance(points.tree.position[j])));
-            sort_few(&mut lengths, |a, b| a < b);
-            lengths.get(RANK - 1).or(lengths.last()).copied().unwrap_or(0.0)
+            lengths_sq.clear();
+            lengths_sq.extend(points.rings.of(i).map(|j| p.distance_squared(points.tree.position[j])));
+            sort_few(&mut lengths_sq, |a, b| a < b);
+            lengths_sq.get(RANK - 1).or(lengths_sq.last()).copied().unwrap_or(0.0_f32).sqrt()
         }));
         pause().await;
     }
@@ -79,10 +79,11 @@ impl Gaps<'_> {
     /// The edge of a triangle, if it is long.
     fn long_edge(&self, triangle: usize, i: usize, j: usize) -> Option<LongEdge> {
         let [p, q] = [i, j].map(|k| self.points.tree.position[k]);
-        let length = p.distance(q);
-        if length <= LONG * self.spacing[i].min(self.spacing[j]) {
+        let (length_sq, most) = (p.distance_squared(q), LONG * self.spacing[i].min(self.spacing[j]));
+        if length_sq <= most * most {
             return None;
         }
+        let length = length_sq.sqrt();
         let [n, m] = [i, j].map(|k| self.points.normal[k]);
         let up = (n + m).normalize_or(n);
         let middle = 0.5 * (p + q) + up * (0.125 * (q - p).dot(m - n));

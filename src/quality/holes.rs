@@ -8,7 +8,7 @@ use super::projection::{LAST_STEP, is_reached, project};
 use super::sizes::WantedRadii;
 use super::triangles::area_vector;
 use crate::field::{BATCH, Evaluator};
-use crate::math::NONE;
+use crate::math::{LANES, Lanes, NONE};
 use crate::slices::{HEAVY, pause};
 use crate::spatial::tree::{PointsInBox, Tree};
 use glam::{DVec3, Vec3};
@@ -39,6 +39,7 @@ pub(super) struct Cover<'a> {
     pub(super) creases: &'a CreaseRows,
     /// The triangles; those of one patch follow each other.
     pub(super) mesh: &'a [[u32; 3]],
+    pub(super) mesh_area: f64,
     pub(super) border: Option<&'a Border>,
     pub(super) wanted: Option<&'a WantedRadii>,
     /// Radius of the disc of each point, in the order given; none if they are not known.
@@ -166,9 +167,10 @@ struct Surroundings {
 }
 
 impl Surroundings {
-    /// Whether a point of `tree` may lie within the squared distance `bound_sq` of `p`. The box is
-    /// gathered anew if it does not hold all of those; within `width` there are a few points.
-    fn may_be_nearer(&mut self, tree: &Tree, p: Vec3, bound_sq: f32, width: f32) -> bool {
+    /// The squared distance of the nearest point of `tree` to `p` and that point, if it is below
+    /// `bound_sq`; otherwise `bound_sq` and [`NONE`]. The box is gathered anew if it does not hold
+    /// all of those; within `width` there are a few points.
+    fn nearest(&mut self, tree: &Tree, p: Vec3, bound_sq: f32, width: f32) -> (f32, u32) {
         /// Room around a sample for those that follow, in units of `width`. Less: the box is
         /// gathered more often; more: it holds more points.
         const REACH: f32 = 2.0;
@@ -181,11 +183,17 @@ impl Surroundings {
             (self.lo, self.hi) = (p - reach, p + reach);
             self.points.gather(tree, self.lo, self.hi);
         }
-        self.points.index.len() > MANY
-            || self
-                .points
-                .distances_sq(p)
-                .any(|lanes| lanes.0.iter().any(|&distance_sq| distance_sq < bound_sq))
+        if self.points.index.len() > MANY {
+            return tree.nearest(p, NONE, bound_sq);
+        }
+        let least = self.points.distances_sq(p).fold(Lanes::splat(bound_sq), Lanes::min);
+        let least = least.0.into_iter().fold(bound_sq, f32::min);
+        if least >= bound_sq {
+            return (bound_sq, NONE);
+        }
+        let blocks = self.points.index.chunks(LANES).zip(self.points.distances_sq(p));
+        let mut all = blocks.flat_map(|(index, lanes)| index.iter().copied().zip(lanes.0));
+        (least, all.find(|&(_, distance_sq)| distance_sq == least).map_or(NONE, |(index, _)| index))
     }
 }
 
@@ -233,11 +241,7 @@ impl HoleSearch {
             if !random && !self.matters(corner_sq, ideal * ideal) {
                 continue;
             }
-            let (gap_sq, nearer) = if self.around.may_be_nearer(cover.tree, p, corner_sq, leash) {
-                cover.tree.nearest(p, NONE, corner_sq)
-            } else {
-                (corner_sq, NONE)
-            };
+            let (gap_sq, nearer) = self.around.nearest(cover.tree, p, corner_sq, leash);
             // The circumcentre of a long triangle may come to a far place, where other points are
             // larger.
             if nearer != NONE {
@@ -283,8 +287,8 @@ impl HoleSearch {
     /// equal shares of their area, and projected onto the surface.
     async fn add_samples(&mut self, field: &mut dyn Evaluator, cover: &Cover<'_>, count: usize) {
         let position = &cover.tree.position;
-        let total: f64 = cover.mesh.iter().map(|&t| area_vector(position, t).length()).sum();
-        let share = total / count as f64;
+        // Twice the areas, as `area_vector` has them.
+        let share = 2.0 * cover.mesh_area / count as f64;
         let mut random = Pcg32::seed_from_u64(0);
         let mut unit = move || f64::from(random.next_u32()) * (1.0 / 4_294_967_296.0);
         let mut batch = Batch::default();
@@ -368,6 +372,7 @@ mod tests {
                 tree: &tree,
                 creases: &CreaseRows::default(),
                 mesh: &mesh,
+                mesh_area: 0.0,
                 border: None,
                 wanted: None,
                 discs: &[],
@@ -396,6 +401,7 @@ mod tests {
             tree: &tree,
             creases: &CreaseRows::default(),
             mesh: &[[0, 1, 2].map(place)],
+            mesh_area: 0.0,
             border: None,
             wanted: Some(&wanted),
             discs: &[],

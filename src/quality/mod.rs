@@ -54,6 +54,7 @@ use crate::field::{Evaluator, Field, Frame};
 use crate::math::{Bounds, NONE, SQRT_3};
 use crate::mesh::facing::{Inside, facing};
 use crate::slices::{self, MEDIUM, pause, ranges};
+use crate::spatial::tree::Tree;
 use crate::topology::Topology;
 use accuracy::{first_order_height, height_along};
 use border::Border;
@@ -66,6 +67,7 @@ use places::Pairs;
 use points::MeasuredPoints;
 use prepared::Prepared;
 use sizes::WantedRadii;
+use std::sync::Arc;
 use triangles::TriangleAngles;
 
 /// Smallest number of random samples for `quant`, of which there is at least one for each particle:
@@ -152,7 +154,17 @@ pub fn measure(
 ) -> Measurements {
     let frame = Frame::default().scaled_to(&field, position.iter().copied());
     let field = &mut *field.evaluator(frame);
-    slices::complete(in_slices(position, normal, field, bounds, options, &mut None))
+    let surroundings = Surroundings { bounds, tree: None };
+    slices::complete(in_slices(position, normal, field, surroundings, options, &mut None))
+}
+
+/// Where the points of a measurement lie, as far as it is known.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Surroundings<'a> {
+    /// The box that was sampled.
+    pub(crate) bounds: Option<&'a Bounds>,
+    /// The tree over all points, by their indices.
+    pub(crate) tree: Option<&'a Arc<Tree>>,
 }
 
 /// [`measure`] in slices of work. A few of them look at all particles, for some 20 ns each.
@@ -162,11 +174,11 @@ pub(crate) async fn in_slices(
     position: &[Vec3],
     normal: &[Vec3],
     field: &mut dyn Evaluator,
-    bounds: Option<&Bounds>,
+    Surroundings { bounds, tree }: Surroundings<'_>,
     options: &MeasureOptions<'_>,
     crossings: &mut Option<Vec<Vec3>>,
 ) -> Measurements {
-    let prepared = Prepared::new(position, normal, field, bounds, options).await;
+    let prepared = Prepared::new(position, normal, field, bounds, options, tree).await;
     let DistinctFigures { mut figures, component, energy, mut pairs, holes, opening, inside } =
         figures_of(&prepared, field, bounds, options, crossings).await;
     let Prepared { points, drop, .. } = &prepared;
@@ -245,7 +257,7 @@ async fn figures_of(
     if n == 0 {
         return DistinctFigures { figures, ..measured };
     }
-    figures.area = options.area.unwrap_or_else(|| triangles::area(&points.tree.position, mesh));
+    figures.area = prepared.area;
     figures.d_hex = hexagonal_spacing(figures.area, points.count() + duplicates);
     pause().await;
     figures.accuracy = accuracy::measure(&points.residual, &points.normal_angles, figures.d_hex);
@@ -272,6 +284,7 @@ async fn figures_of(
             tree: &points.tree,
             creases: &points.creases,
             mesh,
+            mesh_area: prepared.mesh_area,
             border,
             wanted,
             discs: options.rows.map_or(&[], |rows| &rows.radius),

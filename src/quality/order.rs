@@ -2,7 +2,6 @@
 
 use super::figures::Order;
 use super::moments::{Moments, share};
-use super::one_rings::unroll;
 use super::points::MeasuredPoints;
 use crate::math::tangent_frame;
 use glam::DVec2;
@@ -35,10 +34,12 @@ impl ValenceTally {
         let p = points.tree.position[i].as_dvec3();
         let mut sum = DVec2::ZERO;
         for j in points.rings.of(i) {
-            if let Some(q) = unroll(points.tree.position[j].as_dvec3() - p, u, v) {
-                // exp(6iθ) is exp(iθ) to the sixth power, which takes products alone.
-                let unit = q / q.length();
-                let square = unit.rotate(unit);
+            let offset = points.tree.position[j].as_dvec3() - p;
+            let q = DVec2::new(offset.dot(u), offset.dot(v));
+            let length_sq = q.length_squared();
+            if length_sq > 0.0 {
+                // exp(6iθ) is the cube of exp(2iθ), which takes no root.
+                let square = q.rotate(q) / length_sq;
                 sum += square.rotate(square).rotate(square);
             }
         }

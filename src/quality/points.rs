@@ -9,11 +9,12 @@ use crate::particles::Particles;
 use crate::slices::{HEAVY, pause, ranges};
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
+use std::sync::Arc;
 
 /// The points to be measured, with their normals, residuals and one-rings. All columns are in tree
 /// order.
 pub(super) struct MeasuredPoints {
-    pub(super) tree: Tree,
+    pub(super) tree: Arc<Tree>,
     /// Unit normals: ∇f/|∇f|, or the given normal where that is undefined.
     pub(super) normal: Vec<Vec3>,
     /// First-order distances from the surface, see
@@ -29,6 +30,7 @@ pub(super) struct MeasuredPoints {
 }
 
 impl MeasuredPoints {
+    /// The points that are not dropped; `of_all` is the tree over all of them, where it is there.
     pub(super) async fn new(
         position: &[Vec3],
         given: &[Vec3],
@@ -36,9 +38,13 @@ impl MeasuredPoints {
         has_duplicate: &[bool],
         drop: &[bool],
         rows: Option<&Particles>,
+        of_all: Option<&Arc<Tree>>,
     ) -> Self {
-        let kept = position.iter().copied().zip(0..).filter(|&(_, i)| !drop[i as usize]).collect();
-        let tree = Tree::in_slices(kept).await;
+        let kept = || position.iter().copied().zip(0..).filter(|&(_, i)| !drop[i as usize]).collect();
+        let tree = match of_all {
+            Some(tree) if !drop.contains(&true) => Arc::clone(tree),
+            _ => Arc::new(Tree::in_slices(kept()).await),
+        };
         let creases = CreaseRows::new(&tree, rows);
         let mut normal = Vec::with_capacity(tree.len());
         let mut height = Vec::with_capacity(tree.len());

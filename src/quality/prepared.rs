@@ -8,7 +8,9 @@ use super::triangles::{Triangles, area};
 use crate::field::Evaluator;
 use crate::math::{Bounds, IndexTable, SINGLE_ROUNDING, hash};
 use crate::slices::pause;
+use crate::spatial::tree::Tree;
 use glam::Vec3;
+use std::sync::Arc;
 
 /// The points without duplicates and non-finite positions, and their triangles.
 pub(super) struct Prepared {
@@ -19,6 +21,10 @@ pub(super) struct Prepared {
     pub(super) triangles: Triangles,
     /// The triangles that count, without conflicts (see [`Triangles::settled`]).
     pub(super) mesh: Vec<[u32; 3]>,
+    /// The area of these triangles.
+    pub(super) mesh_area: f64,
+    /// The area of the surface, as given or of these triangles.
+    pub(super) area: f64,
     pub(super) duplicates: usize,
     pub(super) not_finite: usize,
     /// Whether each point is left out, by the index given.
@@ -26,13 +32,15 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
-    /// Prepares the points; `bounds` is the box that was sampled, where it is known.
+    /// Prepares the points; `bounds` is the box that was sampled, and `tree` the one over all
+    /// points, where they are known.
     pub(super) async fn new(
         position: &[Vec3],
         normal: &[Vec3],
         field: &mut dyn Evaluator,
         bounds: Option<&Bounds>,
         options: &MeasureOptions<'_>,
+        tree: Option<&Arc<Tree>>,
     ) -> Self {
         let rows = options.rows;
         // The further rows of a particle on a crease.
@@ -45,7 +53,8 @@ impl Prepared {
         drop_equal(position, is_further, &mut drop, &mut has_duplicate);
         pause().await;
         loop {
-            let mut points = MeasuredPoints::new(position, normal, field, &has_duplicate, &drop, rows).await;
+            let mut points =
+                MeasuredPoints::new(position, normal, field, &has_duplicate, &drop, rows, tree).await;
             let spacing = spacing_of(&points).await;
             let patched = rows.filter(|_| !points.creases.is_empty());
             let (triangles, mesh) = if let Some(rows) = patched {
@@ -62,12 +71,23 @@ impl Prepared {
                 (triangles, mesh)
             };
             pause().await;
-            let area = options.area.unwrap_or_else(|| area(&points.tree.position, &mesh));
+            let mesh_area = area(&points.tree.position, &mesh);
+            let area = options.area.unwrap_or(mesh_area);
             let d_hex = hexagonal_spacing(area, position.len() - not_finite - further);
             pause().await;
             if !drop_close(&points, (SINGLE_ROUNDING * d_hex) as f32, &mut drop) {
                 let duplicates = position.len() - not_finite - points.tree.len();
-                return Self { points, spacing, triangles, mesh, duplicates, not_finite, drop };
+                return Self {
+                    points,
+                    spacing,
+                    triangles,
+                    mesh,
+                    mesh_area,
+                    area,
+                    duplicates,
+                    not_finite,
+                    drop,
+                };
             }
         }
     }
@@ -164,8 +184,8 @@ mod tests {
         let sphere = Formula::as_written("x^2+y^2+z^2-1", &[]).expect("a formula");
         let sphere = &mut *sphere.evaluator(Frame::default());
         let options = MeasureOptions::default();
-        let prepared = complete(Prepared::new(&points, &points, sphere, None, &options));
-        let (found, position) = (prepared.mesh, prepared.points.tree.position);
+        let prepared = complete(Prepared::new(&points, &points, sphere, None, &options, None));
+        let (found, position) = (prepared.mesh, &prepared.points.tree.position);
         assert_eq!(found.len(), 2 * points.len() - 4);
         let mut edges: Vec<[u32; 2]> = found.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
         edges.sort_unstable();

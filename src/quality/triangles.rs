@@ -50,8 +50,12 @@ impl Triangles {
     /// once.
     fn add(&mut self, rings: &OneRings, i: usize) {
         for (a, b) in rings.pairs(i) {
-            let (by_a, by_b) = (rings.sees(a, b, i), rings.sees(b, i, a));
-            if by_a && a < i || by_b && b < i {
+            let by_a = rings.sees(a, b, i);
+            if by_a && a < i {
+                continue;
+            }
+            let by_b = rings.sees(b, i, a);
+            if by_b && b < i {
                 continue;
             }
             let list = match u8::from(by_a) + u8::from(by_b) {

@@ -6,7 +6,7 @@ use crate::particles::Particles;
 use crate::quality::{self, Figures};
 use crate::sampler::Sampling;
 use crate::sampler::sheet::repulsion_weight;
-use crate::slices::{HEAVY, Work, pause, ranges};
+use crate::slices::{Work, pause};
 use crate::spatial::tree::Tree;
 use glam::Vec3;
 use std::sync::Arc;
@@ -44,6 +44,8 @@ pub(super) struct Measuring {
     /// Number of particles that face another sheet; none if the present particles are still to be
     /// measured.
     pub(super) facing: Option<usize>,
+    /// The tree over the present particles, if they have been measured.
+    pub(super) tree: Option<Arc<Tree>>,
 }
 
 impl Measuring {
@@ -57,7 +59,7 @@ impl Measuring {
     /// Gives a measurement under way up, and says that the last one is of other particles or
     /// another field.
     pub(super) fn stop(&mut self) {
-        (self.work, self.facing) = (None, None);
+        (self.work, self.facing, self.tree) = (None, None, None);
     }
 
     /// The particles of the front that are still to be measured.
@@ -80,18 +82,21 @@ pub(super) fn measured_columns(particles: &Particles) -> Particles {
     }
 }
 
-/// [`quality::measure`], a slice at a time; see [`quality::in_slices`] for `crossings`.
+/// [`quality::measure`], a slice at a time; see [`quality::in_slices`] for `crossings`. `tree` is
+/// that over the particles, where it is there.
 pub(super) async fn measure(
     particles: &Particles,
     field: &mut dyn Evaluator,
     bounds: &Bounds,
     sampling: Sampling,
     crossings: &mut Option<Vec<Vec3>>,
+    tree: Option<&Arc<Tree>>,
 ) -> quality::Measurements {
     let radii = (sampling == Sampling::Adaptive).then_some(&particles.radius[..]);
     let options =
         quality::MeasureOptions { radii, rows: Some(particles), ..quality::MeasureOptions::default() };
-    quality::in_slices(&particles.local, &particles.normal, field, Some(bounds), &options, crossings).await
+    let surroundings = quality::Surroundings { bounds: Some(bounds), tree };
+    quality::in_slices(&particles.local, &particles.normal, field, surroundings, &options, crossings).await
 }
 
 /// Results of a measurement.
@@ -100,6 +105,8 @@ pub(super) struct MeasuringResult {
     pub(super) now: quality::Measurements,
     /// Number of particles that face another sheet.
     pub(super) facing: usize,
+    /// The tree over the particles.
+    pub(super) tree: Arc<Tree>,
 }
 
 /// Input of a measurement, apart from the field.
@@ -124,34 +131,44 @@ impl MeasuringInput {
         let Self { front, now, bounds, sampling } = self;
         let crossings = &mut None;
         let front = match front {
-            Some(front) => Some(measure(&front, field, &bounds, sampling, crossings).await.figures),
+            Some(front) => Some(measure(&front, field, &bounds, sampling, crossings, None).await.figures),
             None => None,
         };
-        let report = measure(&now, field, &bounds, sampling, crossings).await;
-        MeasuringResult { front, now: report, facing: facing_another_sheet(&now).await }
+        let tree = Arc::new(Tree::in_slices(now.local.iter().copied().zip(0..).collect()).await);
+        let report = measure(&now, field, &bounds, sampling, crossings, Some(&tree)).await;
+        let facing = facing_another_sheet(&now, &tree).await;
+        MeasuringResult { front, now: report, facing, tree }
     }
 }
 
 /// Number of particles nearer than 2r to one of the same patch that faces the other way.
-async fn facing_another_sheet(particles: &Particles) -> usize {
-    let tree = Tree::in_slices(particles.local.iter().copied().zip(0..).collect()).await;
+async fn facing_another_sheet(particles: &Particles, tree: &Tree) -> usize {
+    /// Particles whose normals have this cosine with one direction, or a larger one, are within
+    /// 120° of each other, so that they repel each other. The third digit is for rounding.
+    const ALIKE: f32 = 0.505;
     let mut near = Vec::new();
     let mut count = 0;
-    for range in ranges(tree.len(), HEAVY) {
-        // In tree order: near particles look at the same memory.
-        for k in range {
-            let i = tree.origin[k] as usize;
-            let (p, n) = (particles.local[i], particles.normal[i]);
-            let reach = 2.0 * particles.radius[i];
-            near.clear();
-            tree.within_box(p - Vec3::splat(reach), p + Vec3::splat(reach), &mut near);
-            let is_facing = near.iter().any(|&k| {
-                let j = tree.origin[k as usize] as usize;
-                repulsion_weight(particles.normal[j].dot(n)) <= 0.0
-                    && particles.patch.get(j) == particles.patch.get(i)
-                    && tree.position[k as usize].distance_squared(p) < reach * reach
-            });
-            count += usize::from(is_facing);
+    for leaf in tree.leaves() {
+        let own = &tree.origin[leaf.range.clone()];
+        let mean: Vec3 = own.iter().map(|&i| particles.normal[i as usize]).sum();
+        let widest = own.iter().map(|&i| 2.0 * particles.radius[i as usize]).fold(0.0, f32::max);
+        near.clear();
+        tree.within_box(leaf.lo - widest, leaf.hi + widest, &mut near);
+        let mean = mean.normalize_or_zero();
+        let is_alike = |&k: &u32| particles.normal[tree.origin[k as usize] as usize].dot(mean) >= ALIKE;
+        if !near.iter().all(is_alike) {
+            for &i in own {
+                let i = i as usize;
+                let (p, n) = (particles.local[i], particles.normal[i]);
+                let reach = 2.0 * particles.radius[i];
+                let is_facing = near.iter().any(|&k| {
+                    let j = tree.origin[k as usize] as usize;
+                    repulsion_weight(particles.normal[j].dot(n)) <= 0.0
+                        && particles.patch.get(j) == particles.patch.get(i)
+                        && tree.position[k as usize].distance_squared(p) < reach * reach
+                });
+                count += usize::from(is_facing);
+            }
         }
         pause().await;
     }

@@ -9,9 +9,11 @@ use crate::mesh::build::{self, Triangulation};
 use crate::mesh::facing::Inside;
 use crate::particles::Particles;
 use crate::slices::{self, MEDIUM, Work};
+use crate::spatial::tree::Tree;
 use crate::topology::Component;
 use serde::Serialize;
 use std::io;
+use std::sync::Arc;
 
 /// Counts and sizes of a mesh: triangles, components, borders and volume.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -88,10 +90,15 @@ impl Meshing {
 }
 
 /// Joins particles to triangles, or takes those that are `known`. `bounds` is the clip box, counted
-/// from the origin of the particles.
-pub(super) async fn joined(particles: &Particles, known: &[[u32; 3]], bounds: &Bounds) -> Triangulation {
+/// from the origin of the particles, and `tree` the one over them, where it is there.
+pub(super) async fn joined(
+    particles: &Particles,
+    known: &[[u32; 3]],
+    bounds: &Bounds,
+    tree: Option<&Arc<Tree>>,
+) -> Triangulation {
     if known.is_empty() {
-        build::in_slices(particles, Some(bounds)).await
+        build::in_slices(particles, Some(bounds), tree).await
     } else {
         Triangulation::known(known.to_vec(), particles).await
     }
@@ -141,7 +148,8 @@ impl<F: Field> Run<F> {
             let (mut particles, bounds) = (self.particles().clone(), self.local_bounds());
             particles.truncate(self.rows());
             let known = self.sampler.triangles().to_vec();
-            let work = async move { joined(&particles, &known, &bounds).await };
+            let tree = self.measuring.tree.clone();
+            let work = async move { joined(&particles, &known, &bounds, tree.as_ref()).await };
             self.meshing.state = MeshState::Joining(Box::pin(work));
         }
         if let MeshState::Joining(work) = &mut self.meshing.state {

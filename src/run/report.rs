@@ -284,7 +284,7 @@ impl<F: Field> Run<F> {
         self.measuring.stop();
         let bounds = self.local_bounds();
         let measured =
-            slices::complete(measure(placed, &mut *self.evaluator(), &bounds, sampling, &mut None));
+            slices::complete(measure(placed, &mut *self.evaluator(), &bounds, sampling, &mut None, None));
         self.measuring.measured = measured;
         Measures { quality_before: None, ..self.measures() }
     }
@@ -304,11 +304,12 @@ impl<F: Field> Run<F> {
         }
     }
 
-    fn keep(&mut self, MeasuringResult { front, now, facing }: MeasuringResult) {
+    fn keep(&mut self, MeasuringResult { front, now, facing, tree }: MeasuringResult) {
         if front.is_some() {
             (self.measuring.front, self.measuring.front_figures) = (None, front);
         }
-        (self.measuring.measured, self.measuring.facing) = (now, Some(facing));
+        (self.measuring.measured, self.measuring.facing, self.measuring.tree) =
+            (now, Some(facing), Some(tree));
     }
 
     /// The report, with the measurements that are there.

@@ -10,11 +10,12 @@ use crate::particles::Particles;
 use crate::quality;
 use crate::sampler::Settings;
 use crate::slices;
+use crate::spatial::tree::Tree;
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Samples the surface f = 0 of a field with evenly spaced particles, and measures them. The field
 /// is anything that [`IntoField`] lists: a [`Formula`](crate::Formula), a reference or an `Arc` of
@@ -59,6 +60,8 @@ pub struct Sample {
     bounds: Bounds,
     /// The triangles that a refined run has led to.
     known: Vec<[u32; 3]>,
+    /// The tree over the particles, where they were measured.
+    tree: Option<Arc<Tree>>,
     mesh: OnceLock<Triangulation>,
 }
 
@@ -69,6 +72,7 @@ impl Sample {
             known: run.sampler.triangles().to_vec(),
             particles: run.sampler.into_particles(),
             measured: run.measuring.measured,
+            tree: run.measuring.tree,
             report,
             mesh: run.meshing.into_joined().map_or_else(OnceLock::new, OnceLock::from),
         }
@@ -104,7 +108,8 @@ impl Sample {
     #[must_use]
     pub fn mesh(&self) -> &Triangulation {
         let bounds = || self.bounds.relative_to(self.particles.origin);
-        self.mesh.get_or_init(|| slices::complete(joined(&self.particles, &self.known, &bounds())))
+        let tree = self.tree.as_ref();
+        self.mesh.get_or_init(|| slices::complete(joined(&self.particles, &self.known, &bounds(), tree)))
     }
 
     /// The warnings about the [mesh](Sample::mesh): another topology than that of the particles as

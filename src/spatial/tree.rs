@@ -4,7 +4,7 @@
 
 use crate::math::{LANES, Lanes, key, sort_few, unkey};
 use crate::slices::{self, LIGHT, pause};
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 /// Largest number of points in a leaf; a leaf holds at least half as many, so the candidates of a
 /// whole leaf can be gathered once. 16 was the fastest of 8, 16 and 32 for the Voronoi cells of
@@ -15,8 +15,9 @@ const STACK: usize = 64;
 
 #[derive(Clone, Copy, Debug)]
 struct TreeNode {
-    lo: Vec3,
-    hi: Vec3,
+    /// Corners of the box around the points, with a 0 behind each.
+    lo: Vec4,
+    hi: Vec4,
     first: u32,
     end: u32,
     /// Index of the second child (the first one follows its parent); 0 for a leaf.
@@ -26,8 +27,8 @@ struct TreeNode {
 impl TreeNode {
     /// Returns the squared distance from `p` to the box; 0 inside.
     #[inline]
-    fn distance_sq(&self, p: Vec3) -> f32 {
-        (self.lo - p).max(p - self.hi).max(Vec3::ZERO).length_squared()
+    fn distance_sq(&self, p: Vec4) -> f32 {
+        (self.lo - p).max(p - self.hi).max(Vec4::ZERO).truncate().length_squared()
     }
 }
 
@@ -82,6 +83,7 @@ impl Tree {
         let mut nodes = Vec::with_capacity(items.len() / 4 + 1);
         // Ranges that are still to become nodes, each with the node whose second child it is.
         let mut open = vec![(0..items.len(), None)];
+        let mut splitter = Splitter::default();
         let mut seen = 0;
         while let Some((range, parent)) = open.pop().filter(|(range, _)| !range.is_empty()) {
             let node = nodes.len();
@@ -92,7 +94,7 @@ impl Tree {
             nodes.push(node_of(&items[range.clone()], range.start));
             seen += range.len();
             if range.len() > LEAF {
-                let middle = range.start + split(&mut items[range.clone()], &nodes[node]);
+                let middle = range.start + splitter.split(&mut items[range.clone()], &nodes[node]);
                 open.push((middle..range.end, Some(node)));
                 open.push((range.start..middle, None));
             } else {
@@ -108,6 +110,13 @@ impl Tree {
         Self { position, origin, nodes }
     }
 
+    /// Returns whether a box holds all points.
+    pub(crate) fn is_within(&self, lo: Vec3, hi: Vec3) -> bool {
+        self.nodes
+            .first()
+            .is_none_or(|all| all.lo.truncate().cmpge(lo).all() && all.hi.truncate().cmple(hi).all())
+    }
+
     /// Returns the number of points.
     pub(crate) fn len(&self) -> usize {
         self.position.len()
@@ -116,7 +125,11 @@ impl Tree {
     /// Returns all leaves in order.
     pub(crate) fn leaves(&self) -> impl Iterator<Item = Leaf> {
         let leaves = self.nodes.iter().filter(|node| node.second == 0);
-        leaves.map(|node| Leaf { range: node.first as usize..node.end as usize, lo: node.lo, hi: node.hi })
+        leaves.map(|node| Leaf {
+            range: node.first as usize..node.end as usize,
+            lo: node.lo.truncate(),
+            hi: node.hi.truncate(),
+        })
     }
 
     /// Calls `visit` with the range of every leaf that meets the ball of squared radius `bound_sq`
@@ -128,6 +141,7 @@ impl Tree {
         }
         let mut stack = [(0_u32, 0.0_f32); STACK];
         let mut depth = 1;
+        let p = p.extend(0.0);
         stack[0] = (0, self.nodes[0].distance_sq(p));
         while depth > 0 {
             depth -= 1;
@@ -205,8 +219,9 @@ impl Tree {
         let mut index = 0;
         let mut stack = [0_u32; STACK];
         let mut depth = 0;
+        let (lo, hi) = (lo.extend(0.0), hi.extend(0.0));
         while let Some(node) = self.nodes.get(index as usize) {
-            let meets = node.lo.cmple(hi).all() && node.hi.cmpge(lo).all();
+            let meets = (node.lo.cmple(hi) & node.hi.cmpge(lo)).all();
             if meets && node.second != 0 {
                 stack[depth] = node.second;
                 depth += 1;
@@ -214,10 +229,16 @@ impl Tree {
                 continue;
             }
             if meets {
-                out.extend((node.first..node.end).filter(|&i| {
-                    let p = self.position[i as usize];
-                    p.cmpge(lo).all() && p.cmple(hi).all()
-                }));
+                // Every point is written, and the next one over it where it is not in the box: no
+                // branch depends on it.
+                let mut count = out.len();
+                out.resize(count + (node.end - node.first) as usize, 0);
+                for (i, p) in (node.first..).zip(&self.position[node.first as usize..node.end as usize]) {
+                    let p = p.extend(0.0);
+                    out[count] = i;
+                    count += usize::from((p.cmpge(lo) & p.cmple(hi)).all());
+                }
+                out.truncate(count);
             }
             if depth == 0 {
                 return;
@@ -240,8 +261,14 @@ pub(crate) struct PointsInBox {
 impl PointsInBox {
     /// Replaces the content by the points in the closed box from `lo` to `hi`.
     pub(crate) fn gather(&mut self, tree: &Tree, lo: Vec3, hi: Vec3) {
+        self.gather_those(tree, lo, hi, |_| true);
+    }
+
+    /// [`PointsInBox::gather`], of the points that are to be kept.
+    pub(crate) fn gather_those(&mut self, tree: &Tree, lo: Vec3, hi: Vec3, is_kept: impl Fn(u32) -> bool) {
         self.index.clear();
         tree.within_box(lo, hi, &mut self.index);
+        self.index.retain(|&i| is_kept(i));
         self.position.clear();
         self.position.extend(self.index.chunks(LANES).map(|chunk| {
             let mut lanes = [Lanes::splat(f32::INFINITY); 3];
@@ -266,20 +293,57 @@ impl PointsInBox {
 
 /// Returns the node over `items`, which begin at `first`, as a leaf.
 fn node_of(items: &[(Vec3, u32)], first: usize) -> TreeNode {
-    let mut lo = Vec3::INFINITY;
-    let mut hi = Vec3::NEG_INFINITY;
+    let mut lo = Vec4::INFINITY;
+    let mut hi = Vec4::NEG_INFINITY;
     for (p, _) in items {
-        lo = lo.min(*p);
-        hi = hi.max(*p);
+        let p = p.extend(0.0);
+        lo = lo.min(p);
+        hi = hi.max(p);
     }
     TreeNode { lo, hi, first: first as u32, end: (first + items.len()) as u32, second: 0 }
 }
 
-/// Splits the `items` of `node` at the median along its longest side. Returns where the second part
-/// begins.
-fn split(items: &mut [(Vec3, u32)], node: &TreeNode) -> usize {
-    let axis = (node.hi - node.lo).max_position();
-    let middle = items.len() / 2;
-    items.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
-    middle
+/// Memory for the splits of a tree.
+#[derive(Default)]
+struct Splitter {
+    keys: Vec<u64>,
+    above: Vec<(Vec3, u32)>,
+}
+
+impl Splitter {
+    /// Splits the `items` of `node` at the median along its longest side, those at one coordinate
+    /// by their index. Returns where the second part begins.
+    fn split(&mut self, items: &mut [(Vec3, u32)], node: &TreeNode) -> usize {
+        match (node.hi - node.lo).truncate().max_position() {
+            0 => self.split_along(items, |p| p.x),
+            1 => self.split_along(items, |p| p.y),
+            _ => self.split_along(items, |p| p.z),
+        }
+    }
+
+    fn split_along(&mut self, items: &mut [(Vec3, u32)], coordinate: impl Fn(Vec3) -> f32) -> usize {
+        let middle = items.len() / 2;
+        let key = |&(p, i): &(Vec3, u32)| {
+            let bits = coordinate(p).to_bits();
+            // In the total order of floating-point numbers, as `math::key_of`.
+            let ordered = bits ^ if bits >> 31 != 0 { u32::MAX } else { 1 << 31 };
+            u64::from(ordered) << 32 | u64::from(i)
+        };
+        self.keys.clear();
+        self.keys.extend(items.iter().map(key));
+        let (_, &mut pivot, _) = self.keys.select_nth_unstable(middle);
+        // Every item is written to both parts, of which one then grows: no branch depends on it.
+        self.above.resize(items.len() + 1, (Vec3::ZERO, 0));
+        let (mut below, mut above) = (0, 0);
+        for k in 0..items.len() {
+            let item = items[k];
+            let is_below = key(&item) < pivot;
+            items[below] = item;
+            self.above[above] = item;
+            below += usize::from(is_below);
+            above += usize::from(!is_below);
+        }
+        items[below..].copy_from_slice(&self.above[..above]);
+        middle
+    }
 }

@@ -311,3 +311,23 @@ fn stories_are_two_sentences() {
         assert!(!surface.story.contains("  "), "{}", surface.id);
     }
 }
+
+#[test]
+fn gradients_side_by_side_have_the_bits_of_those_of_single_points() {
+    for surface in SURFACES.iter() {
+        let field = surface.field();
+        for origin in [DVec3::ZERO, DVec3::new(0.25, -0.125, 0.5)] {
+            let field = &mut *field.evaluator(Frame { scale: 0.5, ..Frame::around(origin) });
+            // The last ones of 19 do not fill their block.
+            let points: Vec<Vec3> = points(surface, 19).iter().map(|p| (*p - origin).as_vec3()).collect();
+            let (mut value, mut gradient) = (vec![0.0; points.len()], vec![DVec3::ZERO; points.len()]);
+            field.exact_gradients(&points, &mut value, &mut gradient);
+            for (k, p) in points.iter().enumerate() {
+                let (one, slope) = field.value_and_gradient(p.as_dvec3());
+                assert_eq!(value[k].to_bits(), one.to_bits(), "{} at {p}", surface.id);
+                let bits = |slope: DVec3| slope.to_array().map(f64::to_bits);
+                assert_eq!(bits(gradient[k]), bits(slope), "{} at {p}", surface.id);
+            }
+        }
+    }
+}

@@ -149,6 +149,16 @@ impl Compiled {
         scratch[self.root as usize].first_order()
     }
 
+    /// [`Compiled::first_order`] at points side by side.
+    pub(super) fn first_orders(
+        &self,
+        points: &[DVec3; scalar::ABREAST],
+        scratch: &mut scalar::GradientScratch,
+    ) -> [(f64, DVec3); scalar::ABREAST] {
+        scalar::gradients(&self.graph, self.root, &self.values, points, scratch);
+        scratch[self.root as usize].map(|jet| jet.first_order())
+    }
+
     /// f, ∇f and ∇∇f at `p`, from the graphs of the derivatives.
     pub(super) fn transformed_jet(&self, p: DVec3) -> Jet {
         let (graph, outputs) = self.with_hessian();

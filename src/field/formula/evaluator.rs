@@ -3,6 +3,7 @@
 use super::branches::Branches;
 use super::compiled::Compiled;
 use super::interval::{BoxRows, FactorProgram};
+use super::scalar::ABREAST;
 use super::{Formula, eval, scalar};
 use crate::field::{Bounded, Enclosure, Evaluator, Frame, Jet, Patches};
 use crate::math::{Bounds, Interval, LANES, Lanes, Sym3};
@@ -26,6 +27,8 @@ pub(super) struct FormulaEvaluator<'a> {
     /// and alone.
     jets: scalar::JetScratch,
     slopes: Vec<scalar::ForwardJet<0>>,
+    /// The same with first derivatives at several points.
+    abreast: scalar::GradientScratch,
     doubles: Vec<f64>,
     bounds: Option<FormulaBounds>,
 }
@@ -63,6 +66,7 @@ impl<'a> FormulaEvaluator<'a> {
             registers: Vec::new(),
             jets: Vec::new(),
             slopes: Vec::new(),
+            abreast: Vec::new(),
             doubles: Vec::new(),
             bounds: None,
         }
@@ -175,6 +179,20 @@ impl Evaluator for FormulaEvaluator<'_> {
     fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
         let compiled = active(self.formula, &self.instead);
         self.frame.exact(compiled.first_order(self.frame.place(p), &mut self.slopes))
+    }
+
+    fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
+        let (compiled, frame) = (active(self.formula, &self.instead), self.frame);
+        let outputs = value.chunks_mut(ABREAST).zip(gradient.chunks_mut(ABREAST));
+        for (points, (value, gradient)) in points.chunks(ABREAST).zip(outputs) {
+            // The last ones are filled up with their first point.
+            let place = |k: usize| frame.place(points.get(k).unwrap_or(&points[0]).as_dvec3());
+            let results = compiled.first_orders(&core::array::from_fn(place), &mut self.abreast);
+            for ((value, gradient), result) in value.iter_mut().zip(gradient).zip(results).take(points.len())
+            {
+                (*value, *gradient) = frame.exact(result);
+            }
+        }
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {

@@ -133,6 +133,47 @@ pub(super) fn jets<const N: usize>(
     }
 }
 
+/// Number of points whose gradients are computed side by side: each node is looked at once for all
+/// of them.
+pub(super) const ABREAST: usize = 8;
+
+/// Scratch space of [`gradients`]: the jets of every node at all points.
+pub(super) type GradientScratch = Vec<[ForwardJet<0>; ABREAST]>;
+
+/// Puts the jets of first order of all nodes up to `root` at `points` in `scratch`: the same as
+/// those of [`jets`].
+pub(super) fn gradients(
+    graph: &Graph,
+    root: Id,
+    parameters: &[f64],
+    points: &[DVec3; ABREAST],
+    scratch: &mut GradientScratch,
+) {
+    let points = points.map(|p| p.to_array());
+    scratch.clear();
+    for (id, &node) in graph.nodes()[..=root as usize].iter().enumerate() {
+        let axes = graph.axes(u32::try_from(id).unwrap_or(u32::MAX));
+        let row = |id: Id| &scratch[id as usize];
+        let both = |a: Id, b: Id, f: fn(&ForwardJet<0>, &ForwardJet<0>) -> ForwardJet<0>| {
+            let (a, b) = (row(a), row(b));
+            core::array::from_fn(|k| f(&a[k], &b[k]))
+        };
+        let results = match node {
+            _ if axes == 0 => {
+                let value = node.evaluate(parameters, points[0], |id| row(id)[0].value);
+                [ForwardJet::uniform(value); ABREAST]
+            }
+            Node::Binary(Binary::Add, a, b) => both(a, b, ForwardJet::add),
+            Node::Binary(Binary::Sub, a, b) => both(a, b, |a, b| a.add(&b.scale(-1.0))),
+            Node::Binary(Binary::Mul, a, b) => both(a, b, ForwardJet::mul),
+            _ => core::array::from_fn(|k| {
+                order(node, points[k], axes, |id| Operand { jet: row(id)[k], axes: graph.axes(id) })
+            }),
+        };
+        scratch.push(results);
+    }
+}
+
 /// Jet of an operand, and the axes that it depends on: bit k stands for axis k.
 struct Operand<const N: usize> {
     jet: ForwardJet<N>,

@@ -42,6 +42,7 @@ use holes::Borders;
 use patch::Patch;
 use rim::Rim;
 use stars::Stars;
+use std::sync::Arc;
 
 /// Triangles over points, with their topology and the points and borders that are left.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -211,15 +212,19 @@ impl Joined {
 /// If the columns differ in length, or there are 2³¹ rows or more.
 #[must_use]
 pub fn triangulate(particles: &Particles, bounds: Option<&Bounds>) -> Triangulation {
-    slices::complete(in_slices(particles, bounds))
+    slices::complete(in_slices(particles, bounds, None))
 }
 
 /// [`triangulate`] in slices of work. The last few look at all rows and triangles, for some 50 ns
-/// each.
-pub(crate) async fn in_slices(particles: &Particles, bounds: Option<&Bounds>) -> Triangulation {
+/// each. `tree` is that over all particles, where it is there.
+pub(crate) async fn in_slices(
+    particles: &Particles,
+    bounds: Option<&Bounds>,
+    tree: Option<&Arc<Tree>>,
+) -> Triangulation {
     let Particles { local: position, normal, .. } = particles;
     if particles.patch.is_empty() {
-        return join(position, normal, bounds, &[], &[]).await.counted(particles).await;
+        return join(position, normal, bounds, &[], &[], tree).await.counted(particles).await;
     }
     let mut whole = Joined::default();
     let tips = particles.tips();
@@ -232,7 +237,7 @@ pub(crate) async fn in_slices(particles: &Particles, bounds: Option<&Bounds>) ->
             [position, normal].map(|column| rows.iter().map(|&row| column[row as usize]).collect::<Vec<_>>());
         let tips: Vec<u32> =
             (0..).zip(&rows).filter(|(_, row)| tips.binary_search(row).is_ok()).map(|(v, _)| v).collect();
-        let joined = join(&position, &normal, bounds, &border, &tips).await;
+        let joined = join(&position, &normal, bounds, &border, &tips, None).await;
         let row = |v: u32| rows[v as usize];
         whole.triangles.extend(joined.triangles.iter().map(|triangle| triangle.map(row)));
         whole.unfilled.extend(joined.unfilled.iter().map(|hole| hole.iter().map(|&v| row(v)).collect()));
@@ -250,20 +255,22 @@ pub(crate) async fn in_slices(particles: &Particles, bounds: Option<&Bounds>) ->
 /// is known to end, as pairs of indices with the surface on the left, seen from outside: no
 /// triangle lies beyond them, and what is open on their left is a hole. The points `tips`, in
 /// ascending order, are at the apex of a cone of the surface, each with the mean normal of the
-/// cone; several may be at one place if they face different ways.
+/// cone; several may be at one place if they face different ways. `of_all` is the tree over all
+/// points, where it is there.
 async fn join(
     position: &[Vec3],
     normal: &[Vec3],
     bounds: Option<&Bounds>,
     rim: &[[u32; 2]],
     tips: &[u32],
+    of_all: Option<&Arc<Tree>>,
 ) -> Joined {
     assert_eq!(position.len(), normal.len(), "every point has a normal");
     assert!(position.len() < 1 << 31, "indices of points have 31 bits");
     let is_usable = |i: usize| position[i].is_finite() && normal[i].try_normalize().is_some();
     let mut usable: Vec<bool> = (0..position.len()).map(is_usable).collect();
     loop {
-        let points = JoinablePoints::new(position, normal, &usable).await;
+        let points = JoinablePoints::new(position, normal, &usable, of_all).await;
         let tips: Vec<u32> = (0..)
             .zip(&points.tree.origin)
             .filter(|&(_, i)| tips.binary_search(i).is_ok())
@@ -282,16 +289,18 @@ async fn join(
 
 /// The points that can be joined, in tree order.
 struct JoinablePoints {
-    tree: Tree,
+    tree: Arc<Tree>,
     /// Unit normals.
     normal: Vec<Vec3>,
 }
 
 impl JoinablePoints {
-    async fn new(position: &[Vec3], normal: &[Vec3], usable: &[bool]) -> Self {
-        let points: Vec<(Vec3, u32)> =
-            position.iter().copied().zip(0..).filter(|&(_, i)| usable[i as usize]).collect();
-        let tree = Tree::in_slices(points).await;
+    async fn new(position: &[Vec3], normal: &[Vec3], usable: &[bool], of_all: Option<&Arc<Tree>>) -> Self {
+        let points = || position.iter().copied().zip(0..).filter(|&(_, i)| usable[i as usize]).collect();
+        let tree = match of_all {
+            Some(tree) if tree.len() == position.len() && !usable.contains(&false) => Arc::clone(tree),
+            _ => Arc::new(Tree::in_slices(points()).await),
+        };
         let normal = tree.origin.iter().map(|&i| normal[i as usize].normalize_or_zero()).collect();
         Self { tree, normal }
     }
