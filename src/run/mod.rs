@@ -9,13 +9,15 @@ mod measuring;
 mod mesh;
 mod report;
 mod sample;
+mod severity;
 mod warning;
 
 pub use measuring::Measured;
 pub use mesh::{MeshAnswer, MeshComponent};
 pub use report::{Cut, Growth, Measures, Proof, Radii, Report, Reporting};
 pub use sample::{Sample, sample};
-pub use warning::{Severity, Warning};
+pub use severity::Severity;
+pub use warning::Warning;
 
 use crate::differential::{self, Curvature};
 use crate::extent::{self, Reach};

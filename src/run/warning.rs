@@ -2,7 +2,7 @@
 //! and what to do; the others are details, which the page folds away.
 
 use super::report::{CreaseCounts, creases_of};
-use super::{Report, Run, check};
+use super::{Report, Run, Severity, check};
 use crate::field::Field;
 use crate::field::model::{GivenMesh, GivenTopology, ModelInfo};
 use crate::math::{Bounds, counted, place_text, shortest_text, text_within};
@@ -211,33 +211,6 @@ pub enum Warning {
     },
     /// The search was left open beside places where f is beyond double precision.
     Overflow,
-}
-
-/// A severity says what a warning means for the result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "snake_case")]
-#[cfg_attr(test, derive(ts_rs::TS))]
-#[non_exhaustive]
-pub enum Severity {
-    /// Nothing is known to be amiss, and nothing needs to be done: the warning tells what was found
-    /// or done, or what a figure of the report says, too.
-    Note,
-    /// The result may be incomplete, or less even than it could be.
-    Caution,
-    /// A part of the surface is missing or wrong.
-    Fault,
-}
-
-impl Severity {
-    /// Its name, as reports in JSON have it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Note => "note",
-            Self::Caution => "caution",
-            Self::Fault => "fault",
-        }
-    }
 }
 
 impl Warning {

@@ -14,7 +14,6 @@ use super::compiled::Compiled;
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::interval::{self, Range};
 use super::operations::{Binary, Unary};
-use super::patches::Patch;
 use super::scalar;
 use crate::field::Enclosure;
 use crate::math::Bounds;
@@ -473,6 +472,15 @@ impl Clone for SharedBranches {
     fn clone(&self) -> Self {
         Self::new(self.lock().clone())
     }
+}
+
+/// A part of the surface on which several branches meet without an edge.
+#[derive(Clone, Debug)]
+pub(super) struct Patch {
+    /// Its branches, ascending. It has the number of the first.
+    pub(super) branches: Vec<u32>,
+    /// The function whose zeros it is.
+    pub(super) compiled: Arc<Compiled>,
 }
 
 /// The branches of f that have been met, with their numbers. There are none of a formula without

@@ -130,9 +130,9 @@ impl Branches {
             (0..).zip(&kinds).filter(|(_, kind)| kind.is_some_and(is_wanted)).map(|(id, _)| id).collect()
         };
         let creasing = of(|kind| kind == TieKind::Crease);
-        found.creases = search.cells(&creasing, width).await;
+        found.creases = search.cells(&creasing, TieReach::Reached, width).await;
         if let Some(width) = width_of_seams.filter(|_| !creasing.is_empty()) {
-            found.seams = search.cells(&of(|_| true), width).await;
+            found.seams = search.cells(&of(|_| true), TieReach::Blended, width).await;
         }
         found
     }
@@ -279,10 +279,10 @@ impl TieSearch<'_> {
     }
 
     /// Cells no wider than `width`, but for those at the end of a long search, in which one of
-    /// these choices may be tied on the surface.
-    async fn cells(&self, creasing: &[Id], width: f64) -> Vec<Bounds> {
+    /// these choices may be tied on the surface with this reach at least.
+    async fn cells(&self, choices: &[Id], least: TieReach, width: f64) -> Vec<Bounds> {
         let (mut scratch, mut found) = (TieScratch::default(), Vec::new());
-        let mut open = if creasing.is_empty() { Vec::new() } else { vec![*self.bounds] };
+        let mut open = if choices.is_empty() { Vec::new() } else { vec![*self.bounds] };
         let mut left = MOST_VISITED;
         while let Some(cell) = open.pop() {
             if left == 0 {
@@ -291,9 +291,9 @@ impl TieSearch<'_> {
             }
             left -= 1;
             pause().await;
-            let open_to = self.open_to(&cell, creasing, &mut scratch);
+            let open_to = self.open_to(&cell, choices, &mut scratch);
             let is_tied = |&(id, reach): &(Id, TieReach)| {
-                reach == TieReach::Reached && self.may_be_tied(id, &cell, &mut scratch.ranges)
+                reach >= least && self.may_be_tied(id, &cell, &mut scratch.ranges)
             };
             if open_to.iter().any(is_tied) {
                 if cell.size().max_element() > width {

@@ -7,7 +7,7 @@
 //! found by halving, and the normals on both sides of it are compared. Branches that meet at an
 //! angle anywhere stay apart.
 
-use super::branches::{Branches, ChoiceCondition, Holds, NodeRole, Side, taken};
+use super::branches::{Branches, ChoiceCondition, Holds, NodeRole, Patch, Side, taken};
 use super::compiled::Compiled;
 use super::graph::{Id, Node};
 use super::operations::Unary;
@@ -29,15 +29,6 @@ const MOST_HALVINGS: u32 = 64;
 const AT_REST: f64 = 1e-9;
 /// Maximum number of ways through the choices of f that are looked at.
 const MOST_WAYS: usize = 256;
-
-/// A part of the surface on which several branches meet without an edge.
-#[derive(Clone, Debug)]
-pub(super) struct Patch {
-    /// Its branches, ascending. It has the number of the first.
-    pub(super) branches: Vec<u32>,
-    /// The function whose zeros it is.
-    pub(super) compiled: Arc<Compiled>,
-}
 
 /// What is known of the branches that give f on the surface.
 #[derive(Debug, Default)]
