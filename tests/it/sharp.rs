@@ -94,6 +94,17 @@ fn parts_that_meet_without_an_edge_are_one_patch_beside_edges() {
 }
 
 #[test]
+fn no_warning_names_a_place_that_is_none() {
+    // ∇f is infinite where the roof bends.
+    let field = Formula::parse("max(z - asin(sin(x)), -z - 2, abs(x) - 2, abs(y) - 1)").expect("a formula");
+    let sample = sample(field, &Settings::with_count(8_000).refined()).expect("a sample");
+    assert!(sample.particles().normal.iter().all(|normal| normal.is_finite()));
+    for warning in &sample.report().warnings {
+        assert!(!warning.to_string().contains("NaN"), "{warning}");
+    }
+}
+
+#[test]
 fn particles_on_a_crease_lie_on_it() {
     let field =
         Formula::parse("min((x - 0.5)^2 + y^2 + z^2 - 1, (x + 0.5)^2 + y^2 + z^2 - 1)").expect("a formula");

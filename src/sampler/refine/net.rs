@@ -349,6 +349,8 @@ impl Net {
         } else {
             (correction.abs() <= longest).then(|| p - normal * correction)
         };
+        // A particle on a crease keeps its normal where f is infinitely steep.
+        let normal = if normal.is_finite() { normal } else { self.normal[v as usize] };
         position.map(|position| (position, normal))
     }
 
