@@ -171,7 +171,12 @@ export class Columns {
     this.slots = grown(this.slots, room);
   }
 
-  /** Adds rows to the numbers of their levels; from 0 on, these begin anew. @param {number} first @param {number} last */
+  /**
+   * Adds rows to the numbers of their levels; from 0 on, these begin anew.
+   *
+   * @param {number} first
+   * @param {number} last
+   */
   #count(first, last) {
     const { levels, parents, slots } = this;
     if (first === 0) {
