@@ -15,7 +15,7 @@
 //! the surface is [seen](is_loose), or decides nothing.
 
 use crate::field::{Bounded, Enclosure};
-use crate::math::{Bounds, sort_few};
+use crate::math::{Bounds, key_of, sort_by_key};
 use crate::slices::{HEAVY, pause};
 use glam::DVec3;
 
@@ -263,7 +263,7 @@ async fn is_loose(field: &mut dyn Bounded, level: &ScanLevel, kept: &[OpenCell],
                 })
                 .filter(|&(inward, _)| inward <= room)
                 .collect();
-            sort_few(&mut outer, |a, b| a.0 < b.0);
+            sort_by_key(&mut outer, |&(inward, _)| key_of(inward));
             let mut is_seen = false;
             for (_, own) in outer.into_iter().take(MOST_OUTER) {
                 is_seen = (0..field.factors()).any(|factor| {
