@@ -203,6 +203,12 @@ const ramp = (legend, span, valuesIn, scale = (value) => value) => ({
   }),
 });
 
+/** Where the rings begin. Pinned particles that no crease joins are at tips. @param {Columns} columns */
+const unitOfLevels = ({ segments, twins }) => {
+  if (segments.length > 0) return 'rings from the creases';
+  return twins.length > 0 ? 'rings from the tips' : 'rings around the seed';
+};
+
 /** @type {Record<ColourMode, Colouring>} */
 export const COLOURINGS = {
   level: {
@@ -215,7 +221,7 @@ export const COLOURINGS = {
     },
     legend: ({ palette, columns }) => ({
       title: 'Generation level',
-      unit: columns.twins.length > 0 ? 'rings from the creases' : 'rings around the seed',
+      unit: unitOfLevels(columns),
       kind: 'sequential',
       range: [0, columns.lastLevel],
       colours: hexes(palette.levels(columns.lastLevel, columns.twins.length > 0)),

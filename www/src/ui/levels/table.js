@@ -8,8 +8,8 @@ import { formatCount, plural } from '../format.js';
  * @import { LevelTable } from './types.js'
  */
 
-/** @param {Pick<Columns, 'count' | 'tally' | 'adaptive' | 'lastLevel' | 'twins'>} particles @returns {LevelTable} */
-export function levelTable({ count, tally, adaptive, lastLevel: last, twins }) {
+/** @param {Pick<Columns, 'count' | 'tally' | 'adaptive' | 'lastLevel' | 'segments'>} particles @returns {LevelTable} */
+export function levelTable({ count, tally, adaptive, lastLevel: last, segments }) {
   // Of no particles there are no numbers.
   const fresh = new Uint32Array(last + 1);
   fresh.set(tally.fresh.subarray(0, last + 1));
@@ -17,7 +17,7 @@ export function levelTable({ count, tally, adaptive, lastLevel: last, twins }) {
   seeds.set(tally.seeds.subarray(0, last + 1));
   const total = new Uint32Array(last + 1);
   for (let k = 0, sum = 0; k <= last; k += 1) total[k] = sum += fresh[k];
-  return { count, last, fresh, total, seeds, fates: tally.fates.slice(), adaptive, creased: twins.length > 0 };
+  return { count, last, fresh, total, seeds, fates: tally.fates.slice(), adaptive, creased: segments.length > 0 };
 }
 
 /** Fates of the children that were not placed, in the order of the description. */

@@ -195,6 +195,17 @@ describe('colours of particles', () => {
     });
   });
 
+  test('by level begin at the creases, at tips alone, or at a seed', () => {
+    const { segments, twins } = columns;
+    const unit = () => legendOf('level', 'light', columns).unit;
+    columns.twins = Uint32Array.of(0, 0);
+    expect(unit()).toBe('rings from the tips');
+    columns.segments = Uint32Array.of(0, 1);
+    expect(unit()).toBe('rings from the creases');
+    Object.assign(columns, { segments, twins });
+    expect(unit()).toBe('rings around the seed');
+  });
+
   test('by level use the last colour for levels that are newer than the range', () => {
     const table = PALETTES.dark.levels(1);
     expect([...coloursOf('level', 'dark', columns, 0, 3, [0, 1])]).toEqual([table[0], table[1], table[1]]);
