@@ -15,7 +15,7 @@ pub use interval::Interval;
 pub use lanes::{LANES, Lanes};
 pub use real::Real;
 pub use sort::sort_few;
-pub(crate) use sort::{key, key_of, median, sort_by_key, sort_numbers, sort_pairs, unkey};
+pub(crate) use sort::{key, key_of, median, signed_key, sort_by_key, sort_numbers, sort_pairs, unkey};
 pub(crate) use table::{GOLDEN_RATIO, IndexTable, hash};
 
 use core::ops::RangeInclusive;

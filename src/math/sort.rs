@@ -18,6 +18,15 @@ pub(crate) fn unkey(key: u64) -> (f32, u32) {
     (f32::from_bits((key >> 32) as u32), key as u32)
 }
 
+/// [`key`] of any number, in the total order of floating-point numbers.
+#[inline]
+pub(crate) fn signed_key(number: f32, index: u32) -> u64 {
+    let bits = number.to_bits();
+    // All bits of a negative number change, and the sign of a positive one.
+    let ordered = bits ^ if number.is_sign_negative() { u32::MAX } else { 1 << 31 };
+    u64::from(ordered) << 32 | u64::from(index)
+}
+
 /// A key in the total order of floating-point numbers.
 pub(crate) fn key_of(number: f64) -> u64 {
     let bits = number.to_bits();

@@ -2,7 +2,7 @@
 //! neither on how the points are distributed nor on distant outliers. What lies around the points
 //! of a leaf is gathered once, in lanes.
 
-use crate::math::{LANES, Lanes, key, sort_few, unkey};
+use crate::math::{LANES, Lanes, key, signed_key, sort_few, unkey};
 use crate::slices::{self, LIGHT, pause};
 use glam::{Vec3, Vec4};
 
@@ -323,12 +323,7 @@ impl Splitter {
 
     fn split_along(&mut self, items: &mut [(Vec3, u32)], coordinate: impl Fn(Vec3) -> f32) -> usize {
         let middle = items.len() / 2;
-        let key = |&(p, i): &(Vec3, u32)| {
-            let bits = coordinate(p).to_bits();
-            // In the total order of floating-point numbers, as `math::key_of`.
-            let ordered = bits ^ if bits >> 31 != 0 { u32::MAX } else { 1 << 31 };
-            u64::from(ordered) << 32 | u64::from(i)
-        };
+        let key = |&(p, i): &(Vec3, u32)| signed_key(coordinate(p), i);
         self.keys.clear();
         self.keys.extend(items.iter().map(key));
         let (_, &mut pivot, _) = self.keys.select_nth_unstable(middle);

@@ -130,7 +130,7 @@ pub(super) struct TakenPart {
 
 /// A walk over the nodes of a part from its root, through the operands that are taken.
 #[derive(Clone, Debug, Default)]
-struct BranchWalk {
+pub(super) struct BranchWalk {
     /// Number of nodes that are still to be visited.
     left: usize,
     /// Whether each node is on the way; false for all at the end.
@@ -138,10 +138,15 @@ struct BranchWalk {
     /// The conditions of the choices on the way.
     conditions: Vec<ChoiceCondition>,
     /// Whether each condition holds.
-    holds: Vec<bool>,
+    pub(super) holds: Vec<bool>,
 }
 
 impl BranchWalk {
+    /// The conditions on the way, each with whether it holds.
+    pub(super) fn sides(&self) -> impl Iterator<Item = Side> {
+        self.conditions.iter().copied().zip(self.holds.iter().copied())
+    }
+
     fn begin(&mut self, part: &BranchPart, graph: &Graph) {
         self.needed.resize(graph.len(), false);
         self.needed[part.root as usize] = true;
@@ -507,7 +512,7 @@ pub(super) struct Branches {
     before: Vec<NodeRole>,
     doubles: Vec<f64>,
     ranges: Vec<interval::Row<1>>,
-    pub(super) jets: Vec<scalar::ForwardJet<0>>,
+    pub(super) jets: scalar::Jets<0>,
 }
 
 impl Branches {
@@ -610,26 +615,6 @@ impl Branches {
         of: usize,
         limit: usize,
         decide: &mut dyn FnMut(ChoiceCondition) -> Holds,
-    ) -> Vec<Vec<bool>> {
-        self.walks(of, limit, decide).into_iter().map(|walk| walk.holds).collect()
-    }
-
-    /// The [`Branches::ways`], with their conditions.
-    pub(super) fn sides(
-        &self,
-        of: usize,
-        limit: usize,
-        decide: &mut dyn FnMut(ChoiceCondition) -> Holds,
-    ) -> Vec<Vec<Side>> {
-        let walks = self.walks(of, limit, decide).into_iter();
-        walks.map(|walk| walk.conditions.into_iter().zip(walk.holds).collect()).collect()
-    }
-
-    fn walks(
-        &self,
-        of: usize,
-        limit: usize,
-        decide: &mut dyn FnMut(ChoiceCondition) -> Holds,
     ) -> Vec<BranchWalk> {
         let part = &self.parts[of];
         let mut first = BranchWalk::default();
@@ -651,7 +636,7 @@ impl Branches {
             *left = left.saturating_sub(1);
             return;
         }
-        for holds in self.ways(of, *left, &mut |_| Holds::Somewhere) {
+        for BranchWalk { holds, .. } in self.ways(of, *left, &mut |_| Holds::Somewhere) {
             let part = self.taken(of, &holds, values);
             self.number(part.index, left, values);
         }
@@ -715,7 +700,7 @@ impl Branches {
             if ways > MAX_LISTED {
                 return None;
             }
-            for holds in found {
+            for BranchWalk { holds, .. } in found {
                 let part = self.taken(at, &holds, values);
                 open.extend(part.has_zeros.then_some(part.index));
             }

@@ -23,7 +23,7 @@ pub(super) struct Compiled {
     pub(super) root: Id,
     gradient: [Id; 3],
     /// Values of the parameters.
-    pub(super) values: Vec<f64>,
+    values: Vec<f64>,
     /// Whether f is the same everywhere for any values of the parameters.
     pub(super) is_constant: bool,
     pub(super) value_program: Program,
@@ -139,23 +139,17 @@ impl Compiled {
 
     /// f, ∇f and ∇∇f at `p`, as jets carried forward through the graph of f.
     pub(super) fn jet(&self, p: DVec3, scratch: &mut scalar::JetScratch) -> Jet {
-        scalar::jets(&self.graph, self.root, &self.values, p, scratch);
-        scratch[self.root as usize].second_order()
+        scalar::jets(&self.graph, self.root, &self.values, [p], scratch);
+        scratch[self.root as usize][0].second_order()
     }
 
-    /// f and ∇f at `p`, the same as those of [`Compiled::jet`].
-    pub(super) fn first_order(&self, p: DVec3, scratch: &mut Vec<scalar::ForwardJet<0>>) -> (f64, DVec3) {
-        scalar::jets(&self.graph, self.root, &self.values, p, scratch);
-        scratch[self.root as usize].first_order()
-    }
-
-    /// [`Compiled::first_order`] at points side by side.
-    pub(super) fn first_orders(
+    /// f and ∇f at each of these points, the same as those of [`Compiled::jet`].
+    pub(super) fn first_order<const POINTS: usize>(
         &self,
-        points: &[DVec3; scalar::ABREAST],
-        scratch: &mut scalar::GradientScratch,
-    ) -> [(f64, DVec3); scalar::ABREAST] {
-        scalar::gradients(&self.graph, self.root, &self.values, points, scratch);
+        points: [DVec3; POINTS],
+        scratch: &mut scalar::Jets<0, POINTS>,
+    ) -> [(f64, DVec3); POINTS] {
+        scalar::jets(&self.graph, self.root, &self.values, points, scratch);
         scratch[self.root as usize].map(|jet| jet.first_order())
     }
 

@@ -67,7 +67,7 @@ const IDLE: f64 = 1e-3;
 struct ByParameters {
     /// The graph of f in which three parameters and the coordinates have changed places.
     parts: Vec<(Graph, Id)>,
-    scratch: Vec<scalar::ForwardJet<0>>,
+    scratch: scalar::Jets<0>,
 }
 
 impl ByParameters {
@@ -99,8 +99,8 @@ impl ByParameters {
             let three = 3 * part..values.len().min(3 * part + 3);
             let mut point = [0.0; 3];
             point[..three.len()].copy_from_slice(&values[three.clone()]);
-            scalar::jets(graph, *root, &all, DVec3::from_array(point), &mut self.scratch);
-            let (value, first) = self.scratch[*root as usize].first_order();
+            scalar::jets(graph, *root, &all, [DVec3::from_array(point)], &mut self.scratch);
+            let (value, first) = self.scratch[*root as usize][0].first_order();
             f = value;
             slopes[three.clone()].copy_from_slice(&first.to_array()[..three.len()]);
         }

@@ -379,7 +379,7 @@ impl TieSearch<'_> {
         id: Id,
         cell: &Bounds,
         scratch: &mut TieScratch,
-        jets: &mut Vec<scalar::ForwardJet<0>>,
+        jets: &mut scalar::Jets<0>,
     ) -> Option<TieKind> {
         let graph = &self.base.graph;
         // A place that is farther away is found from another cell.
@@ -389,8 +389,8 @@ impl TieSearch<'_> {
         // f and the difference of the operands, which are below f in the graph, each with its
         // gradient.
         let mut at = |p: DVec3| {
-            scalar::jets(graph, self.part.root, self.values, p, jets);
-            let of = |id: Id| jets[id as usize].first_order();
+            scalar::jets(graph, self.part.root, self.values, [p], jets);
+            let of = |id: Id| jets[id as usize][0].first_order();
             let tie = match condition {
                 ChoiceCondition::AtMost(a, b) => {
                     let ((a, of_a), (b, of_b)) = (of(a), of(b));

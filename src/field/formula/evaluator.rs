@@ -26,9 +26,9 @@ pub(super) struct FormulaEvaluator<'a> {
     /// Values of the nodes in double precision, with derivatives up to the second, with first ones,
     /// and alone.
     jets: scalar::JetScratch,
-    slopes: Vec<scalar::ForwardJet<0>>,
-    /// The same with first derivatives at several points.
-    abreast: scalar::GradientScratch,
+    slopes: scalar::Jets<0>,
+    /// Jets with first derivatives at several points.
+    abreast: scalar::Jets<0, ABREAST>,
     doubles: Vec<f64>,
     bounds: Option<FormulaBounds>,
 }
@@ -178,7 +178,8 @@ impl Evaluator for FormulaEvaluator<'_> {
 
     fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
         let compiled = active(self.formula, &self.instead);
-        self.frame.exact(compiled.first_order(self.frame.place(p), &mut self.slopes))
+        let [result] = compiled.first_order([self.frame.place(p)], &mut self.slopes);
+        self.frame.exact(result)
     }
 
     fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
@@ -187,7 +188,7 @@ impl Evaluator for FormulaEvaluator<'_> {
         for (points, (value, gradient)) in points.chunks(ABREAST).zip(outputs) {
             // The last ones are filled up with their first point.
             let place = |k: usize| frame.place(points.get(k).unwrap_or(&points[0]).as_dvec3());
-            let results = compiled.first_orders(&core::array::from_fn(place), &mut self.abreast);
+            let results = compiled.first_order(core::array::from_fn(place), &mut self.abreast);
             for ((value, gradient), result) in value.iter_mut().zip(gradient).zip(results).take(points.len())
             {
                 (*value, *gradient) = frame.exact(result);

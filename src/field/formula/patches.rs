@@ -11,7 +11,6 @@ use super::branches::{Branches, ChoiceCondition, Holds, NodeRole, Patch, Side, t
 use super::compiled::Compiled;
 use super::graph::{Id, Node};
 use super::operations::Unary;
-use super::scalar;
 use crate::field::SHARP;
 use crate::math::Bounds;
 use crate::math::newton::{self, STEPS, Slope, StepLimits, step_to_surface};
@@ -30,16 +29,16 @@ const AT_REST: f64 = 1e-9;
 /// Maximum number of ways through the choices of f that are looked at.
 const MOST_WAYS: usize = 256;
 
-/// What is known of the branches that give f on the surface.
+/// The branches that give f on the surface, and how they meet.
 #[derive(Debug, Default)]
 struct Meetings {
-    /// Those that were met.
+    /// Their numbers, ascending.
     seen: Vec<u32>,
     /// Pairs that meet without an edge somewhere, the smaller number first.
     tangent: Vec<[u32; 2]>,
     /// Pairs that meet at an angle somewhere.
     sharp: Vec<[u32; 2]>,
-    /// Whether of some pair neither was found.
+    /// Whether of some two branches it was not found out how they meet.
     is_open: bool,
 }
 
@@ -68,7 +67,7 @@ impl Branches {
             pause().await;
             let branches: Vec<u32> = seen.iter().copied().filter(|&b| patches[b as usize] == first).collect();
             if branches.len() > 1
-                && let Some(root) = self.root_of(&branches, &seen, values)
+                && let Some(root) = self.patch_root(&branches, &seen, values)
             {
                 let (graph, root) = self.base.graph.part(root);
                 let compiled = Arc::new(Compiled::from_graph(graph, root, values));
@@ -200,22 +199,23 @@ impl Branches {
     fn slope(&mut self, values: &[f64], p: DVec3) -> Slope {
         let number = self.at(values, p);
         let Some(branch) = self.compiled(number, values) else { return (f64::NAN, DVec3::ZERO) };
-        scalar::jets(&branch.graph, branch.root, &branch.values, p, &mut self.jets);
-        self.jets[branch.root as usize].first_order()
+        let [slope] = branch.first_order([p], &mut self.jets);
+        slope
     }
 
-    /// The node of a patch of these branches: f, in which a choice takes the operands that it takes
-    /// where they give f. None if branches give f there that were seen, but are not among them.
-    fn root_of(&mut self, members: &[u32], seen: &[u32], values: &[f64]) -> Option<Id> {
+    /// The node of a function whose zeros are the patch of these branches: f, in which a choice
+    /// whose condition holds the same way wherever one of them gives f takes that operand. None if
+    /// it would lead to another branch that gives f on the surface.
+    fn patch_root(&mut self, members: &[u32], seen: &[u32], values: &[f64]) -> Option<Id> {
         let mut allowed: Vec<Side> = Vec::new();
-        let ways = self.sides(0, MOST_WAYS, &mut |_| Holds::Somewhere);
+        let ways = self.ways(0, MOST_WAYS, &mut |_| Holds::Somewhere);
         if ways.len() == MOST_WAYS {
             return None;
         }
         for way in ways {
-            let reached = self.reached(&way, values)?;
+            let reached = self.reached(&way.holds, values)?;
             if reached.iter().any(|branch| members.contains(branch)) {
-                allowed.extend(way);
+                allowed.extend(way.sides());
             }
         }
         let only = |condition: ChoiceCondition| match [true, false]
@@ -226,9 +226,9 @@ impl Branches {
             _ => Holds::Somewhere,
         };
         // Choices that take either side independently allow more than the ways of the members.
-        for way in self.sides(0, MOST_WAYS, &mut |condition| only(condition)) {
+        for way in self.ways(0, MOST_WAYS, &mut |condition| only(condition)) {
             let is_other = |branch: &u32| seen.contains(branch) && !members.contains(branch);
-            if self.reached(&way, values)?.iter().any(is_other) {
+            if self.reached(&way.holds, values)?.iter().any(is_other) {
                 return None;
             }
         }
@@ -268,10 +268,11 @@ impl Branches {
         Some(root)
     }
 
-    /// The branches to which a way through the choices of f leads; none if there are too many.
-    fn reached(&mut self, way: &[Side], values: &[f64]) -> Option<Vec<u32>> {
+    /// The branches to which a way through the choices of f leads, by whether its conditions hold;
+    /// none if there are too many.
+    fn reached(&mut self, holds: &[bool], values: &[f64]) -> Option<Vec<u32>> {
         let mut reached = Vec::new();
-        let mut open = vec![(0, way.iter().map(|&(_, holds)| holds).collect::<Vec<bool>>())];
+        let mut open = vec![(0, holds.to_vec())];
         while let Some((of, holds)) = open.pop() {
             let part = self.taken(of, &holds, values);
             if part.is_tie {
@@ -281,7 +282,7 @@ impl Branches {
                 Some(number) => reached.push(number),
                 None => {
                     let ways = self.ways(part.index, MOST_WAYS, &mut |_| Holds::Somewhere);
-                    open.extend(ways.into_iter().map(|holds| (part.index, holds)));
+                    open.extend(ways.into_iter().map(|way| (part.index, way.holds)));
                 }
             }
             if open.len() + reached.len() > MOST_WAYS {

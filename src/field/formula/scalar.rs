@@ -100,8 +100,12 @@ impl<const N: usize> ForwardJet<N> {
     }
 }
 
-/// Scratch space of [`jets`] up to second order: the jet of every node.
-pub(super) type JetScratch = Vec<ForwardJet<ENTRIES>>;
+/// The jets of every node at some points, as [`jets`] writes them: with a Hessian of N entries, or
+/// with none.
+pub(super) type Jets<const N: usize, const POINTS: usize = 1> = Vec<[ForwardJet<N>; POINTS]>;
+
+/// Jets up to second order at a point.
+pub(super) type JetScratch = Jets<ENTRIES>;
 
 impl ForwardJet<ENTRIES> {
     /// Value, gradient and Hessian.
@@ -112,62 +116,38 @@ impl ForwardJet<ENTRIES> {
     }
 }
 
-/// Puts the jets of all nodes up to `root` at `point` in `scratch`.
-pub(super) fn jets<const N: usize>(
-    graph: &Graph,
-    root: Id,
-    parameters: &[f64],
-    point: DVec3,
-    scratch: &mut Vec<ForwardJet<N>>,
-) {
-    let point = point.to_array();
-    scratch.clear();
-    for (id, &node) in graph.nodes()[..=root as usize].iter().enumerate() {
-        let axes = graph.axes(u32::try_from(id).unwrap_or(u32::MAX));
-        let result = if axes == 0 {
-            ForwardJet::uniform(node.evaluate(parameters, point, |id| scratch[id as usize].value))
-        } else {
-            order(node, point, axes, |id| Operand { jet: scratch[id as usize], axes: graph.axes(id) })
-        };
-        scratch.push(result);
-    }
-}
-
-/// Number of points whose gradients are computed side by side: each node is looked at once for all
-/// of them.
+/// Number of points at which [`jets`] is asked for side by side: each node is looked at once for
+/// all of them.
 pub(super) const ABREAST: usize = 8;
 
-/// Scratch space of [`gradients`]: the jets of every node at all points.
-pub(super) type GradientScratch = Vec<[ForwardJet<0>; ABREAST]>;
-
-/// Puts the jets of first order of all nodes up to `root` at `points` in `scratch`: the same as
-/// those of [`jets`].
-pub(super) fn gradients(
+/// Puts the jets of all nodes up to `root` at these points in `scratch`. Those at a point are the
+/// same whatever the other points are.
+pub(super) fn jets<const N: usize, const POINTS: usize>(
     graph: &Graph,
     root: Id,
     parameters: &[f64],
-    points: &[DVec3; ABREAST],
-    scratch: &mut GradientScratch,
+    points: [DVec3; POINTS],
+    scratch: &mut Jets<N, POINTS>,
 ) {
     let points = points.map(|p| p.to_array());
     scratch.clear();
     for (id, &node) in graph.nodes()[..=root as usize].iter().enumerate() {
         let axes = graph.axes(u32::try_from(id).unwrap_or(u32::MAX));
-        let row = |id: Id| &scratch[id as usize];
-        let both = |a: Id, b: Id, f: fn(&ForwardJet<0>, &ForwardJet<0>) -> ForwardJet<0>| {
-            let (a, b) = (row(a), row(b));
+        let at = |id: Id| &scratch[id as usize];
+        let both = |a: Id, b: Id, f: fn(&ForwardJet<N>, &ForwardJet<N>) -> ForwardJet<N>| {
+            let (a, b) = (at(a), at(b));
             core::array::from_fn(|k| f(&a[k], &b[k]))
         };
         let results = match node {
             _ if axes == 0 => {
-                let value = node.evaluate(parameters, points[0], |id| row(id)[0].value);
-                [ForwardJet::uniform(value); ABREAST]
+                let value = node.evaluate(parameters, points[0], |id| at(id)[0].value);
+                [ForwardJet::uniform(value); POINTS]
             }
             Node::Binary(Binary::Add, a, b) => both(a, b, ForwardJet::add),
             Node::Binary(Binary::Sub, a, b) => both(a, b, |a, b| a.add(&b.scale(-1.0))),
             Node::Binary(Binary::Mul, a, b) => both(a, b, ForwardJet::mul),
             _ => core::array::from_fn(|k| {
-                order(node, points[k], axes, |id| Operand { jet: row(id)[k], axes: graph.axes(id) })
+                order(node, points[k], axes, |id| Operand { jet: at(id)[k], axes: graph.axes(id) })
             }),
         };
         scratch.push(results);
