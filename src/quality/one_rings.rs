@@ -40,7 +40,7 @@ pub(super) struct OneRings {
 struct RingBuffers {
     cell: VoronoiCell,
     nearby: Nearby,
-    /// What lies farther around the leaf, as far as a point of it asked.
+    /// The points farther around the leaf, for the cells that the near ones do not close.
     wide: Wide,
     keys: Vec<u64>,
     /// The points that were asked for their sheet, and whether it is another one: each try asks for
@@ -306,7 +306,8 @@ impl Nearby {
 #[derive(Default)]
 struct Wide {
     nearby: Nearby,
-    /// How far the box reaches beyond the leaf; 0 where it is still to be gathered.
+    /// Distance between the faces of the box and those of the leaf; 0 until the points are
+    /// gathered.
     reach: f32,
 }
 

@@ -26,8 +26,8 @@ pub enum Measured {
     /// The particles.
     #[default]
     Particles,
-    /// The particles and, where they were relaxed, those of the front before, for comparison: twice
-    /// as many.
+    /// The particles and, where they were relaxed, those of the front before, for comparison. Both
+    /// are measured in full.
     FrontToo,
 }
 

@@ -252,7 +252,7 @@ impl Warning {
             Self::MeshLeavesOut { .. } => ("mesh_leaves_out", Caution),
             Self::LargerInside(_) => ("larger_inside", Note),
             Self::FileDiffers { .. } => ("file_differs", Caution),
-            // The completeness among the figures says so, too, and no setting helps.
+            // Nothing is known to be missing, and the completeness among the figures says the same.
             Self::Unproven { doubt: Doubt::Cells { .. }, .. } => ("unproven", Note),
             Self::Unproven { .. } => ("unproven", Caution),
             Self::Digits { .. } => ("digits", Caution),
@@ -267,9 +267,9 @@ impl Warning {
 pub(super) struct Told {
     /// A name by which a program tells warnings apart.
     code: &'static str,
-    /// What the warning means for the result.
+    /// The severity says what the warning means for the result.
     severity: Severity,
-    /// What happened and what to do; the sentences after the first are details.
+    /// The first sentence says what happened and what to do; the others are details.
     message: String,
 }
 

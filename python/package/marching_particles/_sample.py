@@ -21,7 +21,8 @@ class Warning(NamedTuple):
     Attributes:
         code: A name by which a program tells warnings apart.
         severity: ``"note"`` (nothing needs to be done), ``"caution"`` (the result may be
-            incomplete, or less even than it could be) or ``"fault"`` (a part of the surface is missing or wrong).
+            incomplete, or less even than it could be) or ``"fault"`` (a part of the surface is
+            missing or wrong).
         message: The sentence.
     """
 

@@ -43,7 +43,7 @@ pub(crate) enum ReportKind {
     None,
     /// The particles
     Short,
-    /// The particles, and those of the front before its relaxation, for comparison: twice as many
+    /// The particles and, for comparison, those of the front before its relaxation
     Full,
 }
 

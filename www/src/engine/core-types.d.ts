@@ -1342,8 +1342,8 @@ export type VerticesChoice = {
 export type Warning = {
   /** A name by which a program tells warnings apart. */
   code: string,
-  /** What the warning means for the result. */
+  /** The severity says what the warning means for the result. */
   severity: Severity,
-  /** What happened and what to do; the sentences after the first are details. */
+  /** The first sentence says what happened and what to do; the others are details. */
   message: string,
 };
