@@ -77,6 +77,7 @@
 //! | its settings | [`Settings`], [`Sampling`], [`Radius`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Bounds`], [`Reach`] |
 //! | formulas | [`Formula`], [`Expr`], [`Parameter`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [gallery] |
 //! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [glam] |
+//! | solids of two fields | [`union`], [`intersection`], [`difference`], [`smooth_union`], [`offset`], [`Combined`] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
 //! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
 //! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measures`], [`Cut`] |
@@ -142,8 +143,8 @@ pub use field::model::{CENTRES, GivenMesh, GivenTopology, ModelInfo, NormalSourc
 #[cfg(feature = "points")]
 pub use field::rbf::RbfField;
 pub use field::{
-    BatchField, Bounded, Enclosure, Evaluator, Facts, Field, FieldError, FnField, Frame, IntoField, Jet,
-    SharedError, UnitCell, gallery,
+    BatchField, Bounded, Combined, Enclosure, Evaluator, Facts, Field, FieldError, FnField, Frame, IntoField,
+    Jet, SharedError, UnitCell, difference, gallery, intersection, offset, smooth_union, union,
 };
 pub use glam;
 pub use math::{Bounds, BoxError, Interval, Sym3};

@@ -146,7 +146,16 @@ def test_an_exception_of_progress_ends_the_run():
     assert len(shares) == 1
 
 
+@pytest.fixture
+def interrupts():
+    """Python's own handler of SIGINT: a shell has programs in the background ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT to send to oneself")
+@pytest.mark.usefixtures("interrupts")
 @pytest.mark.parametrize("field", [SPHERE, sphere])
 def test_ctrl_c_ends_a_run(field):
     timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))

@@ -283,7 +283,7 @@ pub trait Patches {
     fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>>;
 
     /// The evaluator of the smooth function of `branch`, wherever that gives f or not. Its bounds
-    /// are those of the branch.
+    /// are those of the branch, its patches still those of f.
     ///
     /// # Panics
     ///

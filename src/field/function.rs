@@ -12,8 +12,9 @@ use glam::DVec3;
 /// given are found by differences, with four evaluations for a gradient and nineteen for a Hessian:
 /// a gradient makes sampling several times as fast. There are no bounds to prove by that every
 /// component of the surface was found, and edges are not known: a surface with edges, as the union
-/// of two bodies by `min`, is sampled as if it were smooth, and its mesh may be open there. A
-/// [`Formula`](crate::Formula) with `min`, `max` and `abs` has its edges.
+/// of two bodies by `min`, is sampled as if it were smooth, and its mesh may be open there. Give
+/// the bodies one by one, and join them by [`union`](crate::union): its edges are found. So are
+/// those of a [`Formula`](crate::Formula) with `min`, `max` and `abs`.
 ///
 /// Give the box of the surface where it is known ([`Settings::in_box`](crate::Settings::in_box)).
 /// Without one, grids of 32 cells a side look for changes of sign over cubes around the origin,

@@ -4,6 +4,7 @@
 //! evaluate batches of points, and if it is [`Bounded`] it bounds f over boxes. [`formula`] makes
 //! fields from text, [`gallery`] holds named formulas, and [`rbf`] sums radial functions.
 
+mod combined;
 pub(crate) mod descent;
 mod differences;
 mod evaluator;
@@ -14,6 +15,7 @@ mod given;
 pub mod model;
 pub mod rbf;
 
+pub use combined::{Combined, difference, intersection, offset, smooth_union, union};
 pub use evaluator::{Bounded, Evaluator, Frame, Patches};
 pub use function::{BatchField, FnField};
 pub use given::{FieldError, IntoField, SharedError, kind};
@@ -211,6 +213,9 @@ pub trait Creased: Field + Any {
     /// found](Creased::creases_in), where it is the same function of other parameters; otherwise
     /// with its own.
     fn with_branches_of(&self, other: &dyn Creased) -> Arc<dyn Creased>;
+
+    /// The field f − shift, or −f − shift, with its creases.
+    fn turned(&self, is_negative: bool, shift: f64) -> Arc<dyn Field>;
 }
 
 /// A box whose faces close a solid, so that copies of it beside each other are joined.

@@ -186,6 +186,15 @@ impl Bounds {
         self.size().length()
     }
 
+    /// The halves of the box across its longest side.
+    pub(crate) fn halves(&self) -> [Self; 2] {
+        let axis = self.size().max_position();
+        let middle = self.middle().to_array()[axis];
+        let (mut low, mut high) = (*self, *self);
+        (low.max[axis], high.min[axis]) = (middle, middle);
+        [low, high]
+    }
+
     /// Largest size of a coordinate of a corner.
     pub(crate) fn farthest(&self) -> f64 {
         self.lo().abs().max(self.hi().abs()).max_element()

@@ -16,11 +16,11 @@ pub use setting::{
 };
 
 use crate::extent::{FALLBACK, Reach};
-use crate::field::Field;
-use crate::field::formula::{Formula, FormulaError, FormulaErrorKind, Grip, MathNode, Parameter};
+use crate::field::formula::{Formula, FormulaError, FormulaErrorKind, Grip, MODEL, MathNode, Parameter};
 use crate::field::gallery::{self, Surface};
 use crate::field::model::ModelInfo;
 use crate::field::rbf::{Pull, RbfData, RbfField, pulled_box};
+use crate::field::{Combined, Field};
 use crate::math::Bounds;
 use crate::run::{Error, Measured, Report, Run, Sample, Start, Warning};
 use crate::sampler::{FollowError, Settings, SettingsError};
@@ -94,7 +94,24 @@ pub enum Source {
         field: RbfField,
         /// Report of the model.
         info: ModelInfo,
+        /// The formula whose operand the model is, if one is sampled in its place.
+        within: Option<ModelFormula>,
     },
+}
+
+/// A formula in which the model from points is an operand, by the name [`MODEL`].
+#[derive(Clone, Debug)]
+pub struct ModelFormula {
+    text: String,
+    parameters: Vec<Parameter>,
+    field: Combined,
+}
+
+/// Two are equal that are written and set alike, whatever the model.
+impl PartialEq for ModelFormula {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.text, &self.parameters) == (&other.text, &other.parameters)
+    }
 }
 
 impl Source {
@@ -112,6 +129,7 @@ impl Deref for Source {
     fn deref(&self) -> &Self::Target {
         match self {
             Self::Formula(field) => field,
+            Self::Points { within: Some(formula), .. } => &*formula.field,
             Self::Points { field, .. } => field,
         }
     }
@@ -194,7 +212,13 @@ impl Session {
                 mathml: Some(field.mathml()),
                 ..answer
             },
-            Source::Points { info, .. } => FieldAnswer { model: Some(info.clone()), ..answer },
+            Source::Points { info, within, .. } => {
+                let (formula, parameters) = match within {
+                    Some(formula) => (formula.text.clone(), formula.parameters.clone()),
+                    None => Default::default(),
+                };
+                FieldAnswer { model: Some(info.clone()), formula, parameters, ..answer }
+            }
         }
     }
 
@@ -297,13 +321,7 @@ impl Session {
                 field.set_parameter(&name, value)?;
             }
         }
-        for (name, &value) in &request.parameters {
-            match field.set_parameter(name, value) {
-                // A value for a name that the formula no longer has is of no consequence.
-                Err(error) if error.kind == FormulaErrorKind::BadParameter && value.is_finite() => {}
-                result => result?,
-            }
-        }
+        set_known(&mut field, &request.parameters)?;
         Ok(field)
     }
 
@@ -349,13 +367,14 @@ impl Session {
 
     /// Changes the field to one from points, as `pointcloud::fit` makes it, with the pulls of a
     /// request on its surface, in the box of the request or in that of the model with room for the
-    /// pulls. [`Session::set_field`] with a surface or a formula changes it back. Both end a run on
+    /// pulls. A formula of the request has the model as an operand, see [`Formula::with_model`].
+    /// [`Session::set_field`] with a surface or a formula changes the field back. Both end a run on
     /// another field, whose particles stay until the next [`Session::start`].
     ///
     /// # Errors
     ///
-    /// If the data makes no field, a pull tears the surface or the box is not one; nothing is
-    /// changed then.
+    /// If the data makes no field, a pull tears the surface, the formula has a mistake or the box
+    /// is not one; nothing is changed then.
     pub fn set_points(
         &mut self,
         data: impl Into<Arc<RbfData>>,
@@ -367,21 +386,45 @@ impl Session {
         let bounds = request.bounds.unwrap_or_else(|| pulled_box(&bounds, pulls));
         check_box(&bounds)?;
         let data = data.into();
-        let known = match self.source() {
-            Source::Points { field, .. } if *field.data() == data => Some(field.clone()),
-            _ => None,
+        let (known, before) = match self.source() {
+            Source::Points { field, within, .. } if *field.data() == data => {
+                (Some(field.clone()), within.clone())
+            }
+            _ => (None, None),
         };
-        let is_same = known.as_ref().is_some_and(|field| field.pulls() == pulls);
+        let has_same_pulls = known.as_ref().is_some_and(|field| field.pulls() == pulls);
         let refused = |error| Fault::new(FaultKind::Points, &error);
         let mut field = known.map_or_else(|| RbfField::new(data), Ok).map_err(refused)?;
         field.pull(pulls).map_err(refused)?;
-        self.run.set_field(Source::Points { field, info }, is_same);
+        let within = match &request.formula {
+            Some(text) => Some(Self::model_formula(text, &field, request)?),
+            None => None,
+        };
+        let is_same = has_same_pulls && within == before;
+        self.run.set_field(Source::Points { field, info, within }, is_same);
         self.run.set_bounds(bounds, None);
         self.surface = None;
         self.declared.clear();
         self.fitting.discard();
         (self.own, self.clip, self.reach) = (bounds, bounds, None);
         Ok(self.answer())
+    }
+
+    /// The formula of a request, in which the model is an operand.
+    fn model_formula(text: &str, model: &RbfField, request: &FieldRequest) -> Result<ModelFormula, Fault> {
+        let mut declared = request.declare.clone();
+        declared.retain(|parameter| parameter.name != MODEL);
+        declared.push(Parameter::automatic(MODEL));
+        let combined = || {
+            let mut formula = Formula::as_written(text, &declared)?;
+            set_known(&mut formula, &request.parameters)?;
+            let model: Arc<dyn Field> = Arc::new(model.clone());
+            let field = formula.with_model(&model)?;
+            let mut parameters = formula.parameters().to_vec();
+            parameters.retain(|parameter| parameter.name != MODEL);
+            Ok(ModelFormula { text: text.to_owned(), parameters, field })
+        };
+        combined().map_err(|error| Fault::in_formula(error, text))
     }
 
     /// Starts a run on the present field.
@@ -429,7 +472,7 @@ impl Session {
         if has_own_box || self.source().formula().is_none_or(Formula::is_constant) {
             report.cut = None;
         }
-        if let Source::Points { info, field } = self.source()
+        if let Source::Points { info, field, within: None } = self.source()
             && field.pulls().is_empty()
         {
             let differs = Warning::of_file(info, &report);
@@ -455,6 +498,18 @@ impl Session {
         let report = self.completed(report);
         Ok(Sample::new(self.run, report))
     }
+}
+
+/// Sets those of the parameters that a formula has: a value for a name that it no longer has is of
+/// no consequence.
+fn set_known(field: &mut Formula, values: &BTreeMap<String, f64>) -> Result<(), FormulaError> {
+    for (name, &value) in values {
+        match field.set_parameter(name, value) {
+            Err(error) if error.kind == FormulaErrorKind::BadParameter && value.is_finite() => {}
+            result => result?,
+        }
+    }
+    Ok(())
 }
 
 /// Checks that a box can be sampled.

@@ -83,8 +83,12 @@ impl Session {
     pub(super) fn beginning(&self, settings: &Settings) -> FileRecord {
         let (formula, parameters, model, pulls) = match self.source() {
             Source::Formula(field) => (field.text().to_owned(), field.parameters(), None, Vec::new()),
-            Source::Points { info, field } => {
-                (String::new(), [].as_slice(), Some(info.name.clone()), field.pulls().to_vec())
+            Source::Points { info, field, within } => {
+                let (text, parameters) = match within {
+                    Some(formula) => (formula.text.clone(), formula.parameters.as_slice()),
+                    None => (String::new(), [].as_slice()),
+                };
+                (text, parameters, Some(info.name.clone()), field.pulls().to_vec())
             }
         };
         // A map that is collected at once is sorted, which brings a stable sort of 3 kB.

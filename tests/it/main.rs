@@ -12,6 +12,7 @@ mod branches;
 mod cases;
 #[cfg(feature = "cli")]
 mod cli;
+mod combined;
 mod components;
 mod counts;
 mod crease_box;

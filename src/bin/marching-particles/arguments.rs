@@ -10,6 +10,7 @@ use marching_particles::math::Bounds;
 use marching_particles::pointcloud::job::CENTRES;
 use marching_particles::session::{BoxCell, BoxFaces, BoxMode, FileRecord, SolidSettings};
 use marching_particles::{Format, Measured, MeshFormat, Placement, Unit, UpAxis, Vertices, gallery};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles
@@ -159,6 +160,7 @@ Examples:
   marching-particles sample --formula \"x^2 + y^2 + z^2 = 1\" --mesh ball.3mf --scale 25 --unit mm
   marching-particles sample --like part.glb --radius 0.3% --mesh finer.glb
   marching-particles sample --points scan.ply --centres 400 --out even.ply --mesh even.glb
+  marching-particles sample --points scan.ply --formula \"max(model, abs(z) - 0.1)\" --mesh slice.stl
   marching-particles sample --surface torus --mesh - --format glb --quiet | viewer
   marching-particles sample --formula \"(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3\" --relax 0
 
@@ -244,14 +246,16 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, value_name = "ID", help_heading = "Surface")]
     pub(crate) surface: Option<String>,
 
-    /// Formula of the surface; with --surface, it replaces the formula of that surface
+    /// Formula of the surface; with --surface, it replaces the formula of that surface. Beside
+    /// --points or a model, `model` stands for their function, as an operand of max, min, smin,
+    /// smax or abs, or with a number that is added: "max(model, z)" cuts it
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true, help_heading = "Surface")]
     pub(crate) formula: Option<String>,
 
     /// File of points or of a mesh: PLY, OBJ, STL, OFF, PCD, or text with a point a line (XYZ, PTS,
     /// CSV), up to 50 MB; `-` is standard input. A smooth surface is fitted to all of them. Normals
     /// come from the file, else from its faces, else they are estimated
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["surface", "formula", "parameters"], help_heading = "Surface")]
+    #[arg(long, value_name = "FILE", conflicts_with = "surface", help_heading = "Surface")]
     pub(crate) points: Option<PathBuf>,
 
     /// Centres of the surface among the points of --points or of a model, 100 to 800: more follow
@@ -298,6 +302,17 @@ pub(crate) struct SurfaceArguments {
     pub(crate) thickness: Option<f64>,
 }
 
+impl SurfaceArguments {
+    /// Adds the values of those parameters that have none.
+    fn add_parameters(&mut self, values: BTreeMap<String, f64>) {
+        for (name, value) in values {
+            if !self.parameters.iter().any(|(given, _)| *given == name) {
+                self.parameters.push((name, value));
+            }
+        }
+    }
+}
+
 impl SampleArguments {
     /// Size and orientation of the mesh in its files.
     pub(crate) fn placement(&self) -> Placement {
@@ -312,6 +327,9 @@ impl SampleArguments {
         if record.model.is_some() && is_model {
             surface.bounds = surface.bounds.or(Some(BoxChoice::Given(record.bounds)));
             surface.pulls = record.pulls;
+            surface.formula = surface.formula.take().or(Some(record.formula).filter(|text| !text.is_empty()));
+            surface.add_parameters(record.parameters);
+            return self.sampling.complete(&record.settings);
         }
         if surface.surface.is_none() && surface.formula.is_none() && surface.points.is_none() {
             let own = record.surface.as_deref().and_then(gallery::find).map(|own| record.solid.own_box(own));
@@ -321,11 +339,7 @@ impl SampleArguments {
             }
             surface.surface = record.surface;
             surface.formula = Some(record.formula);
-            for (name, value) in record.parameters {
-                if !surface.parameters.iter().any(|(given, _)| *given == name) {
-                    surface.parameters.push((name, value));
-                }
-            }
+            surface.add_parameters(record.parameters);
             surface.closed |= record.solid.box_faces == BoxFaces::Closed;
             surface.periodic |= record.solid.box_cell == BoxCell::Periodic;
             surface.thickness =

@@ -7,13 +7,15 @@ use crate::output::{OutputFile, STANDARD, record_path};
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
 use marching_particles::export::VERTICES;
-use marching_particles::field::formula;
+use marching_particles::field::formula::{self, MODEL};
 use marching_particles::field::model::{self, ModelInfo};
 use marching_particles::math::shortest_text;
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::DEFAULT_CENTRES;
 use marching_particles::sampler::{COUNT_ROOM, SizeMode};
-use marching_particles::session::{BoxFaces, Fault, FaultKind, FieldRequest, FileRecord, Session, Source};
+use marching_particles::session::{
+    BoxFaces, Fault, FaultKind, FieldAnswer, FieldRequest, FileRecord, Session, Source,
+};
 use marching_particles::{
     Bounds, Error, Field, Format, MeshFile, MeshFormat, Method, Parameter, ParticleFile, Phase, Reach,
     RecordText, Run, Settings, StopReason, Vertices, gallery,
@@ -254,13 +256,17 @@ fn fit_points(arguments: &SurfaceArguments, quiet: bool) -> Result<Option<Fit>, 
     let bar = bar(quiet || arguments.points.is_none() && model.is_none());
     let centres = arguments.centres.unwrap_or(DEFAULT_CENTRES);
     let fit = match (&arguments.points, model) {
-        (Some(path), _) => Some(points::of_file(path, centres, &bar)?),
-        (None, Some(model)) if arguments.formula.is_some() || !arguments.parameters.is_empty() => {
-            return Err(Failure::Usage(format!(
-                "the model `{}` is made of points: it has no formula and no parameters",
-                model.id
-            )));
+        _ if (arguments.points.is_some() || model.is_some())
+            && arguments.formula.is_none()
+            && !arguments.parameters.is_empty() =>
+        {
+            return Err(Failure::Usage(
+                "--param is for formulas: a model from points has no parameters, but as an operand of one \
+                 (--formula \"max(model, z - h)\")"
+                    .into(),
+            ));
         }
+        (Some(path), _) => Some(points::of_file(path, centres, &bar)?),
         (None, Some(model)) => Some(points::of_model(model.id, centres, &bar)?),
         (None, None) if arguments.centres.is_some() => {
             return Err(Failure::Usage(
@@ -291,7 +297,10 @@ pub(crate) fn choose(
                 "--closed and --thickness are for formulas, not for models from points".into(),
             ));
         }
-        session.set_points(fit.data, fit.info.clone(), fit.bounds, &request).map_err(refused)?;
+        request.formula.clone_from(&arguments.formula);
+        request.parameters = arguments.parameters.iter().cloned().collect();
+        let answer = session.set_points(fit.data, fit.info.clone(), fit.bounds, &request).map_err(refused)?;
+        check_parameters(arguments, &answer)?;
         return Ok(Some(fit.info));
     }
     request.formula.clone_from(&arguments.formula);
@@ -305,6 +314,18 @@ pub(crate) fn choose(
     request.parameters = own.chain(arguments.parameters.iter().cloned()).collect();
     request.declare = arguments.parameters.iter().map(|(name, _)| Parameter::automatic(name)).collect();
     let answer = session.set_field(&request).map_err(refused)?;
+    if answer.auto.iter().any(|name| name == MODEL) {
+        return Err(Failure::Usage(
+            "the formula takes a model as an operand: give its points with --points, or name one with --surface"
+                .into(),
+        ));
+    }
+    check_parameters(arguments, &answer)?;
+    Ok(None)
+}
+
+/// Refuses a value for a parameter that the formula does not have.
+fn check_parameters(arguments: &SurfaceArguments, answer: &FieldAnswer) -> Result<(), Failure> {
     for (name, _) in &arguments.parameters {
         if !answer.parameters.iter().any(|parameter| parameter.name == *name) {
             let known: Vec<&str> = answer.parameters.iter().map(|p| &*p.name).collect();
@@ -314,7 +335,7 @@ pub(crate) fn choose(
             )));
         }
     }
-    Ok(None)
+    Ok(())
 }
 
 /// Finds the box of the next run: the settings in it.

@@ -264,7 +264,7 @@ impl TieSearch<'_> {
                 false
             });
             if !cell.choices.is_empty() {
-                for half in halves(&cell.bounds) {
+                for half in cell.bounds.halves() {
                     open.push(TieCell { bounds: half, depth: cell.depth + 1, choices: cell.choices.clone() });
                 }
             }
@@ -297,7 +297,7 @@ impl TieSearch<'_> {
             };
             if open_to.iter().any(is_tied) {
                 if cell.size().max_element() > width {
-                    let [low, high] = halves(&cell);
+                    let [low, high] = cell.halves();
                     open.extend([high, low]);
                 } else {
                     found.push(cell);
@@ -439,13 +439,4 @@ impl TieSearch<'_> {
         }
         best
     }
-}
-
-/// The halves of a box across its longest side.
-fn halves(bounds: &Bounds) -> [Bounds; 2] {
-    let axis = bounds.size().max_position();
-    let middle = bounds.middle().to_array()[axis];
-    let (mut low, mut high) = (*bounds, *bounds);
-    (low.max[axis], high.min[axis]) = (middle, middle);
-    [low, high]
 }

@@ -46,6 +46,8 @@ pub enum FormulaErrorKind {
     NotFinite,
     /// A declared parameter has an unusable name, range or value.
     BadParameter,
+    /// A formula beside a model from points does not use it, or in a way that is none of an operand.
+    ModelUse,
 }
 
 /// Error of [`Formula::parse`](super::Formula::parse) and of the other operations on formulas.

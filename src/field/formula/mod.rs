@@ -60,6 +60,7 @@ mod latex;
 mod lex;
 mod mathml;
 mod names;
+mod operand;
 mod operations;
 mod parse;
 mod patches;
@@ -82,6 +83,8 @@ pub use control::Grip;
 pub use error::{FormulaError, FormulaErrorKind, Mended, utf16_offset};
 pub use lex::name_pattern;
 pub use mathml::{MathGroup, MathNode, MathToken};
+#[doc(hidden)]
+pub use operand::MODEL;
 #[doc(hidden)]
 pub use spelling::similar;
 
@@ -596,5 +599,12 @@ impl Creased for Formula {
         let mut branches = other.branches.lock().clone();
         branches.set_parameters(&self.values);
         self.with_branches(branches)
+    }
+
+    fn turned(&self, is_negative: bool, shift: f64) -> Arc<dyn Field> {
+        let mut turned = self.clone();
+        turned.solid.turn(is_negative, shift);
+        turned.make_solid();
+        Arc::new(turned)
     }
 }

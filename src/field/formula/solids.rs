@@ -25,9 +25,19 @@ pub(super) struct Solid {
     pub(super) closed: Option<Bounds>,
     /// Whether that box is a [cell](crate::field::UnitCell).
     pub(super) is_cell: bool,
+    /// Whether the function of the solid has the other sign.
+    is_negative: bool,
+    /// What is subtracted from it in the end.
+    shift: f64,
 }
 
 impl Solid {
+    /// Has the function g of the solid replaced by g − shift, or −g − shift.
+    pub(super) fn turn(&mut self, is_negative: bool, shift: f64) {
+        self.shift = shift + if is_negative { -self.shift } else { self.shift };
+        self.is_negative ^= is_negative;
+    }
+
     /// The node of the function that is at most 0 in the solid made of f, which is node `root`.
     pub(super) fn made_of(&self, graph: &mut Graph, root: Id) -> Id {
         let mut solid = root;
@@ -46,7 +56,11 @@ impl Solid {
                 }
             }
         }
-        solid
+        if self.is_negative {
+            solid = graph.neg(solid);
+        }
+        let shift = graph.constant(self.shift);
+        if self.shift == 0.0 { solid } else { graph.sub(solid, shift) }
     }
 }
 

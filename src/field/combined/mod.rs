@@ -1,0 +1,258 @@
+//! Fields put together of any two: unions, intersections and differences of solids, smooth unions,
+//! and offsets.
+//!
+//! A minimum or a maximum of two fields has creases where the two surfaces meet. They are looked
+//! for in small [cells](ties) and followed to the digits of the numbers, as those of a formula are;
+//! but a field of the program has no bounds to prove by that none was missed.
+//!
+//! What is done to a minimum or a maximum is done to its operands, so that these operations come
+//! last: −max(a, b) = min(−a, −b), and the other way round; max(a, b) − d = max(a − d, b − d).
+
+mod evaluator;
+mod rule;
+mod ties;
+
+use super::{Creased, Evaluator, Facts, Field, FieldError, Frame, IntoField, Jet};
+use crate::math::Bounds;
+use crate::slices::Work;
+use core::fmt::{self, Debug, Formatter};
+use core::ops::Deref;
+use evaluator::CombinationEvaluator;
+use glam::DVec3;
+use rule::Rule;
+use std::sync::Arc;
+
+/// A field put together of others by [`union`], [`intersection`], [`difference`], [`smooth_union`]
+/// or [`offset`]. Copies share it.
+#[derive(Clone)]
+pub struct Combined(Arc<dyn Field>);
+
+impl Combined {
+    pub(super) fn new(field: Arc<dyn Field>) -> Self {
+        Self(field)
+    }
+}
+
+impl Debug for Combined {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Combined").finish_non_exhaustive()
+    }
+}
+
+impl Deref for Combined {
+    type Target = dyn Field;
+
+    fn deref(&self) -> &Self::Target {
+        &*self.0
+    }
+}
+
+/// The union of two solids: min(a, b), which is negative where one of the two is.
+///
+/// The operands are whatever can be [sampled](IntoField), functions of the program and models from
+/// points among them. Where their surfaces meet at an angle the particles lie on the edge, and the
+/// mesh is closed along it. Edges are looked for in cells of a 128th of the box: a loop smaller
+/// than that may be missed. There is no proof of completeness. Of two formulas, write one with
+/// `min`, `max` and `-`, which has both.
+///
+/// An operand should have a gradient where it is zero, as a distance has. It counts as undefined
+/// where one of the two is.
+///
+/// ```
+/// use marching_particles::glam::{DVec3, dvec3};
+/// use marching_particles::{Settings, sample, union};
+///
+/// let ball = |centre: DVec3| move |p: DVec3| p.distance(centre) - 1.0;
+/// let both = union(ball(dvec3(-0.5, 0.0, 0.0)), ball(dvec3(0.5, 0.0, 0.0)));
+/// let sample = sample(both, &Settings::with_count(2_000))?;
+/// assert!(sample.mesh().topology.is_closed());
+/// assert_eq!(sample.report().proof.creases, Some(1));
+/// # Ok::<(), marching_particles::Error>(())
+/// ```
+pub fn union<A, B, K, L>(a: A, b: B) -> Combined
+where
+    A: IntoField<K, Field: 'static>,
+    B: IntoField<L, Field: 'static>,
+{
+    Combined(least(shared(a), shared(b)))
+}
+
+/// The intersection of two solids: max(a, b), which is negative where both are. See [`union`].
+pub fn intersection<A, B, K, L>(a: A, b: B) -> Combined
+where
+    A: IntoField<K, Field: 'static>,
+    B: IntoField<L, Field: 'static>,
+{
+    Combined(greatest(shared(a), shared(b)))
+}
+
+/// What is left of a solid when another one is cut away: max(a, −b). See [`union`].
+///
+/// ```
+/// use marching_particles::glam::DVec3;
+/// use marching_particles::{Formula, Settings, difference, sample};
+///
+/// let block = Formula::parse("max(abs(x) - 1, abs(y) - 1, abs(z) - 0.5)")?;
+/// let drilled = difference(block, |p: DVec3| p.truncate().length() - 0.4);
+/// let sample = sample(drilled, &Settings::with_count(3_000))?;
+/// assert_eq!(sample.mesh().topology.components[0].euler(), 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn difference<A, B, K, L>(a: A, b: B) -> Combined
+where
+    A: IntoField<K, Field: 'static>,
+    B: IntoField<L, Field: 'static>,
+{
+    Combined(greatest(shared(a), turned(&shared(b), true, 0.0)))
+}
+
+/// The union of two solids, rounded where |a − b| < `width`: `smin(a, b, width)` of formulas. The
+/// width is in units of f, a length where a and b are distances; where it is not positive this is
+/// [`union`]. An operand with edges is blended as if it were smooth, and the mesh may be open along
+/// those that remain; `smin` in a formula keeps them.
+pub fn smooth_union<A, B, K, L>(a: A, b: B, width: f64) -> Combined
+where
+    A: IntoField<K, Field: 'static>,
+    B: IntoField<L, Field: 'static>,
+{
+    Combined(blended(shared(a), shared(b), width))
+}
+
+/// The solid whose surface is at f = `distance` in place of 0: larger by that distance where f is
+/// one, smaller where it is negative.
+pub fn offset<A, K>(a: A, distance: f64) -> Combined
+where
+    A: IntoField<K, Field: 'static>,
+{
+    Combined(turned(&shared(a), false, distance))
+}
+
+fn shared<A: IntoField<K, Field: 'static>, K>(given: A) -> Arc<dyn Field> {
+    Arc::new(given.into_field())
+}
+
+pub(super) fn least(a: Arc<dyn Field>, b: Arc<dyn Field>) -> Arc<dyn Field> {
+    Arc::new(Combination { rule: Rule::Least, parts: vec![a, b] })
+}
+
+pub(super) fn greatest(a: Arc<dyn Field>, b: Arc<dyn Field>) -> Arc<dyn Field> {
+    Arc::new(Combination { rule: Rule::Greatest, parts: vec![a, b] })
+}
+
+/// The smooth minimum of this width.
+pub(super) fn blended(a: Arc<dyn Field>, b: Arc<dyn Field>, width: f64) -> Arc<dyn Field> {
+    if width > 0.0 {
+        Arc::new(Combination { rule: Rule::Blend { width }, parts: vec![a, b] })
+    } else {
+        least(a, b)
+    }
+}
+
+/// The field f − shift, or −f − shift.
+pub(super) fn turned(field: &Arc<dyn Field>, is_negative: bool, shift: f64) -> Arc<dyn Field> {
+    match field.creased() {
+        _ if !is_negative && shift == 0.0 => Arc::clone(field),
+        Some(creased) => creased.turned(is_negative, shift),
+        None => {
+            let rule = Rule::Turned { is_negative, shift };
+            Arc::new(Combination { rule, parts: vec![Arc::clone(field)] })
+        }
+    }
+}
+
+/// A function of the values of one field or two.
+#[derive(Clone)]
+struct Combination {
+    rule: Rule,
+    parts: Vec<Arc<dyn Field>>,
+}
+
+impl Combination {
+    fn is_extreme(&self) -> bool {
+        matches!(self.rule, Rule::Least | Rule::Greatest)
+    }
+}
+
+impl Field for Combination {
+    fn value(&self, p: DVec3) -> f64 {
+        let of = |part: &Arc<dyn Field>| Jet { value: part.value(p), ..Jet::default() };
+        self.rule.jet(&mut self.parts.iter().map(of)).value
+    }
+
+    fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
+        let of = |part: &Arc<dyn Field>| {
+            let (value, gradient) = part.value_and_gradient(p);
+            Jet { value, gradient, ..Jet::default() }
+        };
+        let Jet { value, gradient, .. } = self.rule.jet(&mut self.parts.iter().map(of));
+        (value, gradient)
+    }
+
+    fn jet(&self, p: DVec3) -> Jet {
+        self.rule.jet(&mut self.parts.iter().map(|part| part.jet(p)))
+    }
+
+    fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
+        Box::new(CombinationEvaluator::new(self, frame))
+    }
+
+    /// The periods that all parts have.
+    fn facts(&self) -> Facts {
+        let mut periods = self.parts.iter().map(|part| part.facts().periods);
+        let first = periods.next().unwrap_or_default();
+        let common = periods.fold(first, |common, own| {
+            core::array::from_fn(|axis| common[axis].filter(|_| common[axis] == own[axis]))
+        });
+        Facts { periods: common, ..Facts::default() }
+    }
+
+    fn calls(&self) -> Option<u64> {
+        self.parts.iter().filter_map(|part| part.calls()).reduce(|sum, calls| sum + calls)
+    }
+
+    fn failure(&self) -> Option<FieldError> {
+        self.parts.iter().find_map(|part| part.failure())
+    }
+
+    fn creased(&self) -> Option<&dyn Creased> {
+        self.is_extreme().then_some(self)
+    }
+}
+
+impl Creased for Combination {
+    fn creases_in<'a>(&'a self, bounds: &Bounds, width: f64) -> Work<'a, (Vec<Bounds>, Arc<dyn Creased>)> {
+        let bounds = *bounds;
+        Box::pin(async move {
+            let (mut found, mut own) = (Vec::new(), self.clone());
+            for part in &mut own.parts {
+                let Some(creased) = part.creased() else { continue };
+                let (cells, function) = creased.creases_in(&bounds, width).await;
+                found.extend(cells);
+                *part = function;
+            }
+            let origin = bounds.middle();
+            let mut evaluator = CombinationEvaluator::new(&own, Frame::around(origin));
+            let near = bounds.relative_to(origin);
+            evaluator.drop_hidden(&mut found, origin);
+            let ties = evaluator.tied_cells(&near, width).await;
+            found.extend(ties.iter().map(|cell| cell.relative_to(-origin)));
+            drop(evaluator);
+            let own: Arc<dyn Creased> = Arc::new(own);
+            (found, own)
+        })
+    }
+
+    fn with_branches_of(&self, _: &dyn Creased) -> Arc<dyn Creased> {
+        Arc::new(self.clone())
+    }
+
+    fn turned(&self, is_negative: bool, shift: f64) -> Arc<dyn Field> {
+        let rule = match self.rule {
+            Rule::Least if is_negative => Rule::Greatest,
+            Rule::Greatest if is_negative => Rule::Least,
+            rule => rule,
+        };
+        let parts = self.parts.iter().map(|part| turned(part, is_negative, shift)).collect();
+        Arc::new(Self { rule, parts })
+    }
+}

@@ -1,0 +1,74 @@
+//! Cells in which the two operands of a minimum or maximum may be equal on the surface.
+//!
+//! Nothing bounds a field of the program over a cell. Its value in the middle, over its gradient,
+//! is the distance from its surface to first order: what is farther than twice the corners is not
+//! in the cell.
+
+use super::evaluator::CombinationEvaluator;
+use super::rule::Rule;
+use crate::math::Bounds;
+use crate::slices::{HEAVY, pause};
+use glam::DVec3;
+
+/// Cells along the longest side of the box in which the search begins. A surface that is closer to
+/// another sheet of itself than they are wide may be missed.
+const SIDE: f64 = 32.0;
+/// How much farther than its corners a surface may be of which the cell is not rid.
+const SLACK: f64 = 2.0;
+/// Sine of the angle between gradients that are parallel but for rounding.
+const PARALLEL: f64 = 1e-6;
+/// The largest number of cells that are divided further: it is exceeded where two surfaces share a
+/// face.
+const MOST_CELLS: usize = 200_000;
+
+impl CombinationEvaluator<'_> {
+    /// The cells of a box, no wider than `width` unless they are too many, in which both parts may
+    /// be zero.
+    pub(super) async fn tied_cells(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+        let first = bounds.size().max_element() / SIDE;
+        let mut cells = vec![*bounds];
+        while let Some(widest) = cells.iter().map(|cell| cell.size().max_element()).reduce(f64::max) {
+            if widest <= first {
+                let mut kept = Vec::new();
+                for cells in cells.chunks(HEAVY) {
+                    pause().await;
+                    kept.extend(cells.iter().copied().filter(|cell| self.may_be_tied(cell)));
+                }
+                cells = kept;
+                if widest <= width || cells.len() > MOST_CELLS {
+                    break;
+                }
+            }
+            cells = cells.iter().flat_map(Bounds::halves).collect();
+        }
+        cells
+    }
+
+    /// Whether the surfaces of both parts may pass through a cell, not parallel to each other as
+    /// those of f and −f are.
+    fn may_be_tied(&mut self, cell: &Bounds) -> bool {
+        let reach = 0.5 * SLACK * cell.diagonal();
+        let slopes = [0, 1].map(|k: usize| self.parts[k].value_and_gradient(cell.middle()));
+        let [(_, u), (_, v)] = slopes;
+        slopes.iter().all(|(value, gradient)| value.abs() <= reach * gradient.length())
+            && u.cross(v).length_squared() > PARALLEL * PARALLEL * u.length_squared() * v.length_squared()
+    }
+
+    /// Whether each part may give a point of the surface in a cell: where it is zero, and the other
+    /// one is not taken in its place.
+    pub(super) fn may_give(&mut self, cell: &Bounds) -> [bool; 2] {
+        let reach = 0.5 * SLACK * cell.diagonal();
+        let sign = if self.field.rule == Rule::Least { -1.0 } else { 1.0 };
+        let slopes = [0, 1].map(|k: usize| self.parts[k].value_and_gradient(cell.middle()));
+        [0, 1].map(|k: usize| {
+            let [(value, gradient), (other, of_other)] = [slopes[k], slopes[1 - k]];
+            value.abs() <= reach * gradient.length() && sign * other <= reach * of_other.length()
+        })
+    }
+
+    /// Drops the cells of the creases of parts, counted from `origin` farther away than the frame,
+    /// in which no part gives the surface.
+    pub(super) fn drop_hidden(&mut self, cells: &mut Vec<Bounds>, origin: DVec3) {
+        cells.retain(|cell| self.may_give(&cell.relative_to(origin)).contains(&true));
+    }
+}
