@@ -16,17 +16,26 @@ const ENTRIES = ['index', 'node', 'worker', 'worker-node', 'three'];
 
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
-const bundle = await rolldown({
-  input: Object.fromEntries(ENTRIES.map((name) => [name, join(here, `${name}.js`)])),
-  external: [/^node:/, 'three'],
-  platform: 'neutral',
-});
-await bundle.write({ dir: out, format: 'es', entryFileNames: '[name].js', chunkFileNames: '[name].js' });
-await bundle.close();
+
+/** @param {string[]} entries @param {import('rolldown').OutputOptions} [output] */
+async function write(entries, output) {
+  const bundle = await rolldown({
+    input: Object.fromEntries(entries.map((name) => [name, join(here, `${name}.js`)])),
+    external: [/^node:/, 'three'],
+    platform: 'neutral',
+    moduleTypes: { '.wasm': 'binary' },
+  });
+  await bundle.write({ dir: out, format: 'es', entryFileNames: '[name].js', chunkFileNames: '[name].js', ...output });
+  await bundle.close();
+}
+await write(ENTRIES);
+// All in one file.
+await write(['inline'], { codeSplitting: false });
 for (const name of ['package.json', 'README.md', 'index.d.ts', 'three.d.ts'])
   copyFileSync(join(here, name), join(out, name));
 for (const name of ['LICENSE-MIT', 'LICENSE-APACHE']) copyFileSync(join(here, '../..', name), join(out, name));
-copyFileSync(join(here, '../src/wasm/core/core_bg.wasm'), join(out, 'core_bg.wasm'));
+for (const name of ['core', 'points'])
+  copyFileSync(join(here, `../src/wasm/${name}/${name}_bg.wasm`), join(out, `${name}_bg.wasm`));
 const packed = execFileSync('npm', ['pack', '--silent', '--ignore-scripts'], {
   cwd: out,
   encoding: 'utf8',
