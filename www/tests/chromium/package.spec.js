@@ -1,8 +1,10 @@
-/** The packed package in a browser: served as it is, and built by Vite. */
+/** The packed package in a browser: served as it is, in one file, and built by three bundlers. */
 import { readFileSync } from 'node:fs';
 import { extname, join } from 'node:path';
 import { expect, test } from '@playwright/test';
+import esbuild from 'esbuild';
 import { build } from 'vite';
+import webpack from 'webpack';
 import { GYROID, install, programOf } from '../package/packed.js';
 
 const { runs } = JSON.parse(readFileSync(new URL('../../../tests/golden/digests.json', import.meta.url), 'utf8'));
@@ -43,9 +45,79 @@ test('a script of a page samples without a bundler', async ({ page }) => {
   expect(await digestIn(page, '.')).toBe(golden.digest);
 });
 
-test('a page that Vite builds samples the same', async ({ page }) => {
+test('a page that allows no worker samples by the one file, under a strict policy', async ({ page }) => {
+  const modules = { imports: { 'marching-particles': './node_modules/marching-particles/inline.js' } };
+  const policy = "default-src 'none'; script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval'";
+  there.write(
+    'index.html',
+    `<meta http-equiv="content-security-policy" content="${policy}">
+<script type="importmap">${JSON.stringify(modules)}</script>
+<script type="module">${programOf('document.title = ')}</script>`,
+  );
+  expect(await digestIn(page, '.')).toBe(golden.digest);
+});
+
+test('a function of a page leaves it time to draw', async ({ page }) => {
+  const modules = { imports: { 'marching-particles': './node_modules/marching-particles/index.js' } };
+  there.write(
+    'index.html',
+    `<script type="importmap">${JSON.stringify(modules)}</script>
+<script type="module">import { sample } from 'marching-particles';
+let frames = 0;
+const count = () => void requestAnimationFrame(count, frames += 1);
+count();
+const ball = await sample((x, y, z) => Math.hypot(x, y, z) - 1, { count: 50_000 });
+if (frames > 5 && Math.abs(ball.count - 50_000) < 1500) document.title = ball.digest;
+</script>`,
+  );
+  expect(await digestIn(page, '.')).toMatch(/^[0-9a-f]{16}$/);
+});
+
+/** Writes a page with the program as a script of its own. */
+function writeProgram() {
   there.write('index.html', '<script type="module" src="./program.js"></script>');
   there.write('program.js', programOf('document.title = '));
+}
+
+test('a page that webpack builds samples the same', async ({ page }) => {
+  writeProgram();
+  const compiler = webpack({
+    context: there.project,
+    mode: 'production',
+    entry: './program.js',
+    output: { path: join(there.project, 'by-webpack'), filename: 'program.js', publicPath: 'auto' },
+    experiments: { topLevelAwait: true },
+  });
+  const stats = await new Promise((resolve, reject) => {
+    compiler?.run((error, result) => (error ? reject(error) : resolve(result)));
+  });
+  expect(stats.compilation.errors).toEqual([]);
+  there.write('by-webpack/index.html', '<script src="./program.js"></script>');
+  expect(await digestIn(page, 'by-webpack')).toBe(golden.digest);
+});
+
+test('a page that esbuild builds samples the same', async ({ page }) => {
+  writeProgram();
+  // esbuild leaves addresses as they are: what lies beside the script is named.
+  await esbuild.build({
+    absWorkingDir: there.project,
+    entryPoints: {
+      program: './program.js',
+      worker: 'marching-particles/worker',
+      core_bg: 'marching-particles/core.wasm',
+    },
+    outdir: 'by-esbuild',
+    bundle: true,
+    splitting: true,
+    format: 'esm',
+    loader: { '.wasm': 'copy' },
+  });
+  there.write('by-esbuild/index.html', '<script type="module" src="./program.js"></script>');
+  expect(await digestIn(page, 'by-esbuild')).toBe(golden.digest);
+});
+
+test('a page that Vite builds samples the same', async ({ page }) => {
+  writeProgram();
   const how = {
     root: there.project,
     base: './',
