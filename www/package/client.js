@@ -161,7 +161,7 @@ class Sample {
     return value;
   }
 
-  /** The mesh as a file. @param {string} format @returns {Promise<Uint8Array>} */
+  /** The mesh as a file. @param {string} format @returns {Promise<Uint8Array<ArrayBuffer>>} */
   async toFile(format) {
     this.#check('toFile');
     if (!FORMATS.includes(format)) throw new InputError(`format: one of ${FORMATS.join(', ')}, not ${shown(format)}.`);

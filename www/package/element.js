@@ -22,6 +22,8 @@ const SETTINGS = {
 const VIEW = ['colour', 'draw', 'theme'];
 const TEXTS = ['formula', 'surface', 'params', ...VIEW, ...Object.keys(SETTINGS).filter((name) => name !== 'adaptive')];
 const FLAGS = ['adaptive', 'controls'];
+/** Time without a change of `params` after which a motion is over. */
+const STILL_MS = 250;
 
 const SHEET = `:host { display: block; position: relative; aspect-ratio: 4 / 3; overflow: hidden; }
 :host([hidden]) { display: none; }
@@ -59,6 +61,8 @@ export class MarchingParticles extends Base {
   #view = null;
   #isDue = false;
   #visible;
+  /** The timer that ends a motion. @type {ReturnType<typeof setTimeout> | undefined} */
+  #still;
 
   constructor() {
     super();
@@ -96,15 +100,20 @@ export class MarchingParticles extends Base {
 
   disconnectedCallback() {
     this.#visible.disconnect();
+    clearTimeout(this.#still);
     this.#view?.destroy();
     this.#view = null;
     this.#host.replaceChildren();
   }
 
-  /** @param {string} name */
-  attributeChangedCallback(name) {
+  /** @param {string} name @param {string | null} _before @param {string | null} value */
+  attributeChangedCallback(name, _before, value) {
     this.#name();
     if (name === 'controls' || !this.#view || this.#isDue) return;
+    if (name === 'params' && value !== null) {
+      this.#try(() => this.#move(paramsOf(value)));
+      return;
+    }
     // Attributes that change together are one change.
     this.#isDue = true;
     queueMicrotask(() => {
@@ -117,6 +126,17 @@ export class MarchingParticles extends Base {
   #name() {
     const text = this.getAttribute('formula') ?? this.getAttribute('surface');
     if (!this.hasAttribute('aria-labelledby') && text) this.ariaLabel ??= text;
+  }
+
+  /** Has the particles follow the surface to other parameters. @param {Record<string, number>} params */
+  #move(params) {
+    const give = (/** @type {boolean} */ live) => {
+      for (const [name, value] of Object.entries(params)) this.#view?.setParameter(name, value, { live });
+    };
+    give(true);
+    clearTimeout(this.#still);
+    this.#still = setTimeout(() => give(false), STILL_MS);
+    return undefined;
   }
 
   #open() {

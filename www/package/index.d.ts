@@ -80,7 +80,7 @@ export interface Sample {
   /** joins the particles to triangles; with `weld` those at a crease share a row, and have the normal of one side */
   mesh(how?: { weld?: boolean }): Promise<Mesh>;
   /** the mesh as a file */
-  toFile(format: Format): Promise<Uint8Array>;
+  toFile(format: Format): Promise<Uint8Array<ArrayBuffer>>;
   /** the particles on the surface of other parameters; they leave this sample, whose columns stay */
   moved(params: Record<string, number>, options?: Pick<Options, 'signal' | 'onProgress'>): Promise<Sample>;
   /** frees the memory of the worker; the columns stay */

@@ -56,7 +56,7 @@ export interface View {
   /** a PNG, in pixels of the picture where no size is given */
   picture(size?: { width?: number; height?: number; transparent?: boolean }): Promise<Blob>;
   /** the mesh of the particles as a file */
-  toFile(format: Format): Promise<Uint8Array>;
+  toFile(format: Format): Promise<Uint8Array<ArrayBuffer>>;
   /** the state as the fragment of a link to the page of Marching Particles */
   link(): Promise<string>;
   /** frees the workers, the graphics device and the canvas */

@@ -1,6 +1,6 @@
 /** The packed package in Node: its examples, what it gives, and what it says of bad input. */
 import { execFileSync } from 'node:child_process';
-import { readFileSync, renameSync } from 'node:fs';
+import { cpSync, readFileSync, renameSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
@@ -16,7 +16,7 @@ let there;
 let made;
 
 beforeAll(async () => {
-  there = install(['three', '@types/node']);
+  there = install(['three', '@types/node', '@types/three']);
   made = await import(
     /* @vite-ignore */ pathToFileURL(join(there.project, 'node_modules/marching-particles/node.js')).href
   );
@@ -28,23 +28,42 @@ test('a program in Node gets the particles of the native library, and ends', () 
   expect(execFileSync(process.execPath, [program], { encoding: 'utf8' }).trim()).toBe(golden.digest);
 });
 
-test('a program is checked by strict TypeScript', () => {
+test('a program and the examples are checked by strict TypeScript', () => {
   there.write(
     'program.ts',
-    `import { FormulaError, sample, type Mesh, type Sample } from 'marching-particles';
+    `import { FormulaError, sample, type Field, type Mesh, type Sample } from 'marching-particles';
+import 'marching-particles/element';
+import { createView, type View } from 'marching-particles/view';
 export async function ball(radius: number): Promise<Mesh> {
   const ball: Sample = await sample('${SPHERE}', { count: 500, params: { a: radius ** 2 }, method: 'refined' });
   const first: number = ball.positions[0] + ball.normals[0];
   if (first > 0) await ball.moved({ a: 2 });
   return ball.mesh();
 }
+export const fields: Field[] = [
+  'x^2 + y^2 + z^2 = 1',
+  (x, y, z) => Math.hypot(x, y, z) - 1,
+  { batch: (xyz, out) => out.forEach((_, i) => void (out[i] = xyz[3 * i])) },
+  { points: new Float32Array(300) },
+];
+export function shown(host: HTMLElement): View {
+  const element = document.createElement('marching-particles');
+  element.formula = 'x^2 + y^2 = 1';
+  host.append(element);
+  const view = createView(host, { surface: 'gyroid', view: { draw: 'mesh' } });
+  view.on('report', ({ digest }) => console.log(digest));
+  return view;
+}
+// @ts-expect-error There is no such event.
+export const none = (view: View) => view.on('end', () => {});
 export const placeOf = (error: unknown): number | null => (error instanceof FormulaError ? error.start : null);
 // @ts-expect-error There is no such method.
 void sample('x', { method: 'best' });
 `,
   );
-  const config = { strict: true, noEmit: true, module: 'nodenext', target: 'es2023', types: ['node'] };
-  there.write('tsconfig.json', JSON.stringify({ compilerOptions: config, files: ['program.ts'] }));
+  cpSync(new URL('../../embed/examples', import.meta.url), join(there.project, 'examples'), { recursive: true });
+  const config = { strict: true, noEmit: true, module: 'nodenext', target: 'es2023', types: ['node'], checkJs: true };
+  there.write('tsconfig.json', JSON.stringify({ compilerOptions: config, include: ['program.ts', 'examples/*.js'] }));
   const tsc = new URL('../../node_modules/typescript/bin/tsc', import.meta.url);
   execFileSync(process.execPath, [tsc.pathname, '-p', there.project], { stdio: 'pipe' });
 });
