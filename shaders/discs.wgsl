@@ -409,6 +409,7 @@ fn bed_vertex(vertex: u32, particle: Particle, sunk: f32, to_come: bool) -> Bed 
     }
     let n = select(outward, -outward, facing < 0.0);
     let t = facing_axis(n, v);
+    let b = cross(n, t);
     let outline = select(OUTLINE_BED, OPEN_OUTLINE_BED, is_open);
     let r = particle.radius * mix(outline.x, BED_RADIUS, min(abs(facing) / outline.y, 1.0));
     if length(particle.radius * moved_px(place, clip_direction(t))) < LEAST_BED_PX {
@@ -417,7 +418,7 @@ fn bed_vertex(vertex: u32, particle: Particle, sunk: f32, to_come: bool) -> Bed 
     let uv = quad_corner(vertex);
     // Seen from both sides, it cannot be sunk to the other one.
     let down = select(BED_SUNK, 0.0, is_open) * sunk * particle.radius;
-    let corner = particle.position - down * n + r * (uv.x * t + uv.y * cross(n, t));
+    let corner = particle.position - down * n + r * (uv.x * t + uv.y * b);
     let is_shown = !to_come && particle.level <= frame.appearance.level;
     let back = select(TO_COME_BEHIND, BED_BEHIND, is_shown) * sunk * particle.radius * v;
     let clip = frame.camera.clip_from_world * vec4<f32>(corner, 1.0);
@@ -426,8 +427,12 @@ fn bed_vertex(vertex: u32, particle: Particle, sunk: f32, to_come: bool) -> Bed 
     out.uv = uv;
     out.place = corner;
     // It has the colour of the disc until that has appeared, so that a surface that takes the place
-    // of another stays coloured.
-    out.colour = fade_to(linear_from_srgb(particle.colour.rgb), frame.body.colour, appeared(particle.birth));
+    // of another stays coloured; and where the disc is so narrow on the screen that the gaps beside
+    // it fall between pixels, of which some would show the body and others not.
+    let narrow_px = particle.radius * length(moved_px(place, clip_direction(b)));
+    let has_gaps = select(1.0, smoothstep(SWELL_PX.x, SWELL_PX.y, narrow_px), is_shown);
+    let share = min(appeared(particle.birth), has_gaps);
+    out.colour = fade_to(linear_from_srgb(particle.colour.rgb), frame.body.colour, share);
     out.n = vec4<f32>(n, 1.0 - abs(facing));
     let behind = smoothstep(INSIDE_FROM.x, INSIDE_FROM.y, -facing) * frame.light.dim_backfaces;
     let at = particle.position - down * n - back;

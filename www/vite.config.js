@@ -1,10 +1,14 @@
 import { createHash } from 'node:crypto';
-import { existsSync, readdirSync, readFileSync, statSync } from 'node:fs';
+import { copyFileSync, cpSync, existsSync, mkdirSync, readdirSync, readFileSync, statSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
 import { setTimeout } from 'node:timers/promises';
 import { build, defineConfig } from 'vite';
+import { buildPackage } from './package/build.js';
 
 /** @import { Plugin } from 'vite' */
+
+/** Folder of the examples, here and on the site. */
+const EXAMPLES = 'embed';
 
 /** What the builds of both pages share. */
 const SHARED = {
@@ -61,6 +65,30 @@ const lessonPage = {
           rollupOptions: { input: [join('learn', 'index.html'), join('learn', 'cards', 'index.html')] },
         },
       });
+    },
+  },
+};
+
+/**
+ * Puts the examples of the package on the site, under `embed/`, as they are: with the package beside them, as a page
+ * without a bundler has it.
+ * @type {Plugin & {folder?: string}}
+ */
+const examplesPage = {
+  name: 'examples-page',
+  apply: 'build',
+  configResolved({ root, build: { outDir } }) {
+    examplesPage.folder = resolve(root, outDir, EXAMPLES);
+  },
+  closeBundle: {
+    sequential: true,
+    async handler() {
+      const folder = examplesPage.folder ?? '';
+      cpSync(EXAMPLES, folder, { recursive: true });
+      await buildPackage(join(folder, 'marching-particles'));
+      mkdirSync(join(folder, 'three'), { recursive: true });
+      for (const name of ['three.module.js', 'three.core.js'])
+        copyFileSync(join('node_modules/three/build', name), join(folder, 'three', name));
     },
   },
 };
@@ -126,7 +154,11 @@ const offline = {
       const folder = offline.folder ?? '';
       const files = readdirSync(folder, { recursive: true, encoding: 'utf8' })
         .map((file) => file.replaceAll('\\', '/'))
-        .filter((file) => file !== SERVICE_WORKER && statSync(join(folder, file)).isFile())
+        // The examples are for other pages: who opens them has a connection.
+        .filter(
+          (file) =>
+            file !== SERVICE_WORKER && !file.startsWith(`${EXAMPLES}/`) && statSync(join(folder, file)).isFile(),
+        )
         .sort();
       const revisionOf = (/** @type {string} */ file) =>
         createHash('sha256')
@@ -157,7 +189,7 @@ const offline = {
 export default defineConfig({
   base: './',
   worker: { format: 'es' },
-  plugins: [preloadCore, lessonPage, offline, waitForBundles, noServiceWorker],
+  plugins: [preloadCore, lessonPage, examplesPage, offline, waitForBundles, noServiceWorker],
   build: {
     ...SHARED,
     outDir: process.env.SITE ?? '../dist',

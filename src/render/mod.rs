@@ -32,7 +32,9 @@
 //! therefore drawn a second time, before the discs: as a *bed*, a larger opaque disc in one quiet
 //! tone. A bed lies a little behind its disc, along the normal and in depth, so that it does not
 //! cut through the discs beside it, and it gets smaller towards the outline, where it would stick
-//! out. Beds need no mesh; the body grows with the run. The body ends at the faces of the box and
+//! out. Where a disc is so narrow on the screen that the gaps beside it fall between pixels, its
+//! bed takes on its colour: grey in some of these pixels would show as dots. Beds need no mesh; the
+//! body grows with the run. The body ends at the faces of the box and
 //! at the cutting plane. Of a closed surface, beds seen from behind are left out. Particles that
 //! are not shown yet, because only a part of the run is, have faint beds: the surface to come.
 //!

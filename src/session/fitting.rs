@@ -4,6 +4,7 @@
 
 use super::{FieldAnswer, Session, Source};
 use crate::extent::{self, Extent, Reach};
+use crate::field::Field;
 use crate::field::formula::Formula;
 use crate::field::gallery::Surface;
 use crate::math::Bounds;
@@ -12,6 +13,7 @@ use crate::slices::{self, Work};
 use core::ops::RangeInclusive;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Choice of the box in which the surface of a formula is sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -138,7 +140,7 @@ struct BoxSearch {
 impl BoxSearch {
     /// Does up to `budget` slices of the search around the surface of a field: its extent, once it
     /// is known.
-    fn step(&mut self, field: impl FnOnce() -> Formula, budget: u32) -> Option<Extent> {
+    fn step<F: Field + 'static>(&mut self, field: impl FnOnce() -> F, budget: u32) -> Option<Extent> {
         if self.found.is_none() {
             let search = self.search.get_or_insert_with(|| {
                 let field = field();
@@ -218,7 +220,7 @@ impl Session {
         only_grows: bool,
         budget: u32,
     ) -> Option<FieldAnswer> {
-        let is_fitted = self.own_formula().is_some() && self.is_to_fit();
+        let is_fitted = self.has_extent() && self.is_to_fit();
         let (clip, reach) = self.fit_clip(settings_in, only_grows, budget)?;
         let clip = self.make_solid(clip);
         let (bounds, reach_in) = self.fit_solid(settings_in, (clip, reach), budget)?;
@@ -237,12 +239,16 @@ impl Session {
         only_grows: bool,
         budget: u32,
     ) -> Option<(Bounds, Option<Reach>)> {
-        let choice = self.fitting.choice;
-        let Some(field) = self.own_formula().filter(|_| self.is_to_fit()) else {
+        if !self.has_extent() || !self.is_to_fit() {
             return Some((self.own_box(), None));
-        };
-        let field = field.clone();
-        let found = self.fitting.unclosed.step(|| choice.made_of(field, None), budget)?;
+        }
+        let choice = self.fitting.choice;
+        let search = &mut self.fitting.unclosed;
+        let found = match self.run.field() {
+            Source::Formula(field) => search.step(|| choice.made_of(field.clone(), None), budget),
+            Source::Function(field) => search.step(|| Arc::clone(field), budget),
+            Source::Points { .. } => None,
+        }?;
         let clip = found.with_room(|bounds| settings_in(bounds).largest_share(bounds));
         let before = (only_grows && self.fitting.is_fitted).then_some(self.clip);
         Some((before.map_or(clip, |before| clip.joined(&before)), Some(found.reach)))
@@ -294,6 +300,11 @@ impl Session {
             self.run.know_creases(found);
         }
         Some(())
+    }
+
+    /// Whether a box can be fitted to the surface: a model from points brings its own.
+    fn has_extent(&self) -> bool {
+        self.own_formula().is_some() || matches!(self.run.field(), Source::Function(_))
     }
 
     /// The formula of the field, unless f is the same everywhere.

@@ -97,6 +97,8 @@ pub enum Source {
         /// The formula whose operand the model is, if one is sampled in its place.
         within: Option<ModelFormula>,
     },
+    /// The field of a function of the program.
+    Function(Arc<dyn Field>),
 }
 
 /// A formula in which the model from points is an operand, by the name [`MODEL`].
@@ -118,7 +120,7 @@ impl Source {
     fn formula(&self) -> Option<&Formula> {
         match self {
             Self::Formula(field) => Some(field),
-            Self::Points { .. } => None,
+            Self::Points { .. } | Self::Function(_) => None,
         }
     }
 }
@@ -131,6 +133,7 @@ impl Deref for Source {
             Self::Formula(field) => field,
             Self::Points { within: Some(formula), .. } => &*formula.field,
             Self::Points { field, .. } => field,
+            Self::Function(field) => &**field,
         }
     }
 }
@@ -219,6 +222,7 @@ impl Session {
                 };
                 FieldAnswer { model: Some(info.clone()), formula, parameters, ..answer }
             }
+            Source::Function(_) => answer,
         }
     }
 
@@ -246,7 +250,7 @@ impl Session {
             (Some(text), _, _) => text.as_str(),
             (None, Some(surface), _) => surface.formula,
             (None, None, Some(field)) => field.text(),
-            // Of a model from points only the box can be changed.
+            // Of a model from points or a function only the box can be changed.
             (None, None, None) => {
                 (self.own, self.clip, self.reach) = (own, own, None);
                 self.run.set_bounds(own, None);
@@ -427,6 +431,31 @@ impl Session {
         combined().map_err(|error| Fault::in_formula(error, text))
     }
 
+    /// Changes the field to that of a function of the program, in this box or in one that is fitted
+    /// to its surface. Ends a run on another field, whose particles stay until the next
+    /// [`Session::start`].
+    ///
+    /// # Errors
+    ///
+    /// If the box is not one; nothing is changed then.
+    pub fn set_function(
+        &mut self,
+        function: Arc<dyn Field>,
+        bounds: Option<Bounds>,
+    ) -> Result<FieldAnswer, Fault> {
+        let own = bounds.unwrap_or(FALLBACK);
+        check_box(&own)?;
+        self.run.set_field(Source::Function(function), false);
+        self.run.set_bounds(own, None);
+        self.surface = None;
+        self.declared.clear();
+        self.fitting.restart();
+        self.fitting.discard();
+        self.fitting.is_given = bounds.is_some();
+        (self.own, self.clip, self.reach) = (own, own, None);
+        Ok(self.answer())
+    }
+
     /// Starts a run on the present field.
     ///
     /// # Errors
@@ -438,7 +467,7 @@ impl Session {
             self.fit(&|_| *settings, false, u32::MAX);
         }
         self.fitting.is_settled = false;
-        self.made = Some(self.beginning(settings));
+        self.made = self.beginning(settings);
         self.started = Some(*settings);
         self.run.begin(settings)
     }
@@ -469,7 +498,12 @@ impl Session {
 
     fn completed(&self, mut report: Report) -> Report {
         let has_own_box = self.run.reach().is_none() && self.surface.is_some() && !self.fitting.is_given;
-        if has_own_box || self.source().formula().is_none_or(Formula::is_constant) {
+        let has_no_cause = match self.source() {
+            Source::Formula(field) => field.is_constant(),
+            Source::Points { .. } => true,
+            Source::Function(_) => false,
+        };
+        if has_own_box || has_no_cause {
             report.cut = None;
         }
         if let Source::Points { info, field, within: None } = self.source()

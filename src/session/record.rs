@@ -79,8 +79,9 @@ impl Session {
         Some(record)
     }
 
-    /// The record of a run that starts now.
-    pub(super) fn beginning(&self, settings: &Settings) -> FileRecord {
+    /// The record of a run that starts now; none for a function of the program, which no record
+    /// can hold.
+    pub(super) fn beginning(&self, settings: &Settings) -> Option<FileRecord> {
         let (formula, parameters, model, pulls) = match self.source() {
             Source::Formula(field) => (field.text().to_owned(), field.parameters(), None, Vec::new()),
             Source::Points { info, field, within } => {
@@ -90,11 +91,12 @@ impl Session {
                 };
                 (text, parameters, Some(info.name.clone()), field.pulls().to_vec())
             }
+            Source::Function(_) => return None,
         };
         // A map that is collected at once is sorted, which brings a stable sort of 3 kB.
         let mut values = BTreeMap::new();
         values.extend(parameters.iter().map(|p| (p.name.to_string(), p.value)));
-        FileRecord {
+        Some(FileRecord {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             digest: String::new(),
             link: None,
@@ -107,7 +109,7 @@ impl Session {
             faces: (self.fitting.choice.box_faces == BoxFaces::Closed).then_some(self.clip),
             solid: self.fitting.choice,
             settings: Settings { bounds: None, ..*settings },
-        }
+        })
     }
 
     /// The mesh as a file, up to `budget` slices of the work: its bytes once it is complete,

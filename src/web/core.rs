@@ -1,6 +1,7 @@
 //! The core bundle: a [`Session`] behind plain objects and copies of the particle columns.
 
 use super::values::{answer, read, to_js};
+use crate::field::BatchField;
 use crate::field::formula::number;
 use crate::field::model::SolvedModel;
 use crate::field::rbf::RbfData;
@@ -10,6 +11,8 @@ use crate::session::{
     Fault, FaultKind, FieldRequest, FileRecord, FileRequest, Session, SolidSettings, describe,
 };
 use glam::{DVec3, Vec3};
+use js_sys::{Float64Array, Function};
+use std::sync::Arc;
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsCast, JsValue};
 
@@ -91,6 +94,30 @@ impl Core {
             let data = RbfData::from_bytes(system).map_err(|error| Fault::new(FaultKind::Points, &error))?;
             self.session.set_points(data, info, bounds, &request)
         }))
+    }
+
+    /// Changes the field to a function that takes the coordinates of up to 512 points and an array
+    /// for f at each of them, to an `Answer` with `FieldAnswer`. Of the `FieldRequest` the box
+    /// counts. Once the function has thrown it is not called again, and the run ends.
+    #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
+    pub fn set_function(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "(points: Float64Array, out: Float64Array) => void")]
+        function: Function,
+        #[wasm_bindgen(unchecked_param_type = "Partial<FieldRequest>")] request: JsValue,
+    ) -> JsValue {
+        let values = move |points: &[DVec3], f: &mut [f64]| {
+            let coordinates = Float64Array::from(bytemuck::cast_slice::<_, f64>(points));
+            let out = Float64Array::new_with_length(f.len() as u32);
+            function.call2(&JsValue::NULL, &coordinates, &out).map_err(|_| "the function has thrown")?;
+            out.copy_to(f);
+            Ok(())
+        };
+        let field = Arc::new(BatchField::<_, &str>::new(values));
+        answer(
+            read::<FieldRequest>(request, FaultKind::Request)
+                .and_then(|request| self.session.set_function(field, request.bounds)),
+        )
     }
 
     /// Finds the box of the next run with these `Settings` and the creases in it, up to `budget`

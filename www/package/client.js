@@ -1,9 +1,10 @@
 /**
- * The package's side of the worker: checks what it is given, asks the worker, and holds the samples.
+ * The program's side of the sampler: asks it, in a worker or in the program's own thread, and holds the samples.
  *
  * @module
  */
 import { DisposedError, errorOf, InputError, WorkerError } from './errors.js';
+import { checked, checkedCalls, paramsOf, shown } from './options.js';
 
 /**
  * @import { Answered, Asked, Heard, Line, Made } from './protocol.js'
@@ -153,14 +154,14 @@ class Sample {
     this.digest = digest;
   }
 
-  /** Joins the particles to triangles. @returns {Promise<Mesh>} */
-  async mesh() {
+  /** Joins the particles to triangles. @param {{weld?: boolean}} [how] @returns {Promise<Mesh>} */
+  async mesh({ weld = false } = {}) {
     this.#check('mesh');
-    const { value } = await this.#client.ask((id) => ({ type: 'mesh', id, of: this.#id }));
+    const { value } = await this.#client.ask((id) => ({ type: 'mesh', id, of: this.#id, weld: weld === true }));
     return value;
   }
 
-  /** The mesh as a file. @param {string} format @returns {Promise<Uint8Array>} */
+  /** The mesh as a file. @param {string} format @returns {Promise<Uint8Array<ArrayBuffer>>} */
   async toFile(format) {
     this.#check('toFile');
     if (!FORMATS.includes(format)) throw new InputError(`format: one of ${FORMATS.join(', ')}, not ${shown(format)}.`);
@@ -174,6 +175,8 @@ class Sample {
    */
   async moved(params, options = {}) {
     this.#check('moved');
+    if (this.#how.request.formula === undefined)
+      throw new InputError('moved(): a formula has parameters, a function or points have none. Sample again.');
     const parameters = { ...this.params, ...paramsOf(params) };
     const how = { ...this.#how, ...checkedCalls(options) };
     if (how.signal?.aborted) throw how.signal.reason;
@@ -205,109 +208,18 @@ class Sample {
 }
 
 /**
- * Returns the function `sample` over workers that `open` starts.
- * @param {(heard: Heard) => Line} open
+ * Returns the function `sample`: functions are sampled by what `openHere` opens, which is in the thread of the program,
+ * and the rest by what `open` opens.
+ * @param {(heard: Heard) => Line} open @param {(heard: Heard) => Line} openHere
  */
-export function createSampler(open) {
-  const client = new Client(open);
+export function createSampler(open, openHere) {
+  const [there, here] = [new Client(open), new Client(openHere)];
   return async (/** @type {unknown} */ field, /** @type {Options} */ options = {}) => {
     const how = checked(field, options);
     const { settings, measure, request } = how;
+    const client = request.program ? here : there;
     const question = (/** @type {number} */ id) =>
       /** @type {const} */ ({ type: 'sample', id, field: request, settings, measure });
     return new Sample(client, await client.ask(question, how), how);
   };
-}
-
-// ---- what is given
-// -------------------------------------------------------------------------------------------------
-
-/** @param {unknown} value */
-const shown = (value) => (typeof value === 'string' ? `“${value.slice(0, 40)}”` : String(value));
-
-/** @type {(name: string, value: unknown, is: (v: number) => boolean, what: string) => number} */
-function number(name, value, is, what) {
-  if (typeof value === 'number' && Number.isFinite(value) && is(value)) return value;
-  throw new InputError(`${name}: ${what}, not ${shown(value)}.`);
-}
-
-/** @param {string} name @param {unknown} value @param {readonly string[]} choices */
-function choice(name, value, choices) {
-  if (choices.includes(/** @type {string} */ (value))) return /** @type {string} */ (value);
-  throw new InputError(`${name}: one of ${choices.join(', ')}, not ${shown(value)}.`);
-}
-
-/** @param {unknown} params */
-function paramsOf(params) {
-  if (typeof params !== 'object' || params === null || Array.isArray(params))
-    throw new InputError(`params: an object with a number for each name, not ${shown(params)}.`);
-  for (const [name, value] of Object.entries(params)) number(`params.${name}`, value, () => true, 'a number');
-  return /** @type {Record<string, number>} */ (params);
-}
-
-/** @param {unknown} bounds */
-function boundsOf(bounds) {
-  const { min, max } = /** @type {{min: number[], max: number[]}} */ (bounds ?? {});
-  const isPoint = (/** @type {unknown} */ p) => Array.isArray(p) && p.length === 3 && p.every(Number.isFinite);
-  if (!isPoint(min) || !isPoint(max) || min.some((v, k) => v >= max[k]))
-    throw new InputError('bounds: {min: [x, y, z], max: [x, y, z]} with numbers and min below max.');
-  return {
-    min: /** @type {[number, number, number]} */ ([...min]),
-    max: /** @type {[number, number, number]} */ ([...max]),
-  };
-}
-
-const KNOWN = ['count', 'radius', 'bounds', 'params', 'adaptive', 'method', 'seed', 'measure', 'signal', 'onProgress'];
-
-/** @param {Pick<Options, 'signal' | 'onProgress'>} options */
-function checkedCalls({ signal, onProgress }) {
-  if (signal !== undefined && !(signal instanceof AbortSignal))
-    throw new InputError('signal: the signal of an AbortController.');
-  if (onProgress !== undefined && typeof onProgress !== 'function') throw new InputError('onProgress: a function.');
-  return { signal, onProgress };
-}
-
-/**
- * What the worker is asked for.
- * @param {unknown} field @param {Options} options
- */
-function checked(field, options) {
-  if (typeof field !== 'string')
-    throw new InputError(`field: a formula as a text, such as 'x^2 + y^2 + z^2 = 1', not ${shown(typeof field)}.`);
-  if (typeof options !== 'object' || options === null)
-    throw new InputError(`options: an object, not ${shown(options)}.`);
-  const unknown = Object.keys(options).find((name) => !KNOWN.includes(name));
-  if (unknown !== undefined)
-    throw new InputError(`${unknown}: there is no such option. There are ${KNOWN.join(', ')}.`);
-  const { count, radius, bounds, params, adaptive, method, seed, measure = true } = options;
-  if (count !== undefined && radius !== undefined) throw new InputError('count, radius: one of the two, not both.');
-  /** @type {Record<string, number | string>} */
-  const settings = { max_particles: 4_400_000 };
-  if (radius !== undefined)
-    settings.radius_share = number(
-      'radius',
-      radius,
-      (r) => r >= 0.0001 && r <= 0.2,
-      'a share of the box diagonal, 0.0001 to 0.2',
-    );
-  else
-    Object.assign(settings, {
-      size_mode: 'count',
-      count: number(
-        'count',
-        count ?? 20_000,
-        (n) => Number.isInteger(n) && n >= 1 && n <= 4_000_000,
-        'a whole number from 1 to 4,000,000',
-      ),
-    });
-  if (adaptive) settings.sampling = 'adaptive';
-  if (method !== undefined) settings.method = choice('method', method, ['front', 'refined']);
-  if (seed !== undefined)
-    settings.seed = number('seed', seed, (n) => Number.isSafeInteger(n) && n >= 0, 'a whole number from 0 on');
-  const request = {
-    formula: field,
-    parameters: params === undefined ? {} : paramsOf(params),
-    ...(bounds === undefined ? {} : { bounds: boundsOf(bounds) }),
-  };
-  return { request, settings, measure: measure === true, ...checkedCalls(options) };
 }

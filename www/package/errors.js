@@ -1,9 +1,9 @@
 /** The errors of the package. Each has a name of its own and says what to do. @module */
 
 class NamedError extends Error {
-  /** @param {string} message */
-  constructor(message) {
-    super(message);
+  /** @param {string} message @param {{cause?: unknown}} [facts] */
+  constructor(message, { cause } = {}) {
+    super(message, cause === undefined ? undefined : { cause });
     this.name = new.target.name;
   }
 }
@@ -23,6 +23,8 @@ export class FormulaError extends NamedError {
     this.choices = choices;
   }
 }
+/** The function that is sampled threw, which is the `cause`, or returned something else than its values. */
+export class FieldError extends NamedError {}
 /** No particle could be placed. */
 export class NoSurfaceError extends NamedError {}
 /** The sample was disposed of, or its particles have moved on with another one. */
@@ -30,7 +32,7 @@ export class DisposedError extends NamedError {}
 /** The worker has not started, or it has failed. The next sampling starts another one. */
 export class WorkerError extends NamedError {}
 
-const CLASSES = { InputError, FormulaError, NoSurfaceError, DisposedError, WorkerError };
+const CLASSES = { InputError, FormulaError, FieldError, NoSurfaceError, DisposedError, WorkerError };
 
 /**
  * The error that a worker tells of.

@@ -1,4 +1,5 @@
 // What the package `marching-particles` gives a program.
+/// <reference lib="esnext.disposable" />
 
 export interface Bounds {
   min: [number, number, number];
@@ -11,10 +12,12 @@ export interface Progress {
   fraction: number;
 }
 export interface Options {
-  /** wanted number of particles, met within 3 %; 20,000 where neither it nor `radius` is given */
+  /** wanted number of particles, met within 3 %; 20,000 where no size is given */
   count?: number;
   /** half of the distance between neighbours, as a share of the box diagonal: 0.0001 to 0.2 */
   radius?: number;
+  /** the distance between neighbours, in the units of the field */
+  spacing?: number;
   /** the box that is sampled; without it one that fits the surface */
   bounds?: Bounds;
   /** values of the names in the formula */
@@ -74,18 +77,38 @@ export interface Sample {
   readonly bounds: Bounds;
   readonly params: Record<string, number>;
   readonly digest: string;
-  /** joins the particles to triangles */
-  mesh(): Promise<Mesh>;
+  /** joins the particles to triangles; with `weld` those at a crease share a row, and have the normal of one side */
+  mesh(how?: { weld?: boolean }): Promise<Mesh>;
   /** the mesh as a file */
-  toFile(format: Format): Promise<Uint8Array>;
+  toFile(format: Format): Promise<Uint8Array<ArrayBuffer>>;
   /** the particles on the surface of other parameters; they leave this sample, whose columns stay */
   moved(params: Record<string, number>, options?: Pick<Options, 'signal' | 'onProgress'>): Promise<Sample>;
   /** frees the memory of the worker; the columns stay */
   dispose(): void;
+  [Symbol.dispose](): void;
 }
 
-/** Covers the surface f = 0 of a formula, such as `x^2 + y^2 + z^2 = a`, with evenly spaced particles. */
-export function sample(formula: string, options?: Options): Promise<Sample>;
+/** A function of many points at once. */
+export interface Batch {
+  /** writes f at each point to `out`; `xyz` has three numbers for each of its values */
+  batch(xyz: Float64Array, out: Float64Array): void;
+}
+/** Points of a surface, three numbers each, and their outward normals if they are known. */
+export interface Points {
+  points: Float32Array | Float64Array | number[];
+  normals?: Float32Array | Float64Array | number[];
+}
+/**
+ * What is sampled: a formula such as `x^2 + y^2 + z^2 = a`; a function f(x, y, z), negative inside and NaN where it has
+ * no value, of a point or of many at once; or points.
+ */
+export type Field = string | ((x: number, y: number, z: number) => number) | Batch | Points;
+
+/**
+ * Covers the surface f = 0 with evenly spaced particles. Formulas and points are sampled in a worker; a function is
+ * called in the thread that it belongs to, in slices of some milliseconds between which the page draws.
+ */
+export function sample(field: Field, options?: Options): Promise<Sample>;
 
 /** An argument or an option is not what it has to be. */
 export class InputError extends Error {}
@@ -97,6 +120,8 @@ export class FormulaError extends Error {
   readonly suggestion: string | null;
   readonly choices: string[];
 }
+/** The function that is sampled threw, which is the `cause`, or returned something else than its values. */
+export class FieldError extends Error {}
 /** No particle could be placed. */
 export class NoSurfaceError extends Error {}
 /** The sample was disposed of, or its particles have moved on with another one. */

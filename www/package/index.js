@@ -1,5 +1,7 @@
 /** The package in a browser, and where a bundler builds for one. @module */
 import { createSampler } from './client.js';
+import { openHere } from './here.js';
+import { load } from './load.js';
 
 export * from './errors.js';
 
@@ -11,4 +13,4 @@ function open({ onMessage, onFail }) {
   return { post: (message) => worker.postMessage(message), end: () => worker.terminate(), hold: () => {} };
 }
 
-export const sample = createSampler(open);
+export const sample = createSampler(open, openHere(load));

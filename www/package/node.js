@@ -1,6 +1,8 @@
 /** The package in Node. @module */
 import { Worker } from 'node:worker_threads';
 import { createSampler } from './client.js';
+import { openHere } from './here.js';
+import { load } from './load-node.js';
 
 export * from './errors.js';
 
@@ -16,4 +18,4 @@ function open({ onMessage, onFail }) {
   };
 }
 
-export const sample = createSampler(open);
+export const sample = createSampler(open, openHere(load));

@@ -5,28 +5,14 @@
  * @module
  */
 import { execFileSync } from 'node:child_process';
-import { copyFileSync, mkdirSync, renameSync, rmSync } from 'node:fs';
+import { renameSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { rolldown } from 'rolldown';
+import { buildPackage } from './build.js';
 
-const here = fileURLToPath(new URL('.', import.meta.url));
-const out = process.env.PACKAGE ?? join(here, '../../target/package');
-const ENTRIES = ['index', 'node', 'worker', 'worker-node', 'three'];
+const out = process.env.PACKAGE ?? fileURLToPath(new URL('../../target/package', import.meta.url));
 
-rmSync(out, { recursive: true, force: true });
-mkdirSync(out, { recursive: true });
-const bundle = await rolldown({
-  input: Object.fromEntries(ENTRIES.map((name) => [name, join(here, `${name}.js`)])),
-  external: [/^node:/, 'three'],
-  platform: 'neutral',
-});
-await bundle.write({ dir: out, format: 'es', entryFileNames: '[name].js', chunkFileNames: '[name].js' });
-await bundle.close();
-for (const name of ['package.json', 'README.md', 'index.d.ts', 'three.d.ts'])
-  copyFileSync(join(here, name), join(out, name));
-for (const name of ['LICENSE-MIT', 'LICENSE-APACHE']) copyFileSync(join(here, '../..', name), join(out, name));
-copyFileSync(join(here, '../src/wasm/core/core_bg.wasm'), join(out, 'core_bg.wasm'));
+await buildPackage(out);
 const packed = execFileSync('npm', ['pack', '--silent', '--ignore-scripts'], {
   cwd: out,
   encoding: 'utf8',

@@ -1,16 +1,27 @@
-// Messages between the package and its worker.
+// Messages between the program and the sampler, which is in a worker or in the thread of the program.
 import type { Bounds, FieldRequest, Parameter, Report } from '../src/engine/core-types.js';
+import type { Batch } from './index.js';
 
 type Settings = Record<string, number | string>;
 /** What is asked; `of`: the request that has made the sample. */
 export type Asked =
   | { type: 'sample'; id: number; field: SentField; settings: Settings; measure: boolean }
   | { type: 'moved'; id: number; of: number; field: SentField; settings: Settings; measure: boolean }
-  | { type: 'mesh'; id: number; of: number }
+  | { type: 'mesh'; id: number; of: number; weld: boolean }
   | { type: 'file'; id: number; of: number; format: string };
 /** What is said besides: `stop` ends a request, `free` gives a sample up. */
 export type Said = { type: 'stop'; id: number } | { type: 'free'; id: number };
-export type SentField = Partial<FieldRequest> & { parameters: Record<string, number> };
+/** A formula, points, or a function of the program, which is sent in its own thread alone. */
+export type SentField = Pick<Partial<FieldRequest>, 'formula' | 'bounds'> & {
+  parameters: Record<string, number>;
+  cloud?: Cloud;
+  program?: ((x: number, y: number, z: number) => number) | Batch;
+};
+/** Points, and their normals if they are known, three numbers each. */
+export interface Cloud {
+  points: Float64Array;
+  normals: Float64Array | null;
+}
 
 export interface Made {
   positions: Float32Array | Float64Array;
@@ -29,15 +40,14 @@ export interface Answered {
   error?: { name: string; message: string; facts: object };
   progress?: { phase: string; particles: number; fraction: number };
 }
-/** What a worker has around it. */
+/** Where a module of the core is, or its bytes. */
+export type Load = (name: 'core' | 'points') => Promise<URL | Uint8Array>;
+/** What a sampler has around it. */
 export interface Environment {
   post: (message: Answered, transfer?: ArrayBufferLike[]) => void;
-  /** lets the worker hear its messages */
-  pause: () => Promise<void>;
-  /** loads the module of the core */
-  load: () => Promise<unknown>;
+  load: Load;
 }
-/** The part of a worker that the client uses, in a browser and in Node. */
+/** The part of a worker, or of a sampler in the same thread, that the client uses. */
 export interface Line {
   post: (message: Asked | Said) => void;
   end: () => void;

@@ -1,15 +1,19 @@
 /**
- * The worker's side of the package: samples formulas in slices, each in a core of its own, and keeps the cores of the
+ * The sampler's side of the package: samples in slices, each field in a core of its own, and keeps the cores of the
  * samples that can still be asked for a mesh, a file or moved particles.
  *
  * @module
  */
 import { nextBudget } from '../src/engine/bundle/budget.js';
-import { Core } from '../src/wasm/core/core.js';
+import loadCore, { Core } from '../src/wasm/core/core.js';
+import loadPoints from '../src/wasm/points/points.js';
+import { fitted } from './cloud.js';
+import { pause } from './pause.js';
+import { Program } from './program.js';
 
 /**
  * @import { Fault } from '../src/engine/core-types.js'
- * @import { Answered, Asked, Environment, Made, Said } from './protocol.js'
+ * @import { Answered, Asked, Environment, Made, Said, SentField } from './protocol.js'
  */
 
 /** First budget of a loop, in units or slices of the core. */
@@ -30,7 +34,7 @@ class Refusal extends Error {
 
 /** @param {Fault} fault */
 function refusalOf({ kind, message, start, end, suggestion, choices }) {
-  if (['request', 'settings', 'too_many', 'box'].includes(kind)) return new Refusal('InputError', message);
+  if (['request', 'settings', 'too_many', 'box', 'points'].includes(kind)) return new Refusal('InputError', message);
   return new Refusal('FormulaError', message, { start, end, suggestion, choices });
 }
 
@@ -39,23 +43,42 @@ function refusalOf({ kind, message, start, end, suggestion, choices }) {
  * @param {Environment} environment
  * @returns {(message: Asked | Said) => Promise<void>}
  */
-export function serve({ post, pause, load }) {
-  /** @type {Promise<unknown> | null} */
-  let loading = null;
+export function serve({ post, load }) {
+  /** The modules that were asked for. @type {Map<'core' | 'points', Promise<unknown>>} */
+  const modules = new Map();
   /** @type {Map<number, Core>} */
   const cores = new Map();
+  /** The functions of the program that cores sample. @type {Map<Core, Program>} */
+  const programs = new Map();
   /** Requests under way, and whether each is to stop. @type {Map<number, boolean>} */
   const asked = new Map();
 
+  /** Loads a module once. @param {'core' | 'points'} name @param {(options: any) => Promise<unknown>} init */
+  async function loaded(name, init) {
+    const loading = modules.get(name) ?? load(name).then((from) => init({ module_or_path: from }));
+    modules.set(name, loading);
+    await loading.catch((error) => {
+      throw new Refusal('WorkerError', `${name}_bg.wasm did not load from beside the script: ${error.message}`);
+    });
+  }
+
+  /** @param {Core} core */
+  function free(core) {
+    programs.delete(core);
+    core.free();
+  }
+
   /**
-   * Does a work in slices, and returns what it leads to.
+   * Does a work of a core in slices, and returns what it leads to.
    * @template T
-   * @param {number} id @param {(budget: number) => T | undefined} slice
+   * @param {{id: number, core: Core}} of @param {(budget: number) => T | undefined} slice
    */
-  async function inSlices(id, slice) {
+  async function inSlices({ id, core }, slice) {
     for (let budget = FIRST_BUDGET; ; ) {
       const before = performance.now();
       const made = slice(budget);
+      const failure = programs.get(core)?.failure;
+      if (failure) throw new Refusal('FieldError', failure.message, { cause: failure.cause });
       if (made !== undefined) return made;
       budget = nextBudget(budget, performance.now() - before);
       await pause();
@@ -63,10 +86,10 @@ export function serve({ post, pause, load }) {
     }
   }
 
-  /** Steps a run to its end. @param {number} id @param {Core} core */
-  async function run(id, core) {
+  /** Steps a run to its end. @param {{id: number, core: Core}} of */
+  async function run({ id, core }) {
     let toldMs = performance.now();
-    const last = await inSlices(id, (budget) => {
+    const last = await inSlices({ id, core }, (budget) => {
       const progress = core.step(budget);
       if (progress.phase === 'done') return progress;
       if (performance.now() - toldMs > PROGRESS_MS) {
@@ -80,22 +103,41 @@ export function serve({ post, pause, load }) {
   }
 
   /**
+   * Gives a core its field.
+   * @param {SentField} field @param {{id: number, core: Core}} of
+   */
+  async function taken({ program, cloud, ...request }, of) {
+    const { core } = of;
+    if (program) {
+      const called = new Program(program);
+      programs.set(core, called);
+      return core.set_function(called.call, request);
+    }
+    if (!cloud) return core.set_field(request);
+    await loaded('points', loadPoints);
+    const fit = await fitted(cloud, (slice) => inSlices(of, slice));
+    if ('error' in fit) throw new Refusal('InputError', fit.error);
+    return core.set_points(fit.system, fit.about, request);
+  }
+
+  /**
    * Takes a field, samples it, or lets the particles follow it, and measures them.
    * @param {Extract<Asked, {type: 'sample' | 'moved'}>} message @param {Core} core
    */
   async function made({ id, field, settings, measure, type }, core) {
-    const answer = core.set_field(field);
+    const of = { id, core };
+    const answer = await taken(field, of);
     if (!answer.ok) throw refusalOf(answer.error);
     const unknown = Object.keys(field.parameters).find((name) => !answer.parameters.some((p) => p.name === name));
     if (unknown !== undefined) throw new Refusal('InputError', `The formula has no parameter “${unknown}” (params).`);
-    const box = await inSlices(id, (budget) => core.fit(settings, type === 'moved', budget));
+    const box = await inSlices(of, (budget) => core.fit(settings, type === 'moved', budget));
     if (!box.ok) throw refusalOf(box.error);
     if (type === 'sample' || !core.follow(settings, false)) {
       const start = core.start(settings);
       if (!start.ok) throw refusalOf(start.error);
     }
-    await run(id, core);
-    const report = measure ? await inSlices(id, (budget) => core.measure(budget)) : null;
+    await run(of);
+    const report = measure ? await inSlices(of, (budget) => core.measure(budget)) : null;
     return columnsOf(core, { report, bounds: box.bounds, parameters: box.parameters });
   }
 
@@ -109,7 +151,7 @@ export function serve({ post, pause, load }) {
         cores.set(message.id, core);
         return result;
       } catch (error) {
-        if (error instanceof Refusal) core.free();
+        if (error instanceof Refusal) free(core);
         throw error;
       }
     }
@@ -121,13 +163,15 @@ export function serve({ post, pause, load }) {
       cores.set(message.id, core);
       return made(message, core);
     }
-    const about = await inSlices(message.id, (budget) => core.join(budget));
+    const of = { id: message.id, core };
+    const about = await inSlices(of, (budget) => core.join(budget));
     if (message.type === 'mesh') {
       const indices = core.triangles();
+      if (message.weld) weld(indices, core.particle());
       const { volume, components, left_out: leftOut } = about;
       return [{ indices, volume, components, leftOut }, [indices.buffer]];
     }
-    const bytes = await inSlices(message.id, (budget) => core.mesh_file({ format: message.format }, budget));
+    const bytes = await inSlices(of, (budget) => core.mesh_file({ format: message.format }, budget));
     if (!bytes) throw new Refusal('InputError', `The mesh cannot be written as ${message.format}: it is too large.`);
     return [{ bytes }, [bytes.buffer]];
   }
@@ -138,17 +182,15 @@ export function serve({ post, pause, load }) {
       return;
     }
     if (message.type === 'free') {
-      cores.get(message.id)?.free();
+      const core = cores.get(message.id);
+      if (core) free(core);
       cores.delete(message.id);
       return;
     }
     const { id } = message;
     asked.set(id, false);
     try {
-      loading ??= load();
-      await loading.catch((error) => {
-        throw new Refusal('WorkerError', `core_bg.wasm, which lies beside the worker, did not load: ${error.message}`);
-      });
+      await loaded('core', loadCore);
       const [value, transfer] = await answer(message);
       post({ id, value }, transfer);
     } catch (error) {
@@ -156,6 +198,15 @@ export function serve({ post, pause, load }) {
     }
     asked.delete(id);
   };
+}
+
+/**
+ * Puts the first row of each particle in the place of its others, which it has where it lies on a crease.
+ * @param {Uint32Array} indices @param {Uint32Array} firstRows  nothing without creases
+ */
+function weld(indices, firstRows) {
+  if (firstRows.length === 0) return;
+  for (let k = 0; k < indices.length; k += 1) indices[k] = firstRows[indices[k]];
 }
 
 /**

@@ -72,10 +72,6 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
     ...runCommands(parts),
     ...viewCommands(parts),
     ...shareCommands(parts),
-    async openLesson(options) {
-      const { LessonClient } = await import('./lesson/client.js');
-      return new LessonClient(options);
-    },
     lessonSurface() {
       const field = store.field.value;
       if (!field) return null;

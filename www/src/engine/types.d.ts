@@ -3,7 +3,7 @@
 // otherwise.
 import type { Columns, MEASURED } from './columns.js';
 import type { Answer, Phase as CorePhase, PointsProgress, Start } from './core-types.js';
-import type { LessonClientOptions, Surface } from './lesson/types.js';
+import type { Surface } from './lesson/types.js';
 
 export type Signal<T> = import('@preact/signals-core').Signal<T>;
 export type ReadonlySignal<T> = import('@preact/signals-core').ReadonlySignal<T>;
@@ -422,8 +422,6 @@ export interface EngineCommands {
   project: (place: ArrayLike<number>) => Spot | null;
   /** returns the ray from the eye through a point of the canvas host */
   rayThrough: (x: number, y: number) => Ray;
-  /** the paper's algorithms, event by event; its worker and its bundle are loaded with the first run */
-  openLesson: (options?: LessonClientOptions) => Promise<LessonClient>;
   /** returns the present surface for such a run */
   lessonSurface: () => Surface | null;
   /** frees all that the engine holds: its workers, its device and its canvas */

@@ -3,46 +3,14 @@
  *
  * @module
  */
-import { effect } from '@preact/signals-core';
 import { MEASURED } from '../engine/columns.js';
 import { createEngine } from '../engine/index.js';
+import { atRest, once, settled } from '../engine/rest.js';
 
 /**
- * @import { Columns, Engine, Report } from '../engine/types.js'
+ * @import { Columns, Engine } from '../engine/types.js'
  * @import { Console, Measured, Particles } from './types.js'
  */
-
-/**
- * Resolves with the report once `isOver` holds, or no sampler is there or coming. `isOver` reads signals.
- * @param {Engine} engine @param {() => boolean} isOver
- */
-const once = (engine, isOver) =>
-  new Promise((/** @type {(report: Report | null) => void} */ resolve) => {
-    let stop = () => {};
-    stop = effect(() => {
-      // The progress is written anew when the sampler ends. The notice about it may have been dismissed since.
-      const isOff = engine.progress.value && engine.debug.isOff();
-      if (!isOff && !isOver()) return;
-      resolve(engine.report.peek());
-      queueMicrotask(() => stop());
-    });
-  });
-
-/** Returns whether no run is active and the report has arrived, if one is expected. @param {Engine} engine */
-const atRest = (engine) =>
-  engine.description.value !== null &&
-  engine.loading.value === null &&
-  !engine.typing.value &&
-  !engine.busy.value &&
-  engine.progress.value.phase === 'done';
-
-/** Resolves with the report once the sampler is at rest and the picture is up to date. @param {Engine} engine */
-async function settled(engine) {
-  const drawable = () => engine.reveal.value === null && engine.backend.value !== 'starting';
-  const report = await once(engine, () => atRest(engine) && drawable());
-  await engine.debug.still();
-  return report;
-}
 
 /** Copies of the columns of the report. @param {Columns} columns */
 const measuredOf = (columns) =>

@@ -1,8 +1,10 @@
-/** The packed package in a browser: served as it is, and built by Vite. */
+/** The packed package in a browser: served as it is, in one file, and built by three bundlers. */
 import { readFileSync } from 'node:fs';
 import { extname, join } from 'node:path';
 import { expect, test } from '@playwright/test';
+import esbuild from 'esbuild';
 import { build } from 'vite';
+import webpack from 'webpack';
 import { GYROID, install, programOf } from '../package/packed.js';
 
 const { runs } = JSON.parse(readFileSync(new URL('../../../tests/golden/digests.json', import.meta.url), 'utf8'));
@@ -18,17 +20,22 @@ test.beforeAll(() => {
 });
 test.afterAll(() => there.remove());
 
-/**
- * Opens a folder of the project as a site, and returns the digest that its page tells.
- * @param {import('@playwright/test').Page} page @param {string} folder
- */
-async function digestIn(page, folder) {
+/** Opens a folder of the project as a site. @param {import('@playwright/test').Page} page @param {string} folder */
+async function serve(page, folder) {
   await page.route('**/package-test/**', (route) => {
     const name = new URL(route.request().url()).pathname.replace('/package-test/', '') || 'index.html';
     const body = readFileSync(join(there.project, folder, name));
     return route.fulfill({ contentType: TYPES[extname(name)] ?? 'application/octet-stream', body });
   });
   await page.goto('/package-test/');
+}
+
+/**
+ * Opens a folder of the project as a site, and returns the digest that its page tells.
+ * @param {import('@playwright/test').Page} page @param {string} folder
+ */
+async function digestIn(page, folder) {
+  await serve(page, folder);
   await expect(page).toHaveTitle(/^[0-9a-f]{16}$/);
   return page.title();
 }
@@ -43,9 +50,153 @@ test('a script of a page samples without a bundler', async ({ page }) => {
   expect(await digestIn(page, '.')).toBe(golden.digest);
 });
 
-test('a page that Vite builds samples the same', async ({ page }) => {
+test('a page that allows no worker samples by the one file, under a strict policy', async ({ page }) => {
+  const modules = { imports: { 'marching-particles': './node_modules/marching-particles/inline.js' } };
+  const policy = "default-src 'none'; script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval'";
+  there.write(
+    'index.html',
+    `<meta http-equiv="content-security-policy" content="${policy}">
+<script type="importmap">${JSON.stringify(modules)}</script>
+<script type="module">${programOf('document.title = ')}</script>`,
+  );
+  expect(await digestIn(page, '.')).toBe(golden.digest);
+});
+
+test('a function of a page leaves it time to draw', async ({ page }) => {
+  const modules = { imports: { 'marching-particles': './node_modules/marching-particles/index.js' } };
+  there.write(
+    'index.html',
+    `<script type="importmap">${JSON.stringify(modules)}</script>
+<script type="module">import { sample } from 'marching-particles';
+let frames = 0;
+const count = () => void requestAnimationFrame(count, frames += 1);
+count();
+const ball = await sample((x, y, z) => Math.hypot(x, y, z) - 1, { count: 50_000 });
+if (frames > 5 && Math.abs(ball.count - 50_000) < 1500) document.title = ball.digest;
+</script>`,
+  );
+  expect(await digestIn(page, '.')).toMatch(/^[0-9a-f]{16}$/);
+});
+
+test('an element of a page samples and draws once it is in sight, by its attributes', async ({ page }) => {
+  const modules = { imports: { 'marching-particles/element': './node_modules/marching-particles/element.js' } };
+  there.write(
+    'index.html',
+    `<script type="importmap">${JSON.stringify(modules)}</script>
+<marching-particles id="a" formula="x^2 + y^2 + z^2 = a" params="a=2" count="500" style="width: 320px"></marching-particles>
+<div style="height: 4000px"></div>
+<marching-particles id="b" surface="torus" count="600" draw="mesh" controls style="width: 320px"></marching-particles>
+<script>
+globalThis.told = { a: [], b: [] };
+for (const id of ['a', 'b']) for (const name of ['progress', 'report', 'error'])
+  document.getElementById(id).addEventListener(name, ({ detail }) => told[id].push([name, detail]));
+</script>
+<script type="module">import 'marching-particles/element';</script>`,
+  );
+  await serve(page, '.');
+  /** @param {string} id @param {string} name */
+  const last = (id, name) =>
+    page.evaluate(
+      ([id, name]) =>
+        /** @type {any} */ (globalThis).told[id].findLast((/** @type {string[]} */ [n]) => n === name)?.[1],
+      [id, name],
+    );
+  await expect.poll(async () => (await last('a', 'report'))?.components).toBe(1);
+  expect(Math.abs((await last('a', 'report')).count - 500)).toBeLessThan(30);
+  await expect(page.locator('#a')).toHaveAttribute('aria-label', /x\^2/);
+  expect(await page.locator('#b canvas').count()).toBe(0);
+  await page.evaluate(() => document.getElementById('a')?.setAttribute('count', '900'));
+  await expect.poll(async () => Math.round((await last('a', 'report')).count / 100)).toBe(9);
+  await page.evaluate(() => document.getElementById('a')?.setAttribute('formula', 'x^2 + sqtr(y) - 1'));
+  await expect
+    .poll(() =>
+      page.evaluate(
+        () =>
+          /** @type {any} */ (globalThis).told.a.findLast((/** @type {string[]} */ [n]) => n === 'error')?.[1]?.name,
+      ),
+    )
+    .toBe('FormulaError');
+  await page.locator('#b').scrollIntoViewIfNeeded();
+  await expect.poll(async () => (await last('b', 'report'))?.components).toBe(1);
+  const head = await page.evaluate(async () =>
+    String.fromCharCode(...(await document.querySelectorAll('marching-particles')[1].toFile('glb')).subarray(0, 4)),
+  );
+  expect(head).toBe('glTF');
+  await page.evaluate(() => document.getElementById('b')?.remove());
+});
+
+test('a view in an element of a page has a state, and rejects what is wrong', async ({ page }) => {
+  const modules = { imports: { 'marching-particles/view': './node_modules/marching-particles/view.js' } };
+  there.write(
+    'index.html',
+    `<script type="importmap">${JSON.stringify(modules)}</script>
+<div id="host" style="width: 320px; height: 240px"></div>
+<script type="module">import { createView } from 'marching-particles/view';
+const view = createView(host, { formula: 'x^2 + y^2 + z^2 = a', settings: { size_mode: 'count', count: 400 } });
+const told = [];
+const end = view.on('report', ({ count }) => told.push(count));
+const { components } = await view.ready;
+const moved = await view.set({ parameters: { a: 2 } });
+const wrong = await view.set({ formula: 'x +' }).catch(({ name }) => name);
+const none = await view.set({ formula: 'x^2 + y^2 + 1' }).catch(({ name }) => name);
+await view.set({ formula: 'x^2 + y^2 + z^2 = 1' });
+const { size, type } = await view.picture({ width: 64, height: 48 });
+const { count, positions } = view.particles();
+end();
+view.destroy();
+const facts = [components, moved.components, wrong, none, size > 100, type, positions.length / count, told.length > 1];
+document.title = facts.join(' ');
+</script>`,
+  );
+  await serve(page, '.');
+  await expect(page).toHaveTitle('1 1 FormulaError NoSurfaceError true image/png 3 true');
+});
+
+/** Writes a page with the program as a script of its own. */
+function writeProgram() {
   there.write('index.html', '<script type="module" src="./program.js"></script>');
   there.write('program.js', programOf('document.title = '));
+}
+
+test('a page that webpack builds samples the same', async ({ page }) => {
+  writeProgram();
+  const compiler = webpack({
+    context: there.project,
+    mode: 'production',
+    entry: './program.js',
+    output: { path: join(there.project, 'by-webpack'), filename: 'program.js', publicPath: 'auto' },
+    experiments: { topLevelAwait: true },
+  });
+  const stats = await new Promise((resolve, reject) => {
+    compiler?.run((error, result) => (error ? reject(error) : resolve(result)));
+  });
+  expect(stats.compilation.errors).toEqual([]);
+  there.write('by-webpack/index.html', '<script src="./program.js"></script>');
+  expect(await digestIn(page, 'by-webpack')).toBe(golden.digest);
+});
+
+test('a page that esbuild builds samples the same', async ({ page }) => {
+  writeProgram();
+  // esbuild leaves addresses as they are: what lies beside the script is named.
+  await esbuild.build({
+    absWorkingDir: there.project,
+    entryPoints: {
+      program: './program.js',
+      worker: 'marching-particles/worker',
+      core_bg: 'marching-particles/core.wasm',
+    },
+    outdir: 'by-esbuild',
+    bundle: true,
+    splitting: true,
+    format: 'esm',
+    loader: { '.wasm': 'copy' },
+  });
+  there.write('by-esbuild/index.html', '<script type="module" src="./program.js"></script>');
+  expect(await digestIn(page, 'by-esbuild')).toBe(golden.digest);
+});
+
+test('a page that Vite builds samples the same', async ({ page }) => {
+  writeProgram();
   const how = {
     root: there.project,
     base: './',

@@ -1,6 +1,6 @@
 /** The packed package in Node: its examples, what it gives, and what it says of bad input. */
 import { execFileSync } from 'node:child_process';
-import { readFileSync, renameSync } from 'node:fs';
+import { cpSync, readFileSync, renameSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
@@ -16,7 +16,7 @@ let there;
 let made;
 
 beforeAll(async () => {
-  there = install(['three', '@types/node']);
+  there = install(['three', '@types/node', '@types/three']);
   made = await import(
     /* @vite-ignore */ pathToFileURL(join(there.project, 'node_modules/marching-particles/node.js')).href
   );
@@ -28,23 +28,42 @@ test('a program in Node gets the particles of the native library, and ends', () 
   expect(execFileSync(process.execPath, [program], { encoding: 'utf8' }).trim()).toBe(golden.digest);
 });
 
-test('a program is checked by strict TypeScript', () => {
+test('a program and the examples are checked by strict TypeScript', () => {
   there.write(
     'program.ts',
-    `import { FormulaError, sample, type Mesh, type Sample } from 'marching-particles';
+    `import { FormulaError, sample, type Field, type Mesh, type Sample } from 'marching-particles';
+import 'marching-particles/element';
+import { createView, type View } from 'marching-particles/view';
 export async function ball(radius: number): Promise<Mesh> {
   const ball: Sample = await sample('${SPHERE}', { count: 500, params: { a: radius ** 2 }, method: 'refined' });
   const first: number = ball.positions[0] + ball.normals[0];
   if (first > 0) await ball.moved({ a: 2 });
   return ball.mesh();
 }
+export const fields: Field[] = [
+  'x^2 + y^2 + z^2 = 1',
+  (x, y, z) => Math.hypot(x, y, z) - 1,
+  { batch: (xyz, out) => out.forEach((_, i) => void (out[i] = xyz[3 * i])) },
+  { points: new Float32Array(300) },
+];
+export function shown(host: HTMLElement): View {
+  const element = document.createElement('marching-particles');
+  element.formula = 'x^2 + y^2 = 1';
+  host.append(element);
+  const view = createView(host, { surface: 'gyroid', view: { draw: 'mesh' } });
+  view.on('report', ({ digest }) => console.log(digest));
+  return view;
+}
+// @ts-expect-error There is no such event.
+export const none = (view: View) => view.on('end', () => {});
 export const placeOf = (error: unknown): number | null => (error instanceof FormulaError ? error.start : null);
 // @ts-expect-error There is no such method.
 void sample('x', { method: 'best' });
 `,
   );
-  const config = { strict: true, noEmit: true, module: 'nodenext', target: 'es2023', types: ['node'] };
-  there.write('tsconfig.json', JSON.stringify({ compilerOptions: config, files: ['program.ts'] }));
+  cpSync(new URL('../../embed/examples', import.meta.url), join(there.project, 'examples'), { recursive: true });
+  const config = { strict: true, noEmit: true, module: 'nodenext', target: 'es2023', types: ['node'], checkJs: true };
+  there.write('tsconfig.json', JSON.stringify({ compilerOptions: config, include: ['program.ts', 'examples/*.js'] }));
   const tsc = new URL('../../node_modules/typescript/bin/tsc', import.meta.url);
   execFileSync(process.execPath, [tsc.pathname, '-p', there.project], { stdio: 'pipe' });
 });
@@ -106,6 +125,125 @@ describe('a sample', () => {
   });
 });
 
+describe('a function of the program', () => {
+  const ball = (/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ z) => Math.hypot(x, y, z) - 1;
+  const batch = {
+    batch(/** @type {Float64Array} */ xyz, /** @type {Float64Array} */ out) {
+      for (let i = 0; i < out.length; i += 1) out[i] = ball(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
+    },
+  };
+
+  test('is sampled as a formula is, one point or many at a time', async () => {
+    const one = await made.sample(ball, { count: 1000 });
+    const many = await made.sample(batch, { count: 1000 });
+    expect(many.digest).toBe(one.digest);
+    expect(Math.abs(one.count - 1000)).toBeLessThan(40);
+    expect(one.report).toMatchObject({ components: 1, digest: one.digest });
+    for (let i = 0; i < 3 * one.count; i += 3)
+      expect(Math.hypot(...one.positions.subarray(i, i + 3))).toBeCloseTo(1, 4);
+    expect((await one.mesh()).components).toMatchObject([{ euler: 2, open_edges: 0 }]);
+    expect((await one.toFile('stl')).length).toBeGreaterThan(84);
+    await expect(one.moved({ a: 1 })).rejects.toMatchObject({ name: 'InputError' });
+    one.dispose();
+    await expect(one.mesh()).rejects.toMatchObject({ name: 'DisposedError' });
+  });
+
+  test('leaves its thread time for others, and a signal ends it', async () => {
+    const controller = new AbortController();
+    let turns = 0;
+    const timer = setInterval(() => {
+      turns += 1;
+      if (turns === 5) controller.abort();
+    }, 1);
+    const long = made.sample(batch, { count: 500_000, signal: controller.signal });
+    const ended = await long.catch((/** @type {unknown} */ error) => error);
+    clearInterval(timer);
+    expect(ended).toBe(controller.signal.reason);
+    expect(turns).toBe(5);
+    expect((await made.sample(batch, { count: 100 })).count).toBeGreaterThan(50);
+  });
+
+  test('may do several jobs at a time', async () => {
+    const [one, two] = await Promise.all([made.sample(ball, { count: 500 }), made.sample(batch, { count: 500 })]);
+    expect(one.digest).toBe(two.digest);
+  });
+
+  const mistake = new Error('no such place');
+  /** @type {[string, unknown][]} */
+  const wrong = [
+    [
+      'it threw: no such place',
+      {
+        batch: () => {
+          throw mistake;
+        },
+      },
+    ],
+    ['returned a promise', async () => 1],
+    ['returned a promise', { batch: async () => {} }],
+    ['it returned string', () => '1'],
+    ['it returned undefined', () => {}],
+    ['wrote 1 of', { batch: (/** @type {unknown} */ _, /** @type {Float64Array} */ out) => void out.fill(1, 0, 1) }],
+  ];
+  test.each(wrong)('that fails is named: %s', async (words, field) => {
+    const error = await made.sample(/** @type {any} */ (field), { count: 100 }).catch((/** @type {unknown} */ e) => e);
+    expect(error).toBeInstanceOf(made.FieldError);
+    expect(error).toMatchObject({ name: 'FieldError', message: expect.stringContaining(words) });
+    if (words.includes('threw')) expect(error).toMatchObject({ cause: mistake });
+  });
+
+  test('that fails in the middle ends its sampling alone', async () => {
+    let calls = 0;
+    const field = (/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ z) => {
+      calls += 1;
+      if (calls > 200_000) throw new TypeError('enough');
+      return ball(x, y, z);
+    };
+    await expect(made.sample(field, { count: 100_000 })).rejects.toMatchObject({ name: 'FieldError' });
+    expect(calls).toBe(200_001);
+    expect((await made.sample(ball, { count: 100 })).count).toBeGreaterThan(50);
+  });
+});
+
+describe('points', () => {
+  /** @type {number[]} */
+  const points = [];
+  // A spiral from pole to pole.
+  for (let i = 0; i < 400; i += 1) {
+    const [z, angle] = [1 - (2 * i + 1) / 400, 2.399963 * i];
+    points.push(Math.sqrt(1 - z * z) * Math.cos(angle), Math.sqrt(1 - z * z) * Math.sin(angle), z);
+  }
+
+  test('have a surface through them, with their normals or without', async () => {
+    for (const field of [{ points }, { points: Float32Array.from(points), normals: points }]) {
+      const ball = await made.sample(field, { count: 500 });
+      expect(Math.abs(ball.count - 500)).toBeLessThan(30);
+      for (let i = 0; i < 3 * ball.count; i += 3)
+        expect(Math.hypot(...ball.positions.subarray(i, i + 3))).toBeCloseTo(1, 1);
+      expect((await ball.mesh()).components).toMatchObject([{ euler: 2 }]);
+    }
+  });
+});
+
+test('in one file, sampled in the thread that imports it, particles are the same', async () => {
+  const path = join(there.project, 'node_modules/marching-particles/inline.js');
+  const inline = await import(/* @vite-ignore */ pathToFileURL(path).href);
+  expect((await inline.sample(GYROID.formula, GYROID.options)).digest).toBe(golden.digest);
+  await expect(inline.sample('x^2 +')).rejects.toBeInstanceOf(inline.FormulaError);
+});
+
+test('the spacing is the distance between neighbours, in the units of the field', async () => {
+  const ball = await made.sample(SPHERE, { spacing: 0.1, params: { a: 1 }, measure: false });
+  expect(ball.radii[0]).toBeCloseTo(0.05, 6);
+});
+
+test('particles at a crease are joined by welding', async () => {
+  const cube = await made.sample('max(abs(x), abs(y), abs(z)) = 1', { count: 1000 });
+  const [apart, welded] = [await cube.mesh(), await cube.mesh({ weld: true })];
+  expect(new Set(welded.indices).size).toBeLessThan(new Set(apart.indices).size);
+  expect(new Set(welded.indices).size - welded.indices.length / 6).toBe(2);
+});
+
 describe('a signal', () => {
   test('ends a sampling within 50 ms, and the next one is not kept waiting', async () => {
     await made.sample(SPHERE, { count: 100, params: { a: 1 } });
@@ -132,8 +270,18 @@ describe('a signal', () => {
 describe('what is wrong has a name and says what to do', () => {
   const box = (/** @type {number} */ least) => ({ min: [least, -1, -1], max: [1, 1, 1] });
   test.each([
-    ['InputError', 'a formula as a text', 5, {}],
-    ['InputError', 'a formula as a text', () => 1, {}],
+    ['InputError', 'field: a formula such as', 5, {}],
+    ['InputError', 'field: a formula such as', null, {}],
+    ['InputError', 'field: a formula such as', {}, {}],
+    ['InputError', 'points: an array of numbers', { points: [1, 2] }, {}],
+    ['InputError', 'points[4]: a number, not NaN', { points: [1, 2, 3, 4, NaN, 6] }, {}],
+    ['InputError', 'normals: one for each point, not 1 for 2', { points: [1, 2, 3, 4, 5, 6], normals: [0, 0, 1] }, {}],
+    ['InputError', 'points lie on a straight', { points: [0, 0, 0, 1, 0, 0] }, {}],
+    ['InputError', 'a function or points have none', () => 1, { params: { a: 1 } }],
+    ['InputError', 'adaptive: true or false', SPHERE, { adaptive: 'yes' }],
+    ['InputError', 'measure: true or false', SPHERE, { measure: 1 }],
+    ['InputError', 'spacing: a length above 0', SPHERE, { spacing: 0 }],
+    ['InputError', 'count, spacing: one of the two', SPHERE, { count: 10, spacing: 1 }],
     ['InputError', 'options: an object', SPHERE, null],
     ['InputError', 'no such option', SPHERE, { size: 3 }],
     ['InputError', 'count: a whole number', SPHERE, { count: NaN }],
@@ -148,6 +296,8 @@ describe('what is wrong has a name and says what to do', () => {
     ['InputError', 'onProgress: a function', SPHERE, { onProgress: 1 }],
     ['FormulaError', 'missing', 'x^2 +', {}],
     ['NoSurfaceError', 'no zero', 'x^2 + 1', {}],
+    ['NoSurfaceError', 'f has no value anywhere', () => NaN, {}],
+    ['NoSurfaceError', 'f has the same value', () => 1, {}],
   ])('%s: %s', async (name, words, field, options) => {
     const answer = made.sample(/** @type {any} */ (field), /** @type {any} */ (options));
     await expect(answer).rejects.toMatchObject({ name, message: expect.stringContaining(words) });
@@ -194,11 +344,12 @@ describe('what is wrong has a name and says what to do', () => {
     /** @type {import('../../package/protocol.js').Heard[]} */
     const heard = [];
     let isBroken = true;
-    const sample = createSampler((events) => {
+    const open = (/** @type {import('../../package/protocol.js').Heard} */ events) => {
       if (isBroken) throw new Error('blocked by the policy of the page');
       heard.push(events);
       return { post: () => {}, end: () => {}, hold: () => {} };
-    });
+    };
+    const sample = createSampler(open, open);
     await expect(sample(SPHERE)).rejects.toMatchObject({
       name: 'WorkerError',
       message: 'The worker did not start: blocked by the policy of the page',

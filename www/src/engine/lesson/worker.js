@@ -4,12 +4,13 @@
  * @module
  */
 import init, { Lesson } from '../../wasm/lesson/lesson.js';
-import wasmUrl from '../../wasm/lesson/lesson_bg.wasm?url';
 import { crashWords } from '../bundle/crash.js';
 import { loadModule, words } from '../bundle/load.js';
 import { follow } from './follow.js';
 
 /** @import { FromLesson, ToLesson } from './types.js' */
+
+const wasmUrl = new URL('../../wasm/lesson/lesson_bg.wasm', import.meta.url);
 
 /** @param {FromLesson} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });

@@ -4,13 +4,14 @@
  * @module
  */
 import init, { Points } from '../../wasm/points/points.js';
-import wasmUrl from '../../wasm/points/points_bg.wasm?url';
 import { crashWords } from '../bundle/crash.js';
 import { loadModule, words } from '../bundle/load.js';
 import { BEAT_MS } from './protocol.js';
 import { solve } from './solve.js';
 
 /** @import { FromPoints, Order } from './types.js' */
+
+const wasmUrl = new URL('../../wasm/points/points_bg.wasm', import.meta.url);
 
 /** @param {FromPoints} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });

@@ -4,10 +4,11 @@
  *
  * @module
  */
-import coreUrl from '../../wasm/core/core_bg.wasm?url';
 import { LoadError, loadModule, words } from '../bundle/load.js';
 
 /** @import { ToWorker } from './types.js' */
+
+const coreUrl = new URL('../../wasm/core/core_bg.wasm', import.meta.url);
 
 /** The compiled core; null before the first worker and after a failure. @type {Promise<WebAssembly.Module> | null} */
 let core = null;

@@ -65,6 +65,8 @@ const INSIDE_FROM = /** @type {const} */ ([0.15, 0.45]);
 const TO_COME = 0.72;
 const TO_COME_BEHIND = 0.2;
 const LEAST_BED_PX = 0.8;
+/** SWELL_PX there. */
+const GAPS_PX = /** @type {const} */ ([0.8, 2.4]);
 
 /** @param {readonly number[]} edges @param {number} x */
 function smoothstep([from, to], x) {
@@ -543,7 +545,13 @@ export class Painter {
     const px = at.pxPerWorld * share * radius;
     if (isHidden(scene.target, at, px, near)) return;
     this.#light(facing, scene);
-    COLOUR.set(scene.bed);
+    // As in the shader, it has the colour of its disc where the gaps fall between pixels.
+    const hasGaps = isToCome ? 1 : smoothstep(GAPS_PX, at.pxPerWorld * radius * Math.abs(facing));
+    const colour = this.colours[i];
+    for (let k = 0; k < 3; k += 1) {
+      const root = (1 - hasGaps) * Math.sqrt(LINEAR[(colour >> (8 * k)) & 255]) + hasGaps * Math.sqrt(scene.bed[k]);
+      COLOUR[k] = root * root;
+    }
     const behind = smoothstep(INSIDE_FROM, -facing) * dim_backfaces;
     const value = lit(1, behind, isToCome ? Math.max(TO_COME, dim) : this.#fadeOf(i), scene.ground);
     this.#fill(scene, { at, px, near, value, rim: value, coreSq: Infinity });

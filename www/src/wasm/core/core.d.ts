@@ -18,7 +18,8 @@ import type {
 
 
 /**
- * A sampling session. Requests and answers are plain objects; columns are copies, three floats a vector.
+ * A sampling session. Requests and answers are plain objects; columns are copies, three floats a
+ * vector.
  */
 export class Core {
     free(): void;
@@ -48,26 +49,30 @@ export class Core {
      */
     digest(): string;
     /**
-     * Energy of each particle among its natural neighbours, over that of six at the ideal distance, as of the last report.
+     * Energy of each particle among its natural neighbours, over that of six at the ideal
+     * distance, as of the last report.
      */
     energy(): Float32Array<ArrayBuffer>;
     /**
-     * Positions from particle `from` on, where single precision does not hold them: in a box far from the origin. Elsewhere
-     * nothing.
+     * Positions from particle `from` on, where single precision does not hold them: in a box far
+     * from the origin. Elsewhere nothing.
      */
     exact_positions(from: number): Float64Array<ArrayBuffer>;
     /**
-     * Finds the box of the next run with these `Settings` and the creases in it, up to `budget` slices of the work: an
-     * `Answer` with `FieldAnswer` once it is known, nothing before. While a slider moves the box `only_grows`.
+     * Finds the box of the next run with these `Settings` and the creases in it, up to `budget`
+     * slices of the work: an `Answer` with `FieldAnswer` once it is known, nothing before. While a
+     * slider moves the box `only_grows`.
      */
     fit(settings: Record<string, number | string>, only_grows: boolean, budget: number): Answer<FieldAnswer, Fault> | undefined;
     /**
-     * Has the particles of the last run follow its surface to the present field, in the box that [`Core::fit`] has found: whether they can,
-     * and the run had these `Settings`. `is_closed`: no particle is born, and none dies but where it does not come to the surface.
+     * Has the particles of the last run follow its surface to the present field, in the box that
+     * [`Core::fit`] has found: whether they can, and the run had these `Settings`. `is_closed`: no
+     * particle is born, and none dies but where it does not come to the surface.
      */
     follow(settings: Record<string, number | string>, is_closed: boolean): boolean;
     /**
-     * Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is complete, nothing before.
+     * Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is
+     * complete, nothing before.
      */
     join(budget: number): MeshAnswer | undefined;
     /**
@@ -79,17 +84,19 @@ export class Core {
      */
     limit_memory(megabytes: number): void;
     /**
-     * Measures the particles, up to `budget` slices of the work: `Report` once it is complete, nothing before.
+     * Measures the particles, up to `budget` slices of the work: `Report` once it is complete,
+     * nothing before.
      */
     measure(budget: number): Report | undefined;
     /**
-     * Measures particles that something else has placed on the present surface, vectors of three floats: `Measures`. The columns of
-     * the last report are then theirs.
+     * Measures particles that something else has placed on the present surface, vectors of three
+     * floats: `Measures`. The columns of the last report are then theirs.
      */
     measure_placed(positions: Float32Array | number[], normals: Float32Array | number[], radii: Float32Array | number[], is_adaptive: boolean): Measures;
     /**
-     * The mesh as a file, with the record of what it was made from: `FileRequest`, up to `budget` slices of the work; its bytes once it is
-     * complete, undefined before; null for another extension or if it is too large.
+     * The mesh as a file, with the record of what it was made from: `FileRequest`, up to `budget`
+     * slices of the work; its bytes once it is complete, undefined before; null for another
+     * extension or if it is too large.
      */
     mesh_file(request: Partial<FileRequest>, budget: number): Uint8Array<ArrayBuffer> | null | undefined;
     /**
@@ -114,7 +121,8 @@ export class Core {
      */
     parents(from: number): Uint32Array<ArrayBuffer>;
     /**
-     * For each row, the first row of the same particle: one on a crease has a row on each side. Empty without creases.
+     * For each row, the first row of the same particle: one on a crease has a row on each side.
+     * Empty without creases.
      */
     particle(): Uint32Array<ArrayBuffer>;
     /**
@@ -134,7 +142,8 @@ export class Core {
      */
     radii(from: number): Float32Array<ArrayBuffer>;
     /**
-     * The record of what the particles were made from, for their files: `FileRecord`; null before the first run.
+     * The record of what the particles were made from, for their files: `FileRecord`; null before
+     * the first run.
      */
     record(): FileRecord | null;
     /**
@@ -150,22 +159,30 @@ export class Core {
      */
     segments(): Uint32Array<ArrayBuffer>;
     /**
-     * Changes the field: `FieldRequest` to an `Answer` with `FieldAnswer`. After an error the last good field stays.
+     * Changes the field: `FieldRequest` to an `Answer` with `FieldAnswer`. After an error the last
+     * good field stays.
      */
     set_field(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
-     * Changes the field to a model from points: the solved system as `Points.field` gives it, what `Points.info` says of it,
-     * `SolvedModel`, and a `FieldRequest`, of which the box and the pulls count; to an `Answer` with `FieldAnswer`. After an
-     * error the last good field stays.
+     * Changes the field to a function that takes the coordinates of up to 512 points and an array
+     * for f at each of them, to an `Answer` with `FieldAnswer`. Of the `FieldRequest` the box
+     * counts. Once the function has thrown it is not called again, and the run ends.
+     */
+    set_function(_function: (points: Float64Array, out: Float64Array) => void, request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
+    /**
+     * Changes the field to a model from points: the solved system as `Points.field` gives it, what
+     * `Points.info` says of it, `SolvedModel`, and a `FieldRequest`, of which the box and the
+     * pulls count; to an `Answer` with `FieldAnswer`. After an error the last good field stays.
      */
     set_points(system: Uint8Array | number[], about: SolvedModel, request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
-     * The fates of the slots, three bits each, from particle `from` on: six, or up to ten of an adaptive particle. Bit 30 marks a
-     * singular point nearby.
+     * The fates of the slots, three bits each, from particle `from` on: six, or up to ten of an
+     * adaptive particle. Bit 30 marks a singular point nearby.
      */
     slots(from: number): Uint32Array<ArrayBuffer>;
     /**
-     * Starts a run: `Settings`, of which what is missing has its default; to an `Answer` with `Start`.
+     * Starts a run: `Settings`, of which what is missing has its default; to an `Answer` with
+     * `Start`.
      */
     start(settings: Record<string, number | string>): Answer<Start, Fault>;
     /**
@@ -178,7 +195,8 @@ export class Core {
      */
     triangles(): Uint32Array<ArrayBuffer>;
     /**
-     * For the rows of particles on creases, which come first, the first row of the same particle; nothing without creases.
+     * For the rows of particles on creases, which come first, the first row of the same particle;
+     * nothing without creases.
      */
     twins(): Uint32Array<ArrayBuffer>;
     /**

@@ -216,6 +216,9 @@ export function fakeCore({
     measure_placed: () => {
       throw new Error('not here');
     },
+    set_function: () => {
+      throw new Error('not here');
+    },
     /** @param {number} budget */
     measure(budget) {
       calls.push('measure');

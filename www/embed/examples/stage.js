@@ -1,0 +1,33 @@
+// What three.js needs around an object: a light, a camera that fits it, and a canvas in an element.
+import { Box3, DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Sphere, WebGLRenderer } from 'three';
+
+/** @param {string} id  of the element @param {import('three').Object3D} object */
+export function show(id, object) {
+  const host = document.getElementById(id);
+  if (!host) return;
+  const renderer = new WebGLRenderer({ antialias: true, alpha: true });
+  renderer.setPixelRatio(devicePixelRatio);
+  renderer.setSize(host.clientWidth, host.clientHeight);
+  host.replaceChildren(renderer.domElement);
+
+  const scene = new Scene();
+  const light = new DirectionalLight(0xffffff, 2.2);
+  light.position.set(-1, -2, 3);
+  scene.add(object, new HemisphereLight(0xffffff, 0x667788, 1.6), light);
+  const { center, radius } = new Box3().setFromObject(object).getBoundingSphere(new Sphere());
+  const camera = new PerspectiveCamera(35, host.clientWidth / host.clientHeight, 0.1 * radius, 10 * radius);
+  camera.up.set(0, 0, 1);
+
+  // Seen from all around, or from one side for those who ask for less motion.
+  const isCalm = matchMedia('(prefers-reduced-motion: reduce)').matches;
+  renderer.setAnimationLoop((ms) => {
+    const angle = isCalm ? 0.6 : 0.6 + ms / 6000;
+    camera.position
+      .set(Math.cos(angle), Math.sin(angle), 0.55)
+      .multiplyScalar(3 * radius)
+      .add(center);
+    camera.lookAt(center);
+    renderer.render(scene, camera);
+    if (isCalm) renderer.setAnimationLoop(null);
+  });
+}

@@ -1,0 +1,215 @@
+/**
+ * The element `<marching-particles>`: a surface by one tag.
+ *
+ * @module
+ */
+import { InputError } from './errors.js';
+import { createView } from './view.js';
+
+/** @import { View, ViewState } from './view.js' */
+
+/**
+ * What the attributes that are settings are in the state.
+ * @type {Record<string, (value: string) => Record<string, number | string>>}
+ */
+const SETTINGS = {
+  count: (value) => ({ size_mode: 'count', count: numberOf('count', value) }),
+  radius: (value) => ({ size_mode: 'radius', radius_share: numberOf('radius', value) }),
+  method: (value) => ({ method: value }),
+  seed: (value) => ({ seed: numberOf('seed', value) }),
+  adaptive: () => ({ sampling: 'adaptive' }),
+};
+const VIEW = ['colour', 'draw', 'theme'];
+const TEXTS = ['formula', 'surface', 'params', ...VIEW, ...Object.keys(SETTINGS).filter((name) => name !== 'adaptive')];
+const FLAGS = ['adaptive', 'controls'];
+/** Time without a change of `params` after which a motion is over. */
+const STILL_MS = 250;
+
+const SHEET = `:host { display: block; position: relative; aspect-ratio: 4 / 3; overflow: hidden; }
+:host([hidden]) { display: none; }
+div { position: absolute; inset: 0; }
+:host(:not([controls])) div { pointer-events: none; }`;
+
+/** @param {string} name @param {string} value */
+function numberOf(name, value) {
+  const number = Number(value);
+  if (value.trim() === '' || !Number.isFinite(number)) throw new InputError(`${name}="${value}": a number.`);
+  return number;
+}
+
+/** Values of parameters, as in `a=0.5, b=2`. @param {string} text */
+function paramsOf(text) {
+  const pairs = text.split(',').filter((part) => part.trim() !== '');
+  return Object.fromEntries(
+    pairs.map((pair) => {
+      const [name, value, ...more] = pair.split('=').map((part) => part.trim());
+      if (!value || more.length > 0) throw new InputError(`params="${text}": names and numbers, as in a=0.5, b=2.`);
+      return [name, numberOf(`params ${name}`, value)];
+    }),
+  );
+}
+
+// Node, which has no elements, may import what imports this.
+const Base = globalThis.HTMLElement ?? class {};
+
+/** A surface, sampled and drawn while it is near the visible part of the page. */
+export class MarchingParticles extends Base {
+  static observedAttributes = [...TEXTS, ...FLAGS];
+
+  #host;
+  /** @type {View | null} */
+  #view = null;
+  #isDue = false;
+  #visible;
+  /** The timer that ends a motion. @type {ReturnType<typeof setTimeout> | undefined} */
+  #still;
+
+  constructor() {
+    super();
+    const root = this.attachShadow({ mode: 'open' });
+    const sheet = new CSSStyleSheet();
+    sheet.replaceSync(SHEET);
+    root.adoptedStyleSheets = [sheet];
+    this.#host = root.appendChild(document.createElement('div'));
+    this.#visible = new IntersectionObserver((entries) => {
+      if (entries.some(({ isIntersecting }) => isIntersecting)) this.#open();
+    });
+  }
+
+  /** The picture; null before it has come into sight. */
+  get view() {
+    return this.#view;
+  }
+
+  /** The last report; null while particles are placed. */
+  get report() {
+    return this.#view?.report ?? null;
+  }
+
+  /** The mesh as a file. @param {import('./index.js').Format} format */
+  async toFile(format) {
+    if (!this.#view) throw new InputError('toFile(): the element has not come into sight yet.');
+    return this.#view.toFile(format);
+  }
+
+  connectedCallback() {
+    if (!this.hasAttribute('role')) this.setAttribute('role', 'img');
+    this.#name();
+    this.#visible.observe(this);
+  }
+
+  disconnectedCallback() {
+    this.#visible.disconnect();
+    clearTimeout(this.#still);
+    this.#view?.destroy();
+    this.#view = null;
+    this.#host.replaceChildren();
+  }
+
+  /** @param {string} name @param {string | null} _before @param {string | null} value */
+  attributeChangedCallback(name, _before, value) {
+    this.#name();
+    if (name === 'controls' || !this.#view || this.#isDue) return;
+    if (name === 'params' && value !== null) {
+      this.#try(() => this.#move(paramsOf(value)));
+      return;
+    }
+    // Attributes that change together are one change.
+    this.#isDue = true;
+    queueMicrotask(() => {
+      this.#isDue = false;
+      this.#try(() => this.#view?.set(this.#state()));
+    });
+  }
+
+  /** Names the picture for those who do not see it, where the page does not. */
+  #name() {
+    const text = this.getAttribute('formula') ?? this.getAttribute('surface');
+    if (!this.hasAttribute('aria-labelledby') && text) this.ariaLabel ??= text;
+  }
+
+  /** Has the particles follow the surface to other parameters. @param {Record<string, number>} params */
+  #move(params) {
+    const give = (/** @type {boolean} */ live) => {
+      for (const [name, value] of Object.entries(params)) this.#view?.setParameter(name, value, { live });
+    };
+    give(true);
+    clearTimeout(this.#still);
+    this.#still = setTimeout(() => give(false), STILL_MS);
+    return undefined;
+  }
+
+  #open() {
+    this.#visible.disconnect();
+    this.#try(() => {
+      this.#view = createView(this.#host, this.#state());
+      for (const name of /** @type {const} */ (['progress', 'report', 'error']))
+        this.#view.on(name, (/** @type {unknown} */ detail) => this.#tell(name, detail));
+      return undefined;
+    });
+  }
+
+  /** @param {string} name @param {unknown} detail */
+  #tell(name, detail) {
+    this.dispatchEvent(new CustomEvent(name, { detail }));
+  }
+
+  /**
+   * Does what an attribute asks for. What is wrong with the attribute is an event; what is wrong with
+   * the surface the picture tells itself.
+   * @param {() => Promise<unknown> | undefined} act
+   */
+  async #try(act) {
+    try {
+      await act();
+    } catch (error) {
+      if (error instanceof InputError) this.#tell('error', error);
+    }
+  }
+
+  /** What the attributes say. @returns {ViewState} */
+  #state() {
+    /** @type {ViewState & {settings: object, view: Record<string, string>}} */
+    const state = { settings: {}, view: {} };
+    const params = this.getAttribute('params');
+    if (params !== null) state.parameters = paramsOf(params);
+    for (const name of /** @type {const} */ (['surface', 'formula'])) {
+      const value = this.getAttribute(name);
+      if (value !== null) state[name] = value;
+    }
+    for (const [name, settingsOf] of Object.entries(SETTINGS)) {
+      const value = this.getAttribute(name);
+      if (value !== null) Object.assign(state.settings, settingsOf(value));
+    }
+    for (const name of VIEW) {
+      const value = this.getAttribute(name);
+      if (value !== null) state.view[name] = value;
+    }
+    return state;
+  }
+}
+
+// Each attribute is a property, too: a text or null, or whether it is there.
+for (const name of TEXTS)
+  Object.defineProperty(MarchingParticles.prototype, name, {
+    get() {
+      return this.getAttribute(name);
+    },
+    set(value) {
+      if (value === null || value === undefined) this.removeAttribute(name);
+      else this.setAttribute(name, String(value));
+    },
+  });
+for (const name of FLAGS)
+  Object.defineProperty(MarchingParticles.prototype, name, {
+    get() {
+      return this.hasAttribute(name);
+    },
+    set(value) {
+      this.toggleAttribute(name, Boolean(value));
+    },
+  });
+
+// A second version on the page leaves the element to the first.
+if (globalThis.customElements && !customElements.get('marching-particles'))
+  customElements.define('marching-particles', MarchingParticles);

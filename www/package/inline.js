@@ -1,0 +1,15 @@
+/**
+ * The package in one file, with the modules of the core in it: for pages that load it from another
+ * host, or may not start workers. Everything is sampled in the thread that imports it, in slices.
+ *
+ * @module
+ */
+import core from '../src/wasm/core/core_bg.wasm';
+import points from '../src/wasm/points/points_bg.wasm';
+import { createSampler } from './client.js';
+import { openHere } from './here.js';
+
+export * from './errors.js';
+
+const open = openHere(async (name) => ({ core, points })[name]);
+export const sample = createSampler(open, open);

@@ -1,0 +1,67 @@
+import type { Bounds, Format, Progress, Report } from './index.js';
+
+export { FormulaError, InputError, NoSurfaceError, WorkerError } from './index.js';
+
+/** What is sampled and how it is drawn; what is left out stays as it is. */
+export interface ViewState {
+  /** a surface of the gallery, such as `gyroid`, or a model from points */
+  surface?: string;
+  formula?: string;
+  parameters?: Record<string, number>;
+  /** null: a box that fits the surface */
+  bounds?: Bounds | null;
+  /** hides what lies at normal · p > offset */
+  plane?: { normal: [number, number, number]; offset: number } | null;
+  /** settings by their names, such as `{size_mode: 'count', count: 5000, method: 'refined'}` */
+  settings?: Record<string, number | string>;
+  view?: {
+    colour?: string;
+    draw?: 'discs' | 'spheres' | 'mesh';
+    theme?: 'auto' | 'light' | 'dark';
+    [option: string]: unknown;
+  };
+}
+export interface Listeners {
+  progress: (progress: Progress) => void;
+  report: (report: Report) => void;
+  error: (error: Error) => void;
+}
+export interface Particles {
+  count: number;
+  positions: Float32Array;
+  normals: Float32Array;
+  radii: Float32Array;
+  levels: Uint32Array;
+}
+export interface View {
+  /** the report on the first surface, once its picture is complete; rejected as `set` is */
+  readonly ready: Promise<Report | null>;
+  /** a copy of the whole state */
+  readonly state: ViewState;
+  /** the last report; null while particles are placed */
+  readonly report: Report | null;
+  /** changes a part of the state; rejected with the error of a formula, or if there is no surface */
+  set(patch: ViewState): Promise<Report | null>;
+  /** moves a slider: particles follow the surface while it is `live`; call once more without it at the end */
+  setParameter(name: string, value: number, how?: { live?: boolean }): void;
+  run(): Promise<Report | null>;
+  stop(): Promise<Report | null>;
+  /** copies of the columns */
+  particles(): Particles;
+  /** calls a function with what happens, and returns what ends that */
+  on<Name extends keyof Listeners>(name: Name, listener: Listeners[Name]): () => void;
+  /** has the camera fit the surface */
+  fit(): void;
+  lookFrom(side: 'front' | 'right' | 'top' | 'isometric'): void;
+  /** a PNG, in pixels of the picture where no size is given */
+  picture(size?: { width?: number; height?: number; transparent?: boolean }): Promise<Blob>;
+  /** the mesh of the particles as a file */
+  toFile(format: Format): Promise<Uint8Array<ArrayBuffer>>;
+  /** the state as the fragment of a link to the page of Marching Particles */
+  link(): Promise<string>;
+  /** frees the workers, the graphics device and the canvas */
+  destroy(): void;
+}
+
+/** Draws a surface in an element, which it fills, and samples it in a worker. */
+export function createView(host: HTMLElement, state?: ViewState): View;
