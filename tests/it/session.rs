@@ -1,9 +1,13 @@
 //! Tests of the session: fields, runs and reports.
 
+use marching_particles::field::BatchField;
 use marching_particles::field::formula::Parameter;
+use marching_particles::glam::DVec3;
 use marching_particles::math::Bounds;
+use marching_particles::sample;
 use marching_particles::sampler::{GapPolicy, Method, Phase, Settings, SizeMode, StopReason};
 use marching_particles::session::{FaultKind, FieldRequest, Session, describe};
+use std::sync::Arc;
 
 fn request(text: &str) -> FieldRequest {
     serde_json::from_str(text).expect("a field request")
@@ -739,4 +743,40 @@ fn particles_placed_elsewhere_are_measured_as_those_of_a_run_are() {
         assert_eq!(placed.places, report.measures.places);
         assert!(placed.quality.is_some_and(|figures| figures.coverage.uncovered < 0.2));
     }
+}
+
+/// The field of a function that fails where `fails` holds.
+fn ball(fails: fn(DVec3) -> bool) -> impl marching_particles::Field + 'static {
+    BatchField::new(move |points: &[DVec3], f: &mut [f64]| {
+        f.iter_mut().zip(points).for_each(|(f, p)| *f = p.length() - 1.0);
+        if points.iter().any(|&p| fails(p)) { Err("out of reach") } else { Ok(()) }
+    })
+}
+
+#[test]
+fn a_function_gives_the_particles_that_sampling_it_gives() {
+    let settings = Settings::with_count(500);
+    let direct = sample(ball(|_| false), &settings).expect("a ball");
+    let mut session = Session::new();
+    for bounds in [None, Some(Bounds::cube(f64::NAN))] {
+        let taken = session.set_function(Arc::new(ball(|_| false)), bounds);
+        assert_eq!(
+            taken.map(|_| ()).map_err(|fault| fault.kind),
+            bounds.map_or(Ok(()), |_| Err(FaultKind::Box))
+        );
+    }
+    run(&mut session, &settings, 50);
+    assert_eq!(session.run.particles().digest(), direct.particles().digest());
+    assert!(session.record(None).is_none(), "no record can hold a function");
+    session.set_field(&request(r#"{"formula":"x^2+y^2+z^2=1"}"#)).expect("a formula in its place");
+    run(&mut session, &settings, 50);
+    assert!(session.record(None).is_some());
+}
+
+#[test]
+fn a_function_that_fails_ends_its_run() {
+    let mut session = Session::new();
+    session.set_function(Arc::new(ball(|p| p.length() > 1.5)), Some(Bounds::cube(1.2))).expect("a box");
+    assert_eq!(run(&mut session, &Settings::with_count(500), 50), StopReason::Cancelled);
+    assert!(session.run.check_field().is_err());
 }
