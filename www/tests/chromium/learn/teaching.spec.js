@@ -45,7 +45,7 @@ test('keys and clickers go from stop to stop and blank the wall, and each stop h
   await expect(level).toHaveValue('12');
   expect((await axe(page)).violations.map(({ id }) => id)).toEqual([]);
   await page.keyboard.press('Escape');
-  await expect(page.locator('.chapter:visible')).toHaveCount(12);
+  await expect(page.locator('.chapter:visible')).toHaveCount(13);
   await expect.poll(() => page.evaluate(() => location.hash)).toBe('#predict-ring');
   clean();
 });
@@ -142,7 +142,7 @@ test('the hand-out has blanks for the predictions, and every answer on its last 
   await expect(page.locator('html')).toHaveAttribute('data-printed', '', { timeout: 60_000 });
   await expect(page.locator('.answers')).toBeHidden();
   await page.emulateMedia({ media: 'print' });
-  await expect(page.locator('.answer-list > li')).toHaveCount(11);
+  await expect(page.locator('.answer-list > li')).toHaveCount(12);
   await expect(page.locator('.answer-list')).toContainText('Ring 12 of this surface has');
   await expect(page.locator('.answer-list')).not.toContainText('has not been asked');
   for (const still of await page.locator('.what-if-stills img').all())
@@ -375,10 +375,10 @@ test('the worst sampling is looked for by keys, and the best and the worst are k
   const { clean } = await openLesson(page, { hash: '#what-if-fail' });
   const bench = page.locator('#bench');
   const kept = (/** @type {string} */ name) => bench.getByRole('button', { name });
-  const verdict = bench.locator('.verdict');
+  const [said, verdict] = [bench.locator('.said'), bench.locator('.verdict')];
   await expect(kept('Best so far')).toContainText('Queue, 0.7 · 2r, ten steps, seed 0', { timeout: 60_000 });
   await expect(kept('Worst so far')).toContainText('Stack, 0.7');
-  await expect(verdict).toContainText(
+  await expect(said).toContainText(
     /Worse\. Here 7\d\.\d % have six neighbours, in the sampling of the lesson 89\.\d %\./,
   );
   await expect(verdict.getByRole('listitem')).toHaveText(
@@ -392,7 +392,7 @@ test('the worst sampling is looked for by keys, and the best and the worst are k
   await kept('Best so far').click();
   await expect(bench.locator('figcaption')).toHaveText([/^Stack, 0\.4/, /^Queue, 0\.7/]);
   await bench.getByLabel('Relaxation', { exact: true }).selectOption('100');
-  await expect(verdict).toContainText('No difference beyond chance.', { timeout: 60_000 });
+  await expect(said).toContainText('No difference beyond chance.', { timeout: 60_000 });
   await expect(verdict).toContainText('A hundred steps. It does no harm beyond chance here.');
   await kept('Worst so far').click();
   await expect(bench.locator('figcaption')).toHaveText([/^Queue, 0\.7 · 2r, ten/, /^Stack, 0\.4/]);
