@@ -13,7 +13,6 @@ import { written } from './verdict.js';
  * @property {string} stop
  * @property {readonly [string, string]} names
  * @property {Deciding} [purpose]  the figure that the purpose asks for; none where it is judged by eye alone
- * @property {Record<Deciding, 'A' | 'B'>} [better]  the side on which each figure is better, be it by chance
  * @property {(lab: Lab) => Promise<[LabRun, LabRun]>} make
  * @property {(scores: readonly Score[]) => string[]} words  why one is better, or neither
  */
@@ -47,7 +46,6 @@ export const PAIRS = {
     stop: 'predict-last',
     names: ['A, a stack after ten steps', 'B, a queue before any'],
     purpose: 'six',
-    better: { six: 'B', hole: 'A', pair: 'A' },
     make: async (lab) => {
       const own = lab.on(TORUS);
       return [await own.run({ order: 'stack' }), await own.run({ relax_steps: 0 })];
@@ -61,7 +59,6 @@ export const PAIRS = {
     stop: 'predict-few',
     names: ['A, a queue before any', 'B, a stack after ten steps'],
     purpose: 'hole',
-    better: { six: 'A', hole: 'B', pair: 'B' },
     make: async (lab) => {
       const own = lab.on(subjectOf(undefined).surface);
       return [
@@ -78,7 +75,6 @@ export const PAIRS = {
     stop: 'predict-chance',
     names: ['A, seed 1', 'B, seed 3'],
     purpose: 'pair',
-    better: { six: 'B', hole: 'A', pair: 'B' },
     make: async (lab) => {
       const own = lab.on(TORUS);
       return [await own.run({ seed: 1 }), await own.run({ seed: 3 })];
@@ -89,20 +85,6 @@ export const PAIRS = {
     ],
   },
 };
-
-/** What is guessed by eye. */
-export const BY_EYE = [
-  { value: 'a', label: 'Sampling A' },
-  { value: 'b', label: 'Sampling B' },
-  { value: 'alike', label: 'They cannot be told apart' },
-];
-const NAMES = { six: 'six neighbours', hole: 'the largest hole', pair: 'the closest pair' };
-
-/** The figures that may decide a pair, each with the side that is better by it. @param {keyof typeof PAIRS} which */
-export const figuresOf = (which) => [
-  ...DECIDING.map((key) => ({ value: key, label: `${PAIRS[which].better?.[key]}, by ${NAMES[key]}` })),
-  BY_EYE[2],
-];
 
 /**
  * Which of a pair is better, and by which figure.

@@ -4,7 +4,6 @@ import { distance, triple } from '../engine/vector.js';
 import { inRadii } from '../figures/words.js';
 import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
 import { adaptiveRun } from './adaptive.js';
-import { BY_EYE, figuresOf, judgePair } from './judged.js';
 import { asFineEverywhere, costOf, openBend, RING, ringsOf, scoresOfRest, widestHole } from './measure.js';
 import { verdictOf } from './score.js';
 import { written } from './verdict.js';
@@ -30,20 +29,40 @@ const FACTORS = [1.3, 2, 4];
 /** Below this factor all sizes are called alike. */
 const EVEN = 1.05;
 
-/** A pair that is judged by eye, and then by its figures. @param {'weigh' | 'few' | 'chance'} which @returns {Prediction} */
-const judged = (which) => ({
+/** Two samplings beside each other. */
+const BY_EYE = [
+  { value: 'a', label: 'Sampling A' },
+  { value: 'b', label: 'Sampling B' },
+  { value: 'alike', label: 'They cannot be told apart' },
+];
+
+/** @param {'first' | 'weigh' | 'few' | 'chance'} which @returns {Prediction['answer']} */
+const judging = (which) => async (lab) => (await import('./judged.js')).judgePair(lab, which);
+
+/**
+ * A pair that is judged by eye, and then by its figures.
+ * @param {'weigh' | 'few' | 'chance'} which
+ * @param {readonly string[]} sides  that are better by six neighbours, hole and pair, be it by chance
+ * @returns {Prediction}
+ */
+const judged = (which, [six, hole, pair]) => ({
   kind: 'choice',
   eye: BY_EYE,
-  choices: figuresOf(which),
-  answer: (lab) => judgePair(lab, which),
+  choices: [
+    { value: 'six', label: `${six}, by six neighbours` },
+    { value: 'hole', label: `${hole}, by the largest hole` },
+    { value: 'pair', label: `${pair}, by the closest pair` },
+    BY_EYE[2],
+  ],
+  answer: judging(which),
 });
 
 /** By the id of the question in the page's markup. @type {Record<string, Prediction>} */
 export const PREDICTIONS = {
-  'predict-first': { kind: 'choice', choices: BY_EYE, answer: (lab) => judgePair(lab, 'first') },
-  'predict-last': judged('weigh'),
-  'predict-few': judged('few'),
-  'predict-chance': judged('chance'),
+  'predict-first': { kind: 'choice', choices: BY_EYE, answer: judging('first') },
+  'predict-last': judged('weigh', ['B', 'A', 'A']),
+  'predict-few': judged('few', ['A', 'B', 'B']),
+  'predict-chance': judged('chance', ['B', 'A', 'B']),
   'predict-cost': {
     kind: 'choice',
     choices: [

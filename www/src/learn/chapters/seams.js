@@ -121,8 +121,17 @@ export async function seams({ lab, stops }) {
   const step = () => Math.max(0, range.place.value - front);
   /** Those of the states so far, in their order. @type {Signal<Score[]>} */
   const scores = signal([]);
-  scoresOf(own, course, (found) => {
-    scores.value = found;
+  // The states are measured as far as they are shown.
+  const measure = latest(async (/** @type {number} */ count, isOld) => {
+    for (const [k, state] of course.states.slice(0, count).entries()) {
+      const known = scores.peek()[k];
+      const score = known ?? (await scoreOf(own, state, { evaluations: 0, isAdaptive: false }));
+      if (isOld()) return;
+      if (!known) scores.value = [...scores.peek(), score];
+    }
+  });
+  live(picture.element, () => {
+    if (isFree()) void measure(isRelaxing() ? course.states.length : 1);
   });
   live(picture.element, () => {
     const place = Math.min(range.place.value, limit());
@@ -199,19 +208,6 @@ function marksAt({ placed, found, front, states }, place, { picked, isFree, isRe
   if (picked !== null) marks.push(markOf(now, picked, 'dot'));
   const next = states[place - front + 1];
   return place >= front && isRelaxing && next ? [...marks, ...arrowsOf(states[place - front], next)] : marks;
-}
-
-/**
- * Measures the states one after the other.
- * @param {Lab} own @param {Course} course @param {(scores: Score[]) => void} tell  is told all so far
- */
-async function scoresOf(own, { run, states }, tell) {
-  /** @type {Score[]} */
-  const found = [];
-  for (const state of states) {
-    found.push(await scoreOf(own, state, { evaluations: run.placing, isAdaptive: false }));
-    tell([...found]);
-  }
 }
 
 /** @param {LessonParticles} particles @param {number} i @param {Mark['kind']} kind @returns {Mark} */

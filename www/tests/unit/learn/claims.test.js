@@ -248,11 +248,11 @@ test('the learner judges four pairs, and the runs say which is better for what, 
     const answer = await PREDICTIONS[stop].answer(lab, null);
     expect([answer.right, answer.eye], stop).toEqual([right, eye]);
     // The choices name the side that has the better figure, be it by chance.
-    const { better } = PAIRS[which];
     const [one, other] = await scoresOf(which);
     for (const key of DECIDING) {
       const isFirst = Number(one[key]) < Number(other[key]) === (rowOf(key).worse === 'above');
-      expect(better?.[key], `${stop}, ${key}`).toBe(isFirst ? 'A' : 'B');
+      const choice = PREDICTIONS[stop].choices?.find(({ value }) => value === key);
+      expect(choice?.label, stop).toMatch(isFirst ? /^A, by / : /^B, by /);
     }
   }
   says('For the two other purposes A would be the better one, by a smaller hole and a wider closest pair.');
