@@ -65,7 +65,7 @@ export function createScorecard(show) {
           ),
           h('td', { class: 'ideal' }, row.ideal === null ? MISSING : row.write(row.ideal)),
           scores.map((_, side) => cellOf(scores, row, side, side === best)),
-          h('td', { class: 'ideal' }, chance === null ? MISSING : (row.writeChance ?? row.write)(chance)),
+          h('td', { class: 'ideal chance' }, chance === null ? MISSING : (row.writeChance ?? row.write)(chance)),
         );
       });
       const heads = ['Ideal', ...names, 'Chance'].map((name) => h('th', { scope: 'col' }, name));
