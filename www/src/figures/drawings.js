@@ -40,13 +40,22 @@ export function tangentPlane(opened, moment) {
       const other = dot(frame.normal, normals.subarray(3 * particle, 3 * particle + 3)) <= 0;
       svg.append(ring(other ? 'disc other' : 'disc', at(particle), 1));
     }
+    const added = children.flatMap((child) => {
+      const place = child.fate === 'added' ? placeOf(child, plane, at) : null;
+      return place ? [{ place, particle: child.particle }] : [];
+    });
+    for (const { place } of added) svg.append(ring('disc', place, 1));
     svg.append(ring('circle', [0, 0], 2));
     for (const child of children) svg.append(slotGroup(child, slotMarks(child, child.slot === slot && isNow)));
     for (const child of children) svg.append(slotGroup(child, childMarks(child, plane, at)));
     const shapes = children.map((child) => placeOf(child, plane, at)).filter((shape) => shape !== null);
     const taken = [...shapes, ...children.map(numberPlace)];
-    for (const { particle } of gathered?.neighbours ?? [])
+    for (const { particle } of gathered?.neighbours ?? []) {
+      svg.append(ring('centre', at(particle), 0.08));
       svg.append(label('number', clear(at(particle), taken), formatCount(particle)));
+    }
+    for (const { place, particle } of added)
+      if (particle !== null) svg.append(label('number', clear(place, taken), formatCount(particle)));
     const now = slot === null ? null : children[slot];
     if (now?.compared && moment.event.type === 'compared')
       svg.append(ring('tolerance', inPlane(plane, now.compared.position), now.compared.limit / subject.radius));
@@ -235,7 +244,7 @@ export const ASIDE = 0.02;
  * @param {Pick<Profile, 'newtonAside'>} profile
  */
 export const asideWords = ({ newtonAside }) =>
-  newtonAside > ASIDE ? `, ${formatFixed(newtonAside, 2)} r beside this plane: the cross is its shadow` : '';
+  newtonAside > ASIDE ? `, ${formatFixed(newtonAside, 2)} r in front of this drawing or behind it` : '';
 
 /** @param {Opened} opened @param {Profile} profile @param {Child} child */
 function profileWords({ subject }, profile, child) {

@@ -173,7 +173,7 @@ function tellPush(event, radius) {
     case 'start':
       return event.tangent === null
         ? `The child of slot ${event.slot} starts on the circle of its parent. There its radius would be ${inRadii(event.radius, radius)}.`
-        : `The child of slot ${event.slot} starts beside the last one, towards the point I on that one’s circle. There its radius would be ${inRadii(event.radius, radius)}.`;
+        : `The child of slot ${event.slot} starts on the circle of its parent, beside the last child. There its radius would be ${inRadii(event.radius, radius)}.`;
     case 'push':
       return `The child of slot ${event.slot} is pushed away from its parent, to where its radius is ${inRadii(event.radius, radius)}.`;
     case 'push_on_circle':

@@ -10,7 +10,7 @@ import { PARTICLES } from './lab.js';
 export const LAWS = [
   { value: 'sum_of_curvatures', label: 'Sum of the curvatures, as in the paper' },
   { value: 'max_curvature', label: 'The stronger curvature' },
-  { value: 'chord_error', label: 'Gap to the triangles' },
+  { value: 'chord_error', label: 'Gap between surface and mesh' },
 ];
 /** Least and largest radius, over that of even sampling with as many particles. */
 const [LEAST, LARGEST] = [0.5, 2.2];

@@ -6,6 +6,9 @@ import { signal } from '@preact/signals-core';
  * @import { Guessed } from './types.js'
  */
 
+/** The name under which the guess by eye of a question is kept. @param {string} stop */
+export const eyeOf = (stop) => `${stop}-eye`;
+
 /** The predictions that were made. A figure shows what would give an answer away only after its prediction. */
 export class Stops {
   /** @type {Map<string, Signal<boolean>>} */
@@ -23,8 +26,9 @@ export class Stops {
 
   /**
    * The present entries of a learner, by the stop.
-   * @type {Map<string, { question: string, get: () => string | number | null, reveal: () => Promise<void>,
-   *   ask: () => Promise<string> }>}
+   * @type {Map<string, { question: string, get: () => string | number | null, look: () => boolean,
+   *   reveal: () => Promise<void>, ask: () => Promise<string> }>} `look` shows what comes before the answer, if it is not
+   *   shown yet
    */
   entries = new Map();
 

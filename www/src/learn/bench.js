@@ -57,7 +57,7 @@ export function createBench(host, lab, { setup: first = setupOf(COMMON[0].id), l
     // What is taken off the page ends, so it is made anew.
     fail = module?.createFail(lab, { choose, isLocked: locks.includes('right') }) ?? null;
     look.textContent = words;
-    fill(above, fail?.kept);
+    fill(above, fail?.kept, fail?.said);
     fill(below, fail?.verdict);
     if (fail) {
       follow = fail.follow;
@@ -113,7 +113,7 @@ export function createBench(host, lab, { setup: first = setupOf(COMMON[0].id), l
       const { runs, scores } = pair;
       const whatIf = whatIfOf(setup.what);
       const names = sidesOf(whatIf, [setup.left, setup.right]);
-      const sides = (runs ?? []).map((run, k) => ({ label: names[k].label, run, score: scores?.[k] }));
+      const sides = (runs ?? []).map((run, k) => ({ label: names[k].label, run, score: scores()?.[k] }));
       const all = [...(fail?.runs() ?? []), ...sides];
       return all.filter(({ run }, k) => all.findIndex((one) => one.run === run) === k);
     },

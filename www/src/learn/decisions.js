@@ -33,10 +33,10 @@ export const PATCHES = [
       parameters: [],
       bounds: { min: [-1.1, -1.1, -0.6], max: [1.1, 1.1, 1.1] },
     },
-    radius: 0.27,
+    radius: 0.3,
     seed: [0, 0, 1],
     isAtSeam: true,
-    ends: 'The front has met itself, out of step: a seam begins here. On a cap a ring has no room for six more than the one before.',
+    ends: 'The front has met itself, out of step. On a cap a ring has no room for six more than the one before.',
   },
 ];
 
@@ -125,7 +125,7 @@ export function objection({ subject, positions }, { compared, verdict }, said) {
     const nearest = `${name(particle)} lies ${far(particle)} from this child`;
     return said.fate === 'added' || said.particle === null
       ? `${nearest}, within ${limit}. The two correspond, so nothing is added.`
-      : `${nearest}, and ${far(said.particle)} lie between it and particle ${formatCount(said.particle)}. The nearest one counts.`;
+      : `${nearest}, particle ${formatCount(said.particle)} ${far(said.particle)} from it. The nearest one counts.`;
   }
   if (said.particle === null) return `No particle lies within ${limit} of this child.`;
   return `${name(said.particle)} lies ${far(said.particle)} from this child, and only within ${limit} do two correspond. Nothing that was there before does, so the child is new.`;

@@ -104,7 +104,9 @@ export function createFail(lab, { choose, isLocked }) {
       ),
     ),
   );
-  const verdict = h('div', { class: 'verdict', role: 'status' });
+  /** What is worse, beside the controls, and below the pictures why. */
+  const said = h('div', { class: 'said', role: 'status' });
+  const verdict = h('div', { class: 'verdict' });
   return {
     /** The two that are kept, with names. */
     runs: () =>
@@ -114,18 +116,20 @@ export function createFail(lab, { choose, isLocked }) {
       h('p', { class: 'knob' }, 'A particle within ', number, ' · 2r of a child’s place counts as the child.'),
     ],
     kept: keptRow,
+    said,
     verdict,
     /** @param {Setup} setup */
     follow({ right }) {
       own.value = right;
       for (const [k, knob] of knobs.entries()) knob?.set(partsOf(right)[k]);
+      fill(said);
       fill(verdict);
     },
     /** The seed of a place that is pressed. @param {readonly number[]} place */
     seed: (place) => turn(SEED, seedAt(place)),
     /** Measures what is shown, and says why it is as it is. @param {Setup} setup */
     async tell({ left, right }) {
-      fill(verdict, h('p', { class: 'figure-status' }, 'Each choice is tried with the others put back'));
+      fill(said, h('p', { class: 'figure-status' }, 'Each choice is tried with the others put back'));
       try {
         const usual = await tries.take(USUAL);
         for (const value of [left, ...Object.values(keptSides(lab))]) if (value) await tries.take(value);
@@ -140,9 +144,10 @@ export function createFail(lab, { choose, isLocked }) {
                 told.map((one) => blameItem(mine.score, one)),
               )
             : null;
-        fill(verdict, verdictWords(mine, usual), list);
+        fill(said, verdictWords(mine, usual));
+        fill(verdict, list);
       } catch (error) {
-        if (own.peek() === right) fill(verdict, reasonOf(error));
+        if (own.peek() === right) fill(said, reasonOf(error));
       }
     },
   };

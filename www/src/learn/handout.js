@@ -14,7 +14,7 @@ import { PREDICTIONS } from './predictions.js';
 /** After so many frames a picture has turned. */
 const FRAMES = 60;
 /** The questions whose figure withholds something until they are answered: it is shown with the answer. */
-const WITHHELD = ['predict-cost', 'predict-ring', 'predict-rest'];
+const WITHHELD = ['predict-cost', 'predict-ring'];
 
 /**
  * @param {HTMLElement} host  the last page

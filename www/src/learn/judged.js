@@ -1,15 +1,18 @@
-/** The pairs of samplings that the learner judges: at the beginning by their pictures, at the end with figures. */
-import { scoreAtEnd, verdictOf } from './score.js';
+/** The pairs of samplings that the learner judges: the first by eye, the last ones by eye and then by their figures. */
+import { formatCount } from '../ui/format.js';
+import { chanceOf, DECIDING, rowOf, scoreAtEnd, verdictOf } from './score.js';
+import { subjectOf } from './surface.js';
 import { written } from './verdict.js';
 
 /** @import { FormulaSurface } from '../ui/types.js' */
 /** @import { Answer, Lab, LabRun, Score } from './types.js' */
 
+/** @typedef {typeof DECIDING[number]} Deciding */
 /**
  * @typedef {object} Judged
  * @property {string} stop
  * @property {readonly [string, string]} names
- * @property {boolean} hasFigures  whether the figures are there, too
+ * @property {Deciding} [purpose]  the figure that the purpose asks for; none where it is judged by eye alone
  * @property {(lab: Lab) => Promise<[LabRun, LabRun]>} make
  * @property {(scores: readonly Score[]) => string[]} words  why one is better, or neither
  */
@@ -20,54 +23,78 @@ export const TORUS = {
   parameters: [],
   bounds: { min: [-1.2, -1.2, -0.5], max: [1.2, 1.2, 0.5] },
 };
+/** What chance makes in the share with six neighbours. @param {readonly Score[]} scores */
+const chanceWords = (scores) => rowOf('six').writeChance?.(Number(chanceOf(rowOf('six'), scores)));
 
-/** @type {Record<'first' | 'weigh' | 'chance', Judged>} */
+/** Particles of the pair with few. */
+const FEW = 200;
+
+/** @type {Record<'first' | 'weigh' | 'few' | 'chance', Judged>} */
 export const PAIRS = {
   first: {
     stop: 'predict-first',
-    names: ['A, a stack', 'B, a queue'],
-    hasFigures: false,
+    names: ['A', 'B'],
     make: async (lab) => [await lab.run({ order: 'stack' }), await lab.run({}, { keep: true })],
     words: ([a, b]) => [
-      `Of the particles of B ${written('six', b)} have six neighbours, of those of A ${written('six', a)}.`,
-      'A has seams all over, with holes along them. The rest of the lesson is about where seams come from, and at the end you judge again.',
+      `Of the particles of B ${written('six', b)} have six neighbours, of those of A ${written('six', a)}: the coloured ones have more or fewer.`,
+      Number(a.count) < Number(b.count)
+        ? `A leaves more of the surface bare, but only because it has fewer discs, ${formatCount(a.count)} against ${formatCount(b.count)}.`
+        : '',
     ],
   },
   weigh: {
     stop: 'predict-last',
     names: ['A, a stack after ten steps', 'B, a queue before any'],
-    hasFigures: true,
+    purpose: 'six',
     make: async (lab) => {
       const own = lab.on(TORUS);
       return [await own.run({ order: 'stack' }), await own.run({ relax_steps: 0 })];
     },
     words: ([a, b]) => [
-      `The largest hole and the closest pair speak for A. But ${written('six', b)} of B have six neighbours, and ${written('six', a)} of A, a difference beyond chance; so order decides.`,
-      'Ten steps of relaxation would shrink the hole of B. They cannot give A the order that its seams have cost.',
+      `The pattern is regular where particles have six neighbours: ${written('six', b)} against ${written('six', a)}, and chance makes ${chanceWords([a, b])}.`,
+      'For the two other purposes A would be the better one, by a smaller hole and a wider closest pair.',
+    ],
+  },
+  few: {
+    stop: 'predict-few',
+    names: ['A, a queue before any', 'B, a stack after ten steps'],
+    purpose: 'hole',
+    make: async (lab) => {
+      const own = lab.on(subjectOf(undefined).surface);
+      return [
+        await own.run({ relax_steps: 0, seed: 3 }, { particles: FEW }),
+        await own.run({ order: 'stack', seed: 2 }, { particles: FEW }),
+      ];
+    },
+    words: ([a, b]) => [
+      `A part of the surface can hide in the largest hole: ${written('hole', a)} in A against ${written('hole', b)} in B.`,
+      `The ${written('six', a)} of A with six neighbours look better than the ${written('six', b)} of B, but with so few particles chance makes ${chanceWords([a, b])}.`,
     ],
   },
   chance: {
     stop: 'predict-chance',
     names: ['A, seed 1', 'B, seed 3'],
-    hasFigures: true,
+    purpose: 'pair',
     make: async (lab) => {
       const own = lab.on(TORUS);
       return [await own.run({ seed: 1 }), await own.run({ seed: 3 })];
     },
-    words: () => [
-      'No figure differs by more than chance. Both are the sampling of the lesson, from two seeds: what differs is where the front began.',
+    words: ([a, b]) => [
+      `The closest pair is the shortest edge of the mesh: ${written('pair', a)} against ${written('pair', b)}, which may be chance.`,
+      'Both are one method on one torus. Only the seed differs, the place where the front began.',
     ],
   },
 };
 
 /**
- * Which of a pair is better.
+ * Which of a pair is better, and by which figure.
  * @param {Lab} lab @param {keyof typeof PAIRS} which
  * @returns {Promise<Answer>}
  */
 export async function judgePair(lab, which) {
-  const { make, words } = PAIRS[which];
+  const { make, words, purpose } = PAIRS[which];
   const scores = await Promise.all((await make(lab)).map(scoreAtEnd));
-  const verdict = verdictOf(scores);
-  return { right: verdict ? ['a', 'b'][verdict.side] : 'alike', words: words(scores).join(' ') };
+  const verdict = verdictOf(scores, purpose ? [purpose] : DECIDING);
+  const eye = verdict ? ['a', 'b'][verdict.side] : 'alike';
+  return { right: purpose ? (verdict?.key ?? 'alike') : eye, eye, words: words(scores).join(' ') };
 }

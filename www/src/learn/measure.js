@@ -2,7 +2,6 @@
 import { NO_PARENT } from '../engine/core-numbers.js';
 import { momentAt } from '../figures/moment.js';
 import { openParticle } from '../figures/particle.js';
-import { formatFixed } from '../ui/format.js';
 import { between, createGrid } from '../ui/neighbours.js';
 import { NoSurface } from './lab.js';
 import { placesOf, scoreOf } from './score.js';
@@ -118,23 +117,6 @@ export async function widestHole(lab) {
   const { places } = await lab.measure(run.placed, false);
   const { hole, beside } = placesOf(run.placed, places);
   return hole && { hole, particle: beside, radius: run.radius, run };
-}
-
-/** The energy before the first step of relaxation and after each, over that before the first. @param {Lab} lab */
-export async function energiesOf(lab) {
-  const { chapters, client } = await lab.run({}, { keep: true });
-  const steps = chapters.filter(({ kind }) => kind === 'relaxation');
-  const [begin] = await client.ask('events', { first: steps[0]?.first_event ?? 0, count: 1 });
-  const first = begin?.type === 'step_begins' ? begin.energy : 0;
-  return [1, ...steps.map(({ energy }) => Number(energy) / first)];
-}
-
-/** What the chart of these says. @param {readonly number[]} energies */
-export function energyWords(energies) {
-  const percent = (/** @type {number} */ share) => `${formatFixed(100 * share, 0)} %`;
-  const fall = 1 - energies[energies.length - 1];
-  const [one, three] = [1, 3].map((step) => percent((1 - (energies[step] ?? 1 - fall)) / fall));
-  return `The energy, the sum of all pushes, over that before the first step. Ten steps lower it by ${percent(fall)}: the first takes off ${one} of that, the first three ${three}. The scale does not begin at 0.`;
 }
 
 /**

@@ -1,16 +1,18 @@
 /** Two runs side by side, seen by one camera. */
+import { signal } from '@preact/signals-core';
 import { triple } from '../engine/vector.js';
-import { fill, h } from '../ui/dom.js';
+import { fill, h, live } from '../ui/dom.js';
 import { formatFixed, formatSignificant } from '../ui/format.js';
 import { reasonOf } from './figure.js';
 import { latest } from './latest.js';
+import { createMarkSwitch, isMarked } from './marks.js';
 import { nearestDistances, parentDistances } from './measure.js';
 import { createScale } from './parts.js';
-import { byLevel, byValue, Orbit, sideBySide } from './picture.js';
-import { scoreAtEnd } from './score.js';
+import { byLevel, byNeighbours, byValue, Orbit, sideBySide } from './picture.js';
+import { DECIDING, scoreAtEnd } from './score.js';
 import { createScorecard } from './scorecard.js';
 
-/** @import { Colouring, Lab, LabRun, Score, Side, WhatIf } from './types.js' */
+/** @import { Colouring, Lab, LabRun, Scene, Score, Side, WhatIf } from './types.js' */
 
 /** Distances over the ideal one span this range of colours. */
 const [LOW, HIGH] = [0.7, 1.15];
@@ -72,15 +74,27 @@ export function createPair(lab) {
     { class: 'pair-box' },
     status,
     h('div', { class: 'pair' }, figures),
-    legend,
+    h('div', { hidden: isMarked }, legend),
+    createMarkSwitch(),
     scorecard.element,
   );
+  /** The scenes of both without marks. @type {import('../engine/types.js').Signal<readonly Scene[]>} */
+  const scenes = signal([]);
+  /** Once they are measured. @type {import('../engine/types.js').Signal<readonly Score[] | null>} */
+  const scores = signal(null);
+  live(element, () => {
+    for (const [k, scene] of scenes.value.entries()) {
+      const score = isMarked() ? scores.value?.[k] : null;
+      const end = shown.runs?.[k].end;
+      pictures[k].show(score && end ? { particles: end, colours: byNeighbours(score.valence) } : scene);
+    }
+  });
   let isFirst = true;
   const shown = {
     element,
     runs: /** @type {readonly [LabRun, LabRun] | null} */ (null),
     /** The scores of the runs, once they are measured. */
-    scores: /** @type {readonly Score[] | null} */ (null),
+    scores: () => scores.peek(),
     /** Tells where a particle is pressed; null for no one. */
     pickWith(/** @type {((place: number[]) => void) | null} */ onPick) {
       for (const [k, picture] of pictures.entries())
@@ -97,29 +111,27 @@ export function createPair(lab) {
       const right = await sides[1].make(lab);
       if (isOld()) return;
       shown.runs = [left, right];
-      shown.scores = null;
+      scores.value = null;
       orbit.fitTo(left.end, right.end);
       if (isFirst) orbit.faceFront(left.placed);
       isFirst = false;
       const all = [...left.end.radii, ...right.end.radii];
       /** @type {[number, number]} */
       const radii = [Math.min(...all), Math.max(...all)];
-      for (const [k, run] of shown.runs.entries()) {
-        pictures[k].show(sceneOf(run, colouring, radii));
-        captions[k].textContent = sides[k].label;
-      }
+      scenes.value = shown.runs.map((run) => sceneOf(run, colouring, radii));
+      for (const [k, { label }] of sides.entries()) captions[k].textContent = label;
       fill(legend, legendOf(colouring, radii));
       point(null, 0);
       element.ariaBusy = 'false';
       scorecard.wait();
       status.textContent = 'Measuring both';
-      const scores = [await scoreAtEnd(left), await scoreAtEnd(right)];
+      const measured = [await scoreAtEnd(left), await scoreAtEnd(right)];
       if (isOld()) return;
-      shown.scores = scores;
+      scores.value = measured;
       scorecard.tell(
         sides.map(({ label }) => label),
-        scores,
-        { decides },
+        measured,
+        { keys: decides ? [...DECIDING, decides] : DECIDING },
       );
       status.textContent = '';
     } catch (error) {

@@ -264,6 +264,10 @@ export class Picture {
       if (kind === 'ring') {
         context.arc(x, y, r, 0, 2 * Math.PI);
         rings += 1;
+      } else if (kind === 'dot') {
+        context.arc(x, y, r / 2, 0, 2 * Math.PI);
+        context.fillStyle = context.strokeStyle;
+        context.fill();
       } else {
         context.moveTo(x - r, y);
         context.lineTo(x + r, y);
@@ -415,6 +419,12 @@ export const byValue = (values, low, high) =>
       const at = (value - low) / (high - low || 1);
       return palette.sequential[Math.round(Math.min(1, Math.max(0, at)) * (RAMP - 1))];
     }),
+  );
+
+/** Marks the particles that have fewer or more than six neighbours. @param {Uint8Array} valence */
+export const byNeighbours = (valence) =>
+  once(({ valence: { five, six, seven } }) =>
+    Uint32Array.from(valence, (count) => (count === 6 || count === 0 ? six : count < 6 ? five : seven)),
   );
 
 /** Works out the colours of a palette once. @param {(palette: Palette) => Uint32Array} colours */

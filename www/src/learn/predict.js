@@ -6,6 +6,7 @@
 import { button } from '../ui/button.js';
 import { fill, h, uniqueId } from '../ui/dom.js';
 import { formatCount } from '../ui/format.js';
+import { eyeOf } from './answers.js';
 import { reasonOf, whenNear } from './figure.js';
 import { HEAD_PX } from './stops.js';
 
@@ -23,9 +24,11 @@ export function mountPrediction(host, prediction, { lab, stops }) {
   const { id } = host;
   const question = host.querySelector('.predict-question')?.textContent?.trim() ?? '';
   const input = inputOf(prediction, question, stops.pickOf(id));
+  const eye = createEye(id, prediction, stops);
   stops.entries.set(id, {
     question,
     get: input.get,
+    look: eye.look,
     reveal: () => answer(input.get()),
     /** What is right, for the one who presents. */
     async ask() {
@@ -34,18 +37,26 @@ export function mountPrediction(host, prediction, { lab, stops }) {
     },
   });
   const result = h('div', { class: 'predict-result', role: 'status', tabindex: '-1' });
-  const reveal = button({ type: 'submit', class: 'primary' }, 'Reveal');
+  const reveal = button({ type: 'submit', class: 'primary' }, () => (eye.isOver() ? 'Reveal' : 'Show the figures'));
   const skip = button({ class: 'plain', press: () => void answer(null) }, 'Skip');
   const submit = (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
-    const guess = input.get();
+    const guess = (eye.isOver() ? input : eye).get();
+    if (guess !== null) fill(result);
+    if (guess !== null && eye.look()) return;
     if (guess === null) fill(result, h('p', null, `${input.missing} You can also skip the question.`));
     else void answer(guess);
   };
   const form = h(
     'form',
     { class: 'predict-form', on: { submit, change: () => stops.keepMore(id, input.get()) } },
-    input.element,
+    eye.element,
+    h(
+      'div',
+      { class: 'predict-then', hidden: () => !eye.isOver() },
+      eye.element && h('p', { class: 'predict-question' }, 'By the figures: which is better for this, and by which?'),
+      input.element,
+    ),
     h('div', { class: 'controls' }, reveal, skip),
   );
 
@@ -64,6 +75,7 @@ export function mountPrediction(host, prediction, { lab, stops }) {
       h('p', null, words),
     );
     host.dataset.state = 'open';
+    eye.lock();
     input.lock(right ?? '');
     form.querySelector('.controls')?.remove();
   }
@@ -75,8 +87,9 @@ export function mountPrediction(host, prediction, { lab, stops }) {
     skip.disabled = true;
     fill(result, h('p', null, 'The run is asked.'));
     try {
-      const { right, words } = await prediction.answer(await lab, guess);
+      const { right, eye: seen, words } = await prediction.answer(await lab, guess);
       const outcome = { stop: id, question, guess, right, answer: words };
+      if (seen) eye.record(question, seen);
       write(outcome);
       stops.record(outcome);
       // The button that was pressed is gone.
@@ -128,7 +141,41 @@ function showFigure(host) {
 /** @param {string | number} guess @param {string | number} right */
 const plainJudge = (guess, right) => (guess === right ? 'As you said.' : 'You said otherwise.');
 
-/** @param {Prediction} prediction @param {string} question @param {Signal<number | null>} picked */
+/**
+ * The guess by eye, which comes before the figures. Without one it is over from the beginning.
+ * @param {string} id @param {Prediction} prediction @param {Stops} stops
+ */
+function createEye(id, { eye: choices }, stops) {
+  const name = eyeOf(id);
+  const isShown = stops.state(name);
+  if (!choices)
+    return { element: null, get: () => null, isOver: () => true, look: () => false, lock() {}, record() {} };
+  const input = inputOf({ kind: 'choice', choices }, 'By eye', stops.pickOf(name));
+  input.set(stops.outcomes.get(name)?.guess ?? stops.more(name));
+  return {
+    element: input.element,
+    get: input.get,
+    isOver: () => isShown.value,
+    /** Shows the figures, if they are not there yet. */
+    look() {
+      if (isShown.peek()) return false;
+      isShown.value = true;
+      stops.keepMore(name, input.get());
+      input.lock('');
+      return true;
+    },
+    lock() {
+      isShown.value = true;
+      input.lock(stops.outcomes.get(name)?.right ?? '');
+    },
+    /** @param {string} question @param {string} right */
+    record(question, right) {
+      stops.record({ stop: name, question: `By eye: ${question}`, guess: input.get(), right, answer: '' });
+    },
+  };
+}
+
+/** @param {Pick<Prediction, 'kind' | 'choices' | 'label' | 'most'>} prediction @param {string} question @param {Signal<number | null>} picked */
 function inputOf(prediction, question, picked) {
   const { kind } = prediction;
   if (kind === 'pick')

@@ -4,9 +4,9 @@ import { distance, triple } from '../engine/vector.js';
 import { inRadii } from '../figures/words.js';
 import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
 import { adaptiveRun } from './adaptive.js';
-import { judgePair } from './judged.js';
 import { asFineEverywhere, costOf, openBend, RING, ringsOf, scoresOfRest, widestHole } from './measure.js';
 import { verdictOf } from './score.js';
+import { written } from './verdict.js';
 
 /** @import { Prediction } from './types.js' */
 
@@ -30,17 +30,39 @@ const FACTORS = [1.3, 2, 4];
 const EVEN = 1.05;
 
 /** Two samplings beside each other. */
-const JUDGED = [
+const BY_EYE = [
   { value: 'a', label: 'Sampling A' },
   { value: 'b', label: 'Sampling B' },
   { value: 'alike', label: 'They cannot be told apart' },
 ];
 
+/** @param {'first' | 'weigh' | 'few' | 'chance'} which @returns {Prediction['answer']} */
+const judging = (which) => async (lab) => (await import('./judged.js')).judgePair(lab, which);
+
+/**
+ * A pair that is judged by eye, and then by its figures.
+ * @param {'weigh' | 'few' | 'chance'} which
+ * @param {readonly string[]} sides  that are better by six neighbours, hole and pair, be it by chance
+ * @returns {Prediction}
+ */
+const judged = (which, [six, hole, pair]) => ({
+  kind: 'choice',
+  eye: BY_EYE,
+  choices: [
+    { value: 'six', label: `${six}, by six neighbours` },
+    { value: 'hole', label: `${hole}, by the largest hole` },
+    { value: 'pair', label: `${pair}, by the closest pair` },
+    BY_EYE[2],
+  ],
+  answer: judging(which),
+});
+
 /** By the id of the question in the page's markup. @type {Record<string, Prediction>} */
 export const PREDICTIONS = {
-  'predict-first': { kind: 'choice', choices: JUDGED, answer: (lab) => judgePair(lab, 'first') },
-  'predict-last': { kind: 'choice', choices: JUDGED, answer: (lab) => judgePair(lab, 'weigh') },
-  'predict-chance': { kind: 'choice', choices: JUDGED, answer: (lab) => judgePair(lab, 'chance') },
+  'predict-first': { kind: 'choice', choices: BY_EYE, answer: judging('first') },
+  'predict-last': judged('weigh', ['B', 'A', 'A']),
+  'predict-few': judged('few', ['A', 'B', 'B']),
+  'predict-chance': judged('chance', ['B', 'A', 'B']),
   'predict-cost': {
     kind: 'choice',
     choices: [
@@ -99,7 +121,7 @@ export const PREDICTIONS = {
         count === 6 * level
           ? 'The bars below the picture follow 6k, as in a plane.'
           : count < 6 * level
-            ? 'The surface closes around the seed, or ends at the box, and takes room from the rings: the bars below the picture fall behind 6k.'
+            ? 'The surface closes around the seed and takes room from the rings: the bars below the picture fall behind 6k.'
             : 'The surface bends like a saddle around the seed, which gives the rings more room: the bars below the picture run ahead of 6k.';
       const words = `Ring ${level} of this surface has ${plural(count, 'particle')}; on a plane it would have ${6 * level}. ${reason}`;
       return { right: count, words };
@@ -114,7 +136,7 @@ export const PREDICTIONS = {
       const { placed } = widest.run;
       const level = placed.levels[widest.particle];
       const last = placed.levels.reduce((most, own) => Math.max(most, own), 0);
-      const words = `The widest hole is in the ring of the picture, beside a particle of level ${level} of ${last}. Holes stay open where parts of the front meet and leave less room than a particle needs.`;
+      const words = `The widest hole is in the ring of the picture, beside a particle of level ${level} of ${last}: on a seam, where parts of the front have met and left less room than a particle needs.`;
       if (typeof guess !== 'number') return { right: widest.particle, words };
       const far = distance(triple(placed.positions, guess), widest.hole.places[0]) / (2 * widest.radius);
       return {
@@ -137,10 +159,10 @@ export const PREDICTIONS = {
       const changed = (/** @type {'hole' | 'six'} */ key) => verdictOf([before, after], [key]) !== null;
       const right = changed('hole') ? (changed('six') ? 'both' : 'hole') : changed('six') ? 'six' : 'neither';
       const [hole, six] = /** @type {const} */ (['hole', 'six']).map((key) =>
-        [before, after].map((score) => formatFixed(Number(score[key]), 2)),
+        [before, after].map((score) => written(key, score)),
       );
       const words = [
-        `The largest hole was ${hole[0]} times that of the ideal pattern and is ${hole[1]}; the share with six neighbours was ${six[0]} and is ${six[1]}.`,
+        `The largest hole was ${hole[0]} and is ${hole[1]}; ${six[0]} had six neighbours and ${six[1]} have.`,
         'Pushes even out the room that there is: those around a hole move in. For another neighbour whole rows would have to slip past each other, and hardly any does.',
       ];
       return { right, words: words.join(' ') };
@@ -149,9 +171,9 @@ export const PREDICTIONS = {
   'predict-sizes': {
     kind: 'choice',
     choices: [
-      { value: '0', label: 'About as many' },
-      { value: '1', label: 'Up to twice as many' },
-      { value: '2', label: 'Two to four times as many' },
+      { value: '0', label: 'About the same number' },
+      { value: '1', label: 'Up to twice the number' },
+      { value: '2', label: 'Two to four times the number' },
       { value: '3', label: 'More than that' },
     ],
     async answer(lab) {

@@ -172,6 +172,7 @@ function createWalk(id, questions) {
   return (by) => {
     const question = questions.entries.get(id);
     if (question && !isAsked && by > 0) {
+      if (question.look()) return true;
       isAsked = true;
       void question.reveal();
       return true;

@@ -12,29 +12,19 @@ const percent = (share) => `${formatFixed(100 * share, 1)} %`;
 /** @param {number} value */
 const ratio = (value) => formatFixed(value, 2);
 
-/** The share of a plane that touching discs in the hexagonal pattern leave open. */
-const OPEN = 1 - Math.PI / (2 * Math.sqrt(3));
-
 /** @param {number} share */
 const points = (share) => `${formatFixed(100 * share, 1)} points`;
 
 /**
- * Two seeds of one method differ by up to this in the share with six neighbours, for 1,500 particles. It is a mean over
- * all of them, so that with fewer chance is larger.
- */
-const CHANCE_SIX = 0.05;
-const CHANCE_COUNT = 1500;
-
-/**
  * The figures in their order. A press on one that has a place shows the place. The chances are the largest differences
- * among ten seeds of one method with particles of one size, of several methods and surfaces.
+ * among ten seeds of one method with particles of one size, of several methods and surfaces. The share with six
+ * neighbours is a mean over all particles, so its chance falls with the root of their number.
  * @type {readonly ScoreRow[]}
  */
 export const ROWS = [
   {
     key: 'count',
     name: 'Particles',
-    means: 'Holes and pairs are told over the ideal with this number of particles, so they can be compared.',
     ideal: null,
     worse: null,
     digits: 0,
@@ -43,10 +33,9 @@ export const ROWS = [
   {
     key: 'six',
     name: 'Six neighbours',
-    means: 'Share of the particles whose cell borders on six others. A cell is what lies nearest to its particle.',
     ideal: 1,
     worse: 'below',
-    chance: ({ count }) => CHANCE_SIX * Math.sqrt(CHANCE_COUNT / Number(count)),
+    chance: ({ count }) => 2 / Math.sqrt(Number(count)),
     digits: 3,
     write: percent,
     writeChance: points,
@@ -54,7 +43,6 @@ export const ROWS = [
   {
     key: 'hole',
     name: 'Largest hole, over the ideal',
-    means: 'Radius of the largest empty circle, over that of the ideal pattern on the same area.',
     ideal: 1,
     worse: 'above',
     chance: () => 0.15,
@@ -64,7 +52,6 @@ export const ROWS = [
   {
     key: 'pair',
     name: 'Closest pair, over the ideal',
-    means: 'Distance of the two nearest particles, over that of neighbours in the ideal pattern.',
     ideal: 1,
     worse: 'below',
     chance: () => 0.08,
@@ -74,9 +61,8 @@ export const ROWS = [
   {
     key: 'uncovered',
     name: 'Surface outside all discs',
-    means:
-      'Told, and not judged: more discs or larger ones always cover more. Discs that touch leave 9.3 % in a plane.',
-    ideal: OPEN,
+    isSavedOnly: true,
+    ideal: null,
     worse: null,
     digits: 3,
     write: percent,
@@ -84,7 +70,6 @@ export const ROWS = [
   {
     key: 'evaluations',
     name: 'Evaluations of f per particle',
-    means: 'How often f and its gradient were asked for in the whole run.',
     ideal: null,
     worse: 'above',
     chance: ({ evaluations }) => 0.03 * Number(evaluations),
@@ -103,7 +88,7 @@ export const rowOf = (key) => /** @type {ScoreRow} */ (ROWS.find((row) => row.ke
  * @returns {Promise<Score>}
  */
 export async function scoreOf(lab, particles, { evaluations, isAdaptive }) {
-  const { quality, places } = await lab.measure(particles, isAdaptive);
+  const { quality, places, valence } = await lab.measure(particles, isAdaptive);
   const { radii } = particles;
   return {
     six: quality?.six ?? null,
@@ -113,6 +98,7 @@ export async function scoreOf(lab, particles, { evaluations, isAdaptive }) {
     count: radii.length,
     evaluations: evaluations / Math.max(1, radii.length),
     places: placesOf(particles, places),
+    valence,
   };
 }
 

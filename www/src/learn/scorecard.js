@@ -1,7 +1,4 @@
-/**
- * The scorecard: two scores side by side beside the ideal, with what each figure means, what chance does to it, and
- * which one decides.
- */
+/** The scorecard: two scores side by side between the ideal and what chance does to each figure, and which one decides. */
 import { signal } from '@preact/signals-core';
 import { fill, h } from '../ui/dom.js';
 import { MISSING } from '../ui/format.js';
@@ -12,7 +9,7 @@ import { bestOf, chanceOf, DECIDING, ROWS, rowOf, verdictOf } from './score.js';
 /**
  * @typedef {object} ScoreWords
  * @property {string} [caption]
- * @property {keyof ScoreFigures} [decides]  a figure that decides where the two cannot be told apart
+ * @property {readonly (keyof ScoreFigures)[]} [keys]  the figures that decide, in their order
  * @property {boolean} [isMarked]  whether it says which is better
  */
 
@@ -47,44 +44,31 @@ export function createScorecard(show) {
       element.ariaBusy = 'true';
     },
     /** @param {readonly string[]} names @param {readonly Score[]} scores @param {ScoreWords} [how] */
-    tell(names, scores, { caption, decides, isMarked = true } = {}) {
+    tell(names, scores, { caption, keys = DECIDING, isMarked = true } = {}) {
       pressed.value = '';
       element.ariaBusy = 'false';
-      const verdict = isMarked ? verdictOf(scores, decides ? [...DECIDING, decides] : DECIDING) : null;
-      const rows = ROWS.map((row) => {
+      const verdict = isMarked ? verdictOf(scores, keys) : null;
+      const rows = ROWS.filter(({ isSavedOnly }) => !isSavedOnly).map((row) => {
         // What a sampling costs is marked only where that is what decides.
-        const isJudged = row.ideal !== null || row.key === decides;
+        const isJudged = row.ideal !== null || keys.includes(row.key);
         const chance = isJudged ? chanceOf(row, scores) : null;
         const best = isMarked && isJudged ? bestOf(scores, row) : -1;
         const kind = row.key === verdict?.key ? 'decides' : null;
-        const byChance =
-          chance === null ? '' : ` Another seed changes it by up to ${(row.writeChance ?? row.write)(chance)}.`;
-        return [
+        return h(
+          'tr',
+          { class: kind },
           h(
-            'tr',
-            { class: kind },
-            h(
-              'th',
-              { scope: 'row' },
-              row.name,
-              kind ? h('span', { class: 'visually-hidden' }, ', which decides here') : null,
-            ),
-            h('td', { class: 'ideal' }, row.ideal === null ? MISSING : row.write(row.ideal)),
-            scores.map((_, side) => cellOf(scores, row, side, side === best)),
+            'th',
+            { scope: 'row' },
+            row.name,
+            kind ? h('span', { class: 'visually-hidden' }, ', which decides here') : null,
           ),
-          h(
-            'tr',
-            { class: 'means' },
-            h(
-              'td',
-              { colspan: 2 + names.length },
-              row.means + byChance,
-              isMarked && chance !== null && best < 0 ? h('b', null, ' No difference beyond chance.') : null,
-            ),
-          ),
-        ];
+          h('td', { class: 'ideal' }, row.ideal === null ? MISSING : row.write(row.ideal)),
+          scores.map((_, side) => cellOf(scores, row, side, side === best)),
+          h('td', { class: 'ideal chance' }, chance === null ? MISSING : (row.writeChance ?? row.write)(chance)),
+        );
       });
-      const heads = ['Ideal', ...names].map((name) => h('th', { scope: 'col' }, name));
+      const heads = ['Ideal', ...names, 'Chance'].map((name) => h('th', { scope: 'col' }, name));
       fill(
         element,
         h(
@@ -95,7 +79,11 @@ export function createScorecard(show) {
           h('tbody', null, rows),
         ),
         isMarked ? h('p', { class: 'outcome' }, outcomeOf(names, verdict)) : null,
-        h('p', { class: 'quiet press' }, 'Press a hole or a pair to turn to it.'),
+        h(
+          'p',
+          { class: 'quiet press' },
+          'A difference up to “Chance” another seed may make. Press a hole or a pair to turn to it.',
+        ),
       );
     },
   };

@@ -40,12 +40,14 @@ export interface WhatIf {
   values: readonly { value: string; label: string }[];
   make: (lab: Lab, value: string) => Promise<LabRun>;
 }
-/** `right` is compared with the guess; `words` say it in a sentence. */
-export type Answer = { right: string | number; words: string };
+/** `right` is compared with the guess, `eye` with the one by eye; `words` say it in a sentence. */
+export type Answer = { right: string | number; eye?: string; words: string };
 /** `choice`: one of several; `number`: a count; `pick`: a particle pressed in the figure before it. */
 export interface Prediction {
   kind: 'choice' | 'number' | 'pick';
   choices?: readonly { value: string; label: string }[];
+  /** what is guessed by eye first, before the figures are shown */
+  eye?: readonly { value: string; label: string }[];
   /** of the number */
   label?: string;
   /** largest number */
@@ -94,7 +96,7 @@ export interface Mark {
   to?: ArrayLike<number>;
   normal: ArrayLike<number>;
   radius: number;
-  kind: 'ring' | 'cross' | 'arrow';
+  kind: 'ring' | 'cross' | 'dot' | 'arrow';
 }
 /** What a run costs: for each particle, and in rounds. `others`: particles of the other method. */
 export interface Cost {
@@ -136,13 +138,15 @@ export type ScorePlace = { places: readonly (readonly number[])[]; radius: numbe
 export type ScoreFigures = Record<'six' | 'hole' | 'uncovered' | 'pair' | 'count' | 'evaluations', number | null>;
 export type Score = ScoreFigures & {
   places: { hole: ScorePlace | null; pair: ScorePlace | null };
+  /** number of neighbours of each particle */
+  valence: Uint8Array;
 };
 /** One of them. */
 export interface ScoreRow {
   key: keyof ScoreFigures;
   name: string;
-  /** its definition */
-  means: string;
+  /** whether it is in the files of a work, and not in tables: with more or larger discs it always gets smaller */
+  isSavedOnly?: boolean;
   /** null where there is none */
   ideal: number | null;
   /** the side of the ideal on which a value is worse; null if it is told, and not judged */

@@ -15,7 +15,7 @@ export const isWorse = (a, b) => verdictOf([a, b])?.side === 1;
 export function reasonWhy(k, part) {
   switch (k) {
     case 0:
-      return 'The newest particle comes next, so the front runs off like a thread. Threads meet far more often than rings do, and every meeting is a seam, where particles have five neighbours or seven and holes stay open.';
+      return 'The newest particle comes next, so the front runs off like a thread. Threads meet far more often than rings do, and every meeting is a seam.';
     case 1:
       return Number(part) < 0.7
         ? 'Where rows meet, a particle that is off by more than this does not count as the child. A second one is put beside it, and the particles crowd.'

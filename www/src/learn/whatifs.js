@@ -175,8 +175,9 @@ export const WHAT_IFS = [
   },
   {
     id: 'projection',
+    isRare: true,
     name: 'Circle or Newton',
-    look: 'A tanglecube, which bends much within 2r, with as many particles on either side. With one r Newton’s method would place more, since its children land nearer; so its r is larger here.',
+    look: 'A tanglecube, a cube with a tunnel through each pair of faces, before relaxation: it bends much within 2r. With one r Newton’s method would place more particles, since its children land nearer; so its r is larger here, and the numbers differ by 2 %.',
     colouring: 'parent',
     values: values([
       ['circle', 'Circle'],
@@ -186,8 +187,9 @@ export const WHAT_IFS = [
   },
   {
     id: 'step',
+    isRare: true,
     name: 'Size of a step',
-    look: 'How far a particle moves for the push it feels. Ten steps of any of these sizes end alike, as far as one run of each can tell.',
+    look: 'How far a particle moves for the push it feels. Ten steps of any of these sizes end alike but for chance.',
     colouring: 'nearest',
     values: values([
       ['0.6', '0.6 r²'],

@@ -5,6 +5,7 @@
 /** @type {Record<string, (context: Context) => Promise<(Node | null)[]>>} */
 export const FIGURES = {
   'judge-first': async (context) => (await import('./judge.js')).judge(context, 'first'),
+  measures: async (context) => (await import('./measures.js')).measures(context),
   plane: async (context) => (await import('./plane.js')).plane(context),
   circle: async (context) => (await import('./circle.js')).circle(context),
   first: async (context) => (await import('./particle.js')).whoWasFirst(context),
@@ -14,6 +15,7 @@ export const FIGURES = {
   angles: async () => (await import('./angles.js')).angles(),
   sizes: async (context) => (await import('./sizes.js')).sizes(context),
   'judge-last': async (context) => (await import('./judge.js')).judge(context, 'weigh'),
+  'judge-few': async (context) => (await import('./judge.js')).judge(context, 'few'),
   'judge-chance': async (context) => (await import('./judge.js')).judge(context, 'chance'),
   moving: async (context) => (await import('./moving.js')).moving(context),
 };

@@ -1,42 +1,47 @@
-/** Two samplings that the learner judges, side by side under one camera. */
+/** Two samplings that the learner judges, side by side under one camera: by eye, then by figures, then with marks. */
+import { signal } from '@preact/signals-core';
 import { h, live } from '../../ui/dom.js';
+import { eyeOf } from '../answers.js';
 import { PAIRS } from '../judged.js';
-import { byValue, Orbit, sideBySide } from '../picture.js';
+import { createMarkKey } from '../marks.js';
+import { byNeighbours, byValue, Orbit, sideBySide } from '../picture.js';
 import { scoreAtEnd } from '../score.js';
 import { createScorecard } from '../scorecard.js';
 
 /** @import { Context, Score } from '../types.js' */
 
+const LETTERS = ['A', 'B'];
+
 /** @param {Context} context @param {keyof typeof PAIRS} which */
 export async function judge({ lab, stops }, which) {
-  const { stop, names, hasFigures, make } = PAIRS[which];
+  const { stop, names, purpose, make } = PAIRS[which];
   const runs = await make(await lab);
   const orbit = new Orbit();
-  const letters = ['A', 'B'];
   const { pictures, captions, figures, point } = sideBySide(
     orbit,
-    letters.map((letter) => `Sampling ${letter}; both turn together`),
+    LETTERS.map((letter) => `Sampling ${letter}; both turn together`),
   );
   orbit.fitTo(runs[0].end, runs[1].end);
   orbit.faceFront(runs[0].placed);
-  // One colour, which tells nothing of how they were made.
-  for (const [k, { end }] of runs.entries())
-    pictures[k].show({ particles: end, colours: byValue(end.radii, 0, 2 * end.radii[0]) });
-  const scorecard = createScorecard(point);
   const isOpen = () => stops.isOpen(stop);
-  const box = h('div', { hidden: !hasFigures }, scorecard.element);
-  /** @type {Score[]} */
-  let scores = [];
+  /** @type {import('../../engine/types.js').Signal<readonly Score[]>} */
+  const scores = signal([]);
+  const scorecard = createScorecard(point);
+  const box = h('div', { hidden: () => !purpose || !(isOpen() || stops.isOpen(eyeOf(stop))) }, scorecard.element);
   live(box, () => {
     const now = isOpen();
-    for (const [k, caption] of captions.entries()) caption.textContent = now ? names[k] : letters[k];
-    if (!hasFigures) return;
-    const tell = () => scorecard.tell(now ? names : letters, scores, { isMarked: now });
-    if (scores.length > 0) return tell();
-    Promise.all(runs.map(scoreAtEnd)).then((found) => {
-      scores = found;
-      if (isOpen() === now) tell();
-    });
+    for (const [k, { end }] of runs.entries()) {
+      captions[k].textContent = now ? names[k] : LETTERS[k];
+      const score = scores.value[k];
+      // One colour, which tells nothing of how they were made.
+      const plain = byValue(end.radii, 0, 2 * end.radii[0]);
+      pictures[k].show({ particles: end, colours: now && score ? byNeighbours(score.valence) : plain });
+    }
+    if (purpose && scores.value.length > 0)
+      scorecard.tell(now ? names : LETTERS, scores.value, { isMarked: now, keys: [purpose] });
   });
-  return [h('div', { class: 'pair' }, figures), box];
+  Promise.all(runs.map(scoreAtEnd)).then((found) => {
+    scores.value = found;
+  });
+  return [h('div', { class: 'pair' }, figures), createMarkKey({ hidden: () => !isOpen() }), box];
 }

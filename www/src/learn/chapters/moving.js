@@ -123,7 +123,7 @@ class Pursuit {
       axes: [
         {
           ...{ value: 'step', label: 'step', of: ({ step }) => step },
-          ...{ say: (step) => this.#say(step), moment: (step) => this.#say(step) },
+          ...{ say: (step) => this.say(step), moment: (step) => this.say(step) },
         },
       ],
       axisName: '',
@@ -151,7 +151,7 @@ class Pursuit {
   }
 
   /** @param {number} step */
-  #say(step) {
+  say(step) {
     const { motion } = this;
     return `${motion.name} = ${formatFixed(valueAt(motion, step), 2)}${step > STEPS ? ', at rest' : ''}`;
   }
@@ -217,7 +217,8 @@ function chartOf(pursuit, isOpen) {
     const [first] = shares.value;
     const now = shares.value[Math.min(measured(pursuit.at.value), shares.value.length - 1)];
     if (!first) return '';
-    return `Six neighbours: of those that flow ${percent(now[0])}, beside them ${percent(now[1])}. At the beginning it was ${percent(first[0])} and ${percent(first[1])}.`;
+    const step = Math.min(AT_REST, MEASURED * shares.value.indexOf(now));
+    return `Six neighbours, measured at every fourth step, last at ${pursuit.say(step)}: of those that flow ${percent(now[0])}, beside them ${percent(now[1])}; at the beginning ${percent(first[0])} and ${percent(first[1])}.`;
   };
   const row = (/** @type {0 | 1} */ k) => (shares.value.length > 0 ? shares.value.map((both) => both[k]) : [0]);
   return createChart({

@@ -9,6 +9,7 @@ import { tangentPlane } from '../../figures/drawings.js';
 import { inPlane, slotPlace } from '../../figures/geometry.js';
 import { momentAt } from '../../figures/moment.js';
 import { openParticle } from '../../figures/particle.js';
+import { fateShape } from '../../figures/svg.js';
 import { tell } from '../../figures/words.js';
 import { button } from '../../ui/button.js';
 import { fill, h, live, s } from '../../ui/dom.js';
@@ -27,12 +28,18 @@ import sheet from '../plane.css?url';
 
 /** @typedef {{ opened: Opened, decisions: Decision[], at: number, moment: Moment }} Shown */
 
-/** What is seen in the drawing, by the class of its mark. */
+/** What is seen in the drawing: circles by their class, then the shapes of what became of a child. */
 const KEY = [
-  ['self', 'the particle that is treated'],
-  ['disc', 'a particle that is there'],
+  ['self', 'the particle whose turn it is'],
+  ['disc', 'a particle, with its centre'],
   ['slot', 'a slot'],
   ['tolerance', 'how near counts as the same place'],
+];
+const SHAPES = [
+  ['open', 'a child, not decided yet'],
+  ['parent', 'the parent'],
+  ['matched', 'a child that is there already'],
+  ['added', 'a new child'],
 ];
 
 /** @param {Context} context */
@@ -57,11 +64,15 @@ export async function plane(context) {
   live(place, () => {
     if (context.stops.isOpen('predict-children')) made.get(0)?.leaveSeed();
   });
-  const key = KEY.map(([kind, words]) => {
+  const entry = (/** @type {Element} */ mark, /** @type {string} */ words) => {
     const svg = s('svg', { class: 'shape drawing', viewBox: '-1.2 -1.2 2.4 2.4', 'aria-hidden': 'true' });
-    svg.append(s('circle', { class: kind, r: 1 }));
+    svg.append(mark);
     return h('li', null, svg, words);
-  });
+  };
+  const key = [
+    ...KEY.map(([kind, words]) => entry(s('circle', { class: kind, r: 1 }), words)),
+    ...SHAPES.map(([fate, words]) => entry(fateShape(fate, [0, 0], 0.9), words)),
+  ];
   return [
     h('div', { class: 'controls choices', role: 'group', 'aria-label': 'Surface' }, buttons),
     place,
@@ -154,7 +165,9 @@ class Exercise {
   /** Has the run decide the seed, if it is the seed's turn. */
   leaveSeed() {
     this.#queue(async () => {
-      if (this.#now?.opened.subject.particle === 0) await this.#leave(Infinity);
+      if (this.#now?.opened.subject.particle !== 0) return;
+      await this.#leave(Infinity);
+      this.#tell('', '');
     });
   }
 

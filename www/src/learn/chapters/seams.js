@@ -2,25 +2,22 @@
 import { signal } from '@preact/signals-core';
 import { triple } from '../../engine/vector.js';
 import { fill, h, live } from '../../ui/dom.js';
-import { formatCount, formatFixed, formatSignificant, plural } from '../../ui/format.js';
-import { reasonOf } from '../figure.js';
+import { formatCount, formatSignificant, plural } from '../../ui/format.js';
 import { latest } from '../latest.js';
-import { energiesOf, energyWords, nearestDistances, widestHole } from '../measure.js';
-import { createChart, createPlay, createRangeRow, createScale } from '../parts.js';
-import { byValue, Orbit, Picture } from '../picture.js';
+import { createMarkKey } from '../marks.js';
+import { widestHole } from '../measure.js';
+import { createPlay, createRangeRow } from '../parts.js';
+import { byNeighbours, byValue, Orbit, Picture } from '../picture.js';
 import { pushesOn } from '../pushes.js';
 import { scoreOf } from '../score.js';
-import { createScorecard } from '../scorecard.js';
 
 /**
  * @import { LessonParticles, Signal } from '../../engine/types.js'
- * @import { Context, Lab, LabRun, Mark, Score, ScorePlace } from '../types.js'
+ * @import { Context, Lab, LabRun, Mark, Score } from '../types.js'
  */
 
 /** Time from one place of the slider to the next. */
 const STEP_MS = 400;
-/** Colours span this range of distances, in 2r. */
-const [NEAR, FAR] = [0.7, 1.15];
 /** The share of the particles that the front has placed when the widest hole is asked for. */
 const QUARTER = 0.25;
 /** Arrows are so many times as long as the moves; shorter moves, in r, have none. */
@@ -82,7 +79,6 @@ async function courseOf(own) {
     ...{ run, placed, levels, found, steps, states, front, quarter: Math.max(0, quarter), last: front + steps.length },
     // The body of another run, whose particles tell nothing of where this one leaves a hole.
     body: (await own.run({ seed: 1, relax_steps: 0 })).placed,
-    energies: await energiesOf(own),
     widest: await widestHole(own),
     /** The particles at a place of the slider. @param {number} place */
     at: (place) => (place < front ? firstOf(placed, levels[place].after) : states[Math.max(0, place - front)]),
@@ -100,14 +96,14 @@ export async function seams({ lab, stops }) {
   orbit.fitTo(placed);
   orbit.faceFront(placed);
   const picture = new Picture(orbit, {
-    name: 'The front and its relaxation, coloured by the distance to the nearest particle',
+    name: 'The front and its relaxation, with particles of five and of seven neighbours marked',
     onPick(particle) {
       stops.pick('predict-hole', particle);
       if (isRelaxing()) followed.value = particle;
     },
   });
-  /** Whose pushes are drawn: at first that beside the widest hole. */
-  const followed = signal(widest?.particle ?? 0);
+  /** Whose pushes are drawn. @type {Signal<number | null>} */
+  const followed = signal(null);
   const isFree = () => stops.isOpen('predict-hole');
   const isRelaxing = () => isFree() && stops.isOpen('predict-rest');
   /** The slider goes on with every answer. */
@@ -125,15 +121,32 @@ export async function seams({ lab, stops }) {
   const step = () => Math.max(0, range.place.value - front);
   /** Those of the states so far, in their order. @type {Signal<Score[]>} */
   const scores = signal([]);
-  const coloursAt = painted(course);
+  // The states are measured as far as they are shown.
+  const measure = latest(async (/** @type {number} */ count, isOld) => {
+    for (const [k, state] of course.states.slice(0, count).entries()) {
+      const known = scores.peek()[k];
+      const score = known ?? (await scoreOf(own, state, { evaluations: 0, isAdaptive: false }));
+      if (isOld()) return;
+      if (!known) scores.value = [...scores.peek(), score];
+    }
+  });
+  live(picture.element, () => {
+    if (isFree()) void measure(isRelaxing() ? course.states.length : 1);
+  });
   live(picture.element, () => {
     const place = Math.min(range.place.value, limit());
     const isAfter = isRelaxing() && place >= front;
     const picked = isAfter ? followed.value : place <= front ? stops.picked('predict-hole') : null;
-    const marks = marksAt(course, place, { picked, isRelaxing: isRelaxing() });
+    const marks = marksAt(course, place, { picked, isFree: isFree(), isRelaxing: isRelaxing() });
+    const measured = scores.value[step()] ?? scores.value[0];
+    const particles = course.at(place);
+    const colours =
+      isFree() && measured
+        ? byNeighbours(measured.valence.subarray(0, particles.radii.length))
+        : byValue(particles.radii, 0, 2 * particles.radii[0]);
     // Before the end of the front a press chooses one of the particles to come, where the surface is still bare, too.
     const places = place < front ? placed : course.at(place);
-    picture.show({ particles: course.at(place), body: course.body, places, colours: coloursAt(place), marks });
+    picture.show({ particles, body: course.body, places, colours, marks });
     const hole = scores.value[step()]?.places.hole ?? (step() === 0 ? widest?.hole : null) ?? null;
     picture.ringed.value = place >= front && isFree() ? hole : null;
   });
@@ -153,39 +166,22 @@ export async function seams({ lab, stops }) {
     const met = plural(course.found[place].length, 'time');
     return `${plural(course.at(place).radii.length, 'particle')}; the front met itself ${met} on this level.`;
   });
-  const card = createCard(own, course, {
-    isOpen: isRelaxing,
-    scores,
-    /** The step that is beside the placing. */
-    step: () => step() || steps.length,
-    show(place, at) {
-      if (place) range.set(front + at);
-      picture.ringed.value = place;
-      if (place) orbit.turnTo(place.normal);
-    },
-  });
   const play = createPlay(range, { label: 'Play', totalMs: () => STEP_MS * limit() });
   return [
     picture.element,
     h('div', { class: 'controls' }, play.element, range.element, words),
-    createScale('Distance to the nearest, in 2r', formatFixed(NEAR, 2), formatFixed(FAR, 2)),
-    energyChart(course, {
-      hidden: () => !isRelaxing(),
-      at: () => (range.place.value >= front ? step() : null),
-      press: (at) => range.set(front + at),
-    }),
+    createMarkKey({ hidden: () => !isFree() }),
     createPushes(course, { isOpen: isRelaxing, followed, step }),
-    card,
   ];
 }
 
 /**
  * The pushes on a particle in the step that comes next.
  * @param {Course} course
- * @param {{ isOpen: () => boolean, followed: Signal<number>, step: () => number }} about
+ * @param {{ isOpen: () => boolean, followed: Signal<number | null>, step: () => number }} about
  */
 function createPushes({ run: { client }, states, steps }, { isOpen, followed, step }) {
-  const box = h('div', { class: 'pushes-box', hidden: () => !isOpen() });
+  const box = h('div', { class: 'pushes-box', hidden: () => !isOpen() || followed.value === null });
   const show = latest(async (/** @type {{ particle: number, at: number }} */ { particle, at }, isOld) => {
     // Questions are answered in their order, so none comes between these two.
     const sought = client.ask('seek', { event: steps[at].first_event });
@@ -195,89 +191,29 @@ function createPushes({ run: { client }, states, steps }, { isOpen, followed, st
   });
   live(box, () => {
     const at = Math.min(step(), steps.length - 1);
-    if (isOpen() && steps.length > 0) void show({ particle: followed.value, at });
+    if (isOpen() && steps.length > 0 && followed.value !== null) void show({ particle: followed.value, at });
   });
   return box;
 }
 
-/** The colours at each place, worked out once. @param {Course} course */
-function painted({ at }) {
-  /** @type {Map<number, ReturnType<typeof byValue>>} */
-  const known = new Map();
-  return (/** @type {number} */ place) => {
-    const colours = known.get(place) ?? byValue(nearestDistances(at(place)), NEAR, FAR);
-    known.set(place, colours);
-    return colours;
-  };
-}
-
 /**
- * Crosses where the front met itself on a level and where the learner pressed, and arrows of the step that comes next.
- * @param {Course} course @param {number} place @param {{ picked: number | null, isRelaxing: boolean }} state
+ * Crosses where the front met itself on a level, a dot where the learner pressed, and arrows of the step that comes
+ * next.
+ * @param {Course} course @param {number} place
+ * @param {{ picked: number | null, isFree: boolean, isRelaxing: boolean }} state
  */
-function marksAt({ placed, found, front, states }, place, { picked, isRelaxing }) {
-  const marks = place <= front ? found[place].map((particle) => markOf(placed, particle)) : [];
+function marksAt({ placed, found, front, states }, place, { picked, isFree, isRelaxing }) {
+  const marks = isFree && place <= front ? found[place].map((particle) => markOf(placed, particle, 'cross')) : [];
   const now = states[place - front] ?? placed;
-  if (picked !== null) marks.push({ ...markOf(now, picked), radius: now.radii[picked] });
+  if (picked !== null) marks.push(markOf(now, picked, 'dot'));
   const next = states[place - front + 1];
   return place >= front && isRelaxing && next ? [...marks, ...arrowsOf(states[place - front], next)] : marks;
 }
 
-/**
- * The scorecard of the placing and a step.
- * @param {Lab} own @param {Course} course
- * @param {{ isOpen: () => boolean, scores: Signal<Score[]>, step: () => number,
- *   show: (place: ScorePlace | null, step: number) => void }} about
- */
-function createCard(own, { run, states, steps }, { isOpen, scores, step, show }) {
-  const scorecard = createScorecard((place, side) => show(place, side === 0 ? 0 : step()));
-  async function score() {
-    for (const [k, state] of states.entries()) {
-      const evaluations = k === 0 ? run.placing : steps[k - 1].evaluations;
-      const one = await scoreOf(own, state, { evaluations, isAdaptive: false });
-      scores.value = [...scores.peek(), one];
-    }
-  }
-  const box = h('div', { hidden: () => !isOpen() }, scorecard.element);
-  live(box, () => {
-    if (isOpen() && scores.peek().length === 0)
-      score().catch((error) => fill(scorecard.element, h('p', { class: 'figure-status' }, reasonOf(error))));
-  });
-  live(box, () => {
-    const [before, after] = [scores.value[0], scores.value[step()]];
-    if (before && after) scorecard.tell(['As placed', `After step ${formatCount(step())}`], [before, after]);
-  });
-  return box;
-}
-
-/**
- * The energy step by step.
- * @param {Course} course
- * @param {{ hidden: () => boolean, at: () => number | null, press: (at: number) => void }} about
- */
-function energyChart({ energies, steps }, { hidden, at, press }) {
-  const three = (/** @type {number} */ value) => formatFixed(value, 3);
-  return createChart({
-    hidden,
-    chart: () => ({
-      kind: 'line',
-      rows: [{ fate: 'own', name: 'energy', counts: energies }],
-      floor: energies[energies.length - 1],
-      ends: ['as placed', `step ${formatCount(steps.length)}`],
-      first: 0,
-      at: at(),
-      format: three,
-    }),
-    label: `Energy by step, over that before the first: ${energies.map(three).join(', ')}`,
-    words: () => energyWords(energies),
-    press,
-  });
-}
-
-/** @param {LessonParticles} particles @param {number} i @returns {Mark} */
-const markOf = ({ positions, normals, radii }, i) => ({
+/** @param {LessonParticles} particles @param {number} i @param {Mark['kind']} kind @returns {Mark} */
+const markOf = ({ positions, normals, radii }, i, kind) => ({
   place: triple(positions, i),
   normal: triple(normals, i),
   radius: CROSS * radii[i],
-  kind: 'cross',
+  kind,
 });

@@ -31,7 +31,7 @@ export async function sizes({ lab, stops }) {
     const [low, high] = [Math.min(...radii), Math.max(...radii)];
     picture.show({ particles: run.end, colours: byValue(radii, low, high) });
     fill(legend, createScale('Radius', formatSignificant(low, 2), formatSignificant(high, 2)));
-    words.textContent = `${plural(radii.length, 'particle')}; even sampling with as many has the radius ${formatSignificant(radius, 2)}.`;
+    words.textContent = `${plural(radii.length, 'particle')}. As many of one size have the radius ${formatSignificant(radius, 2)}.`;
   };
   const law = createSelectRow({
     name: 'The radius follows',

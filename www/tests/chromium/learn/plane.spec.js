@@ -80,7 +80,7 @@ test('after two particles of the plane comes the seam of the cap, where rows are
     words += await told.innerText();
   }
   expect(words).toContain('out of step');
-  await expect(question).toContainText('a seam begins here');
+  await expect(question).toContainText('The front has met itself, out of step.');
   await expect(figure.getByRole('button', { name: 'Go to the cap' })).toHaveCount(0);
   await press(figure, 'Begin again');
   await expect(figure.locator('.plane .figure-count')).toHaveText('Particle 1 of 1 · 0 mistakes · 0 slots decided.');

@@ -1,7 +1,14 @@
 /** What the algorithm decides at the slots of a particle, and what is said against another decision. */
 import { expect, test } from 'vitest';
+import { LessonClient } from '../../../src/engine/lesson/client.js';
+import { triple } from '../../../src/engine/vector.js';
+import { inPlane } from '../../../src/figures/geometry.js';
+import { momentAt } from '../../../src/figures/moment.js';
+import { openParticle } from '../../../src/figures/particle.js';
 import { ALGORITHM } from '../../../src/figures/words.js';
-import { decisionsOf, lineAt, objection } from '../../../src/learn/decisions.js';
+import { decisionsOf, lineAt, objection, PATCHES, runOn, treatedOf } from '../../../src/learn/decisions.js';
+import { Lab } from '../../../src/learn/lab.js';
+import { loadWasm, spawn } from './workers.js';
 
 const R = 0.5;
 /** @param {number} slot @param {number | null} against @param {number | null} distance */
@@ -63,4 +70,27 @@ test('what the run decided meets no objection, and all else does, with its reaso
   expect(objection(OPENED, added, { fate: 'matched', particle: 3 })).toMatch(
     /Particle 3 lies 1\.50\sr .*only within 1\.40\sr/,
   );
+});
+
+test.each(PATCHES)('on $name the nearest particle is nearest in the drawing, too', async (patch) => {
+  loadWasm();
+  const lab = new Lab(patch.surface, async () => new LessonClient({ spawn }), /** @type {any} */ (null));
+  const run = await runOn(lab, patch);
+  for (const particle of await treatedOf(run, patch)) {
+    const opened = await openParticle(run.client, run, particle);
+    for (const { at, compared: asked, verdict } of decisionsOf(opened.events)) {
+      const { frame, gathered } = momentAt(opened.events, at);
+      if (verdict.fate !== 'matched' || !frame || !asked) continue;
+      const plane = { centre: opened.place, right: frame.u, up: frame.w, radius: patch.radius };
+      const [x, y] = inPlane(plane, asked.position);
+      const seen = (gathered?.neighbours ?? []).map((near) => {
+        const [u, v] = inPlane(plane, triple(opened.positions, near.particle));
+        return { particle: near.particle, far: Math.hypot(u - x, v - y) };
+      });
+      seen.sort((one, other) => one.far - other.far);
+      expect(seen[0].particle).toBe(verdict.particle);
+      if (seen[1]) expect(seen[1].far - seen[0].far).toBeGreaterThan(0.3);
+    }
+  }
+  run.client.close();
 });
