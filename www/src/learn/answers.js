@@ -27,8 +27,8 @@ export class Stops {
   /**
    * The present entries of a learner, by the stop.
    * @type {Map<string, { question: string, get: () => string | number | null, look: () => boolean,
-   *   reveal: () => Promise<void>, ask: () => Promise<string> }>} `look` shows what comes before the answer, if it is not
-   *   shown yet
+   *   reveal: () => Promise<void>, ask: () => Promise<string> }>} `look` shows what comes before the
+   *   answer, if it is not shown yet
    */
   entries = new Map();
 

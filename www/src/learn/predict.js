@@ -175,7 +175,10 @@ function createEye(id, { eye: choices }, stops) {
   };
 }
 
-/** @param {Pick<Prediction, 'kind' | 'choices' | 'label' | 'most'>} prediction @param {string} question @param {Signal<number | null>} picked */
+/**
+ * @param {Pick<Prediction, 'kind' | 'choices' | 'label' | 'most'>} prediction @param {string} question
+ * @param {Signal<number | null>} picked
+ */
 function inputOf(prediction, question, picked) {
   const { kind } = prediction;
   if (kind === 'pick')

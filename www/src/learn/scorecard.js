@@ -1,4 +1,7 @@
-/** The scorecard: two scores side by side between the ideal and what chance does to each figure, and which one decides. */
+/**
+ * The scorecard: two scores side by side between the ideal and what chance does to each figure, and
+ * which one decides.
+ */
 import { signal } from '@preact/signals-core';
 import { fill, h } from '../ui/dom.js';
 import { MISSING } from '../ui/format.js';

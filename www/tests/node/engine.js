@@ -105,8 +105,8 @@ const media = (/** @type {string} */ query) =>
 
 for (const [name, value] of Object.entries({
   Worker: FakeWorker,
-  fetch(/** @type {string} */ url) {
-    fetched.push(url);
+  fetch(/** @type {string | URL} */ url) {
+    fetched.push(String(url));
     return fileAt(url, answers);
   },
   document: page,

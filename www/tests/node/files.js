@@ -8,10 +8,11 @@ import { readFile } from 'node:fs/promises';
 /** @typedef {{status?: number, type?: string, body?: string | Uint8Array<ArrayBuffer>, isBlocked?: boolean}} Answer */
 
 /**
- * @param {string} url  as Vite gives it: from the root of the page, or of the file system
+ * @param {string | URL} at  as Vite gives it: from the root of the page, or of the file system
  * @param {ReadonlyMap<string, Answer>} answers  what is answered in place of a file whose address has this part
  */
-export async function fileAt(url, answers) {
+export async function fileAt(at, answers) {
+  const url = String(at);
   const [, answer = {}] = [...answers].find(([part]) => url.includes(part)) ?? [];
   if (answer.isBlocked) throw new TypeError('fetch failed');
   const { status = 200, type = 'application/wasm' } = answer;

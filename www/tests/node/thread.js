@@ -1,6 +1,5 @@
 /** A thread of Node in the place of a web worker: gives the script what it finds in a browser, and runs it. */
 import { File } from 'node:buffer';
-import { register } from 'node:module';
 import { parentPort, workerData } from 'node:worker_threads';
 import { fileAt } from './files.js';
 
@@ -17,13 +16,8 @@ worker.MessageChannel = class {
   port1 = { onmessage: null };
   port2 = { postMessage: (/** @type {unknown} */ data) => void setImmediate(() => this.port1.onmessage?.({ data })) };
 };
-worker.fetch = (/** @type {string} */ url) => fileAt(url, workerData.answers);
+worker.fetch = (/** @type {string | URL} */ url) => fileAt(url, workerData.answers);
 
-// A file that is imported with `?url` is its address, as Vite has it.
-const addresses = `export const load = (url, context, next) => url.endsWith('?url')
-  ? { format: 'module', shortCircuit: true, source: 'export default ' + JSON.stringify(url.slice(0, -4)) }
-  : next(url, context);`;
-register(`data:text/javascript,${encodeURIComponent(addresses)}`);
 await import('../faults.js');
 await import(workerData.url);
 parentPort?.on('message', ({ fault, message, name }) => {
