@@ -1,6 +1,6 @@
 //! Fields put together of any two.
 
-use glam::{DVec3, Vec3, dvec3};
+use glam::{DVec3, Vec3, dvec2, dvec3};
 use marching_particles::field::{Field, Frame};
 use marching_particles::{
     Bounds, Combined, FnField, Formula, Sample, Settings, difference, intersection, offset, sample,
@@ -57,7 +57,7 @@ fn their_edge_is_where_that_of_the_formula_is() {
     let made = check(field, 2.0, (2, Some(1), 7.0686), "union");
     for &first in &made.particles().twins {
         let p = made.particles().place(first as usize);
-        let off = dvec3(p.x, p.y.hypot(p.z) - 0.75_f64.sqrt(), 0.0).length();
+        let off = dvec3(p.x, dvec2(p.y, p.z).length() - 0.75_f64.sqrt(), 0.0).length();
         assert!(off < 1e-6, "{p} lies {off} beside the circle");
     }
 }
@@ -76,7 +76,7 @@ fn operations_follow_each_other() {
     let [left, right] = CENTRES.map(|centre| ball(centre, 1.0));
     let both = union(left, right);
     // The drill goes through both balls and cuts off nothing.
-    let drilled = difference(both, |p: DVec3| p.y.hypot(p.z) - 0.3);
+    let drilled = difference(both, |p: DVec3| dvec2(p.y, p.z).length() - 0.3);
     let settings = Settings::with_count(4_000).in_box(Bounds::cube(2.0));
     let sample = sample(drilled, &settings).expect("a surface");
     assert_eq!((sample.mesh().topology.is_closed(), sample.mesh().topology.euler()), (true, 0));
@@ -130,7 +130,7 @@ fn batches_agree_with_single_points_in_any_frame() {
             let exact = field.value_and_gradient(frame.place(p.as_dvec3()));
             let (known, slope) = frame.gradient(exact);
             assert!((value[k] - known).abs() < 1e-4, "{frame:?} at {p}: {} {known}", value[k]);
-            assert!(gradient[k].distance(slope) < 1e-2 * f32::from(frame.scale), "{frame:?} at {p}");
+            assert!(gradient[k].distance(slope) < 1e-2 * frame.scale, "{frame:?} at {p}");
         }
     }
 }
