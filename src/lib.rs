@@ -89,6 +89,14 @@
 //! The modules behind the root are public for the project's own tests, benchmarks and page and may
 //! change at any time; ARCHITECTURE.md says what each is for and who may use whom.
 
+#![cfg_attr(
+    target_arch = "wasm32",
+    allow(
+        clippy::arc_with_non_send_sync,
+        reason = "a field may hold a function of JavaScript, which is sent nowhere"
+    )
+)]
+
 #[doc(hidden)]
 pub mod differential;
 #[doc(hidden)]

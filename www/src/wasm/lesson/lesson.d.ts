@@ -17,7 +17,8 @@ import type {
 
 
 /**
- * The paper's algorithms, event by event. Requests and answers are plain objects; columns are copies.
+ * The paper's algorithms, event by event. Requests and answers are plain objects; columns are
+ * copies.
  */
 export class Lesson {
     free(): void;
@@ -39,8 +40,9 @@ export class Lesson {
      */
     events(first: number, count: number): LessonEvent[];
     /**
-     * Has the particles of a particle system follow their surface to that of a formula, `LessonField`, whose box does not count; to an
-     * `Answer` with `LessonProgress`, null before a run.
+     * Has the particles of a particle system follow their surface to that of a formula,
+     * `LessonField`, whose box does not count; to an `Answer` with `LessonProgress`, null before a
+     * run.
      */
     follow(field: LessonField): Answer<LessonProgress, Fault> | null;
     /**
@@ -52,7 +54,8 @@ export class Lesson {
      */
     levels(): Uint32Array<ArrayBuffer>;
     /**
-     * The events at which a particle was added, treated and done: `LessonLife`; null if there is no such particle.
+     * The events at which a particle was added, treated and done: `LessonLife`; null if there is
+     * no such particle.
      */
     life(particle: number): LessonLife | null;
     /**
@@ -76,7 +79,8 @@ export class Lesson {
      */
     positions(): Float32Array<ArrayBuffer>;
     /**
-     * Returns the repulsion of a particle by each of its neighbours at the moment that was sought: an array of `LessonPush`.
+     * Returns the repulsion of a particle by each of its neighbours at the moment that was sought:
+     * an array of `LessonPush`.
      */
     pushes(particle: number): LessonPush[];
     /**
@@ -84,12 +88,13 @@ export class Lesson {
      */
     radii(): Float32Array<ArrayBuffer>;
     /**
-     * The curve f = 0 in the plane of `centre` and two perpendicular unit vectors, within `half` of the centre: segments as four
-     * floats each, x along `right` and y along `up`.
+     * The curve f = 0 in the plane of `centre` and two perpendicular unit vectors, within `half`
+     * of the centre: segments as four floats each, x along `right` and y along `up`.
      */
     section(centre: Float64Array | number[], right: Float64Array | number[], up: Float64Array | number[], half: number, cells: number): Float32Array<ArrayBuffer>;
     /**
-     * Goes to the moment before event number `event`; returns the number of events that have happened then.
+     * Goes to the moment before event number `event`; returns the number of events that have
+     * happened then.
      */
     seek(event: number): number;
     /**
@@ -97,13 +102,14 @@ export class Lesson {
      */
     slots(): Uint32Array<ArrayBuffer>;
     /**
-     * Begins a run on a formula, and gives up the one before: `LessonField` and `LessonSettings`, of which what is missing has its
-     * default; to an `Answer` with `LessonProgress`.
+     * Begins a run on a formula, and gives up the one before: `LessonField` and `LessonSettings`,
+     * of which what is missing has its default; to an `Answer` with `LessonProgress`.
      */
     start(field: LessonField, settings: Partial<LessonSettings>): Answer<LessonProgress, Fault>;
     /**
-     * Begins a run on a model from points: `system` is the solved system that `Points.field` returns, `pulls` are those on its surface, and
-     * `bounds` is its `Bounds`; to an `Answer` with `LessonProgress`.
+     * Begins a run on a model from points: `system` is the solved system that `Points.field`
+     * returns, `pulls` are those on its surface, and `bounds` is its `Bounds`; to an `Answer` with
+     * `LessonProgress`.
      */
     start_points(system: Uint8Array | number[], pulls: readonly Pull[], bounds: Bounds, settings: Partial<LessonSettings>): Answer<LessonProgress, Fault>;
     /**

@@ -22,8 +22,8 @@ export class Points {
      */
     field(): Uint8Array<ArrayBuffer>;
     /**
-     * Begins a file, and gives up what was begun before: an `Answer` with `PointsProgress`. `name` is for reports. 0 centres are the
-     * default number of them.
+     * Begins a file, and gives up what was begun before: an `Answer` with `PointsProgress`. `name`
+     * is for reports. 0 centres are the default number of them.
      */
     file(name: string, bytes: Uint8Array | number[], centres: number): Answer<PointsProgress, string>;
     /**
@@ -31,8 +31,8 @@ export class Points {
      */
     info(): Answer<SolvedModel, string>;
     /**
-     * Begins a built-in model, and gives up what was begun before: an `Answer` with `PointsProgress`. 0 centres are the default number
-     * of them.
+     * Begins a built-in model, and gives up what was begun before: an `Answer` with
+     * `PointsProgress`. 0 centres are the default number of them.
      */
     model(id: string, centres: number): Answer<PointsProgress, string>;
     /**

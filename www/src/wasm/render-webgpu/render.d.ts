@@ -2,7 +2,8 @@
 /* eslint-disable */
 
 /**
- * Draws particles on a canvas. `free()` it when done; a lost device needs a new renderer on a new canvas.
+ * Draws particles on a canvas. `free()` it when done; a lost device needs a new renderer on a new
+ * canvas.
  */
 export class Renderer {
     private constructor();
@@ -19,9 +20,9 @@ export class Renderer {
     /**
      * Opens a graphics device on `canvas`, which must have no context of another kind yet.
      *
-     * `on_lost(reason, message)` is called once, when the device is gone; reason is "unknown" or "destroyed".
-     * `on_error(message)` is called when the device refuses a call; drawing goes on. Both are called after the method
-     * that caused them has returned, and may use the renderer.
+     * `on_lost(reason, message)` is called once, when the device is gone; reason is "unknown" or
+     * "destroyed". `on_error(message)` is called when the device refuses a call; drawing goes on.
+     * Both are called after the method that caused them has returned, and may use the renderer.
      *
      * # Errors
      *
@@ -33,7 +34,8 @@ export class Renderer {
      */
     destroy(): void;
     /**
-     * Draws one picture on the canvas: "drawn", "skipped" (nothing to draw on now) or "lost" (make a new renderer).
+     * Draws one picture on the canvas: "drawn", "skipped" (nothing to draw on now) or "lost" (make
+     * a new renderer).
      */
     draw(time_s: number): string;
     /**
@@ -45,18 +47,19 @@ export class Renderer {
      */
     max_particles(): number;
     /**
-     * `[width, height]` that `read_pixels` draws for a wanted size: the wanted one unless the device cannot.
+     * `[width, height]` that `read_pixels` draws for a wanted size: the wanted one unless the
+     * device cannot.
      */
     picture_size(width_px: number, height_px: number): Uint32Array<ArrayBuffer>;
     /**
-     * Draws the picture into a texture of `picture_size(width_px, height_px)`, with every particle fully shown, and
-     * resolves to its pixels: rows from top to bottom, red, green, blue, opacity (not multiplied in), sRGB. Rejects
-     * where the device is lost.
+     * Draws the picture into a texture of `picture_size(width_px, height_px)`, with every particle
+     * fully shown, and resolves to its pixels: rows from top to bottom, red, green, blue, opacity
+     * (not multiplied in), sRGB. Rejects where the device is lost.
      */
     read_pixels(width_px: number, height_px: number, transparent: boolean): Promise<Uint8Array<ArrayBuffer>>;
     /**
-     * Sets the canvas's size in pixels. Beyond the device's limit it shrinks in proportion (read `canvas.width` after
-     * the next `draw`); where a side is 0 nothing is drawn.
+     * Sets the canvas's size in pixels. Beyond the device's limit it shrinks in proportion (read
+     * `canvas.width` after the next `draw`); where a side is 0 nothing is drawn.
      */
     resize(width_px: number, height_px: number): void;
     /**
@@ -65,12 +68,13 @@ export class Renderer {
      */
     set_count(count: number, body: number): void;
     /**
-     * Draws the first `count` faces from now on, where the style asks for faces, in the place of the first `particles` particles.
-     * Without faces there are discs.
+     * Draws the first `count` faces from now on, where the style asks for faces, in the place of
+     * the first `particles` particles. Without faces there are discs.
      */
     set_faces(count: number, particles: number): void;
     /**
-     * Sets the look from a JSON object; missing keys take their defaults, unknown ones are ignored.
+     * Sets the look from a JSON object; missing keys take their defaults, unknown ones are
+     * ignored.
      *
      * `background` [r, g, b, a] · `faces` {flat, edge_px} or null for discs · `body` {colour,
      * is_open, bounds: {min, max}} beneath them or null · `spheres` in the place of discs ·
@@ -86,8 +90,9 @@ export class Renderer {
      */
     set_style(json: string): void;
     /**
-     * Sets the camera: clip from world (16, column-major, depth 0 to 1), eye (3) and viewing direction (3) in world
-     * coordinates. Further numbers are ignored; whether the camera is orthographic follows from the matrix.
+     * Sets the camera: clip from world (16, column-major, depth 0 to 1), eye (3) and viewing
+     * direction (3) in world coordinates. Further numbers are ignored; whether the camera is
+     * orthographic follows from the matrix.
      *
      * # Errors
      *
@@ -103,15 +108,18 @@ export class Renderer {
      */
     tint_faces(first: number, colours: Uint32Array, marks: Uint32Array): void;
     /**
-     * Appends or overwrites particles `first..first + radii.length`; the number drawn grows to their end.
+     * Appends or overwrites particles `first..first + radii.length`; the number drawn grows to
+     * their end.
      *
-     * Three numbers per particle in `positions` and `normals`; a negative radius is that of a dot that faces the eye; a level
-     * of 4294967295 stands for none, and such a particle is always drawn; `colours` are 0xAABBGGRR, sRGB. They begin to appear
-     * at `birth_s` on the clock of `draw`; -Infinity shows them at once.
+     * Three numbers per particle in `positions` and `normals`; a negative radius is that of a dot
+     * that faces the eye; a level of 4294967295 stands for none, and such a particle is always
+     * drawn; `colours` are 0xAABBGGRR, sRGB. They begin to appear at `birth_s` on the clock of
+     * `draw`; -Infinity shows them at once.
      *
      * # Errors
      *
-     * Throws where the columns disagree in length or there are more particles than `max_particles()`.
+     * Throws where the columns disagree in length or there are more particles than
+     * `max_particles()`.
      */
     write(first: number, positions: Float32Array, normals: Float32Array, radii: Float32Array, levels: Uint32Array, colours: Uint32Array, birth_s: number): void;
     /**
@@ -123,8 +131,9 @@ export class Renderer {
      */
     write_colours(first: number, colours: Uint32Array): void;
     /**
-     * Writes faces from `first` on: of each corner what `write` takes of a particle, three corners a face, counter-clockwise
-     * seen from outside. `marks` are the colours of marks on the corners, 0 for none. Hand over some ten thousand at a time.
+     * Writes faces from `first` on: of each corner what `write` takes of a particle, three corners
+     * a face, counter-clockwise seen from outside. `marks` are the colours of marks on the
+     * corners, 0 for none. Hand over some ten thousand at a time.
      *
      * # Errors
      *
@@ -132,12 +141,13 @@ export class Renderer {
      */
     write_faces(first: number, positions: Float32Array, normals: Float32Array, radii: Float32Array, levels: Uint32Array, colours: Uint32Array, marks: Uint32Array): void;
     /**
-     * Draws these pieces of creases from now on: eight numbers each in `ends`, the position of either end and the radius of the
-     * particle there; `colours` are 0xAABBGGRR, sRGB.
+     * Draws these pieces of creases from now on: eight numbers each in `ends`, the position of
+     * either end and the radius of the particle there; `colours` are 0xAABBGGRR, sRGB.
      *
      * # Errors
      *
-     * Throws where the columns disagree in length or there are more of them than `max_particles()`.
+     * Throws where the columns disagree in length or there are more of them than
+     * `max_particles()`.
      */
     write_lines(ends: Float32Array, colours: Uint32Array): void;
 }

@@ -282,7 +282,7 @@ async function spreadOf(/** @type {Lab} */ own, /** @type {object} */ change, pa
 
 test('ten seeds of one method differ by no more than what is called chance, and by nearly as much', async () => {
   says('two seeds differ by up to 200/√<i>n</i> points in the share with six neighbours, so by 10 with 400 particles');
-  says('and by 5 with 1,600; by 0.15 in the largest hole, and by 0.08 in the closest pair.');
+  says('and by 5 with 1,600; by 0.15 in the largest hole and 0.08 in the closest pair, more on strong bends.');
   const [tanglecube, torus] = [lab.on(TANGLECUBE), lab.on(TORUS)];
   const all = [
     await spreadOf(lab, {}),
