@@ -652,10 +652,16 @@ fn points_of_a_file_become_a_surface_that_is_sampled() {
     );
     let message = fails(1, &["sample", "--points", "no such file"]);
     assert!(message.starts_with("error: no such file could not be read: "), "{message}");
-    for more in [["--surface", "torus"], ["--formula", "x"], ["--param", "a=2"]] {
+    for (more, says) in
+        [(["--surface", "torus"], "cannot be used with"), (["--param", "a=2"], "--param is for formulas")]
+    {
         let message = fails(2, &["sample", "--points", "a.ply", more[0], more[1]]);
-        assert!(message.contains("cannot be used with"), "{message}");
+        assert!(message.contains(says), "{message}");
     }
+    let message = fails(2, &["sample", "--surface", "bunny", "--formula", "max(2model, z)"]);
+    assert!(message.contains("takes the model as an operand"), "{message}");
+    let message = fails(2, &["sample", "--formula", "max(model, z)"]);
+    assert!(message.contains("give its points with --points"), "{message}");
     for centres in ["99", "801"] {
         let message = fails(2, &["sample", "--points", "a.ply", "--centres", centres]);
         assert!(message.contains("100..=800"), "{message}");

@@ -339,7 +339,7 @@ export type FileRequest = {
 };
 
 /** The class of a [`FormulaError`]; its name in JSON is the snake-case form. */
-export type FormulaErrorKind = "empty" | "too_long" | "too_deep" | "too_complex" | "unexpected_end" | "unexpected_symbol" | "unexpected_character" | "bad_number" | "decimal_comma" | "ambiguous" | "missing_brackets" | "wrong_arity" | "too_many_equations" | "unknown_name" | "unknown_function" | "bad_definition" | "not_finite" | "bad_parameter";
+export type FormulaErrorKind = "empty" | "too_long" | "too_deep" | "too_complex" | "unexpected_end" | "unexpected_symbol" | "unexpected_character" | "bad_number" | "decimal_comma" | "ambiguous" | "missing_brackets" | "wrong_arity" | "too_many_equations" | "unknown_name" | "unknown_function" | "bad_definition" | "not_finite" | "bad_parameter" | "model_use";
 
 /** Entry of the function reference. */
 export type FunctionInfo = {
