@@ -46,7 +46,7 @@ pub enum FormulaErrorKind {
     NotFinite,
     /// A declared parameter has an unusable name, range or value.
     BadParameter,
-    /// A formula beside a model from points does not use it, or in a way that is none of an operand.
+    /// A formula beside a model from points does not use it, or otherwise than as an operand.
     ModelUse,
 }
 
