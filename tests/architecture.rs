@@ -154,6 +154,9 @@ const ROOMS: [Room; 4] = [
         "field",
         &[
             ("formula", &[]),
+            // The one part of a formula in which another field is an operand.
+            ("formula/operand", &["combined"]),
+            ("combined", &[]),
             ("descent", &[]),
             ("evaluator", &[]),
             ("differences", &[]),

@@ -580,9 +580,11 @@ fn models_from_points_are_sampled_by_name() {
         (Some("bunny-joined"), Some(200))
     );
     assert_eq!(json["quality"]["euler"], 0);
-    for more in [["--formula", "x = 0"], ["--param", "a=1"]] {
+    for (more, says) in
+        [(["--formula", "x = 0"], "takes the model as an operand"), (["--param", "a=1"], "has no parameters")]
+    {
         let message = fails(2, &["sample", "--surface", "bunny", more[0], more[1]]);
-        assert!(message.contains("made of points"), "{message}");
+        assert!(message.contains(says), "{message}");
     }
 }
 
