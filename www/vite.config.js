@@ -13,14 +13,15 @@ const EXAMPLES = 'embed';
 /** What the builds of both pages share. */
 const SHARED = {
   target: 'es2022',
-  // Nothing is turned into a data: address: the page's content security policy allows none for code.
+  // Nothing is turned into a data: address: the page's content security policy allows none for
+  // code.
   assetsInlineLimit: 0,
   modulePreload: { polyfill: false },
 };
 
 /**
- * Has the built page ask for the core in its head, so that it comes at the same time as the scripts. The development
- * server needs no such thing.
+ * Has the built page ask for the core in its head, so that it comes at the same time as the
+ * scripts. The development server needs no such thing.
  * @type {Plugin}
  */
 const preloadCore = {
@@ -31,7 +32,8 @@ const preloadCore = {
     handler(_html, { bundle = {} }) {
       const core = Object.keys(bundle).filter((name) => /core_bg-[^/]*\.wasm$/.test(name));
       if (core.length !== 1) throw new Error(`one core expected in the site, not ${core.length}: ${core}`);
-      // `fetch` takes what is preloaded only if the two agree in mode and credentials: hence `crossorigin`.
+      // `fetch` takes what is preloaded only if the two agree in mode and credentials: hence
+      // `crossorigin`.
       const attrs = { rel: 'preload', as: 'fetch', type: 'application/wasm', href: `./${core[0]}`, crossorigin: true };
       return [{ tag: 'link', attrs, injectTo: 'head' }];
     },
@@ -39,8 +41,8 @@ const preloadCore = {
 };
 
 /**
- * Builds the lesson's page by itself: if the two pages were one build, what both use would become files of their own,
- * and the first page would wait for more of them.
+ * Builds the lesson's page by itself: if the two pages were one build, what both use would become
+ * files of their own, and the first page would wait for more of them.
  * @type {Plugin & {folder?: string}}
  */
 const lessonPage = {
@@ -70,8 +72,8 @@ const lessonPage = {
 };
 
 /**
- * Puts the examples of the package on the site, under `embed/`, as they are: with the package beside them, as a page
- * without a bundler has it.
+ * Puts the examples of the package on the site, under `embed/`, as they are: with the package
+ * beside them, as a page without a bundler has it.
  * @type {Plugin & {folder?: string}}
  */
 const examplesPage = {
@@ -94,8 +96,8 @@ const examplesPage = {
 };
 
 /**
- * Has the development server wait for a bundle that is not there yet: `cargo xtask serve` builds only the core and a renderer
- * before the page is served.
+ * Has the development server wait for a bundle that is not there yet: `cargo xtask serve` builds
+ * only the core and a renderer before the page is served.
  * @type {Plugin}
  */
 const waitForBundles = {
@@ -104,7 +106,8 @@ const waitForBundles = {
   enforce: 'pre',
   resolveId(id, importer = '', options) {
     if (!id.startsWith('.') || !id.includes('/wasm/')) return null;
-    // The scan for packages to bundle ends at a file that is not there. Vite's types do not have the option.
+    // The scan for packages to bundle ends at a file that is not there. Vite's types do not have
+    // the option.
     if (/** @type {{scan?: boolean}} */ (options).scan) return { id, external: true };
     return join(dirname(importer), id);
   },
@@ -115,11 +118,14 @@ const waitForBundles = {
   },
 };
 
-/** Name of the service worker's file. It must not change: browsers look for a new version under the old name. */
+/**
+ * Name of the service worker's file. It must not change: browsers look for a new version under the
+ * old name.
+ */
 const SERVICE_WORKER = 'service-worker.js';
 /**
- * Has the development server answer with a worker that removes itself, for browsers that have kept the built site's
- * from the same port.
+ * Has the development server answer with a worker that removes itself, for browsers that have kept
+ * the built site's from the same port.
  * @type {Plugin}
  */
 const noServiceWorker = {
@@ -138,8 +144,8 @@ addEventListener('activate', async () => {
 };
 
 /**
- * Builds the service worker, with the list of all files of the site. Workbox keeps a file until its revision changes; a
- * name that Vite has made from the contents needs none.
+ * Builds the service worker, with the list of all files of the site. Workbox keeps a file until its
+ * revision changes; a name that Vite has made from the contents needs none.
  * @type {Plugin & {folder?: string}}
  */
 const offline = {
@@ -185,7 +191,8 @@ const offline = {
   },
 };
 
-// Every address in the built page is relative, so `dist/` works at the root of a host and in any folder of one.
+// Every address in the built page is relative, so `dist/` works at the root of a host and in any
+// folder of one.
 export default defineConfig({
   base: './',
   worker: { format: 'es' },
@@ -194,7 +201,8 @@ export default defineConfig({
     ...SHARED,
     outDir: process.env.SITE ?? '../dist',
     emptyOutDir: true,
-    // The renderer bundles are large by nature; `cargo xtask build` holds every file to its own budget.
+    // The renderer bundles are large by nature; `cargo xtask build` holds every file to its own
+    // budget.
     chunkSizeWarningLimit: 4096,
   },
   server: { strictPort: false },

@@ -30,7 +30,7 @@ pub struct FileRecord {
     /// Pulls on the surface of the model.
     #[serde(default)]
     pub pulls: Vec<Pull>,
-    /// Text of the formula; empty for a model.
+    /// Text of the formula; empty for a model by itself.
     pub formula: String,
     /// Values of its parameters.
     #[serde(default)]

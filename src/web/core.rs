@@ -80,8 +80,9 @@ impl Core {
     }
 
     /// Changes the field to a model from points: the solved system as `Points.field` gives it, what
-    /// `Points.info` says of it, `SolvedModel`, and a `FieldRequest`, of which the box and the
-    /// pulls count; to an `Answer` with `FieldAnswer`. After an error the last good field stays.
+    /// `Points.info` says of it, `SolvedModel`, and a `FieldRequest`, of which the box, the pulls
+    /// and a formula with the model as an operand count; to an `Answer` with `FieldAnswer`. After
+    /// an error the last good field stays.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
     pub fn set_points(
         &mut self,

@@ -777,6 +777,6 @@ fn a_function_gives_the_particles_that_sampling_it_gives() {
 fn a_function_that_fails_ends_its_run() {
     let mut session = Session::new();
     session.set_function(Arc::new(ball(|p| p.length() > 1.5)), Some(Bounds::cube(1.2))).expect("a box");
-    run(&mut session, &Settings::with_count(500), 50);
+    assert_eq!(run(&mut session, &Settings::with_count(500), 50), StopReason::Undefined);
     assert!(session.run.check_field().is_err());
 }

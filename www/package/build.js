@@ -14,7 +14,10 @@ const here = dirname(fileURLToPath(import.meta.url));
 const ENTRIES = ['index', 'node', 'worker', 'worker-node', 'three', 'view', 'element'];
 const DECLARATIONS = ['index', 'three', 'view', 'element'];
 
-/** The package has no folders: a file has the name of its folder in front of its own. @param {string} path */
+/**
+ * The package has no folders: a file has the name of its folder in front of its own.
+ * @param {string} path
+ */
 function flatName(path) {
   const folder = basename(dirname(path));
   if (path.endsWith('.wasm')) return `${folder}_bg.wasm`;
@@ -22,8 +25,8 @@ function flatName(path) {
 }
 
 /**
- * Adds the workers and the modules that scripts name by `new URL('…', import.meta.url)`, and leaves their addresses in
- * this form, which browsers and bundlers read.
+ * Adds the workers and the modules that scripts name by `new URL('…', import.meta.url)`, and leaves
+ * their addresses in this form, which browsers and bundlers read.
  * @type {Plugin}
  */
 const flat = {

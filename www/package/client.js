@@ -1,5 +1,6 @@
 /**
- * The program's side of the sampler: asks it, in a worker or in the program's own thread, and holds the samples.
+ * The program's side of the sampler: asks it, in a worker or in the program's own thread, and holds
+ * the samples.
  *
  * @module
  */
@@ -95,7 +96,10 @@ class Client {
     }
   }
 
-  /** Tells of progress. A function that fails ends its sampling. @param {number} id @param {Progress} progress */
+  /**
+   * Tells of progress. A function that fails ends its sampling.
+   * @param {number} id @param {Progress} progress
+   */
   #tell(id, progress) {
     try {
       this.#pending.get(id)?.onProgress?.(progress);
@@ -133,7 +137,9 @@ class Sample {
   #isThere = true;
   #how;
 
-  /** @param {Client} client @param {{id: number, value: Made}} answer @param {ReturnType<typeof checked>} how */
+  /**
+   * @param {Client} client @param {{id: number, value: Made}} answer @param {ReturnType<typeof checked>} how
+   */
   constructor(client, { id, value }, how) {
     this.#client = client;
     this.#line = client.line;
@@ -170,7 +176,8 @@ class Sample {
   }
 
   /**
-   * The particles on the surface of other parameters. They leave this sample, which keeps its columns.
+   * The particles on the surface of other parameters. They leave this sample, which keeps its
+   * columns.
    * @param {Record<string, number>} params @param {Pick<Options, 'signal' | 'onProgress'>} [options]
    */
   async moved(params, options = {}) {
@@ -208,8 +215,8 @@ class Sample {
 }
 
 /**
- * Returns the function `sample`: functions are sampled by what `openHere` opens, which is in the thread of the program,
- * and the rest by what `open` opens.
+ * Returns the function `sample`: functions are sampled by what `openHere` opens, which is in the
+ * thread of the program, and the rest by what `open` opens.
  * @param {(heard: Heard) => Line} open @param {(heard: Heard) => Line} openHere
  */
 export function createSampler(open, openHere) {

@@ -128,7 +128,10 @@ export class MarchingParticles extends Base {
     if (!this.hasAttribute('aria-labelledby') && text) this.ariaLabel ??= text;
   }
 
-  /** Has the particles follow the surface to other parameters. @param {Record<string, number>} params */
+  /**
+   * Has the particles follow the surface to other parameters.
+   * @param {Record<string, number>} params
+   */
   #move(params) {
     const give = (/** @type {boolean} */ live) => {
       for (const [name, value] of Object.entries(params)) this.#view?.setParameter(name, value, { live });
@@ -155,8 +158,8 @@ export class MarchingParticles extends Base {
   }
 
   /**
-   * Does what an attribute asks for. What is wrong with the attribute is an event; what is wrong with
-   * the surface the picture tells itself.
+   * Does what an attribute asks for. What is wrong with the attribute is an event; what is wrong
+   * with the surface the picture tells itself.
    * @param {() => Promise<unknown> | undefined} act
    */
   async #try(act) {

@@ -6,7 +6,10 @@
 
 /** @import { Heard, Line, Load } from './protocol.js' */
 
-/** The core of a thread is one: after an error its memory cannot be trusted, and it cannot be loaded again. */
+/**
+ * The core of a thread is one: after an error its memory cannot be trusted, and it cannot be loaded
+ * again.
+ */
 let hasFailed = false;
 
 /**

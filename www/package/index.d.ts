@@ -36,7 +36,10 @@ export interface Options {
 export interface Warning {
   /** a name by which a program tells warnings apart */
   code: string;
-  /** `note`: nothing needs to be done; `caution`: the result may be incomplete; `fault`: a part is missing or wrong */
+  /**
+   * `note`: nothing needs to be done; `caution`: the result may be incomplete; `fault`: a part is
+   * missing or wrong
+   */
   severity: 'note' | 'caution' | 'fault';
   message: string;
 }
@@ -77,11 +80,16 @@ export interface Sample {
   readonly bounds: Bounds;
   readonly params: Record<string, number>;
   readonly digest: string;
-  /** joins the particles to triangles; with `weld` those at a crease share a row, and have the normal of one side */
+  /**
+   * joins the particles to triangles; with `weld` those at a crease share a row, and have the
+   * normal of one side
+   */
   mesh(how?: { weld?: boolean }): Promise<Mesh>;
   /** the mesh as a file */
   toFile(format: Format): Promise<Uint8Array<ArrayBuffer>>;
-  /** the particles on the surface of other parameters; they leave this sample, whose columns stay */
+  /**
+   * the particles on the surface of other parameters; they leave this sample, whose columns stay
+   */
   moved(params: Record<string, number>, options?: Pick<Options, 'signal' | 'onProgress'>): Promise<Sample>;
   /** frees the memory of the worker; the columns stay */
   dispose(): void;
@@ -99,14 +107,15 @@ export interface Points {
   normals?: Float32Array | Float64Array | number[];
 }
 /**
- * What is sampled: a formula such as `x^2 + y^2 + z^2 = a`; a function f(x, y, z), negative inside and NaN where it has
- * no value, of a point or of many at once; or points.
+ * What is sampled: a formula such as `x^2 + y^2 + z^2 = a`; a function f(x, y, z), negative inside
+ * and NaN where it has no value, of a point or of many at once; or points.
  */
 export type Field = string | ((x: number, y: number, z: number) => number) | Batch | Points;
 
 /**
- * Covers the surface f = 0 with evenly spaced particles. Formulas and points are sampled in a worker; a function is
- * called in the thread that it belongs to, in slices of some milliseconds between which the page draws.
+ * Covers the surface f = 0 with evenly spaced particles. Formulas and points are sampled in a
+ * worker; a function is called in the thread that it belongs to, in slices of some milliseconds
+ * between which the page draws.
  */
 export function sample(field: Field, options?: Options): Promise<Sample>;
 
@@ -116,11 +125,16 @@ export class InputError extends Error {}
 export class FormulaError extends Error {
   readonly start: number;
   readonly end: number;
-  /** a text for that place, where one would mend it; `choices`: several, each with another meaning */
+  /**
+   * a text for that place, where one would mend it; `choices`: several, each with another meaning
+   */
   readonly suggestion: string | null;
   readonly choices: string[];
 }
-/** The function that is sampled threw, which is the `cause`, or returned something else than its values. */
+/**
+ * The function that is sampled threw, which is the `cause`, or returned something else than its
+ * values.
+ */
 export class FieldError extends Error {}
 /** No particle could be placed. */
 export class NoSurfaceError extends Error {}

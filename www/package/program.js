@@ -28,7 +28,10 @@ function refusePromise(value) {
  */
 export class Program {
   #write;
-  /** What went wrong: a sentence, and the error that the function threw. @type {{message: string, cause: unknown} | null} */
+  /**
+   * What went wrong: a sentence, and the error that the function threw.
+   * @type {{message: string, cause: unknown} | null}
+   */
   failure = null;
 
   /** @param {((x: number, y: number, z: number) => number) | Batch} field */

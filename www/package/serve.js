@@ -1,6 +1,6 @@
 /**
- * The sampler's side of the package: samples in slices, each field in a core of its own, and keeps the cores of the
- * samples that can still be asked for a mesh, a file or moved particles.
+ * The sampler's side of the package: samples in slices, each field in a core of its own, and keeps
+ * the cores of the samples that can still be asked for a mesh, a file or moved particles.
  *
  * @module
  */
@@ -53,7 +53,10 @@ export function serve({ post, load }) {
   /** Requests under way, and whether each is to stop. @type {Map<number, boolean>} */
   const asked = new Map();
 
-  /** Loads a module once. @param {'core' | 'points'} name @param {(options: any) => Promise<unknown>} init */
+  /**
+   * Loads a module once.
+   * @param {'core' | 'points'} name @param {(options: any) => Promise<unknown>} init
+   */
   async function loaded(name, init) {
     const loading = modules.get(name) ?? load(name).then((from) => init({ module_or_path: from }));
     modules.set(name, loading);
@@ -201,7 +204,8 @@ export function serve({ post, load }) {
 }
 
 /**
- * Puts the first row of each particle in the place of its others, which it has where it lies on a crease.
+ * Puts the first row of each particle in the place of its others, which it has where it lies on a
+ * crease.
  * @param {Uint32Array} indices @param {Uint32Array} firstRows  nothing without creases
  */
 function weld(indices, firstRows) {

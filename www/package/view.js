@@ -15,7 +15,10 @@ export { FormulaError, InputError, NoSurfaceError, WorkerError } from './errors.
  * @import { Listeners, View, ViewState } from './view.js'
  */
 
-/** What went wrong with the present surface; null if nothing did. It reads signals. @param {Engine} engine */
+/**
+ * What went wrong with the present surface; null if nothing did. It reads signals.
+ * @param {Engine} engine
+ */
 function faultOf(engine) {
   const fault = engine.fieldError.value;
   if (fault) return new FormulaError(fault.message, { ...fault, suggestion: fault.suggestion ?? null });

@@ -316,7 +316,8 @@ pub(crate) fn choose(
     let answer = session.set_field(&request).map_err(refused)?;
     if answer.auto.iter().any(|name| name == MODEL) {
         return Err(Failure::Usage(
-            "the formula takes a model as an operand: give its points with --points, or name one with --surface"
+            "the formula takes a model as an operand: give its points with --points, or name one with \
+             --surface"
                 .into(),
         ));
     }

@@ -14,17 +14,36 @@ pub(super) struct CombinationEvaluator<'a> {
     frame: Frame,
     /// The evaluator of a branch, once it has been asked for.
     branch: Option<Box<BranchEvaluator<'a>>>,
-    /// What the parts give for a batch, one after the other.
+    /// Values and derivatives of the parts at the points of a batch: those of the first part, then
+    /// those of the second one.
     values: Vec<f32>,
     gradients: Vec<Vec3>,
     hessians: Vec<Sym3<f32>>,
+    /// The same in double precision.
+    exact: (Vec<f64>, Vec<DVec3>),
+}
+
+/// The highest derivatives that a batch is asked for.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Order {
+    Values,
+    Gradients,
+    Hessians,
 }
 
 impl<'a> CombinationEvaluator<'a> {
     pub(super) fn new(field: &'a Combination, frame: Frame) -> Self {
         let parts: Vec<_> = field.parts.iter().map(|part| part.evaluator(frame)).collect();
-        let (values, gradients, hessians) = (Vec::new(), Vec::new(), Vec::new());
-        Self { field, parts, frame, branch: None, values, gradients, hessians }
+        Self {
+            field,
+            parts,
+            frame,
+            branch: None,
+            values: Vec::new(),
+            gradients: Vec::new(),
+            hessians: Vec::new(),
+            exact: Default::default(),
+        }
     }
 
     /// Whether batches hold values that the rule cannot be used on: arsinh(f/s), which only a
@@ -37,31 +56,30 @@ impl<'a> CombinationEvaluator<'a> {
         Pointwise { field: self.field, frame: self.frame }
     }
 
-    /// Asks each part with a slice of the memory for its results, and calls `store` with the index
-    /// of each point and the jet of the combination there.
-    fn batches(
-        &mut self,
-        points: &[Vec3],
-        mut ask: impl FnMut(&mut dyn Evaluator, &[Vec3], &mut [f32], &mut [Vec3], &mut [Sym3<f32>]),
-        mut store: impl FnMut(usize, &Jet),
-    ) {
+    /// Evaluates the parts, and calls `store` with the index of each point and the jet of the
+    /// combination there, up to this order.
+    fn batches(&mut self, order: Order, points: &[Vec3], mut store: impl FnMut(usize, &Jet)) {
         let rule = self.field.rule.scaled(self.frame.scale.into());
         let size = self.parts.len() * BATCH;
+        let (has_gradients, has_hessians) = (order >= Order::Gradients, order == Order::Hessians);
         self.values.resize(size, 0.0);
         self.gradients.resize(size, Vec3::ZERO);
         self.hessians.resize(size, Sym3::default());
         for (first, points) in (0..).step_by(BATCH).zip(points.chunks(BATCH)) {
-            let memory = self.values.chunks_mut(BATCH).zip(self.gradients.chunks_mut(BATCH));
-            for ((part, (value, gradient)), hessian) in
-                self.parts.iter_mut().zip(memory).zip(self.hessians.chunks_mut(BATCH))
-            {
-                ask(&mut **part, points, value, gradient, hessian);
+            for (part, own) in self.parts.iter_mut().zip((0..).step_by(BATCH)) {
+                let own = own..own + BATCH;
+                let (value, gradient) = (&mut self.values[own.clone()], &mut self.gradients[own.clone()]);
+                match order {
+                    Order::Values => part.values(points, value),
+                    Order::Gradients => part.gradients(points, value, gradient),
+                    Order::Hessians => part.hessians(points, value, gradient, &mut self.hessians[own]),
+                }
             }
             for k in 0..points.len() {
                 let jet = |at: usize| Jet {
                     value: self.values[at].into(),
-                    gradient: self.gradients[at].as_dvec3(),
-                    hessian: self.hessians[at].map(f64::from),
+                    gradient: if has_gradients { self.gradients[at].as_dvec3() } else { DVec3::ZERO },
+                    hessian: if has_hessians { self.hessians[at].map(f64::from) } else { Sym3::default() },
                 };
                 store(first + k, &rule.jet(&mut (k..size).step_by(BATCH).map(jet)));
             }
@@ -74,7 +92,7 @@ impl<'a> CombinationEvaluator<'a> {
     }
 
     /// The part that gives f at `p`, where this is a minimum or maximum.
-    pub(super) fn part_at(&mut self, p: DVec3) -> usize {
+    fn part_at(&mut self, p: DVec3) -> usize {
         let [a, b] = [0, 1].map(|k: usize| self.parts[k].value_and_gradient(p).0);
         self.field.rule.taken(a, b)
     }
@@ -89,20 +107,14 @@ impl Evaluator for CombinationEvaluator<'_> {
         if self.is_compressed() {
             return self.pointwise().values(points, value);
         }
-        let ask = |part: &mut dyn Evaluator, points: &[Vec3], value: &mut [f32], _: &mut [_], _: &mut [_]| {
-            part.values(points, value);
-        };
-        self.batches(points, ask, |k, jet| value[k] = jet.value as f32);
+        self.batches(Order::Values, points, |k, jet| value[k] = jet.value as f32);
     }
 
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
         if self.is_compressed() {
             return self.pointwise().gradients(points, value, gradient);
         }
-        let ask = |part: &mut dyn Evaluator, points: &[Vec3], v: &mut [f32], g: &mut [Vec3], _: &mut [_]| {
-            part.gradients(points, v, g);
-        };
-        self.batches(points, ask, |k, jet| {
+        self.batches(Order::Gradients, points, |k, jet| {
             (value[k], gradient[k]) = (jet.value as f32, jet.gradient.as_vec3());
         });
     }
@@ -117,12 +129,7 @@ impl Evaluator for CombinationEvaluator<'_> {
         if self.is_compressed() {
             return self.pointwise().hessians(points, value, gradient, hessian);
         }
-        let ask = |part: &mut dyn Evaluator,
-                   points: &[Vec3],
-                   v: &mut [f32],
-                   g: &mut [Vec3],
-                   h: &mut [Sym3<f32>]| part.hessians(points, v, g, h);
-        self.batches(points, ask, |k, jet| {
+        self.batches(Order::Hessians, points, |k, jet| {
             (value[k], gradient[k]) = (jet.value as f32, jet.gradient.as_vec3());
             hessian[k] = jet.hessian.map(|entry| entry as f32);
         });
@@ -145,19 +152,17 @@ impl Evaluator for CombinationEvaluator<'_> {
 
     fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
         let (count, rule) = (points.len(), self.field.rule.scaled(self.exact_scale()));
-        let own = |part: &mut Box<dyn Evaluator + '_>| {
-            let (mut value, mut gradient) = (vec![0.0; count], vec![DVec3::ZERO; count]);
-            part.exact_gradients(points, &mut value, &mut gradient);
-            (value, gradient)
-        };
-        let results: Vec<_> = self.parts.iter_mut().map(own).collect();
+        let (values, gradients) = &mut self.exact;
+        let size = self.parts.len() * count;
+        values.resize(size, 0.0);
+        gradients.resize(size, DVec3::ZERO);
+        for (k, part) in self.parts.iter_mut().enumerate() {
+            let own = k * count..(k + 1) * count;
+            part.exact_gradients(points, &mut values[own.clone()], &mut gradients[own]);
+        }
         for k in 0..count {
-            let jet = |(value, gradient): &(Vec<f64>, Vec<DVec3>)| Jet {
-                value: value[k],
-                gradient: gradient[k],
-                ..Jet::default()
-            };
-            let jet = rule.jet(&mut results.iter().map(jet));
+            let jet = |at: usize| Jet { value: values[at], gradient: gradients[at], ..Jet::default() };
+            let jet = rule.jet(&mut (k..size).step_by(count).map(jet));
             (value[k], gradient[k]) = (jet.value, jet.gradient);
         }
     }
@@ -206,7 +211,7 @@ impl Patches for CombinationEvaluator<'_> {
         for part in &mut self.parts {
             found.extend(part.patches().map_or(Vec::new(), |patches| patches.crease_cells(bounds, width)));
         }
-        self.drop_hidden(&mut found, DVec3::ZERO);
+        slices::complete(self.drop_hidden(&mut found, DVec3::ZERO));
         found.extend(slices::complete(self.tied_cells(bounds, width)));
         found
     }

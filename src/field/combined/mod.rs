@@ -5,8 +5,8 @@
 //! for in small [cells](ties) and followed to the digits of the numbers, as those of a formula are;
 //! but a field of the program has no bounds to prove by that none was missed.
 //!
-//! What is done to a minimum or a maximum is done to its operands, so that these operations come
-//! last: −max(a, b) = min(−a, −b), and the other way round; max(a, b) − d = max(a − d, b − d).
+//! Signs and offsets move into the operands of a minimum or a maximum, whose creases stay known so:
+//! −max(a, b) = min(−a, −b), −min(a, b) = max(−a, −b), and max(a, b) − d = max(a − d, b − d).
 
 mod evaluator;
 mod rule;
@@ -86,7 +86,8 @@ where
     Combined(greatest(shared(a), shared(b)))
 }
 
-/// What is left of a solid when another one is cut away: max(a, −b). See [`union`].
+/// The difference of two solids: max(a, −b), which is negative where a is and b is not. See
+/// [`union`].
 ///
 /// ```
 /// use marching_particles::glam::DVec3;
@@ -118,8 +119,8 @@ where
     Combined(blended(shared(a), shared(b), width))
 }
 
-/// The solid whose surface is at f = `distance` in place of 0: larger by that distance where f is
-/// one, smaller where it is negative.
+/// The field f − `distance`. Where f is the distance from a solid, this solid is larger by
+/// `distance`, or smaller by a negative one.
 pub fn offset<A, K>(a: A, distance: f64) -> Combined
 where
     A: IntoField<K, Field: 'static>,
@@ -233,7 +234,7 @@ impl Creased for Combination {
             let origin = bounds.middle();
             let mut evaluator = CombinationEvaluator::new(&own, Frame::around(origin));
             let near = bounds.relative_to(origin);
-            evaluator.drop_hidden(&mut found, origin);
+            evaluator.drop_hidden(&mut found, origin).await;
             let ties = evaluator.tied_cells(&near, width).await;
             found.extend(ties.iter().map(|cell| cell.relative_to(-origin)));
             drop(evaluator);

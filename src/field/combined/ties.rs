@@ -1,8 +1,8 @@
 //! Cells in which the two operands of a minimum or maximum may be equal on the surface.
 //!
-//! Nothing bounds a field of the program over a cell. Its value in the middle, over its gradient,
-//! is the distance from its surface to first order: what is farther than twice the corners is not
-//! in the cell.
+//! Nothing bounds a field of the program over a cell. In the middle of the cell |f|/|∇f| is the
+//! distance from the surface to first order. A surface that is farther than twice the distance of
+//! the corners does not pass through the cell.
 
 use super::evaluator::CombinationEvaluator;
 use super::rule::Rule;
@@ -10,15 +10,15 @@ use crate::math::Bounds;
 use crate::slices::{HEAVY, pause};
 use glam::DVec3;
 
-/// Cells along the longest side of the box in which the search begins. A surface that is closer to
-/// another sheet of itself than they are wide may be missed.
+/// Number of cells along the longest side of the box with which the search begins. A sheet of the
+/// surface that is closer to another one than a cell is wide may be missed.
 const SIDE: f64 = 32.0;
-/// How much farther than its corners a surface may be of which the cell is not rid.
+/// A surface may pass through a cell up to this multiple of the distance from the middle to a
+/// corner.
 const SLACK: f64 = 2.0;
-/// Sine of the angle between gradients that are parallel but for rounding.
+/// Sine of the largest angle between gradients that count as parallel: only rounding parts them.
 const PARALLEL: f64 = 1e-6;
-/// The largest number of cells that are divided further: it is exceeded where two surfaces share a
-/// face.
+/// The largest number of cells that are divided further. Two surfaces that share a face have more.
 const MOST_CELLS: usize = 200_000;
 
 impl CombinationEvaluator<'_> {
@@ -66,9 +66,15 @@ impl CombinationEvaluator<'_> {
         })
     }
 
-    /// Drops the cells of the creases of parts, counted from `origin` farther away than the frame,
-    /// in which no part gives the surface.
-    pub(super) fn drop_hidden(&mut self, cells: &mut Vec<Bounds>, origin: DVec3) {
-        cells.retain(|cell| self.may_give(&cell.relative_to(origin)).contains(&true));
+    /// Drops the cells in which no part gives a point of the surface. `origin` is the zero of the
+    /// frame, in the coordinates of the cells.
+    pub(super) async fn drop_hidden(&mut self, cells: &mut Vec<Bounds>, origin: DVec3) {
+        let mut kept = Vec::new();
+        for cells in cells.chunks(HEAVY) {
+            pause().await;
+            let is_there = |cell: &&Bounds| self.may_give(&cell.relative_to(origin)).contains(&true);
+            kept.extend(cells.iter().filter(is_there));
+        }
+        *cells = kept;
     }
 }

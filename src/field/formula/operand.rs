@@ -39,8 +39,9 @@ impl Formula {
         field.map(Combined::new).ok_or_else(|| {
             let text = self.text();
             let at = text.find(MODEL).map_or(0..text.len(), |at| at..at + MODEL.len());
-            let message = "A formula takes the model as an operand of max, min, smin, smax or abs, with or without a \
-                           minus or a number that is added: `max(model, z)`, `abs(model) - 0.1`";
+            let message = "A formula takes the model as an operand of max, min, smin, smax or abs, \
+                           with or without a minus or a number that is added: `max(model, z)`, \
+                           `abs(model) - 0.1`";
             FormulaError::new(FormulaErrorKind::ModelUse, at, message)
         })
     }

@@ -25,9 +25,9 @@ pub(super) struct Solid {
     pub(super) closed: Option<Bounds>,
     /// Whether that box is a [cell](crate::field::UnitCell).
     pub(super) is_cell: bool,
-    /// Whether the function of the solid has the other sign.
+    /// Whether the function that is sampled is that of the solid with the other sign.
     is_negative: bool,
-    /// What is subtracted from it in the end.
+    /// The number that is subtracted from the function after that.
     shift: f64,
 }
 

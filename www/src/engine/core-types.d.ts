@@ -310,7 +310,7 @@ export type FileRecord = {
   model: string | null,
   /** Pulls on the surface of the model. */
   pulls: Array<Pull>,
-  /** Text of the formula; empty for a model. */
+  /** Text of the formula; empty for a model by itself. */
   formula: string,
   /** Values of its parameters. */
   parameters: { [key in string]: number },

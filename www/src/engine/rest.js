@@ -16,7 +16,8 @@ export const once = (engine, isOver) =>
   new Promise((/** @type {(report: Report | null) => void} */ resolve) => {
     let stop = () => {};
     stop = effect(() => {
-      // The progress is written anew when the sampler ends. The notice about it may have been dismissed since.
+      // The progress is written anew when the sampler ends. The notice about it may have been
+      // dismissed since.
       const isOff = engine.progress.value && engine.debug.isOff();
       if (!isOff && !isOver()) return;
       resolve(engine.report.peek());
@@ -24,7 +25,10 @@ export const once = (engine, isOver) =>
     });
   });
 
-/** Returns whether no run is active and the report has arrived, if one is expected. @param {Engine} engine */
+/**
+ * Returns whether no run is active and the report has arrived, if one is expected.
+ * @param {Engine} engine
+ */
 export const atRest = (engine) =>
   engine.description.value !== null &&
   engine.loading.value === null &&
@@ -32,7 +36,10 @@ export const atRest = (engine) =>
   !engine.busy.value &&
   engine.progress.value.phase === 'done';
 
-/** Resolves with the report once the sampler is at rest and the picture is up to date. @param {Engine} engine */
+/**
+ * Resolves with the report once the sampler is at rest and the picture is up to date.
+ * @param {Engine} engine
+ */
 export async function settled(engine) {
   const drawable = () => engine.reveal.value === null && engine.backend.value !== 'starting';
   const report = await once(engine, () => atRest(engine) && drawable());

@@ -1,4 +1,7 @@
-/** The pairs of samplings that the learner judges: the first by eye, the last ones by eye and then by their figures. */
+/**
+ * The pairs of samplings that the learner judges: the first by eye, the last ones by eye and then
+ * by their figures.
+ */
 import { formatCount } from '../ui/format.js';
 import { chanceOf, DECIDING, rowOf, scoreAtEnd, verdictOf } from './score.js';
 import { subjectOf } from './surface.js';

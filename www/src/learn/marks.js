@@ -1,4 +1,7 @@
-/** Marks of particles with five and with seven neighbours. One switch shows them in all pictures that are judged. */
+/**
+ * Marks of particles with five and with seven neighbours. One switch shows them in all pictures
+ * that are judged.
+ */
 import { signal } from '@preact/signals-core';
 import { h } from '../ui/dom.js';
 

@@ -5,7 +5,9 @@ import { unrolled } from '../figures/geometry.js';
 /** @import { Point } from '../figures/types.js' */
 /** @import { LabRun, Score } from './types.js' */
 
-/** Half the width and half the height of a patch in r, and how far around it particles are taken in. */
+/**
+ * Half the width and half the height of a patch in r, and how far around it particles are taken in.
+ */
 export const HALF = { width: 5, height: 4 };
 const BEYOND = 4;
 
@@ -41,8 +43,9 @@ export function cellOf(place, others, reach) {
 }
 
 /**
- * The patch around the largest hole of a run as it was placed: its particles with their cells and neighbours, the hole,
- * and the closest pair of the patch. Null where no hole is measured. Lengths are in r.
+ * The patch around the largest hole of a run as it was placed: its particles with their cells and
+ * neighbours, the hole, and the closest pair of the patch. Null where no hole is measured. Lengths
+ * are in r.
  * @param {LabRun} run @param {Score} score  of the particles as placed
  */
 export function patchOf({ placed, radius }, { places: { hole }, valence }) {

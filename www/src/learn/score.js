@@ -1,4 +1,7 @@
-/** The figures that decide between two runs, or two moments of one: those of the sampler's own report. */
+/**
+ * The figures that decide between two runs, or two moments of one: those of the sampler's own
+ * report.
+ */
 import { distance, triple } from '../engine/vector.js';
 import { formatCount, formatFixed, formatSignificant } from '../ui/format.js';
 
@@ -16,9 +19,10 @@ const ratio = (value) => formatFixed(value, 2);
 const points = (share) => `${formatFixed(100 * share, 1)} points`;
 
 /**
- * The figures in their order. A press on one that has a place shows the place. The chances are the largest differences
- * among ten seeds of one method with particles of one size, of several methods and surfaces. The share with six
- * neighbours is a mean over all particles, so its chance falls with the root of their number.
+ * The figures in their order. A press on one that has a place shows the place. The chances are the
+ * largest differences among ten seeds of one method with particles of one size, of several methods
+ * and surfaces. The share with six neighbours is a mean over all particles, so its chance falls
+ * with the root of their number.
  * @type {readonly ScoreRow[]}
  */
 export const ROWS = [
@@ -148,7 +152,8 @@ export const chanceOf = ({ chance, digits }, scores) =>
 const rounded = (value, digits) => Number(value.toFixed(digits));
 
 /**
- * Which of two scores has the better figure: −1 where chance alone may make the difference, as it is written.
+ * Which of two scores has the better figure: −1 where chance alone may make the difference, as it
+ * is written.
  * @param {readonly Score[]} scores @param {ScoreRow} row
  */
 export function bestOf(scores, row) {
@@ -160,7 +165,10 @@ export function bestOf(scores, row) {
   return one < other === (row.worse === 'above') ? 0 : 1;
 }
 
-/** The figures that decide which sampling is better: the first of them that differs by more than chance. */
+/**
+ * The figures that decide which sampling is better: the first of them that differs by more than
+ * chance.
+ */
 export const DECIDING = /** @type {const} */ (['six', 'hole', 'pair']);
 
 /**

@@ -9,7 +9,9 @@ import type { Lab } from './lab.js';
 
 export type { Lab, Stops };
 
-/** The controls that an assignment may lock: those of its bench, then those of the rest of the page. */
+/**
+ * The controls that an assignment may lock: those of its bench, then those of the rest of the page.
+ */
 export type Control = 'what' | 'left' | 'right' | 'figures' | 'questions' | 'bench' | 'race';
 /** The comparison on the bench. */
 export type Setup = { what: string; left: string; right: string };
@@ -23,8 +25,9 @@ export interface Knob {
 /** What knobs give. */
 export type Try = { value: string; run: LabRun; score: Score };
 /**
- * One choice. `make` is given a value and makes the run; the first two values are shown first. One with knobs has a
- * value for each position of them, and names those that a presentation goes through.
+ * One choice. `make` is given a value and makes the run; the first two values are shown first. One
+ * with knobs has a value for each position of them, and names those that a presentation goes
+ * through.
  */
 export interface WhatIf {
   id: string;
@@ -42,7 +45,9 @@ export interface WhatIf {
 }
 /** `right` is compared with the guess, `eye` with the one by eye; `words` say it in a sentence. */
 export type Answer = { right: string | number; eye?: string; words: string };
-/** `choice`: one of several; `number`: a count; `pick`: a particle pressed in the figure before it. */
+/**
+ * `choice`: one of several; `number`: a count; `pick`: a particle pressed in the figure before it.
+ */
 export interface Prediction {
   kind: 'choice' | 'number' | 'pick';
   choices?: readonly { value: string; label: string }[];
@@ -57,11 +62,13 @@ export interface Prediction {
   /** what is right, in words, if the choices do not say it */
   name?: (right: string | number) => string;
 }
-/** What is said of a slot. `particle`: the one that holds it; of a new one, its number in the run. */
+/**
+ * What is said of a slot. `particle`: the one that holds it; of a new one, its number in the run.
+ */
 export type Verdict = { fate: 'matched' | 'added'; particle: number | null };
 /**
- * A surface on which the learner is the algorithm. `isAtSeam`: where the front first meets itself; `ends`: what is said
- * at the end.
+ * A surface on which the learner is the algorithm. `isAtSeam`: where the front first meets itself;
+ * `ends`: what is said at the end.
  */
 export interface Patch {
   id: string;
@@ -72,7 +79,10 @@ export interface Patch {
   isAtSeam?: boolean;
   ends: string;
 }
-/** What the run decides at a slot: after event `at`, told by event `end`. `met`: the front meets itself there. */
+/**
+ * What the run decides at a slot: after event `at`, told by event `end`. `met`: the front meets
+ * itself there.
+ */
 export interface Decision {
   slot: number;
   at: number;
@@ -104,7 +114,10 @@ export interface Cost {
   others: number;
   rows: { name: string; evaluations: number; pushes: number; rounds: number }[];
 }
-/** The content of a picture. `count`: the first so many particles; `colours`: one for each, of this theme's palette. */
+/**
+ * The content of a picture. `count`: the first so many particles; `colours`: one for each, of this
+ * theme's palette.
+ */
 export interface Scene {
   particles: LessonParticles;
   /** those that the surface to come is made of; else the particles that are not drawn */
@@ -116,8 +129,8 @@ export interface Scene {
   marks?: readonly Mark[];
 }
 /**
- * A run that has come to its end. `placed` are the particles before the first relaxation step, `end` those after
- * the last; `placing` counts the evaluations of f until then.
+ * A run that has come to its end. `placed` are the particles before the first relaxation step,
+ * `end` those after the last; `placing` counts the evaluations of f until then.
  */
 export interface LabRun {
   /** that of its surface */
@@ -145,7 +158,10 @@ export type Score = ScoreFigures & {
 export interface ScoreRow {
   key: keyof ScoreFigures;
   name: string;
-  /** whether it is in the files of a work, and not in tables: with more or larger discs it always gets smaller */
+  /**
+   * whether it is in the files of a work, and not in tables: with more or larger discs it always
+   * gets smaller
+   */
   isSavedOnly?: boolean;
   /** null where there is none */
   ideal: number | null;
@@ -202,7 +218,9 @@ export type Flowing = { particles: LessonParticles; evaluations: number };
 export type Snapshot<L> = { lane: L; particles: LessonParticles };
 /** `L`: what is known of a lane at a snapshot. */
 export interface ReplayOptions<L> {
-  /** the snapshots of each lane in their order, none of them empty; the lanes may still be under way */
+  /**
+   * the snapshots of each lane in their order, none of them empty; the lanes may still be under way
+   */
   films: readonly Snapshot<L>[][];
   names: readonly string[];
   /** what the axis can be */
@@ -234,9 +252,10 @@ export type Subject = { surface: FormulaSurface; isOwn: boolean; from: string; n
 /** The input of a figure: the runs, and the predictions that were made. */
 export type Context = { lab: Promise<Lab>; stops: Stops };
 /**
- * A slot in its plane, from p: places are (along V, along N). `bend` is that of the surface towards the child, which
- * landed on the circle at `child`, `section` the curve f = 0; `newton` are the places of Newton's method, `landing` its
- * distance from p, and `aside` how far beside the plane it lies.
+ * A slot in its plane, from p: places are (along V, along N). `bend` is that of the surface towards
+ * the child, which landed on the circle at `child`, `section` the curve f = 0; `newton` are the
+ * places of Newton's method, `landing` its distance from p, and `aside` how far beside the plane it
+ * lies.
  */
 export interface SlotCase {
   bend: number;

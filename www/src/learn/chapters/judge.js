@@ -1,4 +1,7 @@
-/** Two samplings that the learner judges, side by side under one camera: by eye, then by figures, then with marks. */
+/**
+ * Two samplings that the learner judges, side by side under one camera: by eye, then by figures,
+ * then with marks.
+ */
 import { signal } from '@preact/signals-core';
 import { h, live } from '../../ui/dom.js';
 import { eyeOf } from '../answers.js';

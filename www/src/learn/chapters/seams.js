@@ -25,7 +25,10 @@ const [LONGER, SHORTEST] = [6, 0.03];
 /** Size of a cross, over that of other marks, which are wider than a disc. */
 const CROSS = 0.5;
 
-/** The particles of each level whose front met itself or another one out of step. @param {LabRun} run */
+/**
+ * The particles of each level whose front met itself or another one out of step.
+ * @param {LabRun} run
+ */
 async function meetingsOf({ client, chapters }) {
   const levels = chapters.filter(({ kind }) => kind === 'level');
   /** @type {number[][]} */
@@ -46,7 +49,10 @@ const firstOf = (all, count) => ({
   levels: all.levels.subarray(0, count),
 });
 
-/** Arrows from where particles are to where they go. @param {LessonParticles} now @param {LessonParticles} next */
+/**
+ * Arrows from where particles are to where they go.
+ * @param {LessonParticles} now @param {LessonParticles} next
+ */
 function arrowsOf(now, next) {
   /** @type {Mark[]} */
   const arrows = [];
@@ -61,7 +67,8 @@ function arrowsOf(now, next) {
 }
 
 /**
- * What the slider goes through: the levels of the front, then the states after each step of relaxation.
+ * What the slider goes through: the levels of the front, then the states after each step of
+ * relaxation.
  * @param {Lab} own
  */
 async function courseOf(own) {
@@ -144,7 +151,8 @@ export async function seams({ lab, stops }) {
       isFree() && measured
         ? byNeighbours(measured.valence.subarray(0, particles.radii.length))
         : byValue(particles.radii, 0, 2 * particles.radii[0]);
-    // Before the end of the front a press chooses one of the particles to come, where the surface is still bare, too.
+    // Before the end of the front a press chooses one of the particles to come, where the surface
+    // is still bare, too.
     const places = place < front ? placed : course.at(place);
     picture.show({ particles, body: course.body, places, colours, marks });
     const hole = scores.value[step()]?.places.hole ?? (step() === 0 ? widest?.hole : null) ?? null;
@@ -197,8 +205,8 @@ function createPushes({ run: { client }, states, steps }, { isOpen, followed, st
 }
 
 /**
- * Crosses where the front met itself on a level, a dot where the learner pressed, and arrows of the step that comes
- * next.
+ * Crosses where the front met itself on a level, a dot where the learner pressed, and arrows of the
+ * step that comes next.
  * @param {Course} course @param {number} place
  * @param {{ picked: number | null, isFree: boolean, isRelaxing: boolean }} state
  */
@@ -210,7 +218,9 @@ function marksAt({ placed, found, front, states }, place, { picked, isFree, isRe
   return place >= front && isRelaxing && next ? [...marks, ...arrowsOf(states[place - front], next)] : marks;
 }
 
-/** @param {LessonParticles} particles @param {number} i @param {Mark['kind']} kind @returns {Mark} */
+/**
+ * @param {LessonParticles} particles @param {number} i @param {Mark['kind']} kind @returns {Mark}
+ */
 const markOf = ({ positions, normals, radii }, i, kind) => ({
   place: triple(positions, i),
   normal: triple(normals, i),

@@ -171,8 +171,9 @@ export class Core {
     set_function(_function: (points: Float64Array, out: Float64Array) => void, request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
      * Changes the field to a model from points: the solved system as `Points.field` gives it, what
-     * `Points.info` says of it, `SolvedModel`, and a `FieldRequest`, of which the box and the
-     * pulls count; to an `Answer` with `FieldAnswer`. After an error the last good field stays.
+     * `Points.info` says of it, `SolvedModel`, and a `FieldRequest`, of which the box, the pulls
+     * and a formula with the model as an operand count; to an `Answer` with `FieldAnswer`. After
+     * an error the last good field stays.
      */
     set_points(system: Uint8Array | number[], about: SolvedModel, request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**

@@ -6,8 +6,9 @@ const page = readFileSync(new URL('../../../learn/index.html', import.meta.url),
 const guide = readFileSync(new URL('../../../../docs/page.md', import.meta.url), 'utf8');
 
 /*
- * Rates between those of two students who tried everything. Tables and what figures say are part of the time for words:
- * with an earlier text of 1,355 words, 11 questions and as many figures they give 50 minutes.
+ * Rates between those of two students who tried everything. Tables and what figures say are part of
+ * the time for words: with an earlier text of 1,355 words, 11 questions and as many figures they
+ * give 50 minutes.
  */
 const WORDS_A_MINUTE = 97;
 /** The answer of a question has about so many words. */
@@ -15,7 +16,10 @@ const ANSWER_WORDS = 45;
 /** Seconds to think about a question, and to try a figure. */
 const QUESTION_S = 30;
 const FIGURE_S = 90;
-/** Seconds for what takes longer: slots of the plane and of the cap, both modes of the bench, events, the race itself. */
+/**
+ * Seconds for what takes longer: slots of the plane and of the cap, both modes of the bench,
+ * events, the race itself.
+ */
 const MORE_S = /** @type {Record<string, number>} */ ({ plane: 120, 'what-if': 180, first: 150, race: 90 });
 /** Chapters that the lesson can do without. */
 const APPENDIX = ['circle', 'first', 'sizes', 'cost', 'race', 'moving'];
@@ -23,7 +27,10 @@ const APPENDIX = ['circle', 'first', 'sizes', 'cost', 'race', 'moving'];
 /** @param {string} text @param {RegExp} what */
 const count = (text, what) => [...text.matchAll(what)].length;
 
-/** The chapters with the minutes that they are said to take, and those of their words and of what is done. */
+/**
+ * The chapters with the minutes that they are said to take, and those of their words and of what is
+ * done.
+ */
 const chapters = [
   ...page.matchAll(/<section class="chapter" id="([\w-]+)" data-stop data-minutes="(\d+)"(.*?)<\/section>/gs),
 ].map(([, id, minutes, content]) => {
