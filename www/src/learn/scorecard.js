@@ -85,7 +85,7 @@ export function createScorecard(show) {
         h(
           'p',
           { class: 'quiet press' },
-          'A difference up to “Chance” another seed may make. Press a hole or a pair to turn to it.',
+          'Another seed may make a difference up to “Chance”. Press a hole or a pair to turn to it.',
         ),
       );
     },
