@@ -319,7 +319,7 @@ test('what limits a sampling is so in the runs of the lesson', async () => {
   const valence = [...placed.valence];
   const having = (/** @type {number} */ count) => valence.filter((own) => own === count).length;
   expect([5, 6, 7, 8].map(having)).toEqual([88, 1526 - 88 - 70 - 3, 70, 3]);
-  says('and 99.2 % would be the most');
+  says('at least twelve have five, and 99.2 % is the most');
   expect((100 * (1 - 12 / valence.length)).toFixed(1)).toBe('99.2');
   says('The queue has few seams; the stack has many, and 73.9 %.');
   const stack = await scoreAtEnd(await lab.run({ order: 'stack' }));
