@@ -49,6 +49,37 @@ pub fn advance<T>(mut work: Pin<&mut (impl Future<Output = T> + ?Sized)>, budget
     })
 }
 
+/// A computation under way that tells how far it is, by the number of slices that it is expected to
+/// take.
+pub struct Estimated<'a, T> {
+    work: Work<'a, T>,
+    done: u64,
+    expected: u64,
+}
+
+impl<'a, T> Estimated<'a, T> {
+    pub fn new(work: Work<'a, T>, expected: u64) -> Self {
+        Self { work, done: 0, expected }
+    }
+
+    /// Does up to `budget` slices and returns the result, if the last one is done, as [`advance`]
+    /// does.
+    pub fn advance(&mut self, budget: u32) -> Option<T> {
+        self.done += u64::from(budget);
+        advance(self.work.as_mut(), budget)
+    }
+
+    /// Does all slices and returns the result.
+    pub fn complete(self) -> T {
+        complete(self.work)
+    }
+
+    /// Estimated share of the work that is done, at most 1.
+    pub fn fraction(&self) -> f64 {
+        if self.done < self.expected { self.done as f64 / self.expected as f64 } else { 1.0 }
+    }
+}
+
 /// Does all slices and returns the result.
 pub fn complete<T>(work: impl Future<Output = T>) -> T {
     let mut work = pin!(work);
@@ -76,5 +107,23 @@ mod tests {
         assert_eq!(advance(work.as_mut(), 3), None);
         assert_eq!(advance(work.as_mut(), 1), Some(7));
         assert_eq!(complete(async { pause().await }), ());
+    }
+
+    #[test]
+    fn an_estimate_counts_slices_and_ends_at_one() {
+        let work = async {
+            for _ in 0..5 {
+                pause().await;
+            }
+        };
+        let mut work = Estimated::new(Box::pin(work), 4);
+        let fractions: Vec<f64> = (0..5)
+            .map(|_| {
+                assert_eq!(work.advance(1), None);
+                work.fraction()
+            })
+            .collect();
+        assert_eq!(fractions, [0.25, 0.5, 0.75, 1.0, 1.0]);
+        assert_eq!(work.advance(1), Some(()));
     }
 }

@@ -45,26 +45,30 @@ pub(crate) fn sample(
 fn run(field: &Field, settings: &Settings, measure: bool, progress: Option<&Py<PyAny>>) -> PyResult<Sample> {
     let raised = |error| errors::of_run(&error);
     let mut run = Run::start(&*field.field, settings).map_err(raised)?;
+    let measured = if measure { Measured::Particles } else { Measured::Nothing };
+    run.plan(measured, false);
+    let tell = |fraction: f64| {
+        Python::attach(|py| {
+            py.check_signals()?;
+            progress.map_or(Ok(()), |progress| progress.call1(py, (fraction,)).map(drop))
+        })
+    };
     loop {
         let now = run.step(BUDGET);
         if now.stop_reason.is_some() {
             break;
         }
-        Python::attach(|py| {
-            py.check_signals()?;
-            progress.map_or(Ok(()), |progress| progress.call1(py, (now.fraction,)).map(drop))
-        })?;
+        tell(now.fraction)?;
     }
     run.check_field().map_err(raised)?;
-    let measured = if measure { Measured::Particles } else { Measured::Nothing };
     if run.count() > 0 {
         let mut reporting = run.measure(measured);
         while reporting.step(REPORT_SLICES).is_none() {
-            Python::attach(|py| py.check_signals())?;
+            tell(reporting.fraction())?;
         }
     }
     let sample = run.finish_with(measured).map_err(raised)?;
-    Python::attach(|py| progress.map_or(Ok(()), |progress| progress.call1(py, (1.0,)).map(drop)))?;
+    tell(1.0)?;
     Ok(Sample(sample))
 }
 

@@ -7,7 +7,7 @@ use crate::paper::Push;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::pointcloud::job;
 use crate::quality::Measurements;
-use crate::run::{Measures, MeshAnswer, Report, Start};
+use crate::run::{Measured, Measures, MeshAnswer, Report, Start};
 use crate::sampler::Progress;
 use crate::session::{Description, Fault, FieldAnswer, FieldRequest, FileRecord, FileRequest};
 use std::collections::BTreeMap;
@@ -84,6 +84,7 @@ fn types_of_the_page_are_those_of_the_core() {
     declarations.add::<Report>();
     declarations.add::<Measures>();
     declarations.add::<MeshAnswer>();
+    declarations.add::<Measured>();
     declarations.add::<SolvedModel>();
     declarations.add::<job::PointsProgress>();
     declarations.add::<LessonField>();

@@ -97,6 +97,11 @@ pub(super) struct Holes {
     pub(super) found: Vec<Hole>,
 }
 
+/// Slices of the work that `count` random samples are.
+pub(super) fn slices(count: usize) -> u64 {
+    (count / BATCH) as u64
+}
+
 /// Measures the holes by about `count` random samples on the triangles, by their Voronoi corners
 /// and at `crossings`, random samples of the surface.
 pub(super) async fn measure(

@@ -167,6 +167,20 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) tree: Option<&'a Arc<Tree>>,
 }
 
+/// Number of slices that measurements of one surface are expected to take, of so many points each.
+pub(crate) fn expected_slices(points: impl Iterator<Item = usize>) -> u64 {
+    /// Slices for each point: of two passes that take [`HEAVY`](slices::HEAVY) points at once, and
+    /// of some twenty that take [`MEDIUM`] points or triangles.
+    const EACH: f64 = 0.17;
+    let of = |points: usize| (EACH * points as f64) as u64 + holes::slices(samples_for(points));
+    probe::SLICES + points.map(of).sum::<u64>()
+}
+
+/// Number of random samples on the triangles of so many points.
+fn samples_for(points: usize) -> usize {
+    points.clamp(LEAST_SAMPLES, MOST_SAMPLES)
+}
+
 /// [`measure`] in slices of work. A few of them look at all particles, for some 20 ns each.
 /// `crossings` are random samples of the surface in the box, which are found if there are none yet:
 /// all measurements of one surface share them.
@@ -415,7 +429,7 @@ async fn measure_holes(
     figures: &mut Figures,
 ) -> Vec<Hole> {
     let n = cover.tree.len() - cover.creases.further();
-    let holes = holes::measure(field, cover, n.clamp(LEAST_SAMPLES, MOST_SAMPLES), crossings).await;
+    let holes = holes::measure(field, cover, samples_for(n), crossings).await;
     figures.coverage.cover = holes.widest / (figures.d_hex / SQRT_3);
     if cover.wanted.is_some() {
         figures.coverage.cover_local = holes.relative;

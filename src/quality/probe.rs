@@ -21,6 +21,8 @@ const LINES: usize = 4096;
 const STATIONS: usize = 64;
 /// Lines that are evaluated together, in one slice of work.
 const LINES_AT_ONCE: usize = MEDIUM / STATIONS;
+/// Slices of the work of [`crossings`].
+pub(super) const SLICES: u64 = (LINES / LINES_AT_ONCE) as u64;
 /// A crossing counts if its first-order distance from the surface after projection is below this
 /// share of the step along the line: at poles and jumps the sign changes too.
 const RESIDUAL: f32 = 1e-2;
@@ -34,7 +36,7 @@ pub(super) async fn crossings(field: &mut dyn Evaluator, bounds: &Bounds) -> Vec
     if bounds.is_valid() {
         let mut random = Pcg32::seed_from_u64(STREAM);
         let mut changes = SignChanges::default();
-        for _ in 0..LINES / LINES_AT_ONCE {
+        for _ in 0..SLICES {
             changes.add_lines(field, bounds, &mut random);
             if changes.position.len() >= BATCH {
                 changes.settle(field, bounds, &mut found);

@@ -6,9 +6,10 @@ use crate::particles::Particles;
 use crate::quality::{self, Figures};
 use crate::sampler::Sampling;
 use crate::sampler::sheet::repulsion_weight;
-use crate::slices::{Work, pause};
+use crate::slices::{Estimated, pause};
 use crate::spatial::tree::Tree;
 use glam::Vec3;
+use serde::Deserialize;
 use std::sync::Arc;
 
 /// Largest number of particles that are kept after the front, for the comparison before and after
@@ -17,7 +18,9 @@ use std::sync::Arc;
 const MAX_KEPT: usize = 400_000;
 
 /// The particles that a report measures.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub enum Measured {
     /// Nothing. The report has no figures of quality, no number of components of the sample, and
     /// none of the warnings that come from measuring, of open edges and of close sheets; files have
@@ -38,7 +41,7 @@ pub(super) struct Measuring {
     pub(super) front: Option<Arc<Particles>>,
     pub(super) front_figures: Option<Figures>,
     /// The measurement of a copy of the field that is under way.
-    pub(super) work: Option<Work<'static, MeasuringResult>>,
+    pub(super) work: Option<Estimated<'static, MeasuringResult>>,
     /// The figures and columns of the last measurement; empty before the first.
     pub(super) measured: quality::Measurements,
     /// Number of particles that face another sheet; none if the present particles are still to be
@@ -60,6 +63,15 @@ impl Measuring {
     /// another field.
     pub(super) fn stop(&mut self) {
         (self.work, self.facing, self.tree) = (None, None, None);
+    }
+
+    /// Estimated share of the measuring that is done.
+    pub(super) fn fraction(&self) -> f64 {
+        match (&self.work, self.facing) {
+            (Some(work), _) => work.fraction(),
+            (None, Some(_)) => 1.0,
+            (None, None) => 0.0,
+        }
     }
 
     /// The particles of the front that are still to be measured.
@@ -109,6 +121,11 @@ pub(super) struct MeasuringResult {
     pub(super) tree: Arc<Tree>,
 }
 
+/// Number of slices that the measurement of these particles is expected to take.
+pub(super) fn expected_slices(front: Option<&Arc<Particles>>, now: &Particles) -> u64 {
+    quality::expected_slices(front.map(|front| front.len()).into_iter().chain([now.len()]))
+}
+
 /// Input of a measurement, apart from the field.
 pub(super) struct MeasuringInput {
     pub(super) front: Option<Arc<Particles>>,
@@ -121,8 +138,9 @@ pub(super) struct MeasuringInput {
 // of field.
 impl MeasuringInput {
     /// The measurement in slices, of a field in the frame of the particles.
-    pub(super) fn work(self, field: Arc<dyn Field>, frame: Frame) -> Work<'static, MeasuringResult> {
-        Box::pin(async move { self.in_slices(&field, frame).await })
+    pub(super) fn work(self, field: Arc<dyn Field>, frame: Frame) -> Estimated<'static, MeasuringResult> {
+        let expected = expected_slices(self.front.as_ref(), &self.now);
+        Estimated::new(Box::pin(async move { self.in_slices(&field, frame).await }), expected)
     }
 
     pub(super) async fn in_slices(self, field: &dyn Field, frame: Frame) -> MeasuringResult {

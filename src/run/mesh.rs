@@ -8,7 +8,7 @@ use crate::math::{Bounds, sort_few};
 use crate::mesh::build::{self, Triangulation};
 use crate::mesh::facing::Inside;
 use crate::particles::Particles;
-use crate::slices::{self, MEDIUM, Work};
+use crate::slices::{Estimated, MEDIUM};
 use crate::spatial::tree::Tree;
 use crate::topology::Component;
 use serde::Serialize;
@@ -66,7 +66,7 @@ enum MeshState {
     #[default]
     None,
     /// The particles are being joined.
-    Joining(Work<'static, Triangulation>),
+    Joining(Estimated<'static, Triangulation>),
     /// The mesh is complete.
     Joined(Box<Triangulation>),
 }
@@ -77,6 +77,15 @@ impl Meshing {
         match &self.state {
             MeshState::Joined(mesh) => Some(&**mesh),
             _ => None,
+        }
+    }
+
+    /// Estimated share of the joining that is done.
+    pub(super) fn fraction(&self) -> f64 {
+        match &self.state {
+            MeshState::None => 0.0,
+            MeshState::Joining(work) => work.fraction(),
+            MeshState::Joined(_) => 1.0,
         }
     }
 
@@ -149,11 +158,12 @@ impl<F: Field> Run<F> {
             particles.truncate(self.rows());
             let known = self.sampler.triangles().to_vec();
             let tree = self.measuring.tree.clone();
+            let expected = if known.is_empty() { build::expected_slices(particles.len()) } else { 0 };
             let work = async move { joined(&particles, &known, &bounds, tree.as_ref()).await };
-            self.meshing.state = MeshState::Joining(Box::pin(work));
+            self.meshing.state = MeshState::Joining(Estimated::new(Box::pin(work), expected));
         }
         if let MeshState::Joining(work) = &mut self.meshing.state {
-            self.meshing.state = MeshState::Joined(Box::new(slices::advance(work.as_mut(), budget)?));
+            self.meshing.state = MeshState::Joined(Box::new(work.advance(budget)?));
         }
         self.meshing.joined().map(|mesh| MeshAnswer::new(mesh, self.particles()))
     }

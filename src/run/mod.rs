@@ -7,6 +7,7 @@
 mod check;
 mod measuring;
 mod mesh;
+mod plan;
 mod report;
 mod sample;
 mod severity;
@@ -34,6 +35,7 @@ use core::fmt::{self, Debug, Formatter};
 use glam::DVec3;
 use measuring::Measuring;
 use mesh::Meshing;
+use plan::{Plan, Shares};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -158,6 +160,8 @@ pub struct Run<F> {
     /// The report on the start.
     start: Start,
     last: Option<Progress>,
+    /// What the caller is going to do with the particles.
+    plan: Plan,
     measuring: Measuring,
     meshing: Meshing,
 }
@@ -245,6 +249,7 @@ impl<F: Field> Run<F> {
             most_particles: usize::MAX,
             start: Start::default(),
             last: None,
+            plan: Plan::default(),
             measuring: Measuring::default(),
             meshing: Meshing::default(),
         }
@@ -290,6 +295,26 @@ impl<F: Field> Run<F> {
             self.set_bounds(bounds, None);
         }
         Ok(self.begin(settings)?)
+    }
+
+    /// Says what the caller is going to do once the run has ended, measure and [join](Run::join) the
+    /// particles, so that [`Progress::fraction`], [`Run::fraction`] and [`Reporting::fraction`] are
+    /// shares of all of it. Without a plan they are shares of the run alone.
+    pub fn plan(&mut self, measured: Measured, is_joined: bool) {
+        self.plan = Plan { measured, is_joined };
+    }
+
+    /// Estimated share of the work that is done: of the run and of what is [planned](Run::plan).
+    #[must_use]
+    pub fn fraction(&self) -> f64 {
+        let shares = self.shares();
+        let run = self.last.as_ref().map_or(0.0, |progress| progress.fraction);
+        run + shares.measuring * self.measuring.fraction() + shares.mesh * self.meshing.fraction()
+    }
+
+    /// The shares of the call.
+    fn shares(&self) -> Shares {
+        self.plan.shares(self.sampler.settings().method)
     }
 
     /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's
@@ -384,6 +409,7 @@ impl<F: Field> Run<F> {
 
     fn remember(&mut self, mut progress: Progress) -> Progress {
         self.forget_results();
+        progress.fraction *= self.shares().run;
         if progress.stop_reason == Some(StopReason::Constant)
             && let (Some(message), Some(cause)) =
                 (&mut progress.message, self.field.given.facts().why_constant)

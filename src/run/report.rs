@@ -1,7 +1,9 @@
 //! The report of a run: the counts of the sampler, and the measurements of the particles before and
 //! after the relaxation.
 
-use super::measuring::{Measured, Measuring, MeasuringInput, MeasuringResult, measure, measured_columns};
+use super::measuring::{
+    Measured, Measuring, MeasuringInput, MeasuringResult, expected_slices, measure, measured_columns,
+};
 use super::{Run, Warning};
 use crate::extent::Reach;
 use crate::field::{Creased, Field};
@@ -10,7 +12,7 @@ use crate::mesh::facing::Inside;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::quality::{Figures, Histogram, Places};
 use crate::sampler::{Blur, FateCounts, Sampled, Sampling, Search, StopReason};
-use crate::slices::{self, Work};
+use crate::slices::{self, Estimated};
 use glam::Vec3;
 use serde::{Serialize, Serializer};
 use std::sync::Arc;
@@ -200,7 +202,13 @@ pub(super) fn creases_of(Particles { twins, segments, sides, .. }: &Particles) -
 
 /// A report that is being made, as [`Run::measure`] begins it. Dropping it gives the measurement
 /// up.
-pub struct Reporting<'a>(Work<'a, Report>);
+pub struct Reporting<'a> {
+    work: Estimated<'a, Report>,
+    /// The share of the call that was done before.
+    before: f64,
+    /// The share of the call that this is.
+    share: f64,
+}
 
 impl Reporting<'_> {
     /// Does up to `budget` slices, some 10 to 50 microseconds each; the report, once it is
@@ -210,7 +218,13 @@ impl Reporting<'_> {
     ///
     /// If it has given the report already.
     pub fn step(&mut self, budget: u32) -> Option<Report> {
-        slices::advance(self.0.as_mut(), budget)
+        self.work.advance(budget)
+    }
+
+    /// Estimated share of the work that is done: of the run and of what is [planned](Run::plan).
+    #[must_use]
+    pub fn fraction(&self) -> f64 {
+        self.before + self.share * self.work.fraction()
     }
 }
 
@@ -234,30 +248,38 @@ impl<F: Field> Run<F> {
 
     /// [`Run::report`], with other particles measured, or none.
     pub fn report_with(&mut self, measured: Measured) -> Report {
-        slices::complete(self.measure(measured).0)
+        self.measure(measured).work.complete()
     }
 
     /// [`Run::report_with`] in slices, with [`Reporting::step`].
     pub fn measure(&mut self, measured: Measured) -> Reporting<'_> {
-        Reporting(Box::pin(async move {
-            let with_front = measured == Measured::FrontToo;
-            let is_open = with_front && self.measuring.open_front().is_some();
+        let with_front = measured == Measured::FrontToo;
+        let front = self.measuring.open_front().filter(|_| with_front);
+        let is_due = measured != Measured::Nothing && (self.measuring.facing.is_none() || front.is_some());
+        let (mut expected, mut share) = (0, 0.0);
+        if is_due {
+            self.measuring.stop();
+            expected = expected_slices(front.as_ref(), self.particles());
+            share = self.shares().measuring;
+        }
+        let before = self.fraction();
+        let work = Box::pin(async move {
             if measured == Measured::Nothing {
                 self.measuring = Measuring::default();
-            } else if self.measuring.facing.is_none() || is_open {
-                self.measuring.stop();
+            } else if is_due {
                 let input = self.measuring_input(with_front);
                 let result = input.in_slices(self.field.function(), self.sampler.frame()).await;
                 self.keep(result);
             }
             self.reported()
-        }))
+        });
+        Reporting { work: Estimated::new(work, expected), before, share }
     }
 
-    /// [`Run::report_with`] in slices, the front measured, too, up to `budget` of them, with the
-    /// run free between them: the report, once it is complete. A measurement that anything comes
-    /// between is given up, and the next call begins anew.
-    pub(crate) fn measure_copy(&mut self, budget: u32) -> Option<Report>
+    /// [`Run::report_with`] in slices, up to `budget` of them, with the run free between them: the
+    /// report, once it is complete. A measurement that anything comes between is given up, and the
+    /// next call begins anew.
+    pub(crate) fn measure_copy(&mut self, measured: Measured, budget: u32) -> Option<Report>
     where
         F: Clone + 'static,
     {
@@ -268,9 +290,9 @@ impl<F: Field> Run<F> {
                     Some(creased) => Arc::<dyn Creased>::clone(creased),
                     None => Arc::new(self.field.given.clone()),
                 };
-                self.measuring_input(true).work(field, self.sampler.frame())
+                self.measuring_input(measured == Measured::FrontToo).work(field, self.sampler.frame())
             });
-            let measured = slices::advance(self.measuring.work.insert(work).as_mut(), budget)?;
+            let measured = self.measuring.work.insert(work).advance(budget)?;
             self.measuring.work = None;
             self.keep(measured);
         }

@@ -492,8 +492,8 @@ impl Session {
 
     /// [`Run::report`] in slices, with what the session knows of the surface. Of one of the gallery
     /// or a model, whose box was chosen for it, no cause is told why particles lie at the border.
-    pub fn measure(&mut self, budget: u32) -> Option<Report> {
-        self.run.measure_copy(budget).map(|report| self.completed(report))
+    pub fn measure(&mut self, measured: Measured, budget: u32) -> Option<Report> {
+        self.run.measure_copy(measured, budget).map(|report| self.completed(report))
     }
 
     fn completed(&self, mut report: Report) -> Report {

@@ -28,6 +28,7 @@ const TYPES: &str = r"import type {
   MeshAnswer,
   Progress,
   FileRecord,
+  Measured,
   Measures,
   Report,
   SolvedModel,
@@ -239,11 +240,31 @@ impl Core {
         self.column(&self.session.run.particles().slots, from).into_iter().map(|slots| slots.0).collect()
     }
 
-    /// Measures the particles, up to `budget` slices of the work: `Report` once it is complete,
+    /// Says what follows on the run, for the share of the work that is told: which particles will
+    /// be measured, and whether they will be joined.
+    pub fn plan(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Measured")] measured: JsValue,
+        is_joined: bool,
+    ) {
+        self.session.run.plan(read(measured, FaultKind::Request).unwrap_or_default(), is_joined);
+    }
+
+    /// Estimated share of the work that is done: of the run and of what is planned.
+    pub fn fraction(&self) -> f64 {
+        self.session.run.fraction()
+    }
+
+    /// Measures these particles, up to `budget` slices of the work: `Report` once it is complete,
     /// nothing before.
     #[wasm_bindgen(unchecked_return_type = "Report | undefined")]
-    pub fn measure(&mut self, budget: u32) -> Option<JsValue> {
-        self.session.measure(budget).map(|report| to_js(&report))
+    pub fn measure(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Measured")] measured: JsValue,
+        budget: u32,
+    ) -> Option<JsValue> {
+        let measured = read(measured, FaultKind::Request).unwrap_or_default();
+        self.session.measure(measured, budget).map(|report| to_js(&report))
     }
 
     /// Measures particles that something else has placed on the present surface, vectors of three

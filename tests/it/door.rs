@@ -552,3 +552,43 @@ fn settings_as_text_keep_the_box_and_refuse_names_that_they_do_not_have() {
     let error = serde_json::from_str::<Settings>("{\"relax_step\": 3}").unwrap_err();
     assert!(error.to_string().starts_with("unknown field `relax_step`"), "{error}");
 }
+
+/// The shares of the work that are told during a run, its report and its mesh rise to 1, and each
+/// stage has slices to tell them by: an estimate that is half too small or large would show here.
+#[test]
+fn the_shares_of_a_call_rise_to_one() {
+    for (text, method) in [
+        ("x^2 + 2y^2 + 3z^2 = 1", Method::Front),
+        ("x^2 + 2y^2 + 3z^2 = 1", Method::Refined),
+        ("max(|x|, |y|, |z|) = 1", Method::Front),
+    ] {
+        let surface = Formula::parse(text).expect("a formula");
+        let mut settings = Settings::with_count(30_000);
+        settings.method = method;
+        let mut run = Run::start(surface, &settings).expect("a run");
+        run.plan(Measured::FrontToo, true);
+        let mut told = vec![0.0];
+        while run.step(10_000).stop_reason.is_none() {
+            told.push(run.fraction());
+        }
+        let sampled = run.fraction();
+        let mut reporting = run.measure(Measured::FrontToo);
+        let mut before_last = 0.0;
+        while reporting.step(100).is_none() {
+            before_last = reporting.fraction();
+            told.push(before_last);
+        }
+        drop(reporting);
+        let measured = run.fraction();
+        told.push(measured);
+        let missing = (measured - before_last) / (measured - sampled);
+        assert!(missing.abs() < 0.25, "{text}: {missing} of the measuring is untold");
+        while run.join(100).is_none() {
+            told.push(run.fraction());
+        }
+        told.push(run.fraction());
+        assert!(told.is_sorted(), "{text}: {told:?}");
+        assert!((0.1..0.6).contains(&sampled), "{text}: {sampled} after the run");
+        assert!((run.fraction() - 1.0).abs() < 1e-9, "{text}: {} in the end", run.fraction());
+    }
+}

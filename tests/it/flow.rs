@@ -8,7 +8,7 @@ use marching_particles::mesh::half_edge::HalfEdges;
 use marching_particles::quality::figures::Coverage;
 use marching_particles::sampler::SizeMode;
 use marching_particles::session::{FieldRequest, Session};
-use marching_particles::{Cut, FollowError, Method, Phase, Run, Sampling, Settings, Warning};
+use marching_particles::{Cut, FollowError, Measured, Method, Phase, Run, Sampling, Settings, Warning};
 
 const TANGLECUBE: &str = "x^4+y^4+z^4-5*(x^2+y^2+z^2)+q";
 const ELLIPSOID: &str = "x^2/q^2+y^2/0.49+z^2/0.25-1";
@@ -383,7 +383,13 @@ fn a_frame_that_has_not_ended_is_gone_on_from_whether_or_not_the_surface_moves_a
         assert_eq!(drag.session.run.step(1).stop_reason, None);
         drag.follow(next, false);
         drag.finish();
-        let figures = drag.session.measure(u32::MAX).expect("a report").measures.quality.expect("figures");
+        let figures = drag
+            .session
+            .measure(Measured::FrontToo, u32::MAX)
+            .expect("a report")
+            .measures
+            .quality
+            .expect("figures");
         assert!(figures.accuracy.err_max < 1e-4, "{next}: {}", figures.accuracy.err_max);
     }
 }
@@ -393,7 +399,7 @@ fn without_births_and_deaths_the_same_particles_drift_apart_and_keep_more_of_the
     let [(open, some), (closed, all)] = [false, true].map(|is_closed| {
         let mut session = drawn_out(is_closed);
         let identity = session.run.particles().identity.clone();
-        (session.measure(u32::MAX).expect("a report"), identity)
+        (session.measure(Measured::FrontToo, u32::MAX).expect("a report"), identity)
     });
     let first = all.len() as u32;
     assert!(all.iter().copied().eq(0..first), "a particle has come or gone");

@@ -4,9 +4,9 @@ use marching_particles::field::BatchField;
 use marching_particles::field::formula::Parameter;
 use marching_particles::glam::DVec3;
 use marching_particles::math::Bounds;
-use marching_particles::sample;
 use marching_particles::sampler::{GapPolicy, Method, Phase, Settings, SizeMode, StopReason};
 use marching_particles::session::{FaultKind, FieldRequest, Session, describe};
+use marching_particles::{Measured, sample};
 use std::sync::Arc;
 
 fn request(text: &str) -> FieldRequest {
@@ -117,7 +117,7 @@ fn a_report_cut_into_single_slices_is_the_same_report() {
         let mut calls = 0;
         let report = loop {
             calls += 1;
-            if let Some(report) = cut.measure(budget) {
+            if let Some(report) = cut.measure(Measured::FrontToo, budget) {
                 break report;
             }
         };
@@ -132,10 +132,10 @@ fn a_report_cut_into_single_slices_is_the_same_report() {
 fn a_report_is_begun_anew_after_a_change() {
     let mut session = Session::new();
     run(&mut session, &sized(900), u32::MAX);
-    assert!(session.measure(300).is_none());
+    assert!(session.measure(Measured::FrontToo, 300).is_none());
     run(&mut session, &sized(500), u32::MAX);
     let count = session.run.count();
-    assert!(session.measure(300).is_none());
+    assert!(session.measure(Measured::FrontToo, 300).is_none());
     assert!(session.run.relax(1));
     while session.run.step(1_000).stop_reason.is_none() {}
     let report = session.report();
@@ -147,7 +147,7 @@ fn a_report_is_begun_anew_after_a_change() {
     );
     // On another field the particles are measured anew too.
     let ball = request(r#"{"formula":"x^2+y^2+z^2-1"}"#);
-    assert!(session.measure(0).is_some(), "what is measured is not measured again");
+    assert!(session.measure(Measured::FrontToo, 0).is_some(), "what is measured is not measured again");
     session.set_field(&ball).unwrap();
     assert!(session.report().measures.quality.expect("particles").accuracy.err_max > 1.0);
 }

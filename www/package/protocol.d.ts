@@ -1,6 +1,6 @@
 // Messages between the program and the sampler, which is in a worker or in the thread of the program.
 import type { Bounds, FieldRequest, Parameter, Report } from '../src/engine/core-types.js';
-import type { Batch } from './index.js';
+import type { Batch, Progress } from './index.js';
 
 type Settings = Record<string, number | string>;
 /** What is asked; `of`: the request that has made the sample. */
@@ -38,7 +38,7 @@ export interface Answered {
   id: number;
   value?: object;
   error?: { name: string; message: string; facts: object };
-  progress?: { phase: string; particles: number; fraction: number };
+  progress?: Progress;
 }
 /** Where a module of the core is, or its bytes. */
 export type Load = (name: 'core' | 'points') => Promise<URL | Uint8Array>;

@@ -12,7 +12,8 @@ import { pause } from './pause.js';
 import { Program } from './program.js';
 
 /**
- * @import { Fault } from '../src/engine/core-types.js'
+ * @import { Fault, Progress as CoreProgress } from '../src/engine/core-types.js'
+ * @import { Progress } from './index.js'
  * @import { Answered, Asked, Environment, Made, Said, SentField } from './protocol.js'
  */
 
@@ -72,37 +73,46 @@ export function serve({ post, load }) {
   }
 
   /**
-   * Does a work of a core in slices, and returns what it leads to.
+   * Does a work of a core in slices, and returns what it leads to. `tell` gives what the program is told between slices.
    * @template T
    * @param {{id: number, core: Core}} of @param {(budget: number) => T | undefined} slice
+   * @param {() => Progress} [tell]
    */
-  async function inSlices({ id, core }, slice) {
+  async function inSlices({ id, core }, slice, tell) {
+    let toldMs = performance.now();
     for (let budget = FIRST_BUDGET; ; ) {
       const before = performance.now();
       const made = slice(budget);
       const failure = programs.get(core)?.failure;
       if (failure) throw new Refusal('FieldError', failure.message, { cause: failure.cause });
       if (made !== undefined) return made;
-      budget = nextBudget(budget, performance.now() - before);
+      const after = performance.now();
+      budget = nextBudget(budget, after - before);
+      if (tell && after - toldMs > PROGRESS_MS) {
+        toldMs = after;
+        post({ id, progress: tell() });
+      }
       await pause();
       if (asked.get(id)) throw new Refusal('AbortError', 'The sampling was aborted.');
     }
   }
 
-  /** Steps a run to its end. @param {{id: number, core: Core}} of */
-  async function run({ id, core }) {
-    let toldMs = performance.now();
-    const last = await inSlices({ id, core }, (budget) => {
-      const progress = core.step(budget);
-      if (progress.phase === 'done') return progress;
-      if (performance.now() - toldMs > PROGRESS_MS) {
-        toldMs = performance.now();
-        const { phase, particles, fraction } = progress;
-        post({ id, progress: { phase, particles, fraction } });
-      }
-      return undefined;
-    });
+  /** Steps a run to its end, and returns its number of particles. @param {{id: number, core: Core}} of */
+  async function run(of) {
+    const { core } = of;
+    /** @type {CoreProgress} */
+    let now;
+    const step = (/** @type {number} */ budget) => {
+      now = core.step(budget);
+      return now.phase === 'done' ? now : undefined;
+    };
+    const last = await inSlices(of, step, () => ({
+      phase: now.phase,
+      particles: now.particles,
+      fraction: now.fraction,
+    }));
     if (last.particles === 0) throw new Refusal('NoSurfaceError', last.message ?? 'There is no surface in the box.');
+    return last.particles;
   }
 
   /**
@@ -139,8 +149,10 @@ export function serve({ post, load }) {
       const start = core.start(settings);
       if (!start.ok) throw refusalOf(start.error);
     }
-    await run(of);
-    const report = measure ? await inSlices(of, (budget) => core.measure(budget)) : null;
+    core.plan(measure ? 'particles' : 'nothing', false);
+    const particles = await run(of);
+    const measuring = () => ({ phase: 'measuring', particles, fraction: core.fraction() });
+    const report = measure ? await inSlices(of, (budget) => core.measure('particles', budget), measuring) : null;
     return columnsOf(core, { report, bounds: box.bounds, parameters: box.parameters });
   }
 

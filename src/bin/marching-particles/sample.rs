@@ -29,6 +29,8 @@ use std::time::{Duration, Instant};
 /// Units of work between two readings of the clock. They take about 0.1 ms, which is the accuracy
 /// of the phases' times.
 const BUDGET: u32 = 256;
+/// Slices of measuring and of joining between two updates of the progress bar: some 6 ms.
+const SLICES: u32 = 256;
 
 /// The record of what a file was made from: in it, or in the file beside it.
 fn read_record(path: &Path, surface: &SurfaceArguments) -> Result<FileRecord, Failure> {
@@ -93,21 +95,37 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     })?;
     let predicted_count = start.predicted_count;
     let bar = bar(arguments.quiet);
+    let measured = arguments.report.measured();
+    session.run.plan(measured, !mesh_formats.is_empty());
     step_to_end(&mut session.run, &mut seconds, &bar);
-    bar.finish_and_clear();
     let peak_sampling_mb = peak_mb();
     let reach = session.run.reach();
     let is_joined = !mesh_formats.is_empty() && session.run.count() > 0;
     if is_joined {
-        timed(&mut seconds.mesh, || session.run.join(u32::MAX));
+        bar.set_message("joining the particles");
+        timed(&mut seconds.mesh, || {
+            while session.run.join(SLICES).is_none() {
+                set_fraction(&bar, session.run.fraction());
+            }
+        });
     }
+    if session.run.count() > 0 {
+        bar.set_message("measuring");
+        timed(&mut seconds.quality, || {
+            let mut reporting = session.run.measure(measured);
+            while reporting.step(SLICES).is_none() {
+                set_fraction(&bar, reporting.fraction());
+            }
+        });
+    }
+    bar.finish_and_clear();
     let mut made = session.record(None).expect("a run that has started has a record");
     // The steps that were asked for, though an even surface takes fewer.
     made.settings.relax_steps = settings.relax_steps;
     if model.is_some() {
         made.surface.clone_from(&arguments.surface.surface);
     }
-    let sample = timed(&mut seconds.quality, || session.finish(arguments.report.measured()));
+    let sample = timed(&mut seconds.quality, || session.finish(measured));
     let sample = sample.map_err(|error| match error {
         Error::Nothing { reason: StopReason::NoSurface, .. } if reach == Some(Reach::Nowhere) => {
             Failure::Nothing("there is no surface within ±10,000".to_owned())
@@ -410,7 +428,7 @@ fn step_to_end(run: &mut Run<Source>, seconds: &mut Seconds, bar: &ProgressBar) 
         }
         phase = progress.phase;
         if steps.is_multiple_of(UPDATE) {
-            bar.set_position((progress.fraction * 1000.0) as u64);
+            set_fraction(bar, progress.fraction);
             bar.set_message(match phase {
                 Phase::Relaxation => {
                     format!("relaxation {}/{}", progress.relax_step, progress.relax_steps)
@@ -421,6 +439,10 @@ fn step_to_end(run: &mut Run<Source>, seconds: &mut Seconds, bar: &ProgressBar) 
         }
         steps = steps.wrapping_add(1);
     }
+}
+
+fn set_fraction(bar: &ProgressBar, fraction: f64) {
+    bar.set_position((fraction * 1000.0) as u64);
 }
 
 /// Progress bar on standard error, if that is a terminal.

@@ -215,6 +215,13 @@ pub fn triangulate(particles: &Particles, bounds: Option<&Bounds>) -> Triangulat
     slices::complete(in_slices(particles, bounds, None))
 }
 
+/// Number of slices that joining so many points is expected to take.
+pub(crate) fn expected_slices(points: usize) -> u64 {
+    /// Slices for each point, most of them of its star: [`HEAVY`](slices::HEAVY) points at once.
+    const EACH: f64 = 0.045;
+    (EACH * points as f64) as u64
+}
+
 /// [`triangulate`] in slices of work. The last few look at all rows and triangles, for some 50 ns
 /// each. `tree` is that over all particles, where it is there.
 pub(crate) async fn in_slices(

@@ -864,6 +864,9 @@ export type MathNode = {
 /** Element of MathML Core with text. */
 export type MathToken = "mi" | "mn" | "mo";
 
+/** The particles that a report measures. */
+export type Measured = "nothing" | "particles" | "front_too";
+
 /** Figures of quality of a run. */
 export type Measures = {
   /** Quality of the present particles; none if there are none, or where they were not measured. */

@@ -100,10 +100,12 @@ export type FieldRequest = Partial<import('./core-types.js').FieldRequest> & { p
 /** By the settings' names; a missing one has its default. */
 export type Settings = Record<string, number | string>;
 /**
- * The progress of the present run, as the page shows it. `phase` has one more value than in the core, `quality`: the
- * quality figures are being computed.
+ * The progress of a run as the worker tells it. `phase` has two more values than in the core: in `mesh` the particles
+ * are joined, in `quality` they are measured.
  */
-export type Progress = Omit<CoreProgress, 'phase'> & { phase: CorePhase | 'quality'; run: number; live: boolean };
+export type ToldProgress = Omit<CoreProgress, 'phase'> & { phase: CorePhase | 'mesh' | 'quality' };
+/** The progress of the present run, as the page shows it. */
+export type Progress = ToldProgress & { run: number; live: boolean };
 /** What a run that samples is for: {@link KINDS} says what follows from it. */
 export type SampleKind =
   | 'new'

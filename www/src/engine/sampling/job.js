@@ -197,6 +197,18 @@ class Execution {
     this.#beatMs = env.nowMs();
   }
 
+  /** Tells the page from time to time how far the work after the run is. @param {'mesh' | 'quality'} phase */
+  #tellAfter(phase) {
+    const { core, env, job, progress } = this;
+    if (env.nowMs() - this.#beatMs <= PROGRESS_MS) return;
+    if (progress) {
+      env.post({ type: 'progress', id: job.id, progress: { ...progress, phase, fraction: core.fraction() } });
+    } else {
+      env.post({ type: 'beat' });
+    }
+    this.#beatMs = env.nowMs();
+  }
+
   /**
    * Whether the job ends before it starts. One that was stopped while it waited leaves the particles where they are: a
    * few steps after its surface they would lie on none.
@@ -260,6 +272,7 @@ class Execution {
     /** @type {CoreProgress['phase']} */
     let phase = job.kind === 'relax' ? 'relaxation' : 'seeding';
     let wasHanding = false;
+    core.plan(this.#isLive ? 'nothing' : 'front_too', env.mesh());
     this.#beatMs = env.nowMs();
     for (;;) {
       const why = env.interrupt();
@@ -376,7 +389,7 @@ class Execution {
     const { core, env, job, sent } = this;
     if (last.relax_step > 0) sent.curved = 0;
     const wanted = env.mesh() && core.count() > 0;
-    const mesh = wanted ? await join(core, env) : null;
+    const mesh = wanted ? await join(core, env, () => this.#tellAfter('mesh')) : null;
     if (wanted && !mesh && env.interrupt() === 'replace') return false;
     // One that was stopped is not begun again before it is asked for again.
     if (wanted) [memory.meshed, memory.gaveUp] = [job.id, !mesh];
@@ -417,11 +430,11 @@ class Execution {
       if (env.interrupt() === 'replace') return;
       this.#sendCurvature();
       const before = env.nowMs();
-      report = core.measure(slices);
+      report = core.measure('front_too', slices);
       const took = env.nowMs() - before;
       seconds.quality += took / 1000;
       slices = nextBudget(slices, took);
-      this.#beat();
+      this.#tellAfter('quality');
     } while (report === undefined);
     const figures = /** @type {Figures} */ (Object.fromEntries(MEASURED.map((name) => [name, core[name]()])));
     env.post(

@@ -21,11 +21,12 @@ const FIRST_BUDGET = 32;
  * @template T
  * @param {(budget: number) => T | undefined} step  does so many slices; undefined before the last one
  * @param {SliceEnv} env
+ * @param {() => void} [tell]  called after each step; by itself it shows the supervisor that the worker is alive
  * @returns {Promise<T | null>}
  */
-async function inSlices(step, { nowMs, pause, post, interrupt }) {
+async function inSlices(step, env, tell = beats(env)) {
+  const { nowMs, pause, interrupt } = env;
   let budget = FIRST_BUDGET;
-  let beatMs = nowMs();
   for (;;) {
     await pause();
     if (interrupt() !== null) return null;
@@ -33,21 +34,29 @@ async function inSlices(step, { nowMs, pause, post, interrupt }) {
     const made = step(budget);
     if (made !== undefined) return made;
     budget = nextBudget(budget, nowMs() - before);
-    if (nowMs() - beatMs > BEAT_MS) {
-      post({ type: 'beat' });
-      beatMs = nowMs();
-    }
+    tell();
   }
+}
+
+/** Returns a function that shows the supervisor, when it is due, that the worker is alive. @param {SliceEnv} env */
+function beats({ nowMs, post }) {
+  let beatMs = nowMs();
+  return () => {
+    if (nowMs() - beatMs <= BEAT_MS) return;
+    post({ type: 'beat' });
+    beatMs = nowMs();
+  };
 }
 
 /**
  * Returns the mesh, or null if it is stopped, or another job replaces the particles, before it is complete.
  * @param {Pick<Core, 'join' | 'triangles'>} core
  * @param {SliceEnv} env
+ * @param {() => void} [tell]  called after each step
  * @returns {Promise<Mesh | null>}
  */
-export async function join(core, env) {
-  const about = await inSlices((budget) => core.join(budget), env);
+export async function join(core, env, tell) {
+  const about = await inSlices((budget) => core.join(budget), env, tell);
   return about && { about, triangles: core.triangles() };
 }
 

@@ -12,7 +12,7 @@ import { timingOf } from './pace.js';
 
 /**
  * @import { Store } from '../store.js'
- * @import { Columns, CoreProgress, FieldAnswer, FieldRequest, Mesh, Progress } from '../types.js'
+ * @import { Columns, FieldAnswer, FieldRequest, Mesh, Progress, ToldProgress } from '../types.js'
  * @import {
  *   ColumnsMessage, DoneMessage, PastMessage, PictureLike, RecordMessage, ReportMessage, RunRequest, Ticket,
  * } from './types.js'
@@ -51,7 +51,7 @@ export class Presenter {
     this.store.progress.value = { ...idleProgress(), run: id, live, phase };
   }
 
-  /** @param {CoreProgress} progress @param {Ticket} run */
+  /** @param {ToldProgress} progress @param {Ticket} run */
   progress(progress, { id, request }) {
     if (request.kind === 'backdrop') return;
     if (progress.particles > 0) this.store.empty.value = false;

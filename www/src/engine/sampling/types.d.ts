@@ -20,6 +20,7 @@ import type {
   SampleKind,
   Seconds,
   Settings,
+  ToldProgress,
 } from '../types.js';
 
 export type Mesh = import('../types.js').Mesh;
@@ -112,7 +113,7 @@ export type FromWorker =
   | { type: 'dropped'; id: number }
   | { type: 'box'; id: number; answer: FieldOk }
   | { type: 'started'; id: number; radius: number; predicted: number; warnings: Report['warnings'] }
-  | { type: 'progress'; id: number; progress: CoreProgress }
+  | { type: 'progress'; id: number; progress: ToldProgress }
   | ColumnsMessage
   | PastMessage
   | DoneMessage

@@ -33,12 +33,13 @@ export function mountSampling(body, engine, { settings }, { head }) {
 
 /** Creates the progress bar. @param {Engine} engine */
 function createTrack({ busy, reveal, progress, loading }) {
-  // The bar follows the reveal of the picture while it lasts, and otherwise the run.
-  const growing = computed(() => busy.value || reveal.value !== null || loading.value !== null);
+  // The bar follows the reveal of the picture while it lasts, and otherwise the run and its report.
+  const works = computed(() => busy.value || progress.value.phase === 'quality');
+  const growing = computed(() => works.value || reveal.value !== null || loading.value !== null);
   const fraction = computed(() => {
     if (loading.value) return loading.value.fraction;
     const { particles, fraction: done } = progress.value;
-    const share = reveal.value ? reveal.value.particles / Math.max(1, particles) : busy.value ? done : 0;
+    const share = reveal.value ? reveal.value.particles / Math.max(1, particles) : works.value ? done : 0;
     return Math.round(Math.min(1, share) * 200) / 200;
   });
   return h('div', {

@@ -33,6 +33,8 @@ export function captionOf(progress, { partial, empty, busy, seconds, steps }) {
       return busy
         ? `Relaxation ${formatCount(progress.relax_step)} of ${formatCount(progress.relax_steps)} · ${particles}`
         : resting();
+    case 'mesh':
+      return `${particles} · making the mesh`;
     case 'quality':
       return `${particles} · measuring`;
     case 'done':

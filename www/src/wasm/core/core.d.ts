@@ -10,6 +10,7 @@ import type {
     MeshAnswer,
     Progress,
     FileRecord,
+    Measured,
     Measures,
     Report,
     SolvedModel,
@@ -71,6 +72,10 @@ export class Core {
      */
     follow(settings: Record<string, number | string>, is_closed: boolean): boolean;
     /**
+     * Estimated share of the work that is done: of the run and of what is planned.
+     */
+    fraction(): number;
+    /**
      * Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is
      * complete, nothing before.
      */
@@ -84,10 +89,10 @@ export class Core {
      */
     limit_memory(megabytes: number): void;
     /**
-     * Measures the particles, up to `budget` slices of the work: `Report` once it is complete,
+     * Measures these particles, up to `budget` slices of the work: `Report` once it is complete,
      * nothing before.
      */
-    measure(budget: number): Report | undefined;
+    measure(measured: Measured, budget: number): Report | undefined;
     /**
      * Measures particles that something else has placed on the present surface, vectors of three
      * floats: `Measures`. The columns of the last report are then theirs.
@@ -133,6 +138,11 @@ export class Core {
      * The column [`Particles::periodic`].
      */
     periodic(): Uint32Array<ArrayBuffer>;
+    /**
+     * Says what follows on the run, for the share of the work that is told: which particles will
+     * be measured, and whether they will be joined.
+     */
+    plan(measured: Measured, is_joined: boolean): void;
     /**
      * Positions from particle `from` on, rounded to single precision.
      */

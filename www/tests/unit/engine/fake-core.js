@@ -219,8 +219,10 @@ export function fakeCore({
     set_function: () => {
       throw new Error('not here');
     },
-    /** @param {number} budget */
-    measure(budget) {
+    plan() {},
+    fraction: () => measured / slices,
+    /** @param {string} _measured @param {number} budget */
+    measure(_measured, budget) {
       calls.push('measure');
       const n = Math.min(budget, slices - measured);
       measured += n;

@@ -65,6 +65,9 @@ async function run(
  */
 const of = (posted, type) => /** @type {any} */ (posted.filter((m) => m.type === type));
 
+/** Returns whether a message tells how far the measurement is. @param {FromWorker} message */
+const isMeasuring = (message) => message.type === 'progress' && message.progress.phase === 'quality';
+
 /**
  * Listens to the calls of a method. Returns what tells how long the longest has taken, in ms.
  * @param {ReturnType<typeof fakeCore>} core @param {'fit' | 'step' | 'measure' | 'join'} method
@@ -190,10 +193,13 @@ describe('a job', () => {
   test('a newer job ends a measurement, and a long one lets itself be heard', async () => {
     const core = fakeCore({ slices: 100_000, usPerSlice: 50 });
     const { posted, memory } = await run(core, sampleJob(), {
-      interrupt: (p) => (of(p, 'beat').length >= 3 ? 'replace' : null),
+      interrupt: (p) => (p.filter(isMeasuring).length >= 3 ? 'replace' : null),
     });
     expect(of(posted, 'done')[0]).toMatchObject({ outcome: 'complete', reportFollows: true });
-    expect(of(posted, 'beat')).toHaveLength(3);
+    const told = of(posted.filter(isMeasuring), 'progress').map(({ progress }) => progress.fraction);
+    expect(told).toHaveLength(3);
+    expect(told).toEqual(told.toSorted((a, b) => a - b));
+    expect(told[2]).toBeLessThan(1);
     expect(of(posted, 'report')).toHaveLength(0);
     expect(memory.held).toBe(7);
   });
@@ -320,10 +326,10 @@ describe('a job', () => {
 
   test('brings the curvature at once when it is asked for during the measurement', async () => {
     const core = fakeCore({ particles: 500, slices: 6000 });
-    const { posted } = await run(core, sampleJob(), { curvature: (said) => said.some((m) => m.type === 'beat') });
-    const types = posted.map((m) => m.type);
-    expect(types.slice(types.indexOf('beat'))).toEqual(['beat', 'columns', 'report']);
-    expect(posted.at(-2)).toMatchObject({ type: 'columns', first: 500, total: 500, curvatureFrom: 0, progress: null });
+    const { posted } = await run(core, sampleJob(), { curvature: (said) => said.some(isMeasuring) });
+    const after = posted.slice(posted.findIndex(isMeasuring)).filter((m) => !isMeasuring(m));
+    expect(after.map((m) => m.type)).toEqual(['columns', 'report']);
+    expect(after[0]).toMatchObject({ type: 'columns', first: 500, total: 500, curvatureFrom: 0, progress: null });
   });
 
   test('makes no mesh unless one is drawn, and then sends it with the last columns', async () => {
@@ -338,7 +344,12 @@ describe('a job', () => {
     expect(ranges.length).toBeGreaterThan(2);
     expect(memory).toEqual({ held: 7, meshed: 7, gaveUp: false });
     // The mesh does not wait for the figures.
-    expect(posted.map(({ type }) => type).slice(-4)).toEqual(['columns', 'past', 'done', 'report']);
+    expect(
+      posted
+        .filter((m) => m.type !== 'progress')
+        .map(({ type }) => type)
+        .slice(-4),
+    ).toEqual(['columns', 'past', 'done', 'report']);
   });
 
   test('leaves a mesh on the page until the next one is there, unless it is to be seen growing', async () => {
@@ -510,7 +521,7 @@ describe('a job that comes while another is under way', () => {
   test('with a fault in its formula lets the measurement come to its end', async () => {
     const core = fakeCore({ particles: 500, slices: 6000 });
     const { posted, memory } = await work(core, sampleJob(), once(faulty, 'done', 1));
-    expect(posted.slice(-2).map((m) => m.type)).toEqual(['beat', 'report']);
+    expect(isMeasuring(posted[posted.length - 2])).toBe(true);
     expect(of(posted, 'field').at(-1)).toMatchObject({ id: 8, answer: { ok: false } });
     expect(posted.at(-1)).toMatchObject({ id: 7, report: { count: 500 } });
     expect(core.calls.filter((call) => call === 'start')).toHaveLength(1);

@@ -62,7 +62,7 @@ function reported({ formula, parameters, bounds }, settings) {
   expect(core.start(settings).ok).toBe(true);
   while (core.step(10_000).stop_reason === null);
   let report;
-  do report = core.measure(1000);
+  do report = core.measure('front_too', 1000);
   while (report === undefined);
   const none = new Uint32Array(0);
   const particles = {

@@ -1,0 +1,54 @@
+//! One figure of progress for a whole call: a run, and what its caller does with it afterwards.
+
+use super::Measured;
+use crate::sampler::Method;
+
+/// Cost of a run without its report, over that of measuring its particles once.
+fn run_cost(method: Method) -> f64 {
+    match method {
+        Method::Front => 0.7,
+        Method::Refined => 2.0,
+    }
+}
+
+/// Cost of the mesh, over that of measuring the particles once. A refined run has made it already.
+fn mesh_cost(method: Method) -> f64 {
+    match method {
+        Method::Front => 0.3,
+        Method::Refined => 0.1,
+    }
+}
+
+/// What will be done with the particles of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Plan {
+    pub(super) measured: Measured,
+    pub(super) is_joined: bool,
+}
+
+impl Default for Plan {
+    fn default() -> Self {
+        Self { measured: Measured::Nothing, is_joined: false }
+    }
+}
+
+/// Estimated shares that parts have of the time of a call. Together they are 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shares {
+    pub(super) run: f64,
+    pub(super) measuring: f64,
+    pub(super) mesh: f64,
+}
+
+impl Plan {
+    pub(super) fn shares(self, method: Method) -> Shares {
+        let measuring = match self.measured {
+            Measured::Nothing => 0.0,
+            Measured::Particles => 1.0,
+            Measured::FrontToo => 2.0,
+        };
+        let (run, mesh) = (run_cost(method), if self.is_joined { mesh_cost(method) } else { 0.0 });
+        let all = run + measuring + mesh;
+        Shares { run: run / all, measuring: measuring / all, mesh: mesh / all }
+    }
+}
