@@ -76,20 +76,53 @@ fn parts_that_meet_without_an_edge_are_one_patch_beside_edges() {
         ("max(hypot(max(hypot(x, y) - 0.6, 0), max(abs(z) - 0.5, 0)) - 0.3, x)".into(), (1, 2), None, [1, 0]),
     ];
     for (formula, (components, euler), volume, creases) in cases {
-        let field = Formula::parse(&formula).expect("a formula");
-        let sample = sample(field, &Settings::with_count(6_000).refined()).expect("a sample");
-        assert!(sample.report().growth.refined_levels.is_some(), "{formula}");
-        let topology = &sample.mesh().topology;
-        let found = topology.components.iter().map(|component| component.euler()).sum::<i64>();
-        let borders: u32 = topology.components.iter().map(|component| component.border_edges).sum();
-        assert_eq!((topology.components.len(), found, borders), (components, euler, 0), "{formula}");
-        let proof = &sample.report().proof;
-        assert_eq!([proof.creases, proof.corners], creases.map(Some), "{formula}");
-        assert_eq!(proof.undecided_cells, Some(0), "{formula}");
-        if let Some(exact) = volume {
-            let found = sample.volume().expect("a closed mesh");
-            assert!((found / exact - 1.0).abs() < 0.005, "{formula}: volume {found} for {exact}");
-        }
+        check_closed(&formula, [components, euler], volume, creases);
+    }
+}
+
+/// Checks that the refined mesh of a solid is closed and has so many components, this Euler number
+/// and volume, and that its surface has so many creases and corners.
+fn check_closed(formula: &str, topology: [i64; 2], volume: Option<f64>, creases: [usize; 2]) {
+    let field = Formula::parse(formula).expect("a formula");
+    let sample = sample(field, &Settings::with_count(6_000).refined()).expect("a sample");
+    assert!(sample.report().growth.refined_levels.is_some(), "{formula}");
+    let components = &sample.mesh().topology.components;
+    let euler = components.iter().map(|component| component.euler()).sum::<i64>();
+    let borders: u32 = components.iter().map(|component| component.border_edges).sum();
+    assert_eq!(([components.len() as i64, euler], borders), (topology, 0), "{formula}");
+    let proof = &sample.report().proof;
+    assert_eq!([proof.creases, proof.corners], creases.map(Some), "{formula}");
+    assert_eq!(proof.undecided_cells, Some(0), "{formula}");
+    if let Some(exact) = volume {
+        let found = sample.volume().expect("a closed mesh");
+        assert!((found / exact - 1.0).abs() < 0.005, "{formula}: volume {found} for {exact}");
+    }
+}
+
+#[test]
+fn floors_and_folded_angles_bend_a_solid_at_edges() {
+    let cases = [
+        // A zigzag roof, with one slope and with another.
+        ("max(abs(x) - 2, abs(y) - 1, z - abs(x - floor(x + 0.5)), -z - 1)", [1, 2], 10.0, [33, 22]),
+        ("max(abs(x) - 3, abs(y) - 1, z - 4*abs(x/2 - round(x/2)), -z - 1)", [1, 2], 24.0, [27, 18]),
+        // Roofs without walls at the ends of a period.
+        ("max(z - asin(sin(x)), -z - 2, abs(x) - 2, abs(y) - 1)", [1, 2], 16.0, [18, 12]),
+        // Rods in cells that they do not touch, and holes that do.
+        (
+            "max(hypot(mod(x, 1) - 0.5, mod(y, 1) - 0.5) - 0.3, abs(x) - 2, abs(y) - 2, abs(z) - 0.5)",
+            [16, 32],
+            1.44 * PI,
+            [32, 0],
+        ),
+        (
+            "max(abs(x) - 1, abs(y) - 1, abs(z) - 1, 0.5 - max(abs(x - 2*round(x/2)), abs(y)))",
+            [1, 0],
+            6.0,
+            [24, 16],
+        ),
+    ];
+    for (formula, topology, volume, creases) in cases {
+        check_closed(formula, topology, Some(volume), creases);
     }
 }
 

@@ -533,7 +533,7 @@ impl Branches {
         (!products.is_empty()).then(|| Self::of(&graph, root, &products, values))
     }
 
-    fn of(graph: &Graph, root: Id, products: &[Id], values: &[f64]) -> Self {
+    pub(super) fn of(graph: &Graph, root: Id, products: &[Id], values: &[f64]) -> Self {
         let mut branches = Self::default();
         let is_choice = |&id: &Id| {
             let node = graph.node(id);

@@ -13,7 +13,7 @@ use super::branches::{Base, BranchPart, Branches, ChoiceCondition, Holds, NodeRo
 use super::compiled::Compiled;
 use super::graph::{Id, MIN_BLEND_WIDTH, Node};
 use super::operations::Unary;
-use super::{interval, scalar};
+use super::{interval, scalar, steps};
 use crate::field::SHARP;
 use crate::math::Bounds;
 use crate::math::newton::{STEPS, step_to_curve};
@@ -74,7 +74,7 @@ impl Branches {
 
     /// Cells of the box, no wider than `width`, outside of which the surface of a function has no
     /// crease, and the branches of the function, joined to patches; none if no choice makes a
-    /// crease. Products are told by their factors if these cross.
+    /// crease. Products are told by their factors if these cross, else floors and folds are choices.
     pub(super) async fn found_in(
         f: &Compiled,
         values: &[f64],
@@ -87,7 +87,10 @@ impl Branches {
                 return (cells, branches);
             }
         }
-        let mut branches = Self::new(f, values);
+        let mut branches = match steps::as_choices(f, values, bounds) {
+            Some((graph, root)) => Self::of(&graph, root, &[], values),
+            None => Self::new(f, values),
+        };
         let cells = branches.take_creases(values, bounds, width).await;
         (cells, branches)
     }
@@ -167,6 +170,8 @@ fn ties_of(base: &mut Base, part: &BranchPart, choices: &[Id], values: &[f64]) -
     for &choice in choices {
         let tied = match base.graph.node(choice) {
             Node::Unary(Unary::Abs, _) => vec![base.graph.constant(0.0)],
+            // Whole numbers that follow each other are nowhere equal.
+            Node::Select(_, _, _, a, b) if base.is_step(choice) => vec![a, b],
             Node::Binary(_, a, b) | Node::Smin(_, a, b, _) | Node::Select(_, _, _, a, b) => {
                 vec![a, b, base.graph.combination([(a, 0.5), (b, 0.5)])]
             }
@@ -184,6 +189,14 @@ fn ties_of(base: &mut Base, part: &BranchPart, choices: &[Id], values: &[f64]) -
 }
 
 impl Base {
+    /// Whether a node is a number, or a choice between numbers.
+    fn is_step(&self, id: Id) -> bool {
+        match self.graph.node(id) {
+            Node::Select(_, _, _, a, b) => self.is_step(a) && self.is_step(b),
+            _ => self.graph.is_uniform(id),
+        }
+    }
+
     /// The root of a part with another node in the place of a choice. Of choices above it that hang
     /// on this one alone, the operand that leads to it is taken.
     fn root_with(&mut self, part: &BranchPart, choice: Id, other: Id) -> Id {

@@ -73,6 +73,7 @@ mod scalar;
 mod solids;
 mod spelling;
 mod statements;
+mod steps;
 #[cfg(test)]
 mod tests;
 mod token;

@@ -1,0 +1,131 @@
+//! Floors and folded angles as choices.
+//!
+//! In a box ⌊u⌋ takes few whole numbers. It is then a chain of choices between them, by whether u
+//! has come to the next one. asin(sin u) and acos(cos u) are folds of a line: up to a multiple of 2π
+//! they are u or −u, between whole multiples of π or beside them. So the search for creases finds
+//! the edges of stairs, triangle waves and repeated cells as it finds those of a minimum.
+
+use super::compiled::Compiled;
+use super::graph::{Graph, Id, Node};
+use super::interval;
+use super::operations::Unary;
+use crate::math::{Bounds, Interval};
+use core::f64::consts::PI;
+
+/// Maximum number of steps of a node in a box: as many make 64 repeated cells. Beyond, the node
+/// stays what it is.
+const MOST_STEPS: f64 = 64.0;
+/// Share of the box by which a front may march beyond it, on each side.
+const MARGIN: f64 = 0.5;
+
+/// The graph of f with its floors and folds as choices, which is f in the box and around it; none
+/// if f has none, or only such with too many steps.
+pub(super) fn as_choices(f: &Compiled, values: &[f64], bounds: &Bounds) -> Option<(Graph, Id)> {
+    let graph = &*f.graph;
+    let nodes = graph.needed_by(&[f.root]);
+    let folds: Vec<(Id, Fold)> =
+        nodes.iter().filter_map(|&id| Fold::of(graph, id).map(|fold| (id, fold))).collect();
+    if folds.is_empty() {
+        return None;
+    }
+    let around = bounds.enlarged(MARGIN * bounds.size().max_element());
+    let mut ranges = Vec::new();
+    interval::bounds(graph, &nodes, values, &around, &mut ranges);
+    let (mut other, mut map, mut is_new) = (Graph::default(), vec![0; graph.len()], false);
+    for id in nodes {
+        let fold = folds.iter().find(|&&(of, _)| of == id).map(|&(_, fold)| fold);
+        let chain = fold.and_then(|fold| {
+            let range = ranges[fold.argument() as usize].at(0).bounds;
+            fold.chain(&mut other, map[fold.argument() as usize], range)
+        });
+        is_new |= chain.is_some();
+        let plain = graph.node(id).mapped(|operand| map[operand as usize]);
+        map[id as usize] = chain.unwrap_or_else(|| other.intern(plain));
+    }
+    let root = map[f.root as usize];
+    is_new.then_some((other, root))
+}
+
+/// A function of u with steps or folds at equal distances.
+#[derive(Clone, Copy)]
+enum Fold {
+    /// ⌊u⌋.
+    Floor(Id),
+    /// asin(sin u).
+    Sine(Id),
+    /// acos(cos u).
+    Cosine(Id),
+}
+
+impl Fold {
+    fn of(graph: &Graph, id: Id) -> Option<Self> {
+        let fold = match graph.node(id) {
+            Node::Unary(Unary::Floor, u) => Self::Floor(u),
+            Node::Unary(Unary::Asin, inner) => match graph.node(inner) {
+                Node::Unary(Unary::Sin, u) => Self::Sine(u),
+                _ => return None,
+            },
+            Node::Unary(Unary::Acos, inner) => match graph.node(inner) {
+                Node::Unary(Unary::Cos, u) => Self::Cosine(u),
+                _ => return None,
+            },
+            _ => return None,
+        };
+        (!graph.is_uniform(fold.argument())).then_some(fold)
+    }
+
+    fn argument(self) -> Id {
+        let (Self::Floor(u) | Self::Sine(u) | Self::Cosine(u)) = self;
+        u
+    }
+
+    /// The place of step k: from it to the next one the function is [piece](Self::piece) k.
+    fn step(self, k: f64) -> f64 {
+        match self {
+            Self::Floor(_) => k,
+            Self::Sine(_) => (k - 0.5) * PI,
+            Self::Cosine(_) => k * PI,
+        }
+    }
+
+    /// The number of the piece at a value of u.
+    fn number(self, u: f64) -> f64 {
+        let steps = match self {
+            Self::Floor(_) => u,
+            Self::Sine(_) => u / PI + 0.5,
+            Self::Cosine(_) => u / PI,
+        };
+        libm::floor(steps)
+    }
+
+    /// The function between step k and the next one.
+    fn piece(self, graph: &mut Graph, u: Id, k: f64) -> Id {
+        let is_even = k % 2.0 == 0.0;
+        let (number, turn) = match self {
+            Self::Floor(_) => return graph.constant(k),
+            Self::Sine(_) => (k * PI, is_even),
+            Self::Cosine(_) => (if is_even { k } else { k + 1.0 } * PI, is_even),
+        };
+        let number = graph.constant(number);
+        if turn { graph.sub(u, number) } else { graph.sub(number, u) }
+    }
+
+    /// The function over a range of u as a chain of choices; none if it has too many steps there.
+    fn chain(self, graph: &mut Graph, u: Id, range: Interval) -> Option<Id> {
+        let [first, last] = [range.lo, range.hi].map(|end| self.number(end));
+        // Written so that an endless range has too many.
+        let is_short = last - first <= MOST_STEPS;
+        if !is_short {
+            return None;
+        }
+        let mut chain = self.piece(graph, u, last);
+        let mut k = last;
+        while k > first {
+            let step = graph.constant(self.step(k));
+            let before = self.piece(graph, u, k - 1.0);
+            chain = graph.select(step, u, chain, before);
+            k -= 1.0;
+        }
+        Some(chain)
+    }
+}
