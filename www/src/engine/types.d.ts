@@ -140,16 +140,17 @@ export type ViewState = import('./share/view.js').ViewState;
  * sampled anew.
  */
 export type CuttingPlane = { normal: Vec3; offset: number };
-/**
- * The whole shareable state, as plain JSON. `surface` is the gallery entry on which the formula is based, and `formula`
- * is the text in the editor. `parameters` and `settings` hold only values that differ from the defaults. If `surface`
- * is a model's id, or {@link FILE_SURFACE} for the file opened last, `formula` is empty; a formula typed then is based
- * on the default surface. The points of a file are not in the state, so a link to a file shows the default surface.
- */
 /** A clip box. `enlarged`: nobody has set it; it was enlarged by a press, around an `endless` surface or another. */
 export interface ChosenBounds extends Bounds {
   enlarged?: 'larger' | 'endless';
 }
+/**
+ * The whole shareable state, as plain JSON. `surface` is the gallery entry on which the formula is based, and `formula`
+ * is the text in the editor. `parameters` and `settings` hold only values that differ from the defaults. If `surface`
+ * is a model's id, or {@link FILE_SURFACE} for the file opened last, `formula` names it {@link MODEL}: by itself it is
+ * that model. A formula typed without that name is based on the default surface. The points of a file are not in the
+ * state, so a link to a file shows the default surface.
+ */
 export interface State {
   v: 1;
   surface: string;
