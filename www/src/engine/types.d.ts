@@ -95,7 +95,7 @@ export interface ColumnRange {
   progress?: CoreProgress | null;
 }
 
-/** `points` names a solved model; with it only the clip box and the pulls count. */
+/** `points` names a solved model; with it the clip box, the pulls and a formula that names the model count. */
 export type FieldRequest = Partial<import('./core-types.js').FieldRequest> & { points?: string };
 /** By the settings' names; a missing one has its default. */
 export type Settings = Record<string, number | string>;
@@ -343,7 +343,10 @@ export interface EngineCommands {
   setCentres: (count: number) => void;
   /** cancels the model or file that is loading */
   cancelLoading: () => void;
-  /** `typing`: more keys may follow, so that the text is sampled once they pause; without it, at once */
+  /**
+   * a formula that names {@link MODEL} keeps the model shown, another one leaves it; `typing`: more keys may follow, so
+   * that the text is sampled once they pause; without it, at once
+   */
   setFormula: (text: string, options?: { typing?: boolean }) => void;
   /** `live` during a drag; call once more without it at the end */
   setParameter: (name: string, value: number, options?: { live?: boolean }) => void;
