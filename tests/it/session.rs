@@ -510,7 +510,7 @@ fn a_formula_with_a_model_is_described_and_its_creases_are_found_in_slices() {
         ..FieldRequest::default()
     };
     let mut session = Session::new();
-    let mut set = |session: &mut Session, text| {
+    let set = |session: &mut Session, text: &str| {
         session.set_points(data.clone(), info.clone(), Bounds::cube(1.5), &with(text))
     };
     let answer = set(&mut session, "max(model, z - h)").expect("a field");
