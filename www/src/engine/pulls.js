@@ -43,7 +43,7 @@ export const isBareModel = (field) => Boolean(field?.model) && field?.formula ==
  * of a model has places that are not the model's.
  * @param {FieldOk | null} field
  */
-export const canGrab = (field) => (field?.model ? field.formula === '' : Boolean(field?.parameters.length));
+export const canGrab = (field) => (field?.model ? isBareModel(field) : Boolean(field?.parameters.length));
 
 /** Where the place of a pull comes to. @param {Pull} pull @returns {Vec3} */
 export const endOf = ({ at, by }) => along(at, by, 1);
