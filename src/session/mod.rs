@@ -106,6 +106,9 @@ pub enum Source {
 pub struct ModelFormula {
     text: String,
     parameters: Vec<Parameter>,
+    /// The names among the parameters that were not declared.
+    auto: Vec<String>,
+    mathml: MathNode,
     field: Combined,
 }
 
@@ -216,11 +219,17 @@ impl Session {
                 ..answer
             },
             Source::Points { info, within, .. } => {
-                let (formula, parameters) = match within {
-                    Some(formula) => (formula.text.clone(), formula.parameters.clone()),
-                    None => Default::default(),
-                };
-                FieldAnswer { model: Some(info.clone()), formula, parameters, ..answer }
+                let answer = FieldAnswer { model: Some(info.clone()), ..answer };
+                match within {
+                    Some(ModelFormula { text, parameters, auto, mathml, .. }) => FieldAnswer {
+                        formula: text.clone(),
+                        parameters: parameters.clone(),
+                        auto: auto.clone(),
+                        mathml: Some(mathml.clone()),
+                        ..answer
+                    },
+                    None => answer,
+                }
             }
             Source::Function(_) => answer,
         }
@@ -426,7 +435,8 @@ impl Session {
             let field = formula.with_model(&model)?;
             let mut parameters = formula.parameters().to_vec();
             parameters.retain(|parameter| parameter.name != MODEL);
-            Ok(ModelFormula { text: text.to_owned(), parameters, field })
+            let (auto, mathml) = (formula.auto().to_vec(), formula.mathml());
+            Ok(ModelFormula { text: text.to_owned(), parameters, auto, mathml, field })
         };
         combined().map_err(|error| Fault::in_formula(error, text))
     }

@@ -23,7 +23,7 @@ export class MarchingParticles extends HTMLElement {
   draw: string | null;
   /** `auto`, `light` or `dark` */
   theme: string | null;
-  /** whether the pointer turns the picture and zooms in it */
+  /** whether pointer and keys turn the picture and zoom in it; it can then have the focus */
   controls: boolean;
   readonly view: View | null;
   readonly report: Report | null;

@@ -25,10 +25,17 @@ const FLAGS = ['adaptive', 'controls'];
 /** Time without a change of `params` after which a motion is over. */
 const STILL_MS = 250;
 
+const TWICE =
+  'marching-particles/element is on this page twice, and the first one draws every <marching-particles>. Load one ' +
+  'version of it, from one address.';
+
 const SHEET = `:host { display: block; position: relative; aspect-ratio: 4 / 3; overflow: hidden; }
 :host([hidden]) { display: none; }
 div { position: absolute; inset: 0; }
+div:focus-visible { outline: 2px solid Highlight; outline-offset: -2px; }
 :host(:not([controls])) div { pointer-events: none; }`;
+/** What a picture with `controls` tells those who do not see it. */
+const KEYS = 'Arrow keys turn it, plus and minus zoom.';
 
 /** @param {string} name @param {string} value */
 function numberOf(name, value) {
@@ -60,13 +67,16 @@ export class MarchingParticles extends Base {
   /** @type {View | null} */
   #view = null;
   #isDue = false;
+  /** The attributes that the element has set itself. @type {Record<string, string>} */
+  #given = {};
   #visible;
   /** The timer that ends a motion. @type {ReturnType<typeof setTimeout> | undefined} */
   #still;
 
   constructor() {
     super();
-    const root = this.attachShadow({ mode: 'open' });
+    // The picture within has the keys; the focus of the element is its.
+    const root = this.attachShadow({ mode: 'open', delegatesFocus: true });
     const sheet = new CSSStyleSheet();
     sheet.replaceSync(SHEET);
     root.adoptedStyleSheets = [sheet];
@@ -93,8 +103,7 @@ export class MarchingParticles extends Base {
   }
 
   connectedCallback() {
-    if (!this.hasAttribute('role')) this.setAttribute('role', 'img');
-    this.#name();
+    this.#describe();
     this.#visible.observe(this);
   }
 
@@ -108,7 +117,7 @@ export class MarchingParticles extends Base {
 
   /** @param {string} name @param {string | null} _before @param {string | null} value */
   attributeChangedCallback(name, _before, value) {
-    this.#name();
+    this.#describe();
     if (name === 'controls' || !this.#view || this.#isDue) return;
     if (name === 'params' && value !== null) {
       this.#try(() => this.#move(paramsOf(value)));
@@ -122,10 +131,30 @@ export class MarchingParticles extends Base {
     });
   }
 
-  /** Names the picture for those who do not see it, where the page does not. */
-  #name() {
+  /**
+   * Names the picture for those who do not see it, where the page does not, and lets keys reach it where it has
+   * `controls`. It is an image only without them: what is in an image cannot have the focus.
+   */
+  #describe() {
     const text = this.getAttribute('formula') ?? this.getAttribute('surface');
-    if (!this.hasAttribute('aria-labelledby') && text) this.ariaLabel ??= text;
+    const controls = this.hasAttribute('controls');
+    this.#give('role', controls ? 'group' : 'img');
+    if (text && !this.hasAttribute('aria-labelledby')) this.#give('aria-label', text);
+    if (!controls) {
+      for (const name of ['role', 'tabindex', 'aria-label']) this.#host.removeAttribute(name);
+      return;
+    }
+    this.#host.tabIndex = 0;
+    this.#host.role = 'application';
+    this.#host.ariaLabel = text ? `${text}. ${KEYS}` : KEYS;
+  }
+
+  /** Sets an attribute that the page has left to the element. @param {string} name @param {string} value */
+  #give(name, value) {
+    const present = this.getAttribute(name);
+    if (present !== null && present !== this.#given[name]) return;
+    this.#given[name] = value;
+    if (present !== value) this.setAttribute(name, value);
   }
 
   /**
@@ -213,6 +242,8 @@ for (const name of FLAGS)
     },
   });
 
-// A second version on the page leaves the element to the first.
-if (globalThis.customElements && !customElements.get('marching-particles'))
-  customElements.define('marching-particles', MarchingParticles);
+if (globalThis.customElements) {
+  // An element is defined once: a second version on the page leaves it to the first.
+  if (customElements.get('marching-particles')) console.warn(String(new InputError(TWICE)));
+  else customElements.define('marching-particles', MarchingParticles);
+}

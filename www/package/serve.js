@@ -5,6 +5,7 @@
  * @module
  */
 import { nextBudget } from '../src/engine/bundle/budget.js';
+import { hasSimd } from '../src/engine/bundle/load.js';
 import loadCore, { Core } from '../src/wasm/core/core.js';
 import loadPoints from '../src/wasm/points/points.js';
 import { fitted } from './cloud.js';
@@ -22,6 +23,9 @@ const FIRST_BUDGET = 64;
 const PROGRESS_MS = 50;
 /** Largest memory of a run and its report: half of what a browser gives a module. */
 const MEMORY_MB = 2048;
+const WITHOUT_SIMD =
+  'There is no WebAssembly SIMD here, which the sampler needs. Chrome and Edge have it from 91 on, Firefox from 89, ' +
+  'Safari from 16.4, Node from 16.4; a browser may have it switched off.';
 
 /** An error whose name and facts the other side makes an error of. */
 class Refusal extends Error {
@@ -59,6 +63,7 @@ export function serve({ post, load }) {
    * @param {'core' | 'points'} name @param {(options: any) => Promise<unknown>} init
    */
   async function loaded(name, init) {
+    if (!hasSimd()) throw new Refusal('WorkerError', WITHOUT_SIMD);
     const loading = modules.get(name) ?? load(name).then((from) => init({ module_or_path: from }));
     modules.set(name, loading);
     await loading.catch((error) => {

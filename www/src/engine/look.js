@@ -4,6 +4,7 @@
  * @module
  */
 import { computed, effect, signal, untracked } from '@preact/signals-core';
+import { isBareModel } from './pulls.js';
 import { seenOf } from './view/style.js';
 
 /**
@@ -33,8 +34,8 @@ export function keepLook({ store, viewer, scheduler: { loader, sampling } }) {
   /** Returns the points of the model on the page, or null if they are not drawn. */
   function points() {
     const { view, pulls } = store.state.value;
-    // They are those of the surface before it is pulled.
-    if (!view.points || !store.field.value?.model || pulls.length > 0) return null;
+    // They are those of the surface before it is pulled, cut or joined.
+    if (!view.points || !isBareModel(store.field.value) || pulls.length > 0) return null;
     return loader.client.get(sampling.accepted?.field.points)?.centres ?? null;
   }
 

@@ -95,7 +95,7 @@ export interface ColumnRange {
   progress?: CoreProgress | null;
 }
 
-/** `points` names a solved model; with it only the clip box and the pulls count. */
+/** `points` names a solved model; with it the clip box, the pulls and a formula that names the model count. */
 export type FieldRequest = Partial<import('./core-types.js').FieldRequest> & { points?: string };
 /** By the settings' names; a missing one has its default. */
 export type Settings = Record<string, number | string>;
@@ -142,16 +142,17 @@ export type ViewState = import('./share/view.js').ViewState;
  * sampled anew.
  */
 export type CuttingPlane = { normal: Vec3; offset: number };
-/**
- * The whole shareable state, as plain JSON. `surface` is the gallery entry on which the formula is based, and `formula`
- * is the text in the editor. `parameters` and `settings` hold only values that differ from the defaults. If `surface`
- * is a model's id, or {@link FILE_SURFACE} for the file opened last, `formula` is empty; a formula typed then is based
- * on the default surface. The points of a file are not in the state, so a link to a file shows the default surface.
- */
 /** A clip box. `enlarged`: nobody has set it; it was enlarged by a press, around an `endless` surface or another. */
 export interface ChosenBounds extends Bounds {
   enlarged?: 'larger' | 'endless';
 }
+/**
+ * The whole shareable state, as plain JSON. `surface` is the gallery entry on which the formula is based, and `formula`
+ * is the text in the editor. `parameters` and `settings` hold only values that differ from the defaults. If `surface`
+ * is a model's id, or {@link FILE_SURFACE} for the file opened last, `formula` names it {@link MODEL}: by itself it is
+ * that model. A formula typed without that name is based on the default surface. The points of a file are not in the
+ * state, so a link to a file shows the default surface.
+ */
 export interface State {
   v: 1;
   surface: string;
@@ -344,7 +345,10 @@ export interface EngineCommands {
   setCentres: (count: number) => void;
   /** cancels the model or file that is loading */
   cancelLoading: () => void;
-  /** `typing`: more keys may follow, so that the text is sampled once they pause; without it, at once */
+  /**
+   * a formula that names {@link MODEL} keeps the model shown, another one leaves it; `typing`: more keys may follow, so
+   * that the text is sampled once they pause; without it, at once
+   */
   setFormula: (text: string, options?: { typing?: boolean }) => void;
   /** `live` during a drag; call once more without it at the end */
   setParameter: (name: string, value: number, options?: { live?: boolean }) => void;

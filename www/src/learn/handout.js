@@ -24,7 +24,8 @@ export function createHandout(host, { figures, lab, compare }) {
   const title = host.querySelector('h2');
   /** The answers of the run, by the id of the question. @type {Map<string, string>} */
   const known = new Map();
-  const ids = Object.keys(PREDICTIONS);
+  // In the order of the article.
+  const ids = Array.from(document.querySelectorAll('.predict'), ({ id }) => id).filter((id) => id in PREDICTIONS);
   /** Figures of questions that are answered. @type {Map<string, Element>} */
   const shown = new Map();
   const open = new Stops();

@@ -47,7 +47,7 @@ export const PAIRS = {
   },
   weigh: {
     stop: 'predict-last',
-    names: ['A, a stack after ten steps', 'B, a queue before any'],
+    names: ['A, a stack, relaxed', 'B, a queue, not relaxed'],
     purpose: 'six',
     make: async (lab) => {
       const own = lab.on(TORUS);
@@ -60,7 +60,7 @@ export const PAIRS = {
   },
   few: {
     stop: 'predict-few',
-    names: ['A, a queue before any', 'B, a stack after ten steps'],
+    names: ['A, a queue, not relaxed', 'B, a stack, relaxed'],
     purpose: 'hole',
     make: async (lab) => {
       const own = lab.on(subjectOf(undefined).surface);

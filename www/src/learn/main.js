@@ -100,21 +100,25 @@ addEventListener('afterprint', () => {
 
 const tool = (/** @type {string} */ label, /** @type {() => unknown} */ press) =>
   button({ class: 'plain', press: () => void press() }, label);
-byId('tools').append(
+const teachers = h(
+  'details',
+  // What is chosen takes the place of the list.
+  {
+    class: 'teachers',
+    on: { click: ({ target }) => target instanceof Element && !target.closest('summary') && close() },
+  },
+  h('summary', { class: 'button plain' }, 'For teachers'),
   h(
-    'details',
-    { class: 'teachers' },
-    h('summary', { class: 'button plain' }, 'For teachers'),
-    h(
-      'div',
-      { class: 'teachers-list' },
-      tool('Present', present),
-      tool('Print', print),
-      tool('Assignment', makeAssignment),
-      h('a', { class: 'button plain', href: '#collect' }, 'Collect answers'),
-    ),
+    'div',
+    { class: 'teachers-list' },
+    tool('Present', present),
+    tool('Print', print),
+    tool('Assignment', makeAssignment),
+    h('a', { class: 'button plain', href: '#collect' }, 'Collect answers'),
   ),
 );
+const close = () => teachers.toggleAttribute('open', false);
+byId('tools').append(teachers);
 
 /** The address of this lesson with an assignment. @param {string} task */
 function linkOf(task) {

@@ -35,6 +35,18 @@ export function nearestDistances({ positions, radii }) {
 export const parentDistances = ({ positions, parents }, radius) =>
   Float32Array.from(parents, (parent, i) => (parent === NO_PARENT ? 1 : between(positions, i, parent) / (2 * radius)));
 
+/**
+ * Whether the surface of a run is closed, as far as its particles tell: none is so near to the box that the surface
+ * could end there.
+ * @param {LabRun} run
+ */
+export function isClosed({ lab: { surface }, placed: { positions, radii } }) {
+  const { min, max } = surface.bounds;
+  return radii.every((radius, i) =>
+    [0, 1, 2].every((k) => Math.min(positions[3 * i + k] - min[k], max[k] - positions[3 * i + k]) > 2 * radius),
+  );
+}
+
 /** The ring that is asked for. */
 export const RING = 12;
 

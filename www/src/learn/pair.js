@@ -6,7 +6,7 @@ import { formatFixed, formatSignificant } from '../ui/format.js';
 import { reasonOf } from './figure.js';
 import { latest } from './latest.js';
 import { createMarkSwitch, isMarked } from './marks.js';
-import { nearestDistances, parentDistances } from './measure.js';
+import { isClosed, nearestDistances, parentDistances } from './measure.js';
 import { createScale } from './parts.js';
 import { byLevel, byNeighbours, byValue, Orbit, sideBySide } from './picture.js';
 import { DECIDING, scoreAtEnd } from './score.js';
@@ -22,7 +22,12 @@ const [LOW, HIGH] = [0.7, 1.15];
  * @param {Colouring} colouring
  * @param {[number, number]} radii  the smallest and the largest of both runs
  */
-function sceneOf(run, colouring, [least, most]) {
+function sceneOf(run, colouring, radii) {
+  return { ...colouredBy(run, colouring, radii), isClosed: isClosed(run) };
+}
+
+/** @param {LabRun} run @param {Colouring} colouring @param {[number, number]} radii */
+function colouredBy(run, colouring, [least, most]) {
   // The distance to the parent is what placing gave; the others are as the run ended.
   const particles = colouring === 'parent' ? run.placed : run.end;
   switch (colouring) {
@@ -86,7 +91,7 @@ export function createPair(lab) {
     for (const [k, scene] of scenes.value.entries()) {
       const score = isMarked() ? scores.value?.[k] : null;
       const end = shown.runs?.[k].end;
-      pictures[k].show(score && end ? { particles: end, colours: byNeighbours(score.valence) } : scene);
+      pictures[k].show(score && end ? { ...scene, particles: end, colours: byNeighbours(score.valence) } : scene);
     }
   });
   let isFirst = true;

@@ -11,6 +11,7 @@ import { Painter } from '../engine/view/painter.js';
 import { PALETTES, RAMP } from '../engine/view/palettes.js';
 import { endsWith, h, live, reducedMotion } from '../ui/dom.js';
 import '../ui/theme.js';
+import { bedDepths } from './beds.js';
 import { Fit } from './fit.js';
 import { frontNormal, shareFacing } from './front.js';
 
@@ -32,6 +33,8 @@ const PRESS_PX = 5;
 const IN_SIGHT = 0.35;
 /** Height of a picture on paper, over its width. */
 const PAPER = 0.6;
+/** Radius of the ring around a particle, over its own. */
+const AROUND = 1.6;
 /** Canvas pixels for a page pixel. */
 const FINENESS = 2;
 
@@ -144,6 +147,8 @@ export class Picture {
   #canvas;
   #size;
   #frame;
+  /** The scene whose beds have these depths. @type {{ scene: Scene, depths: Float32Array | null } | null} */
+  #bedded = null;
 
   /**
    * @param {Orbit} orbit
@@ -226,6 +231,7 @@ export class Picture {
     painter.write(0, positions, normals, radii, levels, scene.colours(palette), -Infinity);
     const count = scene.count ?? radii.length;
     let body = radii.length;
+    painter.bedDepths = this.#depths(scene);
     if (scene.body) {
       const { positions, normals, radii, levels } = scene.body;
       painter.write(count, positions, normals, radii, levels, new Uint32Array(radii.length), -Infinity);
@@ -233,15 +239,28 @@ export class Picture {
     }
     painter.set_count(count, body);
     const colour = rgbFromPacked(palette.body);
-    painter.set_style(JSON.stringify({ background, dim_backfaces: 1, body: { colour, is_open: true } }));
+    painter.set_style(JSON.stringify({ background, dim_backfaces: 1, body: { colour, is_open: !scene.isClosed } }));
     const view = this.#view();
     painter.set_view(view.packed);
     // The ground is left out, so that the picture stands on that of the page or of the paper.
     painter.draw(0, true);
     const { places = [], normal = [], radius = 0 } = this.ringed.peek() ?? {};
-    const rings = places.map((place) => ({ place, normal, radius, kind: /** @type {const} */ ('ring') }));
+    // The largest hole has the circle that is empty; of a pair both particles are ringed.
+    const isHole = places.length === 1;
+    const rings = places.map((place) => ({ place, normal, radius, isHole, kind: /** @type {const} */ ('ring') }));
     this.#drawMarks(painter.context, [...(scene.marks ?? []), ...rings], view);
     this.element.dataset.drawn = String(scene.count ?? radii.length);
+  }
+
+  /** The depths of the beds of a scene, worked out once. @param {Scene} scene */
+  #depths(scene) {
+    const { particles, count = particles.radii.length, body = null } = scene;
+    if (this.#bedded?.scene !== scene) {
+      // The body begins after the discs, in the place of the particles that have none.
+      const own = body ? firstOf(particles, count) : particles;
+      this.#bedded = { scene, depths: bedDepths(own, count, body) };
+    }
+    return this.#bedded.depths;
   }
 
   /** @param {CanvasRenderingContext2D} context @param {readonly Mark[]} marks @param {View} view */
@@ -249,11 +268,11 @@ export class Picture {
     const style = getComputedStyle(this.element);
     let rings = 0;
     context.lineWidth = 2 * FINENESS;
-    for (const { place, to, normal, radius, kind } of marks) {
+    for (const { place, to, normal, radius, kind, isHole = false } of marks) {
       const at = projected(view, place);
       if (!at || !isFacing(view.eye, place, normal)) continue;
       const [x, y] = [at.x * FINENESS, at.y * FINENESS];
-      const r = Math.max(6, (1.6 * radius) / at.perPx) * FINENESS;
+      const r = Math.max(6, ((isHole ? 1 : AROUND) * radius) / at.perPx) * FINENESS;
       context.strokeStyle = style.getPropertyValue(kind === 'ring' ? '--mark' : '--mark-own') || style.color;
       context.beginPath();
       const end = to && projected(view, to);
@@ -392,6 +411,13 @@ function drawArrow(context, [x, y], [endX, endY]) {
   context.stroke();
   context.lineWidth = 2 * FINENESS;
 }
+
+/** @param {LessonParticles} particles @param {number} count */
+const firstOf = ({ positions, normals, radii }, count) => ({
+  positions: positions.subarray(0, 3 * count),
+  normals: normals.subarray(0, 3 * count),
+  radii: radii.subarray(0, count),
+});
 
 /** @param {readonly number[]} eye @param {ArrayLike<number>} place @param {ArrayLike<number>} normal */
 const isFacing = (eye, place, normal) => [0, 1, 2].reduce((sum, k) => sum + (eye[k] - place[k]) * normal[k], 0) > 0;

@@ -106,6 +106,8 @@ export interface Mark {
   to?: ArrayLike<number>;
   normal: ArrayLike<number>;
   radius: number;
+  /** the ring is the empty circle of a hole itself */
+  isHole?: boolean;
   kind: 'ring' | 'cross' | 'dot' | 'arrow';
 }
 /** What a run costs: for each particle, and in rounds. `others`: particles of the other method. */
@@ -125,6 +127,8 @@ export interface Scene {
   /** those of which a press chooses one, if not the ones that are drawn */
   places?: LessonParticles;
   count?: number;
+  /** nothing of its inside can be seen: see {@link isClosed} */
+  isClosed?: boolean;
   colours: (palette: Palette) => Uint32Array;
   marks?: readonly Mark[];
 }

@@ -4,6 +4,7 @@
  * one: Back leads from surface to surface (main/address.js).
  */
 import { effect, signal } from '@preact/signals-core';
+import { MODEL } from '../engine/constants.js';
 
 /**
  * @import { Engine, ReadonlySignal, State } from '../engine/types.js'
@@ -78,9 +79,10 @@ export class History {
   /**
    * @param {Moment} moment
    * @param {number} nowMs
-   * @param {{ faulty?: boolean }} [how] whether the previous entry has an invalid formula, which is not worth restoring
+   * @param {{ faulty?: boolean, isWritten?: boolean }} [how]  `faulty`: the previous entry has an invalid formula, so
+   *   that it is not worth restoring; `isWritten`: the formula is none with which a surface begins
    */
-  record(moment, nowMs, { faulty = false } = {}) {
+  record(moment, nowMs, { faulty = false, isWritten = false } = {}) {
     const present = this.entries[this.#at];
     const found = present && differences(present, moment);
     if (found?.length === 0) {
@@ -88,7 +90,9 @@ export class History {
       this.entries[this.#at] = moment;
       return;
     }
-    const what = found?.length === 1 ? found[0] : null;
+    // A formula that is written for a model from points, or in its place, brings its surface along.
+    const isFormula = isWritten && found?.includes('formula') && found.includes('surface');
+    const what = isFormula ? 'formula' : found?.length === 1 ? found[0] : null;
     const goesOn =
       what !== null &&
       what === this.#open &&
@@ -128,7 +132,9 @@ export function createHistory(engine, moves) {
   const record = (/** @type {State} */ state) => {
     // Before the core has loaded there is no state to restore.
     if (!engine.description.value || state.surface === '') return;
-    history.record(momentOf(state), performance.now(), { faulty: engine.fieldError.peek() !== null });
+    const own = engine.description.value.surfaces.find(({ id }) => id === state.surface)?.formula ?? MODEL;
+    const how = { faulty: engine.fieldError.peek() !== null, isWritten: state.formula !== own };
+    history.record(momentOf(state), performance.now(), how);
   };
   const tell = () => {
     canUndo.value = history.canUndo;

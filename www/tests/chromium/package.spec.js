@@ -122,7 +122,58 @@ for (const id of ['a', 'b']) for (const name of ['progress', 'report', 'error'])
     String.fromCharCode(...(await document.querySelectorAll('marching-particles')[1].toFile('glb')).subarray(0, 4)),
   );
   expect(head).toBe('glTF');
+  const camera = () => page.evaluate(() => /** @type {any} */ (document.getElementById('b')).view.state.view.camera);
+  const before = await camera();
+  // Without controls there is nothing to press.
+  expect(await page.evaluate(() => document.getElementById('a')?.role)).toBe('img');
+  await page.evaluate(() => document.getElementById('a')?.focus());
+  expect(await page.evaluate(() => document.activeElement?.id)).toBe('');
+  await page.keyboard.press('Tab');
+  expect(await page.evaluate(() => [document.activeElement?.id, document.activeElement?.role])).toEqual(['b', 'group']);
+  await page.keyboard.press('ArrowRight');
+  await expect.poll(async () => (await camera()).yaw).not.toBe(before.yaw);
+  await page.keyboard.press('+');
+  await expect.poll(async () => (await camera()).distance).toBeLessThan(before.distance);
+  await page.keyboard.press('f');
+  await expect.poll(async () => (await camera()).fit).toBe(true);
   await page.evaluate(() => document.getElementById('b')?.remove());
+});
+
+test('a second version of the element leaves the pictures to the first, and says so', async ({ page }) => {
+  const modules = './node_modules/marching-particles/element.js';
+  there.write(
+    'index.html',
+    `<marching-particles formula="x^2 + y^2 + z^2 = 1" count="300" style="width: 320px"></marching-particles>
+<script type="module">
+const first = await import('${modules}');
+const second = await import('${modules}?another');
+document.querySelector('marching-particles').addEventListener('report', ({ target }) => {
+  document.title = [target instanceof first.MarchingParticles, target instanceof second.MarchingParticles].join(' ');
+});
+</script>`,
+  );
+  /** @type {string[]} */
+  const warned = [];
+  page.on('console', (message) => message.type() === 'warning' && warned.push(message.text()));
+  await serve(page, '.');
+  await expect(page).toHaveTitle('true false');
+  expect(
+    warned.filter((text) => text.startsWith('InputError: marching-particles/element is on this page twice')),
+  ).toHaveLength(1);
+});
+
+test('without SIMD the sampling is rejected with what has it', async ({ page }) => {
+  const modules = { imports: { 'marching-particles': './node_modules/marching-particles/inline.js' } };
+  there.write(
+    'index.html',
+    `<script>WebAssembly.validate = () => false;</script>
+<script type="importmap">${JSON.stringify(modules)}</script>
+<script type="module">import { sample } from 'marching-particles';
+document.title = await sample('x^2 + y^2 + z^2 = 1', { count: 300 }).catch(String);
+</script>`,
+  );
+  await serve(page, '.');
+  await expect(page).toHaveTitle(/^WorkerError: There is no WebAssembly SIMD here.*Safari from 16\.4/);
 });
 
 test('a view in an element of a page has a state, and rejects what is wrong', async ({ page }) => {

@@ -35,7 +35,7 @@ test('a model goes through a link, with its settings', async () => {
   const other = await open(await p.engine.link());
   expect(other.state).toMatchObject({
     surface: 'bunny',
-    formula: '',
+    formula: 'model',
     settings: bunny.settings,
     view: { colour: 'curvature', points: false },
   });

@@ -27,6 +27,9 @@ const SIMD_PROBE = new Uint8Array([
   0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11,
 ]);
 
+/** Whether this browser or program has the instructions that the modules need. @param {typeof WebAssembly} wasm */
+export const hasSimd = (wasm = WebAssembly) => wasm.validate(SIMD_PROBE);
+
 /** An error in loading, with its cause. */
 export class LoadError extends Error {
   /** @param {LoadFault} fault @param {string} message */
@@ -50,7 +53,7 @@ export async function loadModule(
 ) {
   const { wasm } = env;
   if (!wasm) throw new LoadError('no_wasm', `This browser has WebAssembly switched off. The ${what} needs it.`);
-  if (!wasm.validate(SIMD_PROBE))
+  if (!hasSimd(wasm))
     throw new LoadError(
       'no_simd',
       `This browser lacks WebAssembly SIMD, which the ${what} needs. Chrome and Edge have it from 91 on, Firefox from 89, Safari from 16.4.`,

@@ -10,6 +10,7 @@ import {
   freshShape,
   fromPoints,
   modelOf,
+  namesModel,
   newParameter,
   surfaceOf,
   validBounds,
@@ -53,13 +54,47 @@ const sampledOf = ({ surface, formula, parameters, declared, centres, bounds, pu
 /** @param {Parts} parts @returns {SurfaceCommands} */
 export function surfaceCommands({ store, scheduler, framing, picture: { viewer } }) {
   const { state } = store;
+  /**
+   * The model that a typed formula has left, and the last formula typed since: a text that is changed letter by letter
+   * may lose the name of the model and gain it again.
+   * @type {{ shape: Shape, formula: string } | null}
+   */
+  let left = null;
+  /**
+   * Returns what a typed formula makes of the state.
+   * @param {string} text
+   * @returns {{ shape: Partial<State>, another: boolean }}
+   */
+  function typed(text) {
+    const about = description(store);
+    const { v: _, view: __, ...shape } = state.value;
+    const { surface, formula, bounds, settings } = shape;
+    const isModel = fromPoints(about, surface);
+    if (isModel && !namesModel(text)) {
+      left = { shape, formula: text };
+      return { shape: freshShape(about, settings, about.surfaces[0].id, text), another: true };
+    }
+    const before = left?.formula === formula && !isModel ? left.shape : null;
+    if (before && namesModel(text)) {
+      left = null;
+      return { shape: { ...before, settings, formula: text }, another: true };
+    }
+    left = before && { shape: before, formula: text };
+    // The values of the gallery's parameters belong to its formula; in another one the same names begin afresh.
+    const isOwn = surfaceOf(about, surface)?.formula === formula;
+    const own = isOwn ? { parameters: {} } : {};
+    // So does an enlarged box, which nobody set for another formula.
+    const next = { ...own, formula: text, bounds: bounds?.enlarged ? null : bounds };
+    // What is cut of a model stays where it was.
+    return { shape: next, another: !isModel && replaces(formula, text) };
+  }
   return {
     setSurface(id) {
       const about = store.description.value;
       const surface = surfaceOf(about, id);
       if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && scheduler.loader.hasFile)) return;
       showAll(store);
-      change(store, freshShape(description(store), state.value.settings, id, surface?.formula));
+      change(store, freshShape(description(store), state.value.settings, id));
       // Another surface is framed, wherever the hand or a link has left the camera.
       viewer.linked = null;
       const { camera } = viewer;
@@ -82,18 +117,10 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
     },
     cancelLoading: () => scheduler.loader.cancel(),
     setFormula(text, { typing = false } = {}) {
-      const { surface, formula, bounds } = state.value;
-      if (text !== formula) {
-        // A model has no formula. A formula typed in its place starts from the default surface.
-        const fresh = fromPoints(store.description.value, surface);
-        // The values of the gallery's parameters belong to its formula; in another one the same names begin afresh.
-        const isOwn = surfaceOf(store.description.value, surface)?.formula === formula;
-        const own = isOwn ? { parameters: {} } : {};
-        // So does an enlarged box, which nobody set for another formula.
-        const next = { ...own, formula: text, bounds: bounds?.enlarged ? null : bounds };
-        const about = description(store);
-        change(store, fresh ? freshShape(about, state.value.settings, about.surfaces[0].id, text) : next);
-        framing.written({ typed: true, another: fresh || replaces(formula, text) });
+      if (text !== state.value.formula) {
+        const { shape, another } = typed(text);
+        change(store, shape);
+        framing.written({ typed: true, another });
       } else if (!store.typing.value) {
         if (!typing) scheduler.sampling.commit();
         return;

@@ -8,7 +8,7 @@
  * @module
  */
 import { fromBase64url, toBase64url } from './base64url.js';
-import { completeSettings, defaultState, sanitize, surfaceOf } from './state.js';
+import { completeSettings, defaultState, ownFormula, sanitize } from './state.js';
 
 /** @import { Description, State } from '../types.js' */
 
@@ -34,7 +34,7 @@ export function difference(state, description) {
   /** @type {Record<string, unknown>} */
   const out = {};
   if (state.surface !== home.surface) out.surface = state.surface;
-  if (state.formula !== (surfaceOf(description, state.surface)?.formula ?? '')) out.formula = state.formula;
+  if (state.formula !== ownFormula(description, state.surface)) out.formula = state.formula;
   if (Object.keys(state.parameters).length) out.parameters = state.parameters;
   if (state.declared.length) out.declared = state.declared;
   if (state.centres !== null) out.centres = state.centres;

@@ -4,7 +4,7 @@
  * @module
  */
 
-import { FILE_SURFACE, MOST_PARAMETERS, MOST_PULLS } from '../constants.js';
+import { FILE_SURFACE, MODEL, MOST_PARAMETERS, MOST_PULLS } from '../constants.js';
 import { LONGEST_PULL } from '../pulls.js';
 import { size, vec } from '../vector.js';
 import { finite, isRecord, vec3, within } from './valid.js';
@@ -45,6 +45,22 @@ export function defaultState(description) {
 export const surfaceOf = (description, id) => description?.surfaces.find((s) => s.id === id);
 
 /**
+ * The formula with which a surface begins: of one from points it is the model.
+ * @param {Description | null} description @param {string} id
+ */
+export const ownFormula = (description, id) =>
+  fromPoints(description, id) ? MODEL : (surfaceOf(description, id)?.formula ?? '');
+
+/**
+ * Whether a formula has the model as an operand: its name stands in it, outside of comments.
+ * @param {string} formula
+ */
+export function namesModel(formula) {
+  const code = formula.replace(/\/\*[\s\S]*?(\*\/|$)|(\/\/|#).*/g, ' ');
+  return code.match(/[\p{L}_][\p{L}\p{N}_]*/gu)?.includes(MODEL) ?? false;
+}
+
+/**
  * Returns every setting, with defaults for the missing ones.
  * @param {Description} description
  * @param {Settings} settings
@@ -73,10 +89,10 @@ export function lastingSettings({ settings: known }, settings) {
  * @param {Description | null} description
  * @param {Settings} settings  up to now
  * @param {string} surface
- * @param {string} [formula]
+ * @param {string} [formula]  its own one by default
  * @returns {Shape}
  */
-export function freshShape(description, settings, surface, formula = '') {
+export function freshShape(description, settings, surface, formula = ownFormula(description, surface)) {
   const { v: _, view: __, ...shape } = emptyState();
   return { ...shape, surface, formula, settings: description ? lastingSettings(description, settings) : settings };
 }
@@ -113,16 +129,18 @@ const boxOf = ({ min, max }) => ({ min, max });
  * @returns {FieldRequest}
  */
 export function fieldRequest(state, description, points) {
-  if (points !== undefined) {
-    const { surface, pulls, bounds } = state;
-    return { points, surface, ...(pulls.length ? { pulls } : {}), ...(bounds ? { bounds: boxOf(bounds) } : {}) };
-  }
-  const surface = surfaceOf(description, state.surface);
   /** @type {FieldRequest} */
-  const request = { surface: state.surface, parameters: { ...state.parameters } };
-  if (state.formula !== surface?.formula) request.formula = state.formula;
-  if (state.declared.length) request.declare = state.declared;
+  const request = { surface: state.surface };
   if (state.bounds) request.bounds = boxOf(state.bounds);
+  if (points !== undefined) {
+    request.points = points;
+    if (state.pulls.length) request.pulls = state.pulls;
+    // A model by itself needs no formula.
+    if (state.formula.trim() === MODEL) return request;
+  }
+  request.parameters = { ...state.parameters };
+  if (state.formula !== ownFormula(description, state.surface)) request.formula = state.formula;
+  if (state.declared.length) request.declare = state.declared;
   return request;
 }
 
@@ -238,15 +256,16 @@ export function sanitize(raw, description, hasFile = false) {
   const id = typeof raw.surface === 'string' ? raw.surface : '';
   const points = fromPoints(description, id);
   if (raw.surface !== undefined) {
-    const surface = surfaceOf(description, id);
-    if (surface || points) {
+    if (points || surfaceOf(description, id)) {
       state.surface = id;
-      state.formula = surface?.formula ?? '';
+      state.formula = ownFormula(description, id);
     } else reset.push('surface');
   }
   if (raw.formula !== undefined && !(points && raw.formula === '')) {
-    if (typeof raw.formula === 'string' && raw.formula.length <= description.limits.formula_bytes && !points)
-      state.formula = raw.formula;
+    const { formula } = raw;
+    const isText = typeof formula === 'string' && formula.length <= description.limits.formula_bytes;
+    // Without its name a formula is none of the model.
+    if (isText && (!points || namesModel(formula))) state.formula = formula;
     else reset.push('formula');
   }
   if (raw.parameters !== undefined) {
@@ -303,7 +322,8 @@ export function sanitize(raw, description, hasFile = false) {
 }
 
 /**
- * Applies a patch to a state. Another surface, or a formula that replaces a model, brings its own parameters and box.
+ * Applies a patch to a state. Another surface, or a formula in the place of a model that it does not name, brings its
+ * own parameters and box.
  * @param {State} now @param {Record<string, unknown>} patch @param {Description} description @param {boolean} hasFile
  * @returns {{state: State, reset: string[]}}
  */
@@ -311,7 +331,7 @@ export function mergeState(now, patch, description, hasFile) {
   const another =
     typeof patch.surface === 'string'
       ? patch.surface !== now.surface
-      : typeof patch.formula === 'string' && fromPoints(description, now.surface);
+      : typeof patch.formula === 'string' && fromPoints(description, now.surface) && !namesModel(patch.formula);
   const base = another
     ? { ...defaultState(description), view: now.view, settings: lastingSettings(description, now.settings) }
     : now;

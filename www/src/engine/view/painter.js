@@ -65,6 +65,8 @@ const INSIDE_FROM = /** @type {const} */ ([0.15, 0.45]);
 const TO_COME = 0.72;
 const TO_COME_BEHIND = 0.2;
 const LEAST_BED_PX = 0.8;
+/** Cosine of the viewing angle below which a bed is so small that it needs no more depth along the line of sight. */
+const LEAST_FACING = 0.5;
 /** SWELL_PX there. */
 const GAPS_PX = /** @type {const} */ ([0.8, 2.4]);
 
@@ -222,6 +224,13 @@ function paintLine({ out, depth, width, height }, { ends: [p, q], steps, value }
 export class Painter {
   #canvas;
 
+  /**
+   * Depths in radii by which beds lie farther behind than usual, by particle; none for particles that are small for
+   * how the surface bends.
+   * @type {Float32Array | null}
+   */
+  bedDepths;
+
   /** Numbers of discs, and of particles of the body. */
   #count;
   #body;
@@ -249,6 +258,7 @@ export class Painter {
     this.#canvas = canvas;
     this.context = context;
     this.#count = 0;
+    this.bedDepths = null;
     this.#body = 0;
     this.positions = new Float32Array(0);
     this.normals = new Float32Array(0);
@@ -541,7 +551,8 @@ export class Painter {
     const [least, full] = isOpen ? OPEN_OUTLINE_BED : OUTLINE_BED;
     const share = least + (BED_RADIUS - least) * Math.min(1, Math.abs(facing) / full);
     const isToCome = i >= this.#count || !this.#isShown(i);
-    const near = 1 / (at.w + (isToCome ? TO_COME_BEHIND : BED_BEHIND) * radius);
+    const deep = (this.bedDepths?.[i] ?? 0) / Math.max(LEAST_FACING, Math.abs(facing));
+    const near = 1 / (at.w + ((isToCome ? TO_COME_BEHIND : BED_BEHIND) + deep) * radius);
     const px = at.pxPerWorld * share * radius;
     if (isHidden(scene.target, at, px, near)) return;
     this.#light(facing, scene);

@@ -7,6 +7,7 @@ import { h, live } from '../../ui/dom.js';
 import { eyeOf } from '../answers.js';
 import { PAIRS } from '../judged.js';
 import { createMarkKey } from '../marks.js';
+import { isClosed } from '../measure.js';
 import { byNeighbours, byValue, Orbit, sideBySide } from '../picture.js';
 import { scoreAtEnd } from '../score.js';
 import { createScorecard } from '../scorecard.js';
@@ -33,12 +34,14 @@ export async function judge({ lab, stops }, which) {
   const box = h('div', { hidden: () => !purpose || !(isOpen() || stops.isOpen(eyeOf(stop))) }, scorecard.element);
   live(box, () => {
     const now = isOpen();
-    for (const [k, { end }] of runs.entries()) {
+    for (const [k, run] of runs.entries()) {
+      const { end } = run;
       captions[k].textContent = now ? names[k] : LETTERS[k];
       const score = scores.value[k];
       // One colour, which tells nothing of how they were made.
       const plain = byValue(end.radii, 0, 2 * end.radii[0]);
-      pictures[k].show({ particles: end, colours: now && score ? byNeighbours(score.valence) : plain });
+      const colours = now && score ? byNeighbours(score.valence) : plain;
+      pictures[k].show({ particles: end, isClosed: isClosed(run), colours });
     }
     if (purpose && scores.value.length > 0)
       scorecard.tell(now ? names : LETTERS, scores.value, { isMarked: now, keys: [purpose] });

@@ -1,7 +1,7 @@
 /** The front that grows ring by ring. */
 import { h, live } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
-import { RING, ringsOf } from '../measure.js';
+import { isClosed, RING, ringsOf } from '../measure.js';
 import { createChart, createPlay, createRangeRow } from '../parts.js';
 import { byLevel, Orbit, Picture } from '../picture.js';
 
@@ -35,7 +35,8 @@ function onLevels(all, isKept) {
 
 /** Creates the figure of the rings, with a bar for each once its prediction was made. @param {Context} context */
 export async function rings(context) {
-  const { placed } = await (await context.lab).run({}, { keep: true });
+  const run = await (await context.lab).run({}, { keep: true });
+  const { placed } = run;
   const orbit = new Orbit();
   orbit.fitTo(placed);
   orbit.faceFront(placed);
@@ -53,7 +54,7 @@ export async function rings(context) {
   function show(level) {
     const particles = onLevels(placed, (own) => own <= level);
     const body = onLevels(placed, (own) => own > level);
-    picture.show({ particles, body, colours: byLevel(particles, counts.length - 1) });
+    picture.show({ particles, body, isClosed: isClosed(run), colours: byLevel(particles, counts.length - 1) });
     if (isMounted) orbit.follow(placed, level);
   }
   let isMounted = false;

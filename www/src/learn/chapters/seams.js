@@ -5,7 +5,7 @@ import { fill, h, live } from '../../ui/dom.js';
 import { formatCount, formatSignificant, plural } from '../../ui/format.js';
 import { latest } from '../latest.js';
 import { createMarkKey } from '../marks.js';
-import { widestHole } from '../measure.js';
+import { isClosed, widestHole } from '../measure.js';
 import { createPlay, createRangeRow } from '../parts.js';
 import { byNeighbours, byValue, Orbit, Picture } from '../picture.js';
 import { pushesOn } from '../pushes.js';
@@ -154,7 +154,7 @@ export async function seams({ lab, stops }) {
     // Before the end of the front a press chooses one of the particles to come, where the surface
     // is still bare, too.
     const places = place < front ? placed : course.at(place);
-    picture.show({ particles, body: course.body, places, colours, marks });
+    picture.show({ particles, body: course.body, isClosed: isClosed(course.run), places, colours, marks });
     const hole = scores.value[step()]?.places.hole ?? (step() === 0 ? widest?.hole : null) ?? null;
     picture.ringed.value = place >= front && isFree() ? hole : null;
   });

@@ -6,6 +6,7 @@ import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } 
 import { defaultKeymap, history, historyKeymap } from '@codemirror/commands';
 import { EditorState, StateEffect, StateField } from '@codemirror/state';
 import { Decoration, EditorView, keymap, MatchDecorator, ViewPlugin, WidgetType } from '@codemirror/view';
+import { MODEL } from '../../engine/constants.js';
 import { h } from '../dom.js';
 
 /**
@@ -121,7 +122,7 @@ function completion(functions, names) {
               apply: signature.includes('(') ? `${name}(` : name,
             })),
             ...definedIn(context.state.doc.toString()),
-            ...names().map((name) => ({ label: name, detail: ' parameter' })),
+            ...names().map((name) => ({ label: name, detail: name === MODEL ? ' from points' : ' parameter' })),
           ],
         };
       },

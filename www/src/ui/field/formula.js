@@ -1,7 +1,8 @@
 /** The formula: its editor, the description of an error with possible repairs, and the formula as mathematics. */
 import { computed } from '@preact/signals-core';
+import { MODEL } from '../../engine/constants.js';
 import { button } from '../button.js';
-import { fill, h, live, marked, query, uniqueId } from '../dom.js';
+import { fill, h, live, marked, uniqueId } from '../dom.js';
 import { mathElement, mathLines } from '../mathml.js';
 import { describeFault } from './fault.js';
 import { openFunctions } from './functions.js';
@@ -26,7 +27,7 @@ export function createFormula(engine, description) {
   );
   const section = h(
     'div',
-    { class: 'section formula', hidden: () => Boolean(engine.field.value?.model) },
+    { class: 'section formula' },
     h('div', { class: 'section-head' }, h('h2', null, 'Formula'), help),
     input.holder,
     input.error,
@@ -34,8 +35,7 @@ export function createFormula(engine, description) {
   );
   document.querySelector('.skip')?.addEventListener('click', (event) => {
     event.preventDefault();
-    if (section.hidden) query(document, '.tile :checked').focus();
-    else input.editor.focus();
+    input.editor.focus();
   });
   return section;
 }
@@ -96,7 +96,9 @@ class FormulaInput {
   #finish = () => this.#engine.setFormula(this.editor.text());
 
   #names() {
-    return this.#engine.field.peek()?.parameters.map(({ name }) => name) ?? [];
+    const field = this.#engine.field.peek();
+    const names = field?.parameters.map(({ name }) => name) ?? [];
+    return field?.model ? [MODEL, ...names] : names;
   }
 
   /** Replaces the text area by the full editor, on the first focus. If it cannot load, the text area stays. */

@@ -1,5 +1,6 @@
 /**
- * Replaces the formula for a surface from points: its facts, how well it fits, and a button that returns to a formula.
+ * What stands below the formula for a surface from points: its facts, how well it fits, and a button that returns to
+ * the formula before it.
  */
 import { computed } from '@preact/signals-core';
 import { button, term } from '../button.js';
@@ -39,7 +40,8 @@ export function createModel(engine, description) {
   let left = null;
   live(section, () => {
     const { v: _, view: __, ...shape } = engine.state.value;
-    if (shape.formula !== '' && !engine.field.value?.model) left = shape;
+    const isFormula = description.surfaces.some(({ id }) => id === shape.surface);
+    if (isFormula && !engine.field.value?.model) left = shape;
   });
   function goBack() {
     if (left) engine.restore({ ...left, settings: engine.state.peek().settings });

@@ -1,6 +1,6 @@
 /** Creates a slider, a number box and a button that plays it for every parameter of the formula. */
 import { batch, computed } from '@preact/signals-core';
-import { canGrab } from '../../engine/pulls.js';
+import { canGrab, isBareModel } from '../../engine/pulls.js';
 import { button } from '../button.js';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
@@ -22,7 +22,7 @@ const pullsOf = (n) => (n === 0 ? 'The surface can be pulled by hand.' : `${plur
 
 /** @param {Engine} engine @param {{ motion: Motion, pins: Pins }} shared */
 export function createParameters(engine, { motion, pins }) {
-  const isModel = computed(() => Boolean(engine.field.value?.model));
+  const isModel = computed(() => isBareModel(engine.field.value));
   // The controls are rebuilt only when the set of parameters changes, not when their values do.
   const shape = computed(() =>
     JSON.stringify(
@@ -32,7 +32,10 @@ export function createParameters(engine, { motion, pins }) {
   const values = computed(() => engine.state.value.parameters);
   return h(
     'div',
-    { class: 'section parameters', hidden: () => !canGrab(engine.field.value) },
+    {
+      class: 'section parameters',
+      hidden: () => !canGrab(engine.field.value) && !engine.field.value?.parameters.length,
+    },
     h(
       'div',
       { class: 'section-head' },
@@ -54,7 +57,9 @@ function grabbing(engine, pins) {
   const press = () => {
     pins.value = isOn.peek() ? null : [];
   };
-  return explain(button({ class: 'plain small', 'aria-pressed': () => String(isOn.value), press }, 'Grab'), () => ({
+  const hidden = () => !canGrab(engine.field.value);
+  const grab = button({ class: 'plain small', hidden, 'aria-pressed': () => String(isOn.value), press }, 'Grab');
+  return explain(grab, () => ({
     text: `Drag the surface${engine.field.value?.model ? '' : ': the parameters follow'}. Or Shift-drag without this mode.`,
   }));
 }

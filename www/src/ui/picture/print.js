@@ -1,4 +1,5 @@
 /** Puts picture, formula and figures on a clean sheet, and prints it. */
+import { isBareModel } from '../../engine/pulls.js';
 import { h } from '../dom.js';
 import { formatSignificant } from '../format.js';
 import { captionOf } from './compose.js';
@@ -46,7 +47,7 @@ async function createSheet(engine) {
     { class: 'sheet' },
     h('h1', null, title),
     picture,
-    engine.field.peek()?.model ? null : (math ?? h('p', null, formula)),
+    isBareModel(engine.field.peek()) ? null : (math ?? h('p', null, formula)),
     parameters.length ? h('p', null, parameters.join(', ')) : null,
     copyOf('.figures'),
     credit && credit !== formula ? h('p', null, credit) : null,

@@ -2,6 +2,7 @@
 
 import { computed } from '@preact/signals-core';
 import { DISC_SIZE } from '../../engine/constants.js';
+import { isBareModel } from '../../engine/pulls.js';
 import { button } from '../button.js';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
@@ -99,7 +100,7 @@ function pointsToggle(engine) {
   const shown = computed(() => engine.state.value.view.points);
   const act = () => engine.setView({ points: !shown.peek() });
   return tool('points', 'Show points', 'The points that the surface is built from, as dots.', act, {
-    hidden: () => !engine.field.value?.model || engine.state.value.pulls.length > 0,
+    hidden: () => !isBareModel(engine.field.value) || engine.state.value.pulls.length > 0,
     'aria-pressed': () => String(shown.value),
   });
 }

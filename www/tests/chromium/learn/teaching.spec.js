@@ -144,6 +144,10 @@ test('the hand-out has blanks for the predictions, and every answer on its last 
   await expect(page.locator('.answers')).toBeHidden();
   await page.emulateMedia({ media: 'print' });
   await expect(page.locator('.answer-list > li')).toHaveCount(12);
+  // In the order of the article.
+  const questions = await page.locator('.predict-question').allTextContents();
+  const answered = await page.locator('.answer-question').allTextContents();
+  expect(answered).toEqual(questions.filter((question) => answered.includes(question)));
   await expect(page.locator('.answer-list')).toContainText('Ring 12 of this surface has');
   await expect(page.locator('.answer-list')).not.toContainText('has not been asked');
   for (const still of await page.locator('.what-if-stills img').all())
@@ -307,6 +311,7 @@ test('a lecturer drops thirty files and sees the answers beside what the run say
   const { clean } = await openLesson(page);
   await teachers(page, 'Assignment');
   await page.getByRole('dialog').getByRole('link', { name: 'Collect answers' }).click();
+  await expect(page.locator('.teachers')).not.toHaveAttribute('open');
   const box = page.getByLabel(/Drop the JSON files/);
   const damaged = { name: 'notes.json', mimeType: 'application/json', buffer: Buffer.from('{"answers": 3}') };
   await box.setInputFiles([...classOf(30), damaged]);

@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { afresh, open, report, scan, settled, state } from './helpers.js';
+import { afresh, open, report, scan, settled, state, typeFormula } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -177,7 +177,7 @@ test('a model is sampled, tells of its points, and one press leads back to the f
     for (const word of ['Normals', 'Condition number', 'Mean distance', '95 % are nearer', 'Largest distance'])
       await expect(facts).toContainText(word);
     await expect(page.locator('.model')).toContainText(`f interpolates all ${model.points} points`);
-    await expect(page.getByRole('textbox', { name: 'Formula' })).toBeHidden();
+    await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveValue('model');
     await expect(points).toHaveAttribute('aria-pressed', 'true');
     await points.click();
     expect((await state(page)).view.points).toBe(false);
@@ -191,6 +191,85 @@ test('a model is sampled, tells of its points, and one press leads back to the f
   await page.getByRole('button', { name: 'Undo', exact: true }).click();
   await expect(page.locator('.story')).toContainText(model.name);
   await settled(page);
+  await clean();
+});
+
+test('a formula cuts a model and keeps it as long as it names it', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  const heading = page.getByRole('heading', { name: 'ball.ply' });
+  const fault = page.locator('#formula-fault');
+  const grab = page.getByRole('button', { name: 'Grab', exact: true });
+  await dropped(page, { name: 'ball.ply', text: spherePly(300) });
+  await expect(heading).toBeVisible();
+  await settled(page);
+  await expect(grab).toBeVisible();
+
+  await test.step('the name of the model is in the field, and a part of the ball is cut off by a plane with a slider', async () => {
+    await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveValue('model');
+    await typeFormula(page, 'max(model, z - h)');
+    await page.keyboard.press('Enter');
+    await page.locator('.row[data-parameter="h"]').getByRole('spinbutton').fill('0');
+    await page.keyboard.press('Enter');
+    await settled(page);
+    expect((await report(page)).quality.area / (3 * Math.PI)).toBeCloseTo(1, 1);
+    await expect(heading).toBeVisible();
+    await expect(page.locator('.preview math')).toContainText('model');
+    await expect(grab).toBeHidden();
+    expect((await scan(page)).violations).toEqual([]);
+  });
+
+  await test.step('a mistake is marked with what to write, and the surface before it stays', async () => {
+    const { digest } = await report(page);
+    await typeFormula(page, '2model');
+    await expect(fault).toContainText('max(model, z)');
+    await expect(page.locator('.code-host .cm-fault')).toBeVisible();
+    await settled(page);
+    expect((await report(page)).digest).toBe(digest);
+    await expect(heading).toBeVisible();
+  });
+
+  await test.step('typed letter by letter it is the model again', async () => {
+    await page.keyboard.press('ControlOrMeta+a');
+    await page.keyboard.type('abs(model) - 0.1', { delay: 5 });
+    await settled(page);
+    expect(await state(page)).toMatchObject({ surface: 'file', formula: 'abs(model) - 0.1' });
+    await expect(fault).toBeEmpty();
+    // Two spheres.
+    expect((await report(page)).components).toBe(2);
+  });
+
+  await test.step('a formula without the name leaves the model, and undo brings both back', async () => {
+    await page.waitForTimeout(900);
+    await typeFormula(page, 'x^2 + y^2 + z^2 = 1');
+    await settled(page);
+    await expect(heading).toBeHidden();
+    const undo = page.getByRole('button', { name: 'Undo', exact: true });
+    // The camera has turned to the sphere, which is a step of its own.
+    for (let k = 0; k < 3 && (await state(page)).surface !== 'file'; k += 1) {
+      await undo.click();
+      await settled(page);
+    }
+    await expect(heading).toBeVisible();
+    expect(await state(page)).toMatchObject({ surface: 'file', formula: 'abs(model) - 0.1' });
+  });
+
+  await clean();
+});
+
+test('a link holds the formula of a model of the gallery', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  await page.getByRole('button', { name: 'Points', exact: true }).click();
+  await page.locator('.tile[data-surface="bunny"]').click();
+  await settled(page);
+  await typeFormula(page, 'max(model, x - 0.1)');
+  await settled(page);
+  const { digest } = await report(page);
+  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.link());
+  await afresh(page, { width: 1440, height: 900 });
+  expect((await state(page)).surface).toBe('ellipsoid');
+  await afresh(page, { width: 1440, height: 900, hash: new URL(link).hash });
+  expect(await state(page)).toMatchObject({ surface: 'bunny', formula: 'max(model, x - 0.1)' });
+  expect((await report(page)).digest).toBe(digest);
   await clean();
 });
 

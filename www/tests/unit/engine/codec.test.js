@@ -1,7 +1,14 @@
 import { describe, expect, test } from 'vitest';
-import { FILE_SURFACE } from '../../../src/engine/constants.js';
+import { FILE_SURFACE, MODEL } from '../../../src/engine/constants.js';
 import { decode, encode, LONGEST_FRAGMENT } from '../../../src/engine/share/codec.js';
-import { clampSettings, defaultState, fieldRequest, sanitize } from '../../../src/engine/share/state.js';
+import {
+  clampSettings,
+  defaultState,
+  fieldRequest,
+  mergeState,
+  namesModel,
+  sanitize,
+} from '../../../src/engine/share/state.js';
 import { description } from './description.js';
 
 /** @import { State } from '../../../src/engine/types.js' */
@@ -60,7 +67,7 @@ describe('a link', () => {
   });
 
   test('holds how many points of a model are fitted, as many as there can be', async () => {
-    const bunny = { ...defaultState(description), surface: 'bunny', formula: '' };
+    const bunny = { ...defaultState(description), surface: 'bunny', formula: MODEL };
     const back = async (/** @type {State} */ state) =>
       (await decode(await encode(state, description), description)).state;
     expect((await back({ ...bunny, centres: 120 })).centres).toBe(120);
@@ -80,7 +87,7 @@ describe('a link', () => {
 
   test('holds the pulls on a model, and none that would tear it', async () => {
     const pull = { at: [0.1, 0.2, 0.3], by: [0, 0.25, 0], reach: 0.5 };
-    const bunny = { ...defaultState(description), surface: 'bunny', formula: '', pulls: [pull, pull] };
+    const bunny = { ...defaultState(description), surface: 'bunny', formula: MODEL, pulls: [pull, pull] };
     const { state, reset } = await decode(await encode(/** @type {State} */ (bunny), description), description);
     expect([state, reset]).toEqual([bunny, []]);
     const of = (/** @type {object} */ raw) => {
@@ -158,7 +165,7 @@ describe('a link', () => {
 });
 
 describe('a surface made of points', () => {
-  const bunny = { ...defaultState(description), surface: 'bunny', formula: '', settings: { radius_share: 0.02 } };
+  const bunny = { ...defaultState(description), surface: 'bunny', formula: MODEL, settings: { radius_share: 0.02 } };
 
   test('goes through a link by its name', async () => {
     const link = await encode(bunny, description);
@@ -167,11 +174,40 @@ describe('a surface made of points', () => {
     expect((await decode(await encode(clipped, description), description)).state).toEqual(clipped);
   });
 
-  test('takes no formula', () => {
+  test('takes a formula that names the model, and no other', async () => {
     expect(sanitize({ surface: 'bunny', formula: 'x' }, description)).toMatchObject({
-      state: { surface: 'bunny', formula: '' },
+      state: { surface: 'bunny', formula: MODEL },
       reset: ['formula'],
     });
+    // As older links have it.
+    expect(sanitize({ ...bunny, formula: '' }, description)).toEqual({ state: bunny, reset: [] });
+    const cut = { ...bunny, formula: 'max(model, z - h)', parameters: { h: 0.2 } };
+    expect(sanitize(cut, description)).toEqual({ state: cut, reset: [] });
+    expect((await decode(await encode(cut, description), description)).state).toEqual(cut);
+  });
+
+  test('keeps its box while a formula names it, and gives way to one that does not', () => {
+    const boxed = { ...bunny, bounds: elaborate().bounds };
+    const { state } = mergeState(boxed, { formula: 'abs(model) - 0.1' }, description, false);
+    expect(state).toEqual({ ...boxed, formula: 'abs(model) - 0.1' });
+    expect(mergeState(boxed, { formula: 'x' }, description, false).state).toMatchObject({
+      surface: 'ellipsoid',
+      formula: 'x',
+      bounds: null,
+    });
+  });
+
+  test.each([
+    ['max(model, z)', true],
+    ['2model', true],
+    ['-model // hollow', true],
+    ['z // max(model, z)', false],
+    ['z /* model */ # model', false],
+    ['max(models, my_model, model2)', false],
+    ['max(mode', false],
+    ['', false],
+  ])('%s names the model: %s', (formula, isNamed) => {
+    expect(namesModel(formula)).toBe(isNamed);
   });
 
   test('from a file is not in the link: the standard surface comes in its place, with settings and colour', async () => {
@@ -193,6 +229,13 @@ describe('a surface made of points', () => {
 
   test('is asked of the core by the name of its solved model', () => {
     expect(fieldRequest(bunny, description, 'bunny')).toEqual({ points: 'bunny', surface: 'bunny' });
+    expect(fieldRequest({ ...bunny, formula: ' model\n' }, description, 'bunny')).toEqual({
+      points: 'bunny',
+      surface: 'bunny',
+    });
+    expect(
+      fieldRequest({ ...bunny, formula: 'max(model, z - h)', parameters: { h: 0.2 } }, description, 'bunny'),
+    ).toEqual({ points: 'bunny', surface: 'bunny', formula: 'max(model, z - h)', parameters: { h: 0.2 } });
     expect(
       fieldRequest({ ...bunny, surface: FILE_SURFACE, bounds: elaborate().bounds }, description, 'file 3'),
     ).toEqual({ points: 'file 3', surface: 'file', bounds: elaborate().bounds });

@@ -1,6 +1,6 @@
 import { afterEach, describe, expect, test, vi } from 'vitest';
 import { LOADING_MS, SILENCE_MS } from '../../../src/engine/bundle/load.js';
-import { FILE_SURFACE } from '../../../src/engine/constants.js';
+import { FILE_SURFACE, MODEL } from '../../../src/engine/constants.js';
 import { PointsClient } from '../../../src/engine/points/client.js';
 import { ModelLoader } from '../../../src/engine/points/loader.js';
 import { solve } from '../../../src/engine/points/solve.js';
@@ -211,7 +211,7 @@ describe('a wish for a model', () => {
     });
     const loader = new ModelLoader({ store, spawn, sample });
     const wish = (/** @type {string} */ surface) => {
-      store.state.value = { ...store.state.value, surface, formula: '' };
+      store.state.value = { ...store.state.value, surface, formula: MODEL };
       return loader.load('grow');
     };
     return { workers, store, loader, sample, wish };
@@ -233,7 +233,7 @@ describe('a wish for a model', () => {
     expect(store.loading.value).toBe(null);
     expect(sample).toHaveBeenCalledTimes(1);
     store.state.value = defaultState(description);
-    store.state.value = { ...store.state.value, surface: 'bunny', formula: '' };
+    store.state.value = { ...store.state.value, surface: 'bunny', formula: MODEL };
     expect(loader.ready()).toBe(true);
   });
 
@@ -320,7 +320,7 @@ describe('a wish for a model', () => {
     expect(store.loading.value).toMatchObject({ id: FILE_SURFACE, name: 'cat.ply' });
     workers[0].say({ type: 'solved', solved: solved() });
     await opening;
-    expect(store.state.value).toMatchObject({ surface: FILE_SURFACE, formula: '', bounds: null });
+    expect(store.state.value).toMatchObject({ surface: FILE_SURFACE, formula: MODEL, bounds: null });
     expect(loader.hasFile).toBe(true);
     expect(sample).toHaveBeenCalledTimes(1);
     const first = loader.key();

@@ -50,6 +50,18 @@ describe('the history', () => {
     expect(history.entries.map(({ formula }) => formula)).toEqual(['x', 'x+y']);
   });
 
+  it('takes a formula that is typed in the place of a model for one change, whatever surface its letters bring', () => {
+    const history = new History();
+    const typed = (/** @type {string} */ surface, /** @type {string} */ formula, /** @type {number} */ nowMs) =>
+      history.record(shape({ surface, formula }), nowMs, { isWritten: true, faulty: formula !== 'max(model, z)' });
+    history.record(shape({ surface: 'bunny', formula: 'model' }), 0);
+    for (const [k, text] of ['m', 'max(', 'max(mod'].entries()) typed('sphere', text, 1000 + 100 * k);
+    typed('bunny', 'max(model, z)', 1400);
+    expect(history.entries.map(({ formula }) => formula)).toEqual(['model', 'max(model, z)']);
+    history.record(shape({ surface: 'torus', formula: 'y' }), 1500);
+    expect(history.entries.length).toBe(3);
+  });
+
   it('takes a look around for one change, to fit the surface again for another, and what the camera does by itself for none', () => {
     const history = new History();
     const { camera } = shape();

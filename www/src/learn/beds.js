@@ -1,0 +1,47 @@
+/** How deep the body has to lie under the discs of a picture, so that it cuts through none of them. */
+import { createGrid } from '../ui/neighbours.js';
+
+/** @import { LessonParticles } from '../engine/types.js' */
+/** @typedef {Pick<LessonParticles, 'positions' | 'normals' | 'radii'>} Bedded */
+
+/** Radius of a bed in radii of its particle, as the painter draws it. */
+const BED_RADIUS = 1.75;
+/** Number of particles above which a picture shows them so small that the usual depth is enough. */
+const MOST = 5000;
+
+/**
+ * Of the way from the plane of a bed to a disc beside it, the most by which the two are apart where both are: the disc
+ * is tilted, too.
+ */
+const TILT = 0.75;
+
+/**
+ * Depths in radii, for the bed of every particle and then of every one of `body`, by which it cuts through no disc that
+ * it reaches; both sides may be seen. Where a part of the particles has discs, their beds lie under those of the rest,
+ * so that the front ends at its discs. Null for so many particles that they need none.
+ * @param {Bedded} particles @param {number} shown  number of those that have discs @param {Bedded | null} [body]
+ */
+export function bedDepths(particles, shown, body = null) {
+  const own = particles.radii.length;
+  if (own + (body?.radii.length ?? 0) > MOST || shown === 0) return null;
+  const parts = body ? [particles, body] : [particles];
+  const p = Float32Array.from(parts.flatMap(({ positions }) => [...positions]));
+  const n = Float32Array.from(parts.flatMap(({ normals }) => [...normals]));
+  const radii = Float32Array.from(parts.flatMap((part) => [...part.radii]));
+  const widest = radii.reduce((most, radius) => Math.max(most, radius), 0);
+  const discs = Array.from({ length: Math.min(shown, own) }, (_, j) => j);
+  // A bed reaches the discs of the cells beside its own.
+  const grid = createGrid(p, discs, (BED_RADIUS + 1) * widest);
+  return radii.map((radius, i) => {
+    let most = 0;
+    for (const ring of [0, 1]) {
+      for (const j of grid.around(i, ring)) {
+        const [dx, dy, dz] = [0, 1, 2].map((k) => p[3 * j + k] - p[3 * i + k]);
+        if (Math.hypot(dx, dy, dz) > BED_RADIUS * radius + radii[j]) continue;
+        most = Math.max(most, Math.abs(dx * n[3 * i] + dy * n[3 * i + 1] + dz * n[3 * i + 2]) / radius);
+      }
+    }
+    const isUnderOthers = i < shown && shown < radii.length;
+    return (isUnderOthers ? 2 : 1) * TILT * most;
+  });
+}
