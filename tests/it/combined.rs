@@ -1,7 +1,10 @@
 //! Fields put together of any two.
 
 use glam::{DVec3, Vec3, dvec2, dvec3};
+use marching_particles::field::model::ModelInfo;
+use marching_particles::field::rbf::RbfData;
 use marching_particles::field::{Field, Frame};
+use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{
     Bounds, Combined, FnField, Formula, Sample, Settings, difference, intersection, offset, sample,
     smooth_union, union,
@@ -194,4 +197,42 @@ mod with_a_model {
             assert_eq!(within(text, &bunny).err(), Some(FormulaErrorKind::ModelUse), "{text}");
         }
     }
+}
+
+#[test]
+fn a_formula_with_a_model_is_described_and_its_creases_are_found_in_slices() {
+    let data = RbfData {
+        centres: vec![[0.0; 3], [0.0, 0.0, 1000.0]],
+        alpha: vec![1.0, -1e-9],
+        beta: vec![[0.0; 3]; 2],
+    };
+    let info = ModelInfo { name: "ball".into(), points: 2, centres: 2, ..ModelInfo::default() };
+    let with = |text: &str| FieldRequest {
+        formula: Some(text.into()),
+        parameters: [("h".to_owned(), 0.25)].into(),
+        ..FieldRequest::default()
+    };
+    let mut session = Session::new();
+    let set = |session: &mut Session, text: &str| {
+        session.set_points(data.clone(), info.clone(), Bounds::cube(1.5), &with(text))
+    };
+    let answer = set(&mut session, "max(model, z - h)").expect("a field");
+    assert_eq!((answer.model.as_ref(), answer.formula.as_str()), (Some(&info), "max(model, z - h)"));
+    assert_eq!((answer.parameters.len(), answer.parameters[0].value), (1, 0.25));
+    assert_eq!(answer.auto, ["h"]);
+    assert!(answer.mathml.is_some());
+
+    let settings = settings!(radius_share: 0.02; ..Settings::default());
+    let mut slices = 0;
+    while session.fit(&|_| settings, false, 1).is_none() {
+        slices += 1;
+    }
+    assert!(slices > 1000, "{slices}");
+    session.start(&settings).expect("valid settings");
+    while session.run.step(1000).stop_reason.is_none() {}
+    assert_eq!(session.report().proof.creases, Some(1));
+
+    let fault = set(&mut session, "2model").expect_err("no operand");
+    assert!(fault.message.contains("`max(model, z)`"), "{}", fault.message);
+    assert_eq!(session.answer(), answer);
 }
