@@ -289,8 +289,8 @@ impl Session {
         Some((bounds, Some(found.reach)))
     }
 
-    /// Finds the creases of the surface in the box of the next run: of a formula, also of one with a
-    /// model as an operand.
+    /// Finds the creases of the surface in the box of the next run: of a formula, also of one with
+    /// a model as an operand.
     fn fit_creases(&mut self, budget: u32) -> Option<()> {
         if self.run.field().creased().is_some() && !self.run.knows_creases() {
             let bounds = self.run.bounds();

@@ -1,9 +1,9 @@
 //! Floors and folded angles as choices.
 //!
 //! In a box ⌊u⌋ takes few whole numbers. It is then a chain of choices between them, by whether u
-//! has come to the next one. asin(sin u) and acos(cos u) are folds of a line: up to a multiple of 2π
-//! they are u or −u, between whole multiples of π or beside them. So the search for creases finds
-//! the edges of stairs, triangle waves and repeated cells as it finds those of a minimum.
+//! has come to the next one. asin(sin u) and acos(cos u) are folds of a line: u or −u, moved by a
+//! multiple of π, from one fold to the next. So the search for creases finds the edges of roofs,
+//! triangle waves and repeated cells as it finds those of a minimum.
 
 use super::compiled::Compiled;
 use super::graph::{Graph, Id, Node};
