@@ -297,9 +297,9 @@ impl<F: Field> Run<F> {
         Ok(self.begin(settings)?)
     }
 
-    /// Says what the caller is going to do once the run has ended, measure and [join](Run::join) the
-    /// particles, so that [`Progress::fraction`], [`Run::fraction`] and [`Reporting::fraction`] are
-    /// shares of all of it. Without a plan they are shares of the run alone.
+    /// Says what the caller is going to do once the run has ended, measure and [join](Run::join)
+    /// the particles, so that [`Progress::fraction`], [`Run::fraction`] and [`Reporting::fraction`]
+    /// are shares of all of it. Without a plan they are shares of the run alone.
     pub fn plan(&mut self, measured: Measured, is_joined: bool) {
         self.plan = Plan { measured, is_joined };
     }
