@@ -65,7 +65,7 @@ for (const { name, field, settings, files } of meshed) {
   accepted(core.set_field(field), `${name}: set_field`);
   accepted(core.start(settings), `${name}: start`);
   while (core.step(BUDGET).stop_reason === null);
-  while (core.measure(BUDGET) === undefined);
+  while (core.measure('front_too', BUDGET) === undefined);
   while (core.join(BUDGET) === undefined);
   for (const [extension, expected] of Object.entries(files)) {
     const request = { format: extension, plain: true };
