@@ -57,6 +57,8 @@ test('particles follow the slider, by keyboard and by mouse, back on what was ke
   await expect.poll(six).toBeGreaterThan(80);
   await figure.getByRole('button', { name: 'Replay' }).click();
   await expect(slider).toHaveValue('61');
+  // A table is pale until it is that of this place.
+  await expect(figure.locator('[aria-busy="true"]')).toHaveCount(0, { timeout: 40_000 });
   expect((await axe(page)).violations.map(({ id }) => id)).toEqual([]);
   clean();
 });
