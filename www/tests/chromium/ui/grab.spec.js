@@ -123,6 +123,7 @@ test('the surface is pulled, and the parameters follow', async ({ page }) => {
 });
 
 test('a model is pulled around a place, and what is pinned stays', async ({ page }) => {
+  test.setTimeout(120_000);
   const { clean } = await open(page);
   await page.evaluate(async () => {
     const bunny = { surface: 'bunny', settings: { size_mode: 'count', count: 1500 } };
