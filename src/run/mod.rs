@@ -160,7 +160,7 @@ pub struct Run<F> {
     /// The report on the start.
     start: Start,
     last: Option<Progress>,
-    /// What the caller is going to do with the particles.
+    /// The plan that fractions are shares of.
     plan: Plan,
     measuring: Measuring,
     meshing: Meshing,
@@ -312,7 +312,7 @@ impl<F: Field> Run<F> {
         run + shares.measuring * self.measuring.fraction() + shares.mesh * self.meshing.fraction()
     }
 
-    /// The shares of the call.
+    /// The shares of a call by the plan.
     fn shares(&self) -> Shares {
         self.plan.shares(self.sampler.settings().method)
     }

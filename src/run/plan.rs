@@ -19,7 +19,8 @@ fn mesh_cost(method: Method) -> f64 {
     }
 }
 
-/// What will be done with the particles of a run.
+/// A plan says whether the particles will be measured, and whether they will be joined, once the
+/// run has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Plan {
     pub(super) measured: Measured,
@@ -32,7 +33,7 @@ impl Default for Plan {
     }
 }
 
-/// Estimated shares that parts have of the time of a call. Together they are 1.
+/// Shares of a call: the estimated time of each part over that of all. Their sum is 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shares {
     pub(super) run: f64,

@@ -204,9 +204,9 @@ pub(super) fn creases_of(Particles { twins, segments, sides, .. }: &Particles) -
 /// up.
 pub struct Reporting<'a> {
     work: Estimated<'a, Report>,
-    /// The share of the call that was done before.
+    /// Share of the call that was done before the measurement.
     before: f64,
-    /// The share of the call that this is.
+    /// Share of the call that the measurement is.
     share: f64,
 }
 
@@ -229,11 +229,21 @@ impl Reporting<'_> {
 }
 
 impl<F: Field> Run<F> {
-    /// The input of a measurement of the particles and, `with_front`, of those of the front, unless
-    /// they have been measured.
-    fn measuring_input(&self, with_front: bool) -> MeasuringInput {
+    /// The particles of the front that are to be measured, if they are wanted.
+    fn wanted_front(&self, measured: Measured) -> Option<Arc<Particles>> {
+        self.measuring.open_front().filter(|_| measured == Measured::FrontToo)
+    }
+
+    /// Whether something that is wanted has not been measured since the particles changed.
+    fn is_due(&self, measured: Measured) -> bool {
+        measured != Measured::Nothing
+            && (self.measuring.facing.is_none() || self.wanted_front(measured).is_some())
+    }
+
+    /// The input of a measurement of the particles and of those of the front that are wanted.
+    fn measuring_input(&self, measured: Measured) -> MeasuringInput {
         MeasuringInput {
-            front: self.measuring.open_front().filter(|_| with_front),
+            front: self.wanted_front(measured),
             now: measured_columns(self.particles()),
             bounds: self.local_bounds(),
             sampling: self.sampler.settings().sampling,
@@ -253,13 +263,11 @@ impl<F: Field> Run<F> {
 
     /// [`Run::report_with`] in slices, with [`Reporting::step`].
     pub fn measure(&mut self, measured: Measured) -> Reporting<'_> {
-        let with_front = measured == Measured::FrontToo;
-        let front = self.measuring.open_front().filter(|_| with_front);
-        let is_due = measured != Measured::Nothing && (self.measuring.facing.is_none() || front.is_some());
+        let is_due = self.is_due(measured);
         let (mut expected, mut share) = (0, 0.0);
         if is_due {
             self.measuring.stop();
-            expected = expected_slices(front.as_ref(), self.particles());
+            expected = expected_slices(self.wanted_front(measured).as_ref(), self.particles());
             share = self.shares().measuring;
         }
         let before = self.fraction();
@@ -267,7 +275,7 @@ impl<F: Field> Run<F> {
             if measured == Measured::Nothing {
                 self.measuring = Measuring::default();
             } else if is_due {
-                let input = self.measuring_input(with_front);
+                let input = self.measuring_input(measured);
                 let result = input.in_slices(self.field.function(), self.sampler.frame()).await;
                 self.keep(result);
             }
@@ -283,14 +291,14 @@ impl<F: Field> Run<F> {
     where
         F: Clone + 'static,
     {
-        if self.measuring.facing.is_none() {
+        if self.is_due(measured) {
             let begun = self.measuring.work.take();
             let work = begun.unwrap_or_else(|| {
                 let field: Arc<dyn Field> = match &self.field.creased {
                     Some(creased) => Arc::<dyn Creased>::clone(creased),
                     None => Arc::new(self.field.given.clone()),
                 };
-                self.measuring_input(measured == Measured::FrontToo).work(field, self.sampler.frame())
+                self.measuring_input(measured).work(field, self.sampler.frame())
             });
             let measured = self.measuring.work.insert(work).advance(budget)?;
             self.measuring.work = None;

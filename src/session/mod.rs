@@ -531,14 +531,24 @@ impl Session {
         self.completed(report)
     }
 
-    /// [`Run::finish_with`], with the report of the session.
+    /// [`Run::finish_with`], with the report of the session. `tell` is called now and then with the
+    /// [share of the work](crate::Reporting::fraction) that is done.
     ///
     /// # Errors
     ///
     /// The error of [`Run::finish`].
-    pub fn finish(mut self, measured: Measured) -> Result<Sample, Error> {
+    pub fn finish(mut self, measured: Measured, mut tell: impl FnMut(f64)) -> Result<Sample, Error> {
+        /// Slices between two calls, some 6 ms.
+        const SLICES: u32 = 256;
         self.run.check_not_empty()?;
-        let report = self.run.report_with(measured);
+        let mut reporting = self.run.measure(measured);
+        let report = loop {
+            match reporting.step(SLICES) {
+                Some(report) => break report,
+                None => tell(reporting.fraction()),
+            }
+        };
+        drop(reporting);
         let report = self.completed(report);
         Ok(Sample::new(self.run, report))
     }

@@ -138,7 +138,9 @@ class Sample {
   #how;
 
   /**
-   * @param {Client} client @param {{id: number, value: Made}} answer @param {ReturnType<typeof checked>} how
+   * @param {Client} client
+   * @param {{id: number, value: Made}} answer
+   * @param {ReturnType<typeof checked>} how
    */
   constructor(client, { id, value }, how) {
     this.#client = client;

@@ -132,8 +132,9 @@ export class MarchingParticles extends Base {
   }
 
   /**
-   * Names the picture for those who do not see it, where the page does not, and lets keys reach it where it has
-   * `controls`. It is an image only without them: what is in an image cannot have the focus.
+   * Names the picture for those who do not see it, where the page does not, and lets keys reach it
+   * where it has `controls`. It is an image only without them: what is in an image cannot have the
+   * focus.
    */
   #describe() {
     const text = this.getAttribute('formula') ?? this.getAttribute('surface');
@@ -149,7 +150,11 @@ export class MarchingParticles extends Base {
     this.#host.ariaLabel = text ? `${text}. ${KEYS}` : KEYS;
   }
 
-  /** Sets an attribute that the page has left to the element. @param {string} name @param {string} value */
+  /**
+   * Sets an attribute that the page has left to the element.
+   * @param {string} name
+   * @param {string} value
+   */
   #give(name, value) {
     const present = this.getAttribute(name);
     if (present !== null && present !== this.#given[name]) return;

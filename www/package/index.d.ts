@@ -6,7 +6,9 @@ export interface Bounds {
   max: [number, number, number];
 }
 export interface Progress {
-  /** `seeding`, `generation`, `search`, `relaxation`, `refinement`, and `measuring` for the report */
+  /**
+   * `seeding`, `generation`, `search`, `relaxation`, `refinement`, and `measuring` for the report
+   */
   phase: string;
   particles: number;
   /** share of the work that is done, that of the report included */

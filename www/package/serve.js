@@ -78,7 +78,8 @@ export function serve({ post, load }) {
   }
 
   /**
-   * Does a work of a core in slices, and returns what it leads to. `tell` gives what the program is told between slices.
+   * Does work of a core in slices, and returns its result. `tell` makes what the program is told
+   * between slices.
    * @template T
    * @param {{id: number, core: Core}} of @param {(budget: number) => T | undefined} slice
    * @param {() => Progress} [tell]
@@ -102,7 +103,10 @@ export function serve({ post, load }) {
     }
   }
 
-  /** Steps a run to its end, and returns its number of particles. @param {{id: number, core: Core}} of */
+  /**
+   * Steps a run to its end, and returns its number of particles.
+   * @param {{id: number, core: Core}} of
+   */
   async function run(of) {
     const { core } = of;
     /** @type {CoreProgress} */

@@ -29,7 +29,7 @@ use std::time::{Duration, Instant};
 /// Units of work between two readings of the clock. They take about 0.1 ms, which is the accuracy
 /// of the phases' times.
 const BUDGET: u32 = 256;
-/// Slices of measuring and of joining between two updates of the progress bar: some 6 ms.
+/// Slices of joining between two updates of the progress bar: some 6 ms.
 const SLICES: u32 = 256;
 
 /// The record of what a file was made from: in it, or in the file beside it.
@@ -109,23 +109,16 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
             }
         });
     }
-    if session.run.count() > 0 {
-        bar.set_message("measuring");
-        timed(&mut seconds.quality, || {
-            let mut reporting = session.run.measure(measured);
-            while reporting.step(SLICES).is_none() {
-                set_fraction(&bar, reporting.fraction());
-            }
-        });
-    }
-    bar.finish_and_clear();
     let mut made = session.record(None).expect("a run that has started has a record");
     // The steps that were asked for, though an even surface takes fewer.
     made.settings.relax_steps = settings.relax_steps;
     if model.is_some() {
         made.surface.clone_from(&arguments.surface.surface);
     }
-    let sample = timed(&mut seconds.quality, || session.finish(measured));
+    bar.set_message("measuring");
+    let sample =
+        timed(&mut seconds.quality, || session.finish(measured, |fraction| set_fraction(&bar, fraction)));
+    bar.finish_and_clear();
     let sample = sample.map_err(|error| match error {
         Error::Nothing { reason: StopReason::NoSurface, .. } if reach == Some(Reach::Nowhere) => {
             Failure::Nothing("there is no surface within ±10,000".to_owned())

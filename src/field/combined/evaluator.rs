@@ -19,7 +19,7 @@ pub(super) struct CombinationEvaluator<'a> {
     values: Vec<f32>,
     gradients: Vec<Vec3>,
     hessians: Vec<Sym3<f32>>,
-    /// The same in double precision.
+    /// Values and gradients of the parts at the points of a batch, in double precision.
     exact: (Vec<f64>, Vec<DVec3>),
 }
 

@@ -2,7 +2,9 @@
 
 /** Value of `State.surface` for a surface from a file. */
 export const FILE_SURFACE = 'file';
-/** The name by which a formula uses the model from points that is shown; by itself it is that model. */
+/**
+ * The name by which a formula uses the model from points that is shown; by itself it is that model.
+ */
 export const MODEL = 'model';
 /** Disc radius as a share of the repulsion radius. */
 export const DISC_SIZE = { initial: 0.92, min: 0.2, max: 1.5, step: 0.01 };

@@ -35,12 +35,15 @@ export function pullBetween(at, to, { reach, held }) {
   return { at: vec((k) => short(at[k])), by, reach: short(Math.min(widest, room - gone)) };
 }
 
-/** Whether a field is a model by itself, without a formula that cuts or joins it. @param {FieldOk | null} field */
+/**
+ * Whether a field is a model by itself, without a formula that cuts or joins it.
+ * @param {FieldOk | null} field
+ */
 export const isBareModel = (field) => Boolean(field?.model) && field?.formula === '';
 
 /**
- * Whether a surface can be grabbed: the surface of a formula by its parameters, a model by pulls. What a formula makes
- * of a model has places that are not the model's.
+ * Whether a surface can be grabbed: the surface of a formula by its parameters, a model by pulls.
+ * What a formula makes of a model has places that are not the model's.
  * @param {FieldOk | null} field
  */
 export const canGrab = (field) => (field?.model ? isBareModel(field) : Boolean(field?.parameters.length));

@@ -95,13 +95,16 @@ export interface ColumnRange {
   progress?: CoreProgress | null;
 }
 
-/** `points` names a solved model; with it the clip box, the pulls and a formula that names the model count. */
+/**
+ * `points` names a solved model; with it the clip box, the pulls and a formula that names the model
+ * count.
+ */
 export type FieldRequest = Partial<import('./core-types.js').FieldRequest> & { points?: string };
 /** By the settings' names; a missing one has its default. */
 export type Settings = Record<string, number | string>;
 /**
- * The progress of a run as the worker tells it. `phase` has two more values than in the core: in `mesh` the particles
- * are joined, in `quality` they are measured.
+ * The progress of a run as the worker tells it. `phase` has two more values than in the core: in
+ * `mesh` the particles are joined, in `quality` they are measured.
  */
 export type ToldProgress = Omit<CoreProgress, 'phase'> & { phase: CorePhase | 'mesh' | 'quality' };
 /** The progress of the present run, as the page shows it. */
@@ -147,11 +150,12 @@ export interface ChosenBounds extends Bounds {
   enlarged?: 'larger' | 'endless';
 }
 /**
- * The whole shareable state, as plain JSON. `surface` is the gallery entry on which the formula is based, and `formula`
- * is the text in the editor. `parameters` and `settings` hold only values that differ from the defaults. If `surface`
- * is a model's id, or {@link FILE_SURFACE} for the file opened last, `formula` names it {@link MODEL}: by itself it is
- * that model. A formula typed without that name is based on the default surface. The points of a file are not in the
- * state, so a link to a file shows the default surface.
+ * The whole shareable state, as plain JSON. `surface` is the gallery entry on which the formula is
+ * based, and `formula` is the text in the editor. `parameters` and `settings` hold only values that
+ * differ from the defaults. If `surface` is a model's id, or {@link FILE_SURFACE} for the file
+ * opened last, `formula` names it {@link MODEL}: by itself it is that model. A formula typed
+ * without that name is based on the default surface. The points of a file are not in the state, so
+ * a link to a file shows the default surface.
  */
 export interface State {
   v: 1;
@@ -346,8 +350,8 @@ export interface EngineCommands {
   /** cancels the model or file that is loading */
   cancelLoading: () => void;
   /**
-   * a formula that names {@link MODEL} keeps the model shown, another one leaves it; `typing`: more keys may follow, so
-   * that the text is sampled once they pause; without it, at once
+   * a formula that names {@link MODEL} keeps the model shown, another one leaves it; `typing`: more
+   * keys may follow, so that the text is sampled once they pause; without it, at once
    */
   setFormula: (text: string, options?: { typing?: boolean }) => void;
   /** `live` during a drag; call once more without it at the end */

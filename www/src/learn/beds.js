@@ -1,4 +1,6 @@
-/** How deep the body has to lie under the discs of a picture, so that it cuts through none of them. */
+/**
+ * How deep the body has to lie under the discs of a picture, so that it cuts through none of them.
+ */
 import { createGrid } from '../ui/neighbours.js';
 
 /** @import { LessonParticles } from '../engine/types.js' */
@@ -10,16 +12,20 @@ const BED_RADIUS = 1.75;
 const MOST = 5000;
 
 /**
- * Of the way from the plane of a bed to a disc beside it, the most by which the two are apart where both are: the disc
- * is tilted, too.
+ * The largest gap between the plane of a bed and a disc that overlaps it, over the distance of the
+ * disc's centre from that plane. It is less than 1 because the disc is tilted, too.
  */
 const TILT = 0.75;
 
 /**
- * Depths in radii, for the bed of every particle and then of every one of `body`, by which it cuts through no disc that
- * it reaches; both sides may be seen. Where a part of the particles has discs, their beds lie under those of the rest,
- * so that the front ends at its discs. Null for so many particles that they need none.
- * @param {Bedded} particles @param {number} shown  number of those that have discs @param {Bedded | null} [body]
+ * Returns by how many radii each bed has to lie deeper, so that it cuts through no disc that it
+ * reaches: the beds of all particles, then those of `body`. Discs may be seen from both sides.
+ * Where only the first `shown` particles have discs, their beds lie below those of the others, so
+ * that the front ends at its discs. Null for more than {@link MOST} particles, whose beds need no
+ * more depth.
+ * @param {Bedded} particles
+ * @param {number} shown  number of those that have discs
+ * @param {Bedded | null} [body]
  */
 export function bedDepths(particles, shown, body = null) {
   const own = particles.radii.length;

@@ -36,8 +36,8 @@ export const parentDistances = ({ positions, parents }, radius) =>
   Float32Array.from(parents, (parent, i) => (parent === NO_PARENT ? 1 : between(positions, i, parent) / (2 * radius)));
 
 /**
- * Whether the surface of a run is closed, as far as its particles tell: none is so near to the box that the surface
- * could end there.
+ * Whether the surface of a run is closed, as far as its particles tell: none is so near to the box
+ * that the surface could end there.
  * @param {LabRun} run
  */
 export function isClosed({ lab: { surface }, placed: { positions, radii } }) {

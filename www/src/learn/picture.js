@@ -147,7 +147,10 @@ export class Picture {
   #canvas;
   #size;
   #frame;
-  /** The scene whose beds have these depths. @type {{ scene: Scene, depths: Float32Array | null } | null} */
+  /**
+   * The scene whose beds have these depths.
+   * @type {{ scene: Scene, depths: Float32Array | null } | null}
+   */
   #bedded = null;
 
   /**

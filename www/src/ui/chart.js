@@ -34,7 +34,10 @@ export function footOf({ rows, first, ends: named }) {
 
 /** The largest value is drawn at this share of the height. */
 const RISE = 0.94;
-/** Labels are at least this share of the height apart: a line of the lower of the charts with several. */
+/**
+ * Smallest distance of two labels, as a share of the height: a line of text in the lowest chart
+ * that has several.
+ */
 const APART = 0.2;
 
 /** The value at the end of each line, and the share of the height above it. @param {Drawn} chart */

@@ -79,8 +79,9 @@ export class History {
   /**
    * @param {Moment} moment
    * @param {number} nowMs
-   * @param {{ faulty?: boolean, isWritten?: boolean }} [how]  `faulty`: the previous entry has an invalid formula, so
-   *   that it is not worth restoring; `isWritten`: the formula is none with which a surface begins
+   * @param {{ faulty?: boolean, isWritten?: boolean }} [how]  `faulty`: the previous entry has an
+   *   invalid formula, so that it is not worth restoring; `isWritten`: somebody has written the
+   *   formula, with which no surface begins
    */
   record(moment, nowMs, { faulty = false, isWritten = false } = {}) {
     const present = this.entries[this.#at];

@@ -27,7 +27,10 @@ const SIMD_PROBE = new Uint8Array([
   0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11,
 ]);
 
-/** Whether this browser or program has the instructions that the modules need. @param {typeof WebAssembly} wasm */
+/**
+ * Whether this browser or program has the instructions that the modules need.
+ * @param {typeof WebAssembly} wasm
+ */
 export const hasSimd = (wasm = WebAssembly) => wasm.validate(SIMD_PROBE);
 
 /** An error in loading, with its cause. */

@@ -55,8 +55,8 @@ const sampledOf = ({ surface, formula, parameters, declared, centres, bounds, pu
 export function surfaceCommands({ store, scheduler, framing, picture: { viewer } }) {
   const { state } = store;
   /**
-   * The model that a typed formula has left, and the last formula typed since: a text that is changed letter by letter
-   * may lose the name of the model and gain it again.
+   * The model that a typed formula has left, and the last formula typed since: a text that is
+   * changed letter by letter may lose the name of the model and gain it again.
    * @type {{ shape: Shape, formula: string } | null}
    */
   let left = null;
@@ -80,7 +80,8 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
       return { shape: { ...before, settings, formula: text }, another: true };
     }
     left = before && { shape: before, formula: text };
-    // The values of the gallery's parameters belong to its formula; in another one the same names begin afresh.
+    // The values of the gallery's parameters belong to its formula; in another one the same names
+    // begin afresh.
     const isOwn = surfaceOf(about, surface)?.formula === formula;
     const own = isOwn ? { parameters: {} } : {};
     // So does an enlarged box, which nobody set for another formula.

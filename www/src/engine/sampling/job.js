@@ -197,7 +197,10 @@ class Execution {
     this.#beatMs = env.nowMs();
   }
 
-  /** Tells the page from time to time how far the work after the run is. @param {'mesh' | 'quality'} phase */
+  /**
+   * Tells the page from time to time how far the work after the run is.
+   * @param {'mesh' | 'quality'} phase
+   */
   #tellAfter(phase) {
     const { core, env, job, progress } = this;
     if (env.nowMs() - this.#beatMs <= PROGRESS_MS) return;

@@ -16,12 +16,14 @@ import { BEAT_MS } from './protocol.js';
 const FIRST_BUDGET = 32;
 
 /**
- * Returns what the slices lead to, or null if they are stopped, or another job replaces the particles, before they are
- * done.
+ * Returns what the slices lead to, or null if they are stopped, or another job replaces the
+ * particles, before they are done.
  * @template T
- * @param {(budget: number) => T | undefined} step  does so many slices; undefined before the last one
+ * @param {(budget: number) => T | undefined} step  does so many slices; undefined before the last
+ *   one
  * @param {SliceEnv} env
- * @param {() => void} [tell]  called after each step; by itself it shows the supervisor that the worker is alive
+ * @param {() => void} [tell]  called after each step; by itself it shows the supervisor that the
+ *   worker is alive
  * @returns {Promise<T | null>}
  */
 async function inSlices(step, env, tell = beats(env)) {
@@ -38,7 +40,10 @@ async function inSlices(step, env, tell = beats(env)) {
   }
 }
 
-/** Returns a function that shows the supervisor, when it is due, that the worker is alive. @param {SliceEnv} env */
+/**
+ * Returns a function that shows the supervisor, when it is due, that the worker is alive.
+ * @param {SliceEnv} env
+ */
 function beats({ nowMs, post }) {
   let beatMs = nowMs();
   return () => {

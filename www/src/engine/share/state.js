@@ -322,9 +322,12 @@ export function sanitize(raw, description, hasFile = false) {
 }
 
 /**
- * Applies a patch to a state. Another surface, or a formula in the place of a model that it does not name, brings its
- * own parameters and box.
- * @param {State} now @param {Record<string, unknown>} patch @param {Description} description @param {boolean} hasFile
+ * Applies a patch to a state. Another surface, or a formula in the place of a model that it does
+ * not name, brings its own parameters and box.
+ * @param {State} now
+ * @param {Record<string, unknown>} patch
+ * @param {Description} description
+ * @param {boolean} hasFile
  * @returns {{state: State, reset: string[]}}
  */
 export function mergeState(now, patch, description, hasFile) {

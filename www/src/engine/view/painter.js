@@ -65,7 +65,10 @@ const INSIDE_FROM = /** @type {const} */ ([0.15, 0.45]);
 const TO_COME = 0.72;
 const TO_COME_BEHIND = 0.2;
 const LEAST_BED_PX = 0.8;
-/** Cosine of the viewing angle below which a bed is so small that it needs no more depth along the line of sight. */
+/**
+ * Cosine of the viewing angle below which a bed is so small that it needs no more depth along the
+ * line of sight.
+ */
 const LEAST_FACING = 0.5;
 /** SWELL_PX there. */
 const GAPS_PX = /** @type {const} */ ([0.8, 2.4]);
@@ -225,8 +228,8 @@ export class Painter {
   #canvas;
 
   /**
-   * Depths in radii by which beds lie farther behind than usual, by particle; none for particles that are small for
-   * how the surface bends.
+   * By how many radii the bed of each particle lies farther behind than usual; null where particles
+   * are so small that the usual depth is enough.
    * @type {Float32Array | null}
    */
   bedDepths;

@@ -1,6 +1,6 @@
 /**
- * What stands below the formula for a surface from points: its facts, how well it fits, and a button that returns to
- * the formula before it.
+ * What stands below the formula for a surface from points: its facts, how well it fits, and a
+ * button that returns to the formula before it.
  */
 import { computed } from '@preact/signals-core';
 import { button, term } from '../button.js';

@@ -2,10 +2,16 @@
 import { expect, test } from 'vitest';
 import { bedDepths } from '../../../src/learn/beds.js';
 
-/** Depths in radii by which the painter draws beds behind their places, and those of the surface to come. */
+/**
+ * Depths in radii by which the painter draws beds behind their places, and those of the surface to
+ * come.
+ */
 const [USUAL, TO_COME] = [0.4, 0.2];
 
-/** A hexagonal patch with discs of radius 1, bent onto a sphere. @param {number} bend  one over its radius */
+/**
+ * A hexagonal patch with discs of radius 1, bent onto a sphere.
+ * @param {number} bend  one over its radius
+ */
 function patch(bend) {
   const rows = [];
   for (let i = -4; i <= 4; i += 1) for (let j = -4; j <= 4; j += 1) rows.push([2 * i + j, j * Math.sqrt(3)]);
