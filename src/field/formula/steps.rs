@@ -12,10 +12,10 @@ use super::operations::Unary;
 use crate::math::{Bounds, Interval};
 use core::f64::consts::PI;
 
-/// Maximum number of steps of a node in a box: as many make 64 repeated cells. Beyond, the node
-/// stays what it is.
+/// Maximum number of steps of a node in that room. A node with more of them stays what it is.
 const MOST_STEPS: f64 = 64.0;
-/// Share of the box by which a front may march beyond it, on each side.
+/// Room around the box in which the choices still give f, as a share of its longest side: a coarse
+/// front marches some spacings beyond the box.
 const MARGIN: f64 = 0.5;
 
 /// The graph of f with its floors and folds as choices, which is f in the box and around it; none
@@ -23,9 +23,7 @@ const MARGIN: f64 = 0.5;
 pub(super) fn as_choices(f: &Compiled, values: &[f64], bounds: &Bounds) -> Option<(Graph, Id)> {
     let graph = &*f.graph;
     let nodes = graph.needed_by(&[f.root]);
-    let folds: Vec<(Id, Fold)> =
-        nodes.iter().filter_map(|&id| Fold::of(graph, id).map(|fold| (id, fold))).collect();
-    if folds.is_empty() {
+    if !nodes.iter().any(|&id| Fold::of(graph, id).is_some()) {
         return None;
     }
     let around = bounds.enlarged(MARGIN * bounds.size().max_element());
@@ -33,8 +31,7 @@ pub(super) fn as_choices(f: &Compiled, values: &[f64], bounds: &Bounds) -> Optio
     interval::bounds(graph, &nodes, values, &around, &mut ranges);
     let (mut other, mut map, mut is_new) = (Graph::default(), vec![0; graph.len()], false);
     for id in nodes {
-        let fold = folds.iter().find(|&&(of, _)| of == id).map(|&(_, fold)| fold);
-        let chain = fold.and_then(|fold| {
+        let chain = Fold::of(graph, id).and_then(|fold| {
             let range = ranges[fold.argument() as usize].at(0).bounds;
             fold.chain(&mut other, map[fold.argument() as usize], range)
         });
