@@ -249,6 +249,16 @@ impl Particles {
         joints
     }
 
+    /// The first rows of the particles on the rim of the surface: on one side of a segment there is
+    /// no patch. Ascending.
+    pub(crate) fn on_rim(&self) -> std::collections::BTreeSet<u32> {
+        let patches: std::collections::BTreeSet<u32> = self.patch.iter().copied().collect();
+        let is_end =
+            |sides: &Vec<[u32; 2]>| sides.as_flattened().iter().any(|patch| !patches.contains(patch));
+        let of_rim = self.segments.iter().zip(&self.sides).filter(|(_, sides)| is_end(sides));
+        of_rim.flat_map(|(segment, _)| *segment).collect()
+    }
+
     /// The rows of tips, in ascending order: particles with rows of their own through which no
     /// crease runs.
     pub(crate) fn tips(&self) -> Vec<u32> {

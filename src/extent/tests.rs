@@ -5,7 +5,7 @@ use crate::field::formula::Formula;
 
 fn extent(text: &str) -> Extent {
     let field = Formula::as_written(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"));
-    find(&field.without_powers())
+    find(&field.for_sampling())
 }
 
 /// Asserts that the box holds `lo` to `hi` and is larger by less than 5 % of its longest side.

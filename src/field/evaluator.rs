@@ -253,9 +253,10 @@ pub trait Bounded: Evaluator {
     /// If `factor` is not below [`Bounded::factors`], or `out` is shorter than `boxes`.
     fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]);
 
-    /// Whether a zero of factor `factor` is one of f: one of a patch is, where the patch gives f.
-    fn is_zero_of(&mut self, factor: usize, zero: DVec3) -> bool {
-        let _ = (factor, zero);
+    /// Whether f is what factor `factor` is at `p`: where f has creases, whether its patch gives f
+    /// there.
+    fn gives(&mut self, factor: usize, p: DVec3) -> bool {
+        let _ = (factor, p);
         true
     }
 
@@ -277,6 +278,17 @@ pub trait Patches {
     /// and absolute value takes there on which f depends. Equal numbers are equal functions. Where
     /// f is smooth there is branch 0 alone.
     fn branch_at(&mut self, p: DVec3) -> u32;
+
+    /// Whether there are branches that [limit](Patches::is_limit) the surface.
+    fn has_limits(&mut self) -> bool {
+        false
+    }
+
+    /// Whether the zeros of a branch limit the surface and are no part of it: it ends at them.
+    fn is_limit(&mut self, branch: u32) -> bool {
+        let _ = branch;
+        false
+    }
 
     /// The branches that may give a point of the surface in the box, each once; none if they are
     /// more than can be listed.
@@ -308,6 +320,24 @@ impl<'a> dyn Evaluator + 'a {
         match patch {
             Some(patch) => self.patches().expect("a surface with patches").branch(patch),
             None => self,
+        }
+    }
+
+    /// [`Patches::has_limits`]; a smooth function has none.
+    pub(crate) fn has_limits(&mut self) -> bool {
+        self.patches().is_some_and(|patches| patches.has_limits())
+    }
+
+    /// [`Patches::is_limit`].
+    pub(crate) fn is_limit(&mut self, branch: u32) -> bool {
+        self.patches().is_some_and(|patches| patches.is_limit(branch))
+    }
+
+    /// Whether a zero of f is no point of the surface: it is one of a branch that limits it.
+    pub(crate) fn is_beyond_limits(&mut self, p: DVec3) -> bool {
+        self.has_limits() && {
+            let branch = self.branch_at(p);
+            self.is_limit(branch)
         }
     }
 

@@ -195,6 +195,9 @@ pub struct Facts {
     /// The equation of the same surface that is evaluated in the place of the one that was given,
     /// if there is one.
     pub sampled_as: Option<String>,
+    /// The faces of a solid, as equations, with which a cutter lies flush: what it would leave of
+    /// them has no thickness and is no part of the surface.
+    pub flush_faces: Vec<String>,
     /// A sentence for the user on why f is the same everywhere, if it is known.
     pub why_constant: Option<String>,
 }

@@ -19,6 +19,8 @@ pub(super) struct CreaseRows {
     first: Vec<u32>,
     /// Whether each point is at a tip.
     is_tip: Vec<bool>,
+    /// Whether each point is on the rim of the surface, where it ends at a limit.
+    is_rim: Vec<bool>,
     /// Particle and patch of each row on a crease, sorted.
     on_creases: Vec<(u32, u32)>,
     /// Edges of the triangles between points on creases, the lower point first. Sorted.
@@ -43,7 +45,9 @@ impl CreaseRows {
             rows.twins.iter().copied().zip(rows.patch.iter().copied()).collect();
         sort_pairs(&mut on_creases);
         let tips = rows.tips();
+        let on_rim = rows.on_rim();
         Self {
+            is_rim: tree.origin.iter().map(|&row| on_rim.contains(&particle(row))).collect(),
             is_tip: tree.origin.iter().map(|row| tips.binary_search(row).is_ok()).collect(),
             patch: tree.origin.iter().map(|&row| rows.patch[row as usize]).collect(),
             particle: tree.origin.iter().map(|&row| particle(row)).collect(),
@@ -51,6 +55,16 @@ impl CreaseRows {
             on_creases,
             edges: Vec::new(),
         }
+    }
+
+    /// Whether the surface ends at point `i`, at a limit.
+    pub(super) fn is_rim(&self, i: usize) -> bool {
+        self.is_rim.get(i).copied().unwrap_or(false)
+    }
+
+    /// Whether the surface ends at a limit anywhere.
+    pub(super) fn has_rim(&self) -> bool {
+        self.is_rim.contains(&true)
     }
 
     pub(super) fn is_empty(&self) -> bool {

@@ -394,14 +394,15 @@ async fn measure_triangles(
     let welded: Vec<[u32; 3]> = mesh.iter().map(|triangle| triangle.map(first)).collect();
     let topology = Topology::in_slices(&welded, n).await;
     figures.connectivity.euler = topology.euler();
-    measured.opening = opening(&topology, &welded, once, &points.tree.position);
+    let is_whole_around: Vec<bool> = (0..n).map(|i| once[i] && !points.creases.is_rim(i)).collect();
+    measured.opening = opening(&topology, &welded, &is_whole_around, &points.tree.position);
     pause().await;
     measured.inside = facing(&points.tree.position, &welded, &topology).await.inside;
     (measured.component, figures.connectivity.components) = components::label(points, spacing, mesh).await;
     let unanimous = triangles.unanimous.iter().filter(away).count();
     figures.connectivity.agree =
         share(unanimous, angles.count + triangles.single.iter().filter(away).count());
-    figures.connectivity.tri_ok = if figures.boundary_excluded == 0 {
+    figures.connectivity.tri_ok = if figures.boundary_excluded == 0 && !points.creases.has_rim() {
         triangles.kept().count() as f64 / (2 * points.count() as i64 - 2 * figures.connectivity.euler) as f64
     } else {
         // This is the share of the sectors between consecutive neighbours of inner points that a

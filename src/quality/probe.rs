@@ -45,6 +45,9 @@ pub(super) async fn crossings(field: &mut dyn Evaluator, bounds: &Bounds) -> Vec
         }
         changes.settle(field, bounds, &mut found);
     }
+    if field.has_limits() {
+        found.retain(|place| !field.is_beyond_limits(place.as_dvec3()));
+    }
     found
 }
 

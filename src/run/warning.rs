@@ -68,6 +68,11 @@ pub enum Warning {
         /// The equation that is sampled.
         equation: String,
     },
+    /// Cutters of a solid lie flush with faces of it.
+    FlushFaces {
+        /// The faces, as equations.
+        faces: Vec<String>,
+    },
     /// The gradient that the field gives is not that of its values.
     Gradient {
         /// Position at which the two differ.
@@ -234,6 +239,7 @@ impl Warning {
             Self::Bare { .. } => ("bare", Caution),
             Self::Beyond { .. } => ("beyond", Caution),
             Self::SampledAs { .. } => ("sampled_as", Note),
+            Self::FlushFaces { .. } => ("flush_faces", Note),
             Self::Gradient { .. } => ("gradient", Fault),
             Self::Count { .. } => ("count", Caution),
             Self::NotRefined(_) => ("not_refined", Caution),
@@ -338,7 +344,11 @@ impl<F: Field> Run<F> {
             let position = self.place(at.to_array());
             warnings.push(Warning::Gradient { position, length: self.bounds.diagonal() });
         }
-        warnings.extend(self.field.given.facts().sampled_as.map(|equation| Warning::SampledAs { equation }));
+        let facts = self.field.given.facts();
+        warnings.extend(facts.sampled_as.map(|equation| Warning::SampledAs { equation }));
+        if !facts.flush_faces.is_empty() {
+            warnings.push(Warning::FlushFaces { faces: facts.flush_faces });
+        }
         warnings
     }
 
@@ -472,6 +482,12 @@ impl fmt::Display for Warning {
                 f,
                 "The same surface is sampled in a simpler form. The powers, roots or absolute values of whole factors in f \
                  have no gradient on the surface; without them it is {equation}"
+            ),
+            Self::FlushFaces { faces } => write!(
+                f,
+                "A cutter lies flush with a face of the solid, and no skin is left between them. {} {}.",
+                if faces.len() == 1 { "It is" } else { "They are" },
+                faces.join(", ")
             ),
             Self::Gradient { position, length } => write!(
                 f,
@@ -737,6 +753,7 @@ mod tests {
             Warning::Bare { position, length },
             Warning::Beyond { bounds: Bounds::cube(1.0 / 3.0) },
             Warning::SampledAs { equation: "x = 0".to_owned() },
+            Warning::FlushFaces { faces: vec!["z - 1 = 0".to_owned()] },
             Warning::Gradient { position, length },
             Warning::Count { count: 8_406, wanted: 8_000 },
             Warning::Unpaired { axis: 0, repeats: true },

@@ -58,6 +58,9 @@ impl Sampler {
                 };
                 format!("f keeps one sign {nodes} of {of_box}. {remedy}{}", self.undecided_place())
             }
+            StopReason::NoSurface if self.survey.absence == Absence::Limited => {
+                "Nothing of the surface is within its limits in this box: change the conditions in braces.".into()
+            }
             StopReason::NoSurface => format!(
                 "f changes its sign in this box, but only where it jumps, has a pole or loses its gradient, or on a surface that is \
                  far smaller than the box.{}",

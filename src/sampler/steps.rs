@@ -104,7 +104,8 @@ impl Sampler {
 
     /// The patch of a point; none if the surface has no creases.
     fn patch_at(&self, probe: &mut Probe, point: Vec3) -> Option<u32> {
-        let has_patches = self.creases.are_there() || !self.output.particles.patch.is_empty();
+        let has_patches =
+            self.creases.are_there() || !self.output.particles.patch.is_empty() || probe.field.has_limits();
         has_patches.then(|| probe.field.branch_at(point.as_dvec3()))
     }
 
@@ -147,6 +148,9 @@ impl Sampler {
             return false;
         }
         let patch = self.patch_at(probe, seed.position);
+        if patch.is_some_and(|patch| probe.field.is_limit(patch)) {
+            return false;
+        }
         if patch.is_some() {
             let probe = &mut probe.on(patch);
             // Where branches are equal, on creases and where bodies share a plane, no front begins

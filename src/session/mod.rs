@@ -318,7 +318,7 @@ impl Session {
     ) -> Result<Formula, FormulaError> {
         let mut field = match self.source().formula() {
             Some(field) if text == field.text() && declared == self.declared => field.clone(),
-            _ => Formula::as_written(text, declared)?.without_powers(),
+            _ => Formula::as_written(text, declared)?.for_sampling(),
         };
         // A named surface begins with its own values; without one the present field is changed.
         if request.surface.is_some() {

@@ -54,7 +54,7 @@ impl<F: Field> Field for Pointwise<F> {
 fn formula(field: &LessonField) -> Result<Box<dyn Field>, Fault> {
     let parsed = Formula::as_written(&field.formula, &field.parameters)
         .map_err(|error| Fault::in_formula(error, &field.formula))?;
-    Ok(Box::new(Pointwise(parsed.without_powers())))
+    Ok(Box::new(Pointwise(parsed.for_sampling())))
 }
 
 fn points(system: &[u8], pulls: &[Pull]) -> Result<Box<dyn Field>, Fault> {

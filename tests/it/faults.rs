@@ -308,7 +308,7 @@ fn powers_of_a_factor_have_the_surface_of_the_factor() {
         "sin(x)^2/x",
         "(x - 1)^2/(y - 2)",
     ] {
-        let field = Formula::as_written(formula, &[]).expect(formula).without_powers();
+        let field = Formula::as_written(formula, &[]).expect(formula).for_sampling();
         assert_eq!(field.facts().sampled_as, None, "{formula}");
     }
     // A constant factor, an equation with two sides, and a pole are left alone without a warning.

@@ -38,6 +38,7 @@ mod golden;
 mod graded;
 mod grip;
 mod holes;
+mod limits;
 mod mesh;
 mod mesh_export;
 mod mesh_parity;

@@ -418,7 +418,7 @@ fn lessons_have_the_digests_that_other_platforms_give() {
     for lesson in &mut golden.runs {
         let LessonField { formula, parameters, bounds } = &lesson.field;
         let field = Formula::as_written(formula, parameters).expect("the formula can be read");
-        let mut run = Lesson::new(Box::new(field.without_powers()), bounds, &lesson.settings)
+        let mut run = Lesson::new(Box::new(field.for_sampling()), bounds, &lesson.settings)
             .unwrap_or_else(|error| panic!("{}: {error}", lesson.name));
         while !run.step(1_000).is_done {}
         let events = run.progress().events;

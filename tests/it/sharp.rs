@@ -5,7 +5,7 @@ use crate::cases;
 use crate::solid_table::{SOLIDS, Solid};
 use core::f64::consts::PI;
 use glam::{DMat3, DQuat, DVec3, DVec4};
-use marching_particles::{Formula, Method, Sample, Settings, sample};
+use marching_particles::{Field, Formula, Method, Sample, Settings, Warning, sample};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -123,6 +123,61 @@ fn floors_and_folded_angles_bend_a_solid_at_edges() {
     for (formula, topology, volume, creases) in cases {
         check_closed(formula, topology, volume, creases);
     }
+}
+
+#[test]
+fn a_solid_ends_where_one_of_its_functions_has_no_value() {
+    let cases = [
+        ("max(z - sqrt(1 - x^2), -z, abs(x) - 1, abs(y) - 1)", [1, 2], Some(PI), [6, 4]),
+        ("max(z - sqrt(1 - x^2 - y^2), -z)", [1, 2], Some(2.0 / 3.0 * PI), [1, 0]),
+        // A wall below the end of the root.
+        ("max(z - sqrt(1 - x^2 - y^2) - 1, -z)", [1, 2], Some(5.0 / 3.0 * PI), [1, 0]),
+        ("max(abs(y) - sqrt(x*(1 - x)), abs(z) - 0.2)", [1, 2], Some(0.1 * PI), [2, 0]),
+        // Another power, and a root in a root.
+        ("max(1 - 3*(1 - x^2 - y^2)^0.25 - z, z - 0.5)", [1, 2], None, [1, 0]),
+        ("max(z - sqrt(1 - sqrt(x^2 + y^2 + 0.1)), -z)", [1, 2], None, [1, 0]),
+        // f is positive inside.
+        ("min(sqrt(1 - x^2) - z, z, 1 - abs(y))", [1, 2], Some(PI), [6, 4]),
+    ];
+    for (formula, topology, volume, creases) in cases {
+        check_closed(formula, topology, volume, creases);
+    }
+}
+
+#[test]
+fn a_cutter_that_lies_flush_with_a_face_leaves_no_skin() {
+    let blind = "max(max(hypot(x, y) - 1, -z, z - 1), -max(hypot(x, y) - 0.4, 0.5 - z, z - 1))";
+    let slot = "max(max(abs(x) - 1, abs(y) - 1, abs(z) - 1), -max(abs(y) - 0.3, 0.5 - x, abs(z) - 1))";
+    let cases = [
+        (blind, [1, 2], Some(0.92 * PI), [4, 0], vec!["z - 1 = 0"]),
+        // Written with another factor.
+        (
+            &blind.replace("0.4, 0.5 - z, z - 1", "0.4, 0.5 - z, 2*z - 2"),
+            [1, 2],
+            None,
+            [4, 0],
+            vec!["z - 1 = 0"],
+        ),
+        (slot, [1, 2], Some(8.0 - 0.6), [24, 16], vec!["z - 1 = 0", "-1 - z = 0"]),
+    ];
+    for (formula, topology, volume, creases, faces) in cases {
+        check_closed(formula, topology, volume, creases);
+        let facts = Formula::parse(formula).expect("a formula").facts();
+        assert_eq!(facts.flush_faces, faces, "{formula}");
+    }
+    // Planes that coincide for one value of a parameter may part for another.
+    let facts = Formula::parse("max(z - a, min(x, b - z))").expect("a formula").facts();
+    assert_eq!(facts.flush_faces, Vec::<String>::new());
+}
+
+#[test]
+fn no_particle_is_missed_on_a_face_that_two_bodies_share_inside() {
+    let stacked = "min(max(hypot(x, y) - 0.5, -z, z - 1), max(hypot(x, y) - 0.3, 1 - z, z - 2))";
+    check_closed(stacked, [1, 2], Some(0.34 * PI), [4, 0]);
+    let sample = sample(Formula::parse(stacked).expect("a formula"), &Settings::with_count(6_000).refined())
+        .expect("a sample");
+    let codes: Vec<_> = sample.report().warnings.iter().map(Warning::code).collect();
+    assert!(!codes.contains(&"without_particle"), "{codes:?}");
 }
 
 #[test]

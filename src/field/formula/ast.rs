@@ -137,6 +137,8 @@ pub(crate) struct Equation {
     pub(crate) definitions: Vec<Definition>,
     pub(crate) left: Expr,
     pub(crate) right: Option<Expr>,
+    /// The conditions that limit the surface: it ends where one of them ceases to hold.
+    pub(crate) region: Vec<Expr>,
 }
 
 /// A value that has a name, or a function.

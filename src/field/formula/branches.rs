@@ -16,7 +16,7 @@ use super::interval::{self, Range};
 use super::operations::{Binary, Unary};
 use super::scalar;
 use crate::field::Enclosure;
-use crate::math::Bounds;
+use crate::math::{Bounds, Interval};
 use glam::DVec3;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -710,6 +710,21 @@ impl Branches {
         Some(numbers)
     }
 
+    /// Whether limits are a part of f.
+    pub(super) fn has_limits(&self) -> bool {
+        self.parts.first().is_some_and(|whole| self.base.graph.limited(whole.root).is_some())
+    }
+
+    /// Whether the zeros of a branch limit the surface and are no part of it.
+    pub(super) fn is_limit(&mut self, number: u32, values: &[f64]) -> bool {
+        if !self.has_limits() {
+            return false;
+        }
+        self.number_first(values);
+        let part = self.numbered.get(number as usize).map(|&index| self.parts[index].root);
+        part.is_some_and(|root| matches!(self.base.graph.node(root), Node::Unary(Unary::Limit, _)))
+    }
+
     /// The branch of this number, compiled; none if f is its only branch.
     ///
     /// # Panics
@@ -739,11 +754,32 @@ impl Branches {
         }
     }
 
+    /// Empties the enclosures of f over boxes in which what limits the surface alone may be zero.
+    /// Where the surface may end there are no bounds of a gradient: an end faces any way.
+    pub(super) fn leave_out_limits(&mut self, values: &[f64], boxes: &[Bounds], out: &mut [Enclosure]) {
+        if !self.has_limits() {
+            return;
+        }
+        for (bounds, out) in boxes.iter().zip(out).filter(|(_, out)| out.may_vanish) {
+            let within = self.within(values, bounds);
+            let mut limits =
+                |within: &Vec<u32>| within.iter().filter(|&&number| self.is_limit(number, values)).count();
+            match within.as_ref().map(|within| (limits(within), within.len())) {
+                Some((0, _)) => {}
+                Some((limits, all)) if limits == all => *out = Enclosure::NOWHERE,
+                _ => out.gradient = [Interval::EVERYTHING; 3],
+            }
+        }
+    }
+
     /// Takes the branches of a surface in a box as those that meet in creases there.
     pub(super) fn crease(&mut self, values: &[f64], bounds: &Bounds) {
+        self.factors.clear();
         for number in self.within(values, bounds).unwrap_or_default() {
-            let count = self.compiled(number, values).map_or(0, |compiled| compiled.factors().len());
-            self.factors.extend((0..count).map(|own| (number, own)));
+            if !self.is_limit(number, values) {
+                let count = self.compiled(number, values).map_or(0, |compiled| compiled.factors().len());
+                self.factors.extend((0..count).map(|own| (number, own)));
+            }
         }
         if !self.products.is_empty() {
             let (graph, root) = self.base.graph.part(self.parts[0].root);

@@ -8,8 +8,8 @@ use super::operations::{Binary, Unary};
 use super::statements;
 use super::token::Comparison;
 
-/// Adds f = left − right to `graph` and returns its node. `parameters` are the parameter names by
-/// index.
+/// Adds f = left − right to `graph` and returns its node; of an equation with limits that of max(f,
+/// [limit](Unary::Limit)). `parameters` are the parameter names by index.
 ///
 /// # Errors
 ///
@@ -32,7 +32,9 @@ pub(super) fn build(graph: &mut Graph, equation: &Equation, parameters: &[&str])
             builder.graph.sub(left, right)
         }
     };
-    Ok(root)
+    let Some(limit) = builder.limit(&equation.region)? else { return Ok(root) };
+    let limit = builder.graph.unary(Unary::Limit, limit);
+    Ok(builder.graph.binary(Binary::Max, root, limit))
 }
 
 /// Maximum number of expressions that are translated, which functions of the formula's own
@@ -100,6 +102,42 @@ impl Builder<'_> {
             return Err(too_complex(expr));
         }
         Ok(id)
+    }
+
+    /// The node of a function that is at most 0 where all of these conditions hold; none if there
+    /// is none.
+    fn limit(&mut self, conditions: &[Expr]) -> Result<Option<Id>, FormulaError> {
+        let limits: Result<Vec<Id>, FormulaError> =
+            conditions.iter().map(|condition| self.excess(condition)).collect();
+        let limits = limits?;
+        Ok((!limits.is_empty()).then(|| fold(self.graph, Binary::Max, &limits)))
+    }
+
+    /// The node of a function that is at most 0 where a condition holds, or at its end.
+    fn excess(&mut self, condition: &Expr) -> Result<Id, FormulaError> {
+        Ok(match &condition.kind {
+            ExprKind::Compare(comparison, sides) => {
+                let (a, b) = (self.expression(&sides[0])?, self.expression(&sides[1])?);
+                match comparison {
+                    Comparison::Less | Comparison::AtMost => self.graph.sub(a, b),
+                    Comparison::Greater | Comparison::AtLeast => self.graph.sub(b, a),
+                }
+            }
+            ExprKind::Logic(connective, conditions) => {
+                let parts: Result<Vec<Id>, FormulaError> =
+                    conditions.iter().map(|condition| self.excess(condition)).collect();
+                let operation = match connective {
+                    Connective::And => Binary::Max,
+                    Connective::Or => Binary::Min,
+                };
+                fold(self.graph, operation, &parts?)
+            }
+            ExprKind::Not(inner) => {
+                let inner = self.excess(inner)?;
+                self.graph.neg(inner)
+            }
+            _ => unreachable!("the parser has checked conditions"),
+        })
     }
 
     fn all(&mut self, arguments: &[Expr]) -> Result<Vec<Id>, FormulaError> {

@@ -270,13 +270,13 @@ impl From<Expr> for Formula {
     /// [`MAX_OPERATIONS`].
     fn from(Expr { tree, depth }: Expr) -> Self {
         assert!(depth <= MAX_DEPTH, "an expression is nested {depth} deep, and {MAX_DEPTH} are possible");
-        let equation = Equation { definitions: Vec::new(), left: tree, right: None };
+        let equation = Equation { definitions: Vec::new(), left: tree, right: None, region: Vec::new() };
         let text = display::plain_equation(&equation);
         let mut names: Vec<String> = Vec::new();
         collect_names(&equation.left, &mut names);
         let formula = Self::of_equation(&text, equation, names)
             .unwrap_or_else(|error| panic!("{}: at most {MAX_OPERATIONS} operations", error.message));
-        formula.without_powers()
+        formula.for_sampling()
     }
 }
 

@@ -6,7 +6,7 @@
 use super::ast::{Connective, Expr, ExprKind};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::parse::{Parse, Parser};
-use super::token::{Bar, Token};
+use super::token::{Bar, Spanned, Token};
 
 impl Parser<'_> {
     /// Parses a number or, where one may stand, a condition.
@@ -65,6 +65,45 @@ impl Parser<'_> {
         }
         // −1 < x < 1 compares twice.
         if conditions.is_empty() { Ok(left) } else { connected(Connective::And, conditions) }
+    }
+
+    /// Whether the next token opens a region that limits the surface, `{x < 1, y > 0}`.
+    pub(super) fn begins_region(&self) -> bool {
+        if self.peek().token != Token::Open('{') {
+            return false;
+        }
+        let mut brackets = 0_u32;
+        for Spanned { token, .. } in &self.tokens[self.next..] {
+            match token {
+                Token::Open(_) => brackets += 1,
+                Token::Close(_) if brackets == 1 => return false,
+                Token::Close(_) => brackets -= 1,
+                Token::Compare(_) if brackets == 1 => return true,
+                _ => {}
+            }
+        }
+        false
+    }
+
+    /// Parses the regions that limit the surface: their conditions, all of which are to hold.
+    pub(super) fn region(&mut self) -> Result<Vec<Expr>, FormulaError> {
+        let mut conditions = Vec::new();
+        while self.begins_region() {
+            let before = self.comparison.clone();
+            let open = self.peek().span.clone();
+            self.next += 1;
+            loop {
+                conditions.push(as_condition(self.within(false, Self::logic)?)?);
+                if !self.take(&Token::Comma) {
+                    break;
+                }
+            }
+            if !self.take(&Token::Close('}')) {
+                return Err(self.unclosed(&open, '{'));
+            }
+            self.comparison = before;
+        }
+        Ok(conditions)
     }
 
     /// Whether the next two tokens are the bars of `||`.

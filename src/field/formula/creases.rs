@@ -98,13 +98,17 @@ impl Branches {
 
     async fn take_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
         let TieCells { creases, seams } = self.search_creases(values, bounds, width, Some(2.0 * width)).await;
+        if creases.is_empty() && self.has_limits() {
+            self.crease(values, bounds);
+            return creases;
+        }
         if creases.is_empty() {
             *self = Self::default();
             return creases;
         }
         let is_smooth = self.join_tangent(values, bounds, &seams).await;
         self.crease(values, bounds);
-        if is_smooth { Vec::new() } else { creases }
+        if is_smooth && !self.has_limits() { Vec::new() } else { creases }
     }
 
     /// Cells of a box outside of which f has no crease, and no seam if these are asked for. There

@@ -131,6 +131,7 @@ fn operand_adjoints(graph: &mut Graph, id: Id, adjoint: Id) -> [Option<(Id, Id)>
 fn unary(graph: &mut Graph, operation: Unary, a: Id, id: Id, adjoint: Id) -> Id {
     match operation {
         Unary::Neg => graph.neg(adjoint),
+        Unary::Limit => adjoint,
         Unary::Sqrt => {
             let half = graph.constant(0.5);
             let scaled = graph.mul(adjoint, half);

@@ -1,6 +1,10 @@
 //! Plain text of a formula, which parses back to the same tree.
 
+use super::Parameter;
 use super::ast::{COORDINATES, Connective, Equation, Expr, ExprKind, Factor, Function, Sign};
+use super::graph::{Graph, Id, Node};
+use super::operations::{Binary, Unary};
+use super::token::Comparison;
 use crate::math::shortest_text;
 
 /// Precedence, weakest first.
@@ -44,6 +48,64 @@ pub(super) fn plain(expr: &Expr) -> String {
     out
 }
 
+/// Text of a node of a graph.
+pub(super) fn node(graph: &Graph, id: Id, parameters: &[Parameter]) -> String {
+    plain(&tree(graph, id, parameters))
+}
+
+/// The expression of a node of a graph, which is of no text.
+fn tree(graph: &Graph, id: Id, parameters: &[Parameter]) -> Expr {
+    let of = |id: Id| tree(graph, id, parameters);
+    let with = |kind: ExprKind| Expr { kind, span: 0..0 };
+    let call = |function: Function, operands: &[Id]| {
+        ExprKind::Call(function, operands.iter().map(|&operand| of(operand)).collect())
+    };
+    let power = |base: Id, exponent: ExprKind| ExprKind::Power(Box::new(of(base)), Box::new(with(exponent)));
+    with(match graph.node(id) {
+        Node::Constant(bits) if f64::from_bits(bits) < 0.0 => {
+            ExprKind::Negated(Box::new(with(ExprKind::Number(-f64::from_bits(bits)))))
+        }
+        Node::Constant(bits) => ExprKind::Number(f64::from_bits(bits)),
+        Node::Parameter(index) => ExprKind::Parameter(parameters[index as usize].name.to_string()),
+        Node::Coordinate(axis) => ExprKind::Coordinate(axis),
+        Node::Unary(Unary::Limit, a) => of(a).kind,
+        Node::Unary(Unary::Neg, a) => ExprKind::Negated(Box::new(of(a))),
+        Node::Unary(operation, a) => call(Function::Unary(operation), &[a]),
+        Node::Binary(Binary::Add, a, b) => match graph.as_constant(b).filter(|&b| b < 0.0) {
+            Some(b) => ExprKind::Sum(vec![(Sign::Plus, of(a)), (Sign::Minus, with(ExprKind::Number(-b)))]),
+            None => ExprKind::Sum(vec![(Sign::Plus, of(a)), (Sign::Plus, of(b))]),
+        },
+        Node::Binary(Binary::Sub, a, b) => ExprKind::Sum(vec![(Sign::Plus, of(a)), (Sign::Minus, of(b))]),
+        Node::Binary(Binary::Mul, a, b) if graph.is_uniform(b) => {
+            ExprKind::Product(vec![(Factor::Times, of(b)), (Factor::Times, of(a))])
+        }
+        Node::Binary(Binary::Mul, a, b) => {
+            ExprKind::Product(vec![(Factor::Times, of(a)), (Factor::Times, of(b))])
+        }
+        Node::Binary(Binary::Div, a, b) => {
+            ExprKind::Product(vec![(Factor::Times, of(a)), (Factor::Over, of(b))])
+        }
+        Node::Binary(Binary::Pow, a, b) => power(a, of(b).kind),
+        Node::Binary(operation, a, b) => call(Function::Binary(operation), &[a, b]),
+        Node::Power(a, n) if n < 0 => {
+            power(a, ExprKind::Negated(Box::new(with(ExprKind::Number(-f64::from(n))))))
+        }
+        Node::Power(a, n) => power(a, ExprKind::Number(f64::from(n))),
+        Node::Smin(blend, a, b, k) => call(Function::Smin(blend), &[a, b, k]),
+        Node::If(is_where, a, b, v) => {
+            let zero = with(ExprKind::Number(0.0));
+            chosen([of(a), of(b)], if is_where { [of(v), zero] } else { [zero, of(v)] })
+        }
+        Node::Select(_, a, b, u, v) => chosen([of(a), of(b)], [of(u), of(v)]),
+    })
+}
+
+/// The first value where the first side is at most the second, else the other.
+fn chosen(sides: [Expr; 2], [u, v]: [Expr; 2]) -> ExprKind {
+    let condition = Expr { kind: ExprKind::Compare(Comparison::AtMost, Box::new(sides)), span: 0..0 };
+    ExprKind::Choice(Box::new([condition, u, v]))
+}
+
 /// Text of an equation.
 pub(super) fn plain_equation(equation: &Equation) -> String {
     let mut out = String::new();
@@ -70,6 +132,13 @@ pub(super) fn plain_equation(equation: &Equation) -> String {
     if let Some(right) = &equation.right {
         out.push_str(" = ");
         write(&mut out, right);
+    }
+    for (index, condition) in equation.region.iter().enumerate() {
+        out.push_str(if index == 0 { " {" } else { ", " });
+        write(&mut out, condition);
+    }
+    if !equation.region.is_empty() {
+        out.push('}');
     }
     out
 }

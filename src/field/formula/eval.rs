@@ -178,6 +178,7 @@ fn execute(i: &Instruction, uniforms: &[f32], registers: &RegisterCells<'_>) {
 fn execute_unary(operation: Unary, i: &Instruction, registers: &RegisterCells<'_>) {
     match operation {
         Unary::Neg => unary(registers, i, |a| -a),
+        Unary::Limit => unary(registers, i, |a| a),
         Unary::Sqrt => unary(registers, i, Lanes::sqrt),
         Unary::Abs => unary(registers, i, Lanes::abs),
         Unary::Sign => unary(registers, i, |a| a.map(functions::sign)),

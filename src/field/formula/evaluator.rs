@@ -223,6 +223,14 @@ impl Patches for FormulaEvaluator<'_> {
         self.on_branches(|branches, values| branches.patches_within(values, &bounds))
     }
 
+    fn has_limits(&mut self) -> bool {
+        self.on_branches(|branches, _| branches.has_limits())
+    }
+
+    fn is_limit(&mut self, branch: u32) -> bool {
+        self.on_branches(|branches, values| branches.is_limit(branch, values))
+    }
+
     fn branch(&mut self, branch: u32) -> &mut dyn Evaluator {
         let compiled = self.on_branches(|branches, values| branches.patch(branch, values));
         let (formula, frame) = (self.formula, self.frame);
@@ -256,20 +264,22 @@ impl Bounded for FormulaEvaluator<'_> {
     }
 
     fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]) {
-        let (frame, formula) = (self.frame, self.formula);
+        let (frame, formula, is_branch) = (self.frame, self.formula, self.is_branch);
         let FormulaBounds { factors, boxes: moved } = self.bounds();
         let Factor { branch, program, first, .. } = &mut factors[factor];
         let boxes = in_formula(frame, boxes, moved);
         program.first.enclose(first, boxes, out);
-        if let Some(branch) = *branch {
-            formula.branches.lock().leave_out(branch, &formula.values, boxes, out);
+        match *branch {
+            Some(branch) => formula.branches.lock().leave_out(branch, &formula.values, boxes, out),
+            None if !is_branch => formula.branches.lock().leave_out_limits(&formula.values, boxes, out),
+            None => {}
         }
         frame.scale_bounds(&mut out[..boxes.len()]);
     }
 
-    fn is_zero_of(&mut self, factor: usize, zero: DVec3) -> bool {
+    fn gives(&mut self, factor: usize, p: DVec3) -> bool {
         let branch = self.bounds().factors[factor].branch;
-        let place = self.frame.place(zero);
+        let place = self.frame.place(p);
         branch.is_none_or(|branch| self.on_branches(|branches, values| branches.at(values, place)) == branch)
     }
 

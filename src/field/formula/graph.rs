@@ -163,10 +163,14 @@ impl Graph {
         self.axes(id) == 0
     }
 
-    /// The node of a weighted sum, in which what its terms share or what cancels stands once.
-    pub(super) fn combination(&mut self, terms: [(Id, f64); 2]) -> Id {
+    /// The summands of a node, each once with how often it stands there, in the order of the graph.
+    pub(super) fn summands(&self, root: Id) -> Vec<(Id, f64)> {
+        self.gathered(&[(root, 1.0)])
+    }
+
+    fn gathered(&self, terms: &[(Id, f64)]) -> Vec<(Id, f64)> {
         let mut shares = vec![0.0; self.len()];
-        let mut open = Vec::from(terms);
+        let mut open = terms.to_vec();
         while let Some((id, share)) = open.pop() {
             match self.node(id) {
                 Node::Binary(Binary::Add, u, v) => open.extend([(u, share), (v, share)]),
@@ -175,8 +179,13 @@ impl Graph {
                 _ => shares[id as usize] += share,
             }
         }
+        (0..).zip(shares).filter(|&(_, share)| share != 0.0).collect()
+    }
+
+    /// The node of a weighted sum, in which what its terms share or what cancels stands once.
+    pub(super) fn combination(&mut self, terms: [(Id, f64); 2]) -> Id {
         let mut sum = self.constant(0.0);
-        for (id, share) in (0..).zip(shares).filter(|&(_, share)| share != 0.0) {
+        for (id, share) in self.gathered(&terms) {
             let share = self.constant(share);
             let term = self.mul(id, share);
             sum = self.add(sum, term);
@@ -238,6 +247,13 @@ impl Graph {
             }
         }
         squares
+    }
+
+    /// The function of a surface, and that whose zeros limit it; none if nothing does.
+    pub(super) fn limited(&self, root: Id) -> Option<[Id; 2]> {
+        let Node::Binary(Binary::Max, f, limit) = self.node(root) else { return None };
+        let Node::Unary(Unary::Limit, limit) = self.node(limit) else { return None };
+        Some([f, limit])
     }
 
     /// The nodes that `outputs` need, in the order of the graph.

@@ -71,7 +71,14 @@ pub enum MathNode {
 /// definitions it is a table, of which the surface is the last row.
 pub(super) fn equation(equation: &Equation) -> MathNode {
     let right = equation.right.as_ref().map_or_else(|| mn("0"), expression);
-    let surface = row([expression(&equation.left), mo("="), right]);
+    let mut parts = vec![expression(&equation.left), mo("="), right];
+    for (index, condition) in equation.region.iter().enumerate() {
+        parts.extend([mo(if index == 0 { "{" } else { "," }), expression(condition)]);
+    }
+    if !equation.region.is_empty() {
+        parts.push(mo("}"));
+    }
+    let surface = row(parts);
     if equation.definitions.is_empty() {
         return surface;
     }

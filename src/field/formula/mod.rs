@@ -16,6 +16,7 @@
 //!
 //! `if(c, a, b)` and `c ? a : b` choose by a condition: comparisons by `<`, `<=`, `>`, `>=`, joined
 //! by `and`, `or` and `not` (`&&`, `||`, `!`). `a % b` is `mod(a, b)`, with the sign of b.
+//! Conditions in braces after the formula limit the surface: `z = x*y {x^2 + y^2 < 1, z > 0}`.
 //!
 //! Definitions come before the surface, each ended by a `;` or its line:
 //! `r = hypot(x, y); (r - 1)^2 + z^2 = 0.1`, `f(a, b) = a^2 + b^2; f(x, y) = z`. Comments are
@@ -67,9 +68,9 @@ mod patches;
 mod periods;
 mod powers;
 mod program;
+mod regular;
 mod repair;
 mod scalar;
-
 mod solids;
 mod spelling;
 mod statements;
@@ -170,9 +171,13 @@ impl Parameter {
 #[derive(Clone, Debug)]
 pub struct Formula {
     written: Arc<WrittenFormula>,
-    /// Equation of the same surface that is evaluated instead, if [`Formula::without_powers`] has
+    /// Equation of the same surface that is evaluated instead, if [`Formula::for_sampling`] has
     /// found one.
     simplified: Option<Arc<Equation>>,
+    /// Whether solids are [brought into their regular form](regular), and the faces with which a
+    /// cutter lies flush, in that form.
+    is_regular: bool,
+    flush: Arc<[String]>,
     /// The graph of the surface, and its node, from which a solid is made.
     surface: Arc<(Graph, Id)>,
     /// The solid that is sampled in place of the surface, if one is: a sheet of some thickness,
@@ -207,7 +212,7 @@ impl Formula {
     ///
     /// Any of [`FormulaErrorKind`], with its span in bytes of `text`.
     pub fn parse(text: &str) -> Result<Self, FormulaError> {
-        Ok(Self::as_written(text, &[])?.without_powers())
+        Ok(Self::as_written(text, &[])?.for_sampling())
     }
 
     /// Returns the formula with another value of a parameter. Parameters that [`Formula::parse`]
@@ -261,6 +266,8 @@ impl Formula {
         Self {
             written: Arc::new(written),
             simplified: None,
+            is_regular: false,
+            flush: Arc::default(),
             surface: Arc::new(compiled.graph.part(compiled.root)),
             solid: Solid::default(),
             branches: SharedBranches::new(Branches::new(&compiled, &values)),
@@ -270,17 +277,21 @@ impl Formula {
         }
     }
 
-    /// Field of the same surface in which powers and repeated factors stand once: u in place of u²,
-    /// √u or |u|.
+    /// Field of the same surface in the form that is sampled. Powers and repeated factors stand
+    /// once: u in place of u², √u or |u|. A solid ends where one of its functions has no value, and
+    /// what a cutter leaves of a face with which it lies flush is no part of it.
     ///
     /// The gradient of u² vanishes on the surface u = 0, so that there is no normal; the gradient
     /// of u does not. Text, normal form and MathML remain those of the formula. A field without
-    /// such factors is returned unchanged.
+    /// all that is returned unchanged.
     #[must_use]
     #[doc(hidden)]
-    pub fn without_powers(mut self) -> Self {
-        if self.simplified.is_none()
-            && let Some(simplified) = powers::without_powers(&self.written.equation)
+    pub fn for_sampling(mut self) -> Self {
+        if self.is_regular {
+            return self;
+        }
+        self.is_regular = true;
+        if let Some(simplified) = powers::without_powers(&self.written.equation)
             // The simplified equation is shorter, so it meets no limit; if it did, the formula
             // itself would still do.
             && let Ok(compiled) = Compiled::new(&simplified, &self.parameters)
@@ -288,9 +299,10 @@ impl Formula {
             self.simplified = Some(Arc::new(simplified));
             self.surface = Arc::new(compiled.graph.part(compiled.root));
             self.use_compiled(compiled);
-            if self.solid != Solid::default() {
-                self.make_solid();
-            }
+        }
+        let (graph, root) = &*self.surface;
+        if self.solid != Solid::default() || regular::regular(graph, *root).is_some() {
+            self.make_solid();
         }
         self
     }
@@ -364,7 +376,13 @@ impl Formula {
     fn make_solid(&mut self) {
         let (mut graph, f) = (*self.surface).clone();
         let root = self.solid.made_of(&mut graph, f);
-        let (graph, root) = graph.part(root);
+        let (mut graph, mut root) = graph.part(root);
+        self.flush = Arc::default();
+        if let Some(regular) = self.is_regular.then(|| regular::regular(&graph, root)).flatten() {
+            let text = |&face: &Id| format!("{} = 0", display::node(&regular.graph, face, &self.parameters));
+            self.flush = regular.flush.iter().map(text).collect();
+            (graph, root) = regular.graph.part(regular.root);
+        }
         self.use_compiled(Compiled::from_graph(graph, root, &self.values));
     }
 
@@ -573,6 +591,7 @@ impl Field for Formula {
                 UnitCell { bounds, repeats: [0, 1, 2].map(is_repeated) }
             }),
             sampled_as: self.simplified.as_deref().map(display::plain_equation),
+            flush_faces: self.flush.to_vec(),
             why_constant: first.map(|first| spelling::no_coordinate(&first.name)),
         }
     }

@@ -25,6 +25,8 @@ pub(crate) enum Unary {
     Acosh,
     Atanh,
     Erf,
+    /// The value itself, of a function whose zeros limit the surface and are no part of it.
+    Limit,
 }
 
 /// Operations of two operands.
@@ -87,6 +89,7 @@ impl Unary {
             Self::Acosh => libm::acosh(a),
             Self::Atanh => libm::atanh(a),
             Self::Erf => libm::erf(a),
+            Self::Limit => a,
         }
     }
 
@@ -95,6 +98,7 @@ impl Unary {
         let value = self.evaluate(a);
         let (first, second) = match self {
             Self::Neg => (-1.0, 0.0),
+            Self::Limit => (1.0, 0.0),
             Self::Sqrt => (0.5 / value, -0.25 / (value * a)),
             Self::Cbrt => (1.0 / (3.0 * value * value), -2.0 / (9.0 * value * value * a)),
             Self::Abs => (sign(a), 0.0),

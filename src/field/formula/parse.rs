@@ -1,15 +1,20 @@
 //! Recursive-descent parser: tokens to a syntax tree.
 //!
 //! ```text
-//! formula   := { definition ";" } surface [ ";" ]               see `statements` surface   :=
-//! value [ "=" value ] value     := logic [ "?" value ":" value ] logic     := both { "or" both }
-//! conditions, as are the two that follow; or a sum both      := compared { "and" compared }
-//! compared  := "not" compared | sum { ( "<" | "<=" | ">" | ">=" ) sum } sum       := term { ("+" |
-//! "-") term } term      := ("-" | "+") term | product product   := power { ("*" | "/" | "%")
-//! signed | power }      juxtaposition: no number but the first signed    := ("-" | "+") signed |
-//! power power     := atom [ superscript | "^" signed ]               "^" binds to the right atom
-//! := number | name | "(" value ")" | "|" sum "|" | "\frac" group group | "\sqrt" [ "[" value "]" ]
-//! group
+//! formula   := { definition ";" } surface [ ";" ]               see `statements`
+//! surface   := value [ "=" value ] { region }
+//! region    := "{" logic { "," logic } "}"                      conditions
+//! value     := logic [ "?" value ":" value ]
+//! logic     := both { "or" both }                               conditions, or a sum
+//! both      := compared { "and" compared }
+//! compared  := "not" compared | sum { ( "<" | "<=" | ">" | ">=" ) sum }
+//! sum       := term { ("+" | "-") term }
+//! term      := ("-" | "+") term | product
+//! product   := power { ("*" | "/" | "%") signed | power }       no number but the first stands
+//! signed    := ("-" | "+") signed | power                       beside another factor
+//! power     := atom [ superscript | "^" signed ]                "^" binds to the right
+//! atom      := number | name | "(" value ")" | "|" sum "|" | "\frac" group group
+//!            | "\sqrt" [ "[" value "]" ] group
 //!            | function [ exponent ] ( "(" value { "," value } ")" | operand )
 //! ```
 //!
@@ -337,6 +342,7 @@ impl<'a> Parser<'a> {
     /// Whether the next token begins a factor that stands beside the one before it.
     pub(super) fn begins_factor(&self) -> bool {
         match self.peek().token {
+            Token::Open('{') if self.begins_region() => false,
             Token::Name(_) | Token::Open(_) | Token::Fraction | Token::Root | Token::Bar(Bar::Opening) => {
                 true
             }
@@ -452,7 +458,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Applies `parse` one nesting level deeper, within bars or within brackets.
-    fn within(&mut self, bars: bool, parse: impl FnOnce(&mut Self) -> Parse) -> Parse {
+    pub(super) fn within(&mut self, bars: bool, parse: impl FnOnce(&mut Self) -> Parse) -> Parse {
         let outside = (self.is_in_bars, self.has_comparison);
         (self.is_in_bars, self.has_comparison) = (bars, false);
         self.brackets += 1;
@@ -550,7 +556,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Error where the bracket at `open` should be closed by `closing`.
-    fn unclosed(&self, open: &Range<usize>, closing: char) -> FormulaError {
+    pub(super) fn unclosed(&self, open: &Range<usize>, closing: char) -> FormulaError {
         let place = slice(self.text, &(0..open.start)).chars().count() + 1;
         let message = format!("The bracket opened at character {place} is not closed");
         match self.peek().token {

@@ -154,10 +154,12 @@ impl Branches {
         for k in 1..landed.len() {
             for j in 0..k {
                 let pair = ascending([landed[j].branch, landed[k].branch]);
-                if found.sharp.contains(&pair) {
+                let [is_limit, other] = pair.map(|branch| self.is_limit(branch, values));
+                if found.sharp.contains(&pair) || is_limit != other {
                     continue;
                 }
                 match self.between(values, [landed[j], landed[k]], APART * bounds.diagonal()) {
+                    Some((pair, _)) if self.is_limit(pair[0], values) != self.is_limit(pair[1], values) => {}
                     Some((pair, true)) => found.sharp.push(pair),
                     Some((pair, false)) => found.tangent.push(pair),
                     None => found.is_open = true,

@@ -169,7 +169,7 @@ impl Reducer<'_> {
         let has_names = expr.any(&|kind| matches!(kind, ExprKind::Defined(..)));
         // Other definitions may hold parameters.
         let definitions = if has_names { self.constants() } else { Vec::new() };
-        let equation = Equation { definitions, left: expr.clone(), right: None };
+        let equation = Equation { definitions, left: expr.clone(), right: None, region: Vec::new() };
         let root = build(&mut graph, &equation, &[]).ok()?;
         graph.as_constant(root)
     }

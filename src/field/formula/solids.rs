@@ -40,11 +40,18 @@ impl Solid {
 
     /// The node of the function that is at most 0 in the solid made of f, which is node `root`.
     pub(super) fn made_of(&self, graph: &mut Graph, root: Id) -> Id {
-        let mut solid = root;
+        // Of a sheet, and of what a box closes, the limits of the surface are faces.
+        let is_solid = self.thickness.is_some() || self.closed.is_some();
+        let limited = graph.limited(root).filter(|_| is_solid);
+        let surface = limited.map_or(root, |[f, _]| f);
+        let mut solid = surface;
         if let Some(thickness) = self.thickness {
             graph.let_zero_annihilate();
-            let apart = by_signs(graph, root, &mut Vec::new());
+            let apart = by_signs(graph, surface, &mut Vec::new());
             solid = thickened(graph, apart, thickness);
+        }
+        if let Some([_, limit]) = limited {
+            solid = graph.binary(Binary::Max, solid, limit);
         }
         if let Some(bounds) = &self.closed {
             for axis in 0..3_u8 {
@@ -74,17 +81,78 @@ impl Solid {
 fn thickened(graph: &mut Graph, root: Id, thickness: f64) -> Id {
     let half = graph.constant(0.5 * thickness);
     let mut sheets = SheetBuilder { graph, half, left: MAX_SHEETS };
-    let zero = sheets.graph.constant(0.0);
-    let [above, below] =
-        [false, true].map(|is_negative| sheets.side(&Signed { node: root, is_negative, shift: zero }));
+    let [above, below] = [false, true].map(|is_negative| {
+        let f = Signed::of(sheets.graph, root, is_negative);
+        sheets.side(f)
+    });
     graph.binary(Binary::Max, above, below)
 }
 
 /// The function shift + node, or shift − node; the shift depends on no coordinate.
-struct Signed {
-    node: Id,
+#[derive(Clone, Copy)]
+pub(super) struct Signed {
+    pub(super) node: Id,
     is_negative: bool,
     shift: Id,
+}
+
+/// What a function is at its root, as far as its sign goes.
+pub(super) enum Opened {
+    /// The greater or the lesser of two functions.
+    Both { is_max: bool, operands: [Signed; 2] },
+    /// The third where the first node is at most the second, else the fourth.
+    Chosen([Id; 2], [Signed; 2]),
+    /// None of these.
+    Face(Signed),
+}
+
+impl Signed {
+    /// The function of a node, or its negative.
+    pub(super) fn of(graph: &mut Graph, node: Id, is_negative: bool) -> Self {
+        Self { node, is_negative, shift: graph.constant(0.0) }
+    }
+
+    /// The node of the function.
+    pub(super) fn value(&self, graph: &mut Graph) -> Id {
+        if self.is_negative { graph.sub(self.shift, self.node) } else { graph.add(self.node, self.shift) }
+    }
+
+    /// Takes signs, summands without coordinates and positive factors away, and tells what is left.
+    pub(super) fn opened(self, graph: &mut Graph) -> Opened {
+        let Self { node, is_negative, shift } = self;
+        let shifted = |node: Id, shift: Id| Self { node, is_negative, shift };
+        let turned = |node: Id, shift: Id| Self { node, is_negative: !is_negative, shift };
+        let moved = |graph: &mut Graph, u: Id| {
+            if is_negative { graph.sub(shift, u) } else { graph.add(shift, u) }
+        };
+        match graph.node(node) {
+            Node::Unary(Unary::Neg, u) => turned(u, shift).opened(graph),
+            Node::Binary(Binary::Add, v, u) if graph.is_uniform(u) => {
+                let shift = moved(graph, u);
+                shifted(v, shift).opened(graph)
+            }
+            Node::Binary(Binary::Sub, u, v) if graph.is_uniform(u) => {
+                let shift = moved(graph, u);
+                turned(v, shift).opened(graph)
+            }
+            // The zeros are those of v + shift/factor.
+            Node::Binary(Binary::Mul, v, u) if graph.as_constant(u).is_some_and(|u| u != 0.0) => {
+                let size = graph.unary(Unary::Abs, u);
+                let shift = graph.div(shift, size);
+                let is_reversed = graph.as_constant(u) < Some(0.0);
+                if is_reversed { turned(v, shift) } else { shifted(v, shift) }.opened(graph)
+            }
+            Node::Binary(operation @ (Binary::Min | Binary::Max), a, b) => Opened::Both {
+                is_max: (operation == Binary::Max) != is_negative,
+                operands: [shifted(a, shift), shifted(b, shift)],
+            },
+            Node::Unary(Unary::Abs, u) => {
+                Opened::Both { is_max: !is_negative, operands: [shifted(u, shift), turned(u, shift)] }
+            }
+            Node::Select(_, a, b, u, v) => Opened::Chosen([a, b], [shifted(u, shift), shifted(v, shift)]),
+            _ => Opened::Face(self),
+        }
+    }
 }
 
 struct SheetBuilder<'a> {
@@ -97,58 +165,32 @@ struct SheetBuilder<'a> {
 
 impl SheetBuilder<'_> {
     /// The node of a function that is at most 0 where f/|∇f| ≤ t/2, for the function f.
-    fn side(&mut self, f: &Signed) -> Id {
-        let &Signed { node, is_negative, shift } = f;
-        let shifted = |node: Id, shift: Id| Signed { node, is_negative, shift };
-        let turned = |node: Id, shift: Id| Signed { node, is_negative: !is_negative, shift };
-        let is_uniform = |graph: &Graph, id: Id| graph.is_uniform(id);
-        match self.graph.node(node) {
-            Node::Unary(Unary::Neg, u) => self.side(&turned(u, shift)),
-            Node::Binary(Binary::Add, v, u) if is_uniform(self.graph, u) => {
-                let shift = if is_negative { self.graph.sub(shift, u) } else { self.graph.add(shift, u) };
-                self.side(&shifted(v, shift))
-            }
-            Node::Binary(Binary::Sub, u, v) if is_uniform(self.graph, u) => {
-                let shift = if is_negative { self.graph.sub(shift, u) } else { self.graph.add(shift, u) };
-                self.side(&turned(v, shift))
-            }
-            // The zeros are those of v + shift/factor.
-            Node::Binary(Binary::Mul, v, u) if self.graph.as_constant(u).is_some_and(|u| u != 0.0) => {
-                let size = self.graph.unary(Unary::Abs, u);
-                let shift = self.graph.div(shift, size);
-                let is_reversed = self.graph.as_constant(u) < Some(0.0);
-                self.side(&if is_reversed { turned(v, shift) } else { shifted(v, shift) })
-            }
-            Node::Binary(operation @ (Binary::Min | Binary::Max), a, b) if self.left > 1 => {
-                let is_max = (operation == Binary::Max) != is_negative;
-                self.both(is_max, &shifted(a, shift), &shifted(b, shift))
-            }
-            Node::Unary(Unary::Abs, u) if self.left > 1 => {
-                self.both(!is_negative, &shifted(u, shift), &turned(u, shift))
-            }
-            Node::Select(_, a, b, u, v) if self.left > 1 => {
+    fn side(&mut self, f: Signed) -> Id {
+        match f.opened(self.graph) {
+            Opened::Face(face) => self.sheet(face),
+            _ if self.left <= 1 => self.sheet(f),
+            Opened::Both { is_max, operands } => {
                 self.left -= 1;
-                let (u, v) = (self.side(&shifted(u, shift)), self.side(&shifted(v, shift)));
-                self.graph.select(a, b, u, v)
+                let [a, b] = operands.map(|operand| self.side(operand));
+                self.graph.binary(if is_max { Binary::Max } else { Binary::Min }, a, b)
             }
-            _ => {
-                let gradient = derivative::gradient(self.graph, node);
-                let squares = gradient.map(|slope| self.graph.power(slope, 2));
-                let sum = self.graph.add(squares[0], squares[1]);
-                let sum = self.graph.add(sum, squares[2]);
-                let slope = self.graph.unary(Unary::Sqrt, sum);
-                let value =
-                    if is_negative { self.graph.sub(shift, node) } else { self.graph.add(node, shift) };
-                let offset = self.graph.mul(slope, self.half);
-                self.graph.sub(value, offset)
+            Opened::Chosen([a, b], operands) => {
+                self.left -= 1;
+                let [u, v] = operands.map(|operand| self.side(operand));
+                self.graph.select(a, b, u, v)
             }
         }
     }
 
-    /// The greater or the lesser of two functions, each with its own gradient.
-    fn both(&mut self, is_max: bool, a: &Signed, b: &Signed) -> Id {
-        self.left -= 1;
-        let (a, b) = (self.side(a), self.side(b));
-        self.graph.binary(if is_max { Binary::Max } else { Binary::Min }, a, b)
+    /// The node of f − t/2 |∇f|.
+    fn sheet(&mut self, f: Signed) -> Id {
+        let gradient = derivative::gradient(self.graph, f.node);
+        let squares = gradient.map(|slope| self.graph.power(slope, 2));
+        let sum = self.graph.add(squares[0], squares[1]);
+        let sum = self.graph.add(sum, squares[2]);
+        let slope = self.graph.unary(Unary::Sqrt, sum);
+        let value = f.value(self.graph);
+        let offset = self.graph.mul(slope, self.half);
+        self.graph.sub(value, offset)
     }
 }

@@ -222,10 +222,10 @@ impl Parser<'_> {
             }
             self.definition(end)?;
         }
-        let (left, right) = self.surface()?;
+        let surface = self.surface()?;
         let definitions =
             core::mem::take(&mut self.definitions).into_iter().map(|(definition, _)| definition).collect();
-        Ok(Equation { definitions, left, right })
+        Ok(Equation { definitions, ..surface })
     }
 
     /// Skips what a program has before the body of a function of the coordinates: `def f(x, y,
@@ -347,13 +347,14 @@ impl Parser<'_> {
     }
 
     /// Parses the last statement.
-    fn surface(&mut self) -> Result<(Expr, Option<Expr>), FormulaError> {
+    fn surface(&mut self) -> Result<Equation, FormulaError> {
         let end = self.end_of_statement();
         let is_program =
             self.take_return() || !self.definitions.is_empty() || self.tokens[end].token == Token::Separator;
         let named = self.skip_head(is_program, end)?;
         let left = self.value()?;
         let right = if self.take(&Token::Equals) { Some(self.value()?) } else { None };
+        let region = self.region()?;
         match self.peek().token {
             Token::Separator | Token::End => {}
             Token::Equals => return Err(self.second_equation()),
@@ -364,7 +365,7 @@ impl Parser<'_> {
         }
         check_conditions(&left)?;
         right.as_ref().map_or(Ok(()), check_conditions)?;
-        let equation = Equation { definitions: Vec::new(), left, right };
+        let equation = Equation { definitions: Vec::new(), left, right, region };
         // Of functions that are written as one name it is asked elsewhere.
         let is_lone = |(name, _): &(String, Range<usize>)| readings(name, &[], false).is_empty();
         if let Some((name, span)) = named.filter(is_lone).filter(|_| equation.looks_like_definition()) {
@@ -380,7 +381,7 @@ impl Parser<'_> {
                 error(message).suggest("").unknown(&name)
             });
         }
-        Ok((equation.left, equation.right))
+        Ok(equation)
     }
 
     /// Skips the head of the surface, `f(x, y, z) =`, `f =` in a program, `@(x, y, z)`. Returns the

@@ -187,6 +187,7 @@ impl Creases {
         if let Some(cell) = unit_cell {
             creases.repeat(probe, &cell, step);
         }
+        creases.end_at_limits(probe);
         creases.is_open = !cells.is_empty() && !creases.are_there();
         creases.evaluations = probe.evaluations() - start;
         creases
@@ -283,6 +284,30 @@ impl Creases {
             if !patches.is_empty() {
                 corner.patches.retain(|patch| patches.contains(patch));
             }
+        }
+    }
+
+    /// Leaves out the patches that limit the surface, and the curves and corners where only these
+    /// meet. The curves that are left are its rim.
+    fn end_at_limits(&mut self, probe: &mut Probe) {
+        if !probe.field.has_limits() {
+            return;
+        }
+        let mut keep = |patches: &mut Vec<u32>| {
+            patches.retain(|&patch| !probe.field.is_limit(patch));
+            !patches.is_empty()
+        };
+        self.curves.retain_mut(|curve| keep(&mut curve.patches));
+        let mut place = Vec::with_capacity(self.corners.len());
+        let mut kept = 0;
+        for corner in &mut self.corners {
+            let is_kept = keep(&mut corner.patches);
+            place.push(is_kept.then_some(kept));
+            kept += usize::from(is_kept);
+        }
+        self.corners.retain(|corner| !corner.patches.is_empty());
+        for curve in &mut self.curves {
+            curve.corners = curve.corners.map(|corner| corner.and_then(|corner| place[corner]));
         }
     }
 

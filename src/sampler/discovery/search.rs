@@ -9,7 +9,7 @@ use crate::sampler::discovery::audit::{Audit, Audited, EXPLORED, UNITS, explore}
 use crate::sampler::discovery::completeness::{Doubt, Sampled, Search};
 use crate::sampler::discovery::nearness::{Nearness, nearest};
 use crate::sampler::discovery::octree::{Octree, Seed, Witness};
-use crate::sampler::discovery::sheets::{ExactPoint, Prover, Segment, TOGETHER};
+use crate::sampler::discovery::sheets::{ExactPoint, Prover, Segment, TOGETHER, value_at};
 use crate::sampler::discovery::singular::Singular;
 use crate::sampler::probe::Probe;
 use crate::sampler::projection::Tolerance;
@@ -97,8 +97,15 @@ impl ComponentSearch {
     fn starts(&mut self, field: &mut dyn Bounded, bounds: &Bounds, tolerance: Tolerance) -> Vec<Witness> {
         let slack = f64::from(2.0 * tolerance.residual);
         let mut prover = Prover { field, factor: 0, slack, region: self.octree.region };
-        // A zero of a branch that does not give f there is no point of the surface.
-        self.octree.witnesses.retain(|witness| prover.field.is_zero_of(witness.factor, witness.position));
+        // A zero of a branch that does not give f there is no point of the surface. It is asked a
+        // little outside: where two bodies share a face, each of two branches gives f on its inner
+        // side alone.
+        self.octree.witnesses.retain(|&Witness { position, factor }| {
+            let (value, gradient) = value_at(&mut *prover.field, factor, position);
+            let outside = (slack * gradient.length() - value) / gradient.length_squared();
+            let outside = if outside.is_finite() { position + outside * gradient } else { position };
+            prover.field.gives(factor, outside)
+        });
         self.octree.witnesses = thinned_out(&mut prover, &self.octree.witnesses);
         // A witness whose component lies in the margin alone is not needed.
         let start = |&Witness { position, factor }: &Witness| {

@@ -50,6 +50,8 @@ pub(crate) struct Survey {
     pub(crate) touches: bool,
     /// A place where f comes to zero on a curve or at a point alone, if one was seen.
     pub(crate) bare: Option<DVec3>,
+    /// Whether points were left out because they lie beyond the limits of the surface.
+    is_limited: bool,
     /// Share of the nodes of the grid at which f has a value.
     pub(crate) defined: f64,
     /// Why the survey has no points, where it has none.
@@ -78,6 +80,8 @@ pub(crate) enum Absence {
     NotSeen,
     /// f comes to zero on curves and at points alone.
     Bare,
+    /// Nothing of the surface is within its limits.
+    Limited,
 }
 
 /// Candidates for points of the surface, and the range of the values on the grid.
@@ -274,7 +278,11 @@ pub(crate) fn survey(probe: &mut Probe, bounds: &Bounds, dense: Option<u32>) -> 
     measure_precision(probe, bounds, spacing, &mut out);
     if out.position.is_empty() {
         out.area = 0.0;
-        out.absence = if out.bare.is_some() { Absence::Bare } else { found.absence() };
+        out.absence = match out.bare {
+            Some(_) => Absence::Bare,
+            None if out.is_limited => Absence::Limited,
+            None => found.absence(),
+        };
     }
     out
 }
@@ -300,6 +308,15 @@ fn project(probe: &mut Probe, bounds: &Bounds, starts: Starts, spacing: f32, out
     if branch.is_some() {
         for (landed, &place) in landed.iter_mut().zip(&*start) {
             *landed = landed.filter(|&normal| own.is_on_patch(place, normal, spacing, branch));
+        }
+    }
+    if probe.field.has_limits() {
+        for (k, landed) in landed.iter_mut().enumerate() {
+            if landed.is_some() && probe.field.is_beyond_limits(start[k].as_dvec3()) {
+                out.area -= f64::from(areas[k].unwrap_or(0.0));
+                out.is_limited = true;
+                *landed = None;
+            }
         }
     }
     let touching = touching(probe, start, &landed, is_unsure, LARGEST * spacing);

@@ -185,6 +185,7 @@ impl Range {
             return NOTHING;
         }
         match operation {
+            Unary::Limit => self,
             Unary::Neg | Unary::Sqrt | Unary::Abs | Unary::Sign | Unary::Sin | Unary::Cos => {
                 unreachable!("computed in rows")
             }
