@@ -2,6 +2,7 @@
 /* eslint-disable */
 import type {
     Answer,
+    Code,
     Description,
     Fault,
     FieldAnswer,
@@ -29,6 +30,11 @@ export class Core {
      * Ends the run and keeps the particles: `Progress`.
      */
     cancel(): Progress;
+    /**
+     * The program that makes the particles of the last run, in the language of this word (`rust`,
+     * `js`, `python` or `shell`): an `Answer` with `Code`.
+     */
+    code(language: string): Answer<Code, string>;
     /**
      * Component of each particle, 0 the largest, from the last report; 0xffffffff for none.
      */
