@@ -53,6 +53,12 @@ impl Core {
         Self { session: Session::new() }
     }
 
+    /// A session whose first formula is that of no surface of the gallery, whatever its text.
+    pub fn without_surface() -> Self {
+        console_error_panic_hook::set_once();
+        Self { session: Session::without_surface() }
+    }
+
     /// The description of all settings, surfaces and figures: `Description`.
     #[wasm_bindgen(unchecked_return_type = "Description")]
     pub fn describe(&self) -> JsValue {

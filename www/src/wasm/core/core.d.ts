@@ -220,6 +220,10 @@ export class Core {
      * Natural neighbours per particle, as of the last report.
      */
     valence(): Uint8Array<ArrayBuffer>;
+    /**
+     * A session whose first formula is that of no surface of the gallery, whatever its text.
+     */
+    static without_surface(): Core;
 }
 
 export type InitInput = RequestInfo | URL | Response | BufferSource | WebAssembly.Module;
