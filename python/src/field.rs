@@ -3,7 +3,7 @@
 use crate::errors;
 use marching_particles::glam::DVec3;
 use marching_particles::pointcloud::job::Job;
-use marching_particles::{BatchField, Bounds, Formula};
+use marching_particles::{BatchField, Bounds, Combined, Formula};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -11,10 +11,13 @@ use std::sync::Arc;
 /// Slices of a fit between two looks for Ctrl-C, of about a millisecond each.
 const FIT_SLICES: u32 = 50;
 
+/// A field that is shared.
+type Shared = Arc<dyn marching_particles::Field>;
+
 /// A field, with the box of its surface where it is known.
 #[pyclass(frozen, module = "marching_particles._core")]
 pub(crate) struct Field {
-    pub(crate) field: Arc<dyn marching_particles::Field>,
+    pub(crate) field: Shared,
     pub(crate) bounds: Option<Bounds>,
 }
 
@@ -36,7 +39,7 @@ impl Field {
     #[pyo3(signature = (values, gradients=None))]
     fn function(values: Py<PyAny>, gradients: Option<Py<PyAny>>) -> Self {
         let field = BatchField::new(move |points: &[DVec3], f: &mut [f64]| call(&values, points, f));
-        let field: Arc<dyn marching_particles::Field> = match gradients {
+        let field: Shared = match gradients {
             None => Arc::new(field),
             Some(gradients) => Arc::new(field.with_gradients(move |points: &[DVec3], out: &mut [DVec3]| {
                 call(&gradients, points, bytemuck::cast_slice_mut(out))
@@ -67,10 +70,58 @@ impl Field {
         })
     }
 
+    /// The union, in a box around those of both fields if they are known.
+    fn union(&self, other: &Self) -> Self {
+        self.with(other, |a, b| marching_particles::union(a, b), self.joined(other))
+    }
+
+    /// The intersection, which lies in the box of either field.
+    fn intersection(&self, other: &Self) -> Self {
+        self.with(other, |a, b| marching_particles::intersection(a, b), self.bounds.or(other.bounds))
+    }
+
+    /// The difference, which lies in the box of this field.
+    fn difference(&self, other: &Self) -> Self {
+        self.with(other, |a, b| marching_particles::difference(a, b), self.bounds)
+    }
+
+    /// The smooth union. A smooth minimum is below the lesser value by a sixth of the width at
+    /// most: the box has room for it.
+    fn smooth_union(&self, other: &Self, width: f64) -> Self {
+        let bounds = self.joined(other).map(|bounds| bounds.enlarged(width / 6.0));
+        self.with(other, |a, b| marching_particles::smooth_union(a, b, width), bounds)
+    }
+
+    /// The field less the distance.
+    fn offset(&self, distance: f64) -> Self {
+        let bounds = self.bounds.map(|bounds| bounds.enlarged(distance.max(0.0)));
+        Self::combined(marching_particles::offset(Arc::clone(&self.field), distance), bounds)
+    }
+
     /// Corners of the box of the surface, if it is known.
     #[getter]
     fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
         self.bounds.map(|bounds| (bounds.min, bounds.max))
+    }
+}
+
+impl Field {
+    fn combined(field: Combined, bounds: Option<Bounds>) -> Self {
+        Self { field: Arc::new(field), bounds }
+    }
+
+    fn with(
+        &self,
+        other: &Self,
+        rule: impl FnOnce(Shared, Shared) -> Combined,
+        bounds: Option<Bounds>,
+    ) -> Self {
+        Self::combined(rule(Arc::clone(&self.field), Arc::clone(&other.field)), bounds)
+    }
+
+    /// The box around those of both fields.
+    fn joined(&self, other: &Self) -> Option<Bounds> {
+        self.bounds.zip(other.bounds).map(|(own, other)| own.joined(&other))
     }
 }
 

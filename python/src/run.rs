@@ -16,13 +16,14 @@ const REPORT_SLICES: u32 = 500;
 
 /// Samples a field. The GIL is released but for calls of functions of Python.
 #[pyfunction]
-#[pyo3(signature = (field, *, count, radius, bounds, adaptive, refined, seed, measure, progress))]
+#[pyo3(signature = (field, *, count, radius, share, bounds, adaptive, refined, seed, measure, progress))]
 #[expect(clippy::too_many_arguments, reason = "they are named, and Python's")]
 pub(crate) fn sample(
     py: Python<'_>,
     field: &Field,
     count: Option<u32>,
     radius: Option<f64>,
+    share: Option<f64>,
     bounds: Option<([f64; 3], [f64; 3])>,
     adaptive: bool,
     refined: bool,
@@ -30,9 +31,10 @@ pub(crate) fn sample(
     measure: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Sample> {
+    let radius = radius.map(Radius::Length).or(share.map(Radius::Share));
     let mut settings = match (count, radius) {
         (Some(count), _) => Settings::with_count(count),
-        (None, Some(length)) => Settings::with_radius(Radius::Length(length)),
+        (None, Some(radius)) => Settings::with_radius(radius),
         (None, None) => Settings::default(),
     }
     .seeded(seed);

@@ -54,6 +54,9 @@ def test_an_unknown_parameter_is_named():
         ({"radius": float("nan")}, ValueError, "radius is nan"),
         ({"radius": 100.0, "bounds": BOX}, ValueError, "radius is 100, but must lie between"),
         ({"spacing": "wide"}, TypeError, "spacing must be a number"),
+        ({"radius": "wide"}, ValueError, "a share of the diagonal of the box such as"),
+        ({"radius": "nan%"}, ValueError, "and not 'nan%'"),
+        ({"radius": "50%"}, ValueError, "radius_share is 0.5, but must lie between"),
         ({"spacing": 0.1, "adaptive": True}, ValueError, "with adaptive=True give count"),
         ({"method": "fast"}, ValueError, "method is 'fast', but must be one of 'front', 'refined'"),
         ({"seed": -1}, ValueError, "seed is -1"),
@@ -74,7 +77,7 @@ def test_arguments(arguments, kind, says):
 
 
 def test_a_field_of_another_type():
-    with pytest.raises(TypeError, match=r"a formula \(str\), a function or a Model, and not int"):
+    with pytest.raises(TypeError, match=r"field must be a formula \(str\), .* and not int"):
         mp.sample(3)
     with pytest.raises(TypeError, match="params belongs to a formula"):
         mp.sample(sphere, params={"a": 1})

@@ -3,6 +3,7 @@
 import ast
 import doctest
 import inspect
+import json
 import re
 import threading
 import time
@@ -71,6 +72,25 @@ def test_the_spacing_is_twice_the_radius():
     spacing = mp.sample("x^2+y^2+z^2=1", spacing=0.2)
     np.testing.assert_array_equal(radius.points, spacing.points)
     np.testing.assert_allclose(radius.radii, 0.1, rtol=1e-6)
+
+
+def test_a_radius_may_be_a_share_of_the_diagonal():
+    ball = mp.sample("x^2+y^2+z^2=1", radius="2 %", bounds=BOX)
+    np.testing.assert_allclose(ball.radii, 0.02 * 3 * 3**0.5, rtol=1e-6)
+    usual = mp.sample("x^2+y^2+z^2=1", bounds=BOX, measure=False)
+    same = mp.sample("x^2+y^2+z^2=1", radius="0.6%", bounds=BOX, measure=False)
+    np.testing.assert_array_equal(usual.points, same.points)
+
+
+CASES = json.loads((Path(__file__).parents[2] / "tests/golden/code.json").read_text("utf-8"))
+PRINTED = [case for case in CASES if case["programs"]["python"].startswith("import ")]
+
+
+@pytest.mark.parametrize("case", PRINTED, ids=lambda case: " ".join(case["arguments"]))
+def test_a_program_that_the_command_line_prints_makes_the_same_particles(case):
+    names = {}
+    exec(case["programs"]["python"], names)
+    assert names["particles"].report["digest"] == case["digest"]
 
 
 def test_adaptive_radii_follow_the_curvature():
@@ -217,19 +237,20 @@ def test_the_stub_has_the_signatures_of_the_package():
     stub = ast.parse((Path(mp.__file__).parent / "__init__.pyi").read_text())
     names = {node.name: node for node in stub.body if hasattr(node, "name")}
     assert set(mp.__all__) - {"__version__"} == set(names)
-    for name in ("sample", "fit_points"):
+    for name in ("sample", "field", "fit_points"):
         arguments = names[name].args
         defaults = zip(arguments.kwonlyargs, arguments.kw_defaults)
         given = {argument.arg: ast.literal_eval(default) for argument, default in defaults}
         signature = inspect.signature(getattr(mp, name)).parameters.values()
         assert given == {p.name: p.default for p in signature if p.kind is p.KEYWORD_ONLY}
-    for kind in ("Sample", "Model", "Mesh", "Warning"):
+    for kind in ("Sample", "Field", "Model", "Mesh", "Warning"):
         body = names[kind].body
         stated = {getattr(node, "name", None) or node.target.id for node in body}
         real = getattr(mp, kind)
         known = {name for name in vars(real) if not name.startswith("_")} | {"__len__"}
-        # Those of a model are set when it is made.
-        fields = {"bounds", "report", "warnings"} if kind == "Model" else set()
+        # Those of a field are set when it is made.
+        set_later = {"Field": {"bounds"}, "Model": {"bounds", "report", "warnings"}}
+        fields = set(set_later.get(kind, ()))
         fields |= set(getattr(real, "_fields", ()))
         assert stated | {"__len__"} == known | fields
 

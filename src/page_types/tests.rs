@@ -9,7 +9,7 @@ use crate::pointcloud::job;
 use crate::quality::Measurements;
 use crate::run::{Measured, Measures, MeshAnswer, Report, Start};
 use crate::sampler::Progress;
-use crate::session::{Description, Fault, FieldAnswer, FieldRequest, FileRecord, FileRequest};
+use crate::session::{Code, Description, Fault, FieldAnswer, FieldRequest, FileRecord, FileRequest};
 use std::collections::BTreeMap;
 use std::path::Path;
 use ts_rs::{Config, TS, TypeVisitor};
@@ -78,6 +78,7 @@ fn types_of_the_page_are_those_of_the_core() {
     declarations.add::<FieldAnswer>();
     declarations.add::<FileRequest>();
     declarations.add::<FileRecord>();
+    declarations.add::<Code>();
     declarations.add::<Fault>();
     declarations.add::<Start>();
     declarations.add::<Progress>();

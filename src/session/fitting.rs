@@ -172,6 +172,8 @@ pub(super) struct Fitting {
     pub(super) is_settled: bool,
     /// Whether the present clip box was fitted.
     pub(super) is_fitted: bool,
+    /// Whether it is larger than the fitted one, because it held another before.
+    pub(super) is_grown: bool,
 }
 
 impl Fitting {
@@ -251,7 +253,9 @@ impl Session {
         }?;
         let clip = found.with_room(|bounds| settings_in(bounds).largest_share(bounds));
         let before = (only_grows && self.fitting.is_fitted).then_some(self.clip);
-        Some((before.map_or(clip, |before| clip.joined(&before)), Some(found.reach)))
+        let grown = before.map_or(clip, |before| clip.joined(&before));
+        self.fitting.is_grown = grown != clip;
+        Some((grown, Some(found.reach)))
     }
 
     /// Takes the solid that is made of the surface in a clip box as the field of the next run.

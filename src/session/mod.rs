@@ -1,12 +1,14 @@
 //! The session of a user: a field that is changed by requests, and runs on it. Commands go in,
 //! changes and reports come out; there is no clock, no GPU and no platform in here.
 
+mod code;
 mod describe;
 mod fault;
 mod fitting;
 mod record;
 mod setting;
 
+pub use code::{Code, Language};
 pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, describe};
 pub use fault::{Excess, Fault, FaultKind};
 pub use fitting::{BoxCell, BoxFaces, BoxMode, SolidSettings};
@@ -156,6 +158,8 @@ pub struct Session {
     fitting: Fitting,
     /// The record of the present run.
     made: Option<FileRecord>,
+    /// Whether the box of the present run is the one that a search for it finds.
+    is_box_found: bool,
     /// The settings of the last start.
     started: Option<Settings>,
 }
@@ -180,6 +184,7 @@ impl Session {
             reach: None,
             fitting: Fitting::default(),
             made: None,
+            is_box_found: false,
             started: None,
         }
     }
@@ -478,6 +483,7 @@ impl Session {
         }
         self.fitting.is_settled = false;
         self.made = self.beginning(settings);
+        self.is_box_found = self.fitting.is_fitted && !self.fitting.is_grown;
         self.started = Some(*settings);
         self.run.begin(settings)
     }

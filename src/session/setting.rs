@@ -260,12 +260,16 @@ choices!(GAPS of GapPolicy: Fill "fill" "Fill", Leave "leave" "Leave");
 /// Every setting, in the order in which they are shown.
 #[must_use]
 pub fn settings() -> Vec<Setting> {
+    with_values(&Settings::DEFAULT)
+}
+
+/// Every setting, with the value that `run` has in the place of the default.
+pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
     let log = |setting| Setting { scale: SettingScale::Log, ..setting };
     let share = |setting| Setting { unit: "%", ..log(setting) };
     let particles = |setting| Setting { unit: "particles", ..log(setting) };
     let advanced = |setting| Setting { group: SettingGroup::Advanced, ..setting };
     let of_box = |setting| Setting { group: SettingGroup::Box, ..setting };
-    let run = Settings::DEFAULT;
     let thicknesses = SolidSettings::THICKNESSES;
     vec![
         of_box(choice(

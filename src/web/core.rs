@@ -8,7 +8,7 @@ use crate::field::rbf::RbfData;
 use crate::particles::Particles;
 use crate::sampler::{Sampling, Settings};
 use crate::session::{
-    Fault, FaultKind, FieldRequest, FileRecord, FileRequest, Session, SolidSettings, describe,
+    Fault, FaultKind, FieldRequest, FileRecord, FileRequest, Language, Session, SolidSettings, describe,
 };
 use glam::{DVec3, Vec3};
 use js_sys::{Float64Array, Function};
@@ -20,6 +20,7 @@ use wasm_bindgen::{JsCast, JsValue};
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = r"import type {
   Answer,
+  Code,
   Description,
   Fault,
   FieldAnswer,
@@ -50,6 +51,12 @@ impl Core {
     pub fn new() -> Self {
         console_error_panic_hook::set_once();
         Self { session: Session::new() }
+    }
+
+    /// A session whose first formula is that of no surface of the gallery, whatever its text.
+    pub fn without_surface() -> Self {
+        console_error_panic_hook::set_once();
+        Self { session: Session::without_surface() }
     }
 
     /// The description of all settings, surfaces and figures: `Description`.
@@ -375,6 +382,14 @@ impl Core {
     #[wasm_bindgen(unchecked_return_type = "FileRecord | null")]
     pub fn record(&self) -> JsValue {
         to_js(&self.session.record(None))
+    }
+
+    /// The program that makes the particles of the last run, in the language of this word (`rust`,
+    /// `js`, `python` or `shell`): an `Answer` with `Code`.
+    #[wasm_bindgen(unchecked_return_type = "Answer<Code, string>")]
+    pub fn code(&self, language: &str) -> JsValue {
+        let language = Language::named(language).ok_or_else(|| format!("there is no language `{language}`"));
+        answer(language.and_then(|language| self.session.code(language)))
     }
 
     /// Digest of the particle columns, 16 hexadecimal digits.

@@ -12,6 +12,8 @@ mod branches;
 mod cases;
 #[cfg(feature = "cli")]
 mod cli;
+#[cfg(feature = "cli")]
+mod code;
 mod combined;
 mod components;
 mod counts;

@@ -184,8 +184,9 @@ class Sample {
    */
   async moved(params, options = {}) {
     this.#check('moved');
-    if (this.#how.request.formula === undefined)
-      throw new InputError('moved(): a formula has parameters, a function or points have none. Sample again.');
+    const { formula, cloud } = this.#how.request;
+    if (formula === undefined || cloud)
+      throw new InputError('moved(): it is for a formula by itself, not for a function or points. Sample again.');
     const parameters = { ...this.params, ...paramsOf(params) };
     const how = { ...this.#how, ...checkedCalls(options) };
     if (how.signal?.aborted) throw how.signal.reason;

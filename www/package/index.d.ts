@@ -15,7 +15,10 @@ export interface Progress {
   fraction: number;
 }
 export interface Options {
-  /** wanted number of particles, met within 3 %; 20,000 where no size is given */
+  /**
+   * wanted number of particles, met within 3 %. Where no size is given it is 20,000; adaptive
+   * particles keep close to the surface then
+   */
   count?: number;
   /** half of the distance between neighbours, as a share of the box diagonal: 0.0001 to 0.2 */
   radius?: number;
@@ -23,6 +26,11 @@ export interface Options {
   spacing?: number;
   /** the box that is sampled; without it one that fits the surface */
   bounds?: Bounds;
+  /**
+   * of points: a formula that names their surface `model`, as an operand of max, min, smin, smax or
+   * abs, or with a number that is added: `max(model, z)` cuts it
+   */
+  formula?: string;
   /** values of the names in the formula */
   params?: Record<string, number>;
   /** whether particles are small where the surface bends and large where it is flat */

@@ -46,7 +46,18 @@ function boundsOf(bounds) {
 }
 
 const SIZES = ['count', 'radius', 'spacing'];
-const KNOWN = [...SIZES, 'bounds', 'params', 'adaptive', 'method', 'seed', 'measure', 'signal', 'onProgress'];
+const KNOWN = [
+  ...SIZES,
+  'bounds',
+  'formula',
+  'params',
+  'adaptive',
+  'method',
+  'seed',
+  'measure',
+  'signal',
+  'onProgress',
+];
 
 /** @param {Pick<Options, 'signal' | 'onProgress'>} options */
 export function checkedCalls({ signal, onProgress }) {
@@ -110,6 +121,11 @@ function fieldOf(field) {
 function sizeOf(options) {
   const [first, second] = SIZES.filter((name) => options[/** @type {keyof Options} */ (name)] !== undefined);
   if (second) throw new InputError(`${first}, ${second}: one of the two, not both.`);
+  if (options.adaptive === true && first !== 'count') {
+    // The curvature gives the size.
+    if (first === undefined) return {};
+    throw new InputError(`${first}: for particles of one size. Adaptive ones take a count, or no size.`);
+  }
   const { count = 20_000, radius, spacing } = options;
   if (radius !== undefined) {
     const isShare = (/** @type {number} */ r) => r >= 0.0001 && r <= 0.2;
@@ -123,6 +139,17 @@ function sizeOf(options) {
 }
 
 /**
+ * The formula in which the surface of points is an operand.
+ * @param {unknown} formula @param {{cloud?: unknown}} what
+ */
+function modelFormula(formula, { cloud }) {
+  if (cloud === undefined)
+    throw new InputError('formula: for points, whose surface it names model. Else the formula is the field.');
+  if (typeof formula === 'string') return { formula };
+  throw new InputError(`formula: a text such as 'max(model, z)', not ${shown(formula)}.`);
+}
+
+/**
  * What the sampler is asked for.
  * @param {unknown} field @param {Options} options
  */
@@ -133,13 +160,14 @@ export function checked(field, options) {
   const unknown = Object.keys(options).find((name) => !KNOWN.includes(name));
   if (unknown !== undefined)
     throw new InputError(`${unknown}: there is no such option. There are ${KNOWN.join(', ')}.`);
-  const { bounds, params, adaptive = false, method, seed, measure = true } = options;
+  const { bounds, formula, params, adaptive = false, method, seed, measure = true } = options;
   /** @type {Record<string, number | string>} */
   const settings = { max_particles: 4_400_000, ...sizeOf(options) };
   if (flag('adaptive', adaptive)) settings.sampling = 'adaptive';
   if (method !== undefined) settings.method = choice('method', method, ['front', 'refined']);
   if (seed !== undefined)
     settings.seed = number('seed', seed, (n) => Number.isSafeInteger(n) && n >= 0, 'a whole number from 0 on');
+  if (formula !== undefined) Object.assign(what, modelFormula(formula, what));
   if (params !== undefined && what.formula === undefined)
     throw new InputError('params: a formula has parameters, a function or points have none.');
   /** @type {SentField} */

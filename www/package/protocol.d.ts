@@ -11,7 +11,10 @@ export type Asked =
   | { type: 'file'; id: number; of: number; format: string };
 /** What is said besides: `stop` ends a request, `free` gives a sample up. */
 export type Said = { type: 'stop'; id: number } | { type: 'free'; id: number };
-/** A formula, points, or a function of the program, which is sent in its own thread alone. */
+/**
+ * A formula; points, with or without a formula whose operand their surface is; or a function of the
+ * program, which is sent in its own thread alone.
+ */
 export type SentField = Pick<Partial<FieldRequest>, 'formula' | 'bounds'> & {
   parameters: Record<string, number>;
   cloud?: Cloud;

@@ -168,7 +168,7 @@ export function serve({ post, load }) {
   /** @param {Asked} message @returns {Promise<[object, ArrayBufferLike[]]>} */
   async function answer(message) {
     if (message.type === 'sample') {
-      const core = new Core();
+      const core = Core.without_surface();
       core.limit_memory(MEMORY_MB);
       try {
         const result = await made(message, core);

@@ -14,7 +14,8 @@ use crate::step;
 const LABEL: &str = "python";
 
 /// Builds the wheel as it would be published, installs it in a fresh environment, and runs its
-/// tests there. Without Python the check is skipped, and the reason is printed.
+/// tests there. Without Python the check is skipped, and without what the notebook takes the
+/// notebook; the reason is printed.
 ///
 /// # Errors
 ///
@@ -44,6 +45,13 @@ pub(crate) fn test(project: &Project) -> Result<()> {
     let mut install = fresh.pip();
     install.arg(wheel).arg("--requirement").arg(sources.join("tests/requirements.txt"));
     step::run("python: install it, and what it is tested with", &mut install, "Is PyPI reachable?")?;
+    let mut install = fresh.pip();
+    install.arg("--requirement").arg(sources.join("notebook.txt"));
+    let installing = step::Step::begin("python: install what the notebook takes");
+    match step::capture(&mut install, "Is PyPI reachable?") {
+        Ok(_) => installing.done(""),
+        Err(error) => println!("  python: notebook … SKIPPED: {error:#}"),
+    }
     let mut tests = Command::new(fresh.program("python"));
     tests.current_dir(&sources).env("PYTHONDONTWRITEBYTECODE", "1");
     tests.args(["-m", "pytest", "--quiet", "-p", "no:cacheprovider", "--strict-markers"]);

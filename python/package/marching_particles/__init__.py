@@ -8,11 +8,22 @@
 
 from ._core import __version__
 from ._errors import EmptySurface, FieldError, FormulaError
-from ._fields import Model, fit_points
+from ._fields import (
+    Field,
+    Model,
+    difference,
+    field,
+    fit_points,
+    intersection,
+    offset,
+    smooth_union,
+    union,
+)
 from ._sample import Mesh, Sample, Warning, sample
 
 __all__ = [
     "EmptySurface",
+    "Field",
     "FieldError",
     "FormulaError",
     "Mesh",
@@ -20,6 +31,12 @@ __all__ = [
     "Sample",
     "Warning",
     "__version__",
+    "difference",
+    "field",
     "fit_points",
+    "intersection",
+    "offset",
     "sample",
+    "smooth_union",
+    "union",
 ]

@@ -33,7 +33,11 @@ class Mesh(NamedTuple):
     faces: npt.NDArray[np.int32]
     rows: npt.NDArray[np.int32]
 
-class Model:
+class Field:
+    @property
+    def bounds(self) -> Union[tuple[_Corner, _Corner], None]: ...
+
+class Model(Field):
     @property
     def bounds(self) -> tuple[_Corner, _Corner]: ...
     @property
@@ -66,11 +70,13 @@ class Sample:
     def to_trimesh(self) -> trimesh.Trimesh: ...
     def to_pyvista(self) -> pyvista.PolyData: ...
 
+_Surface = Union[str, _Function, Field]
+
 def sample(
-    field: Union[str, _Function, Model],
+    field: _Surface,
     *,
     count: Union[int, None] = None,
-    radius: Union[float, None] = None,
+    radius: Union[float, str, None] = None,
     spacing: Union[float, None] = None,
     bounds: Union[Sequence[Sequence[float]], npt.NDArray[Any], None] = None,
     params: Union[Mapping[str, float], None] = None,
@@ -81,6 +87,17 @@ def sample(
     measure: bool = True,
     progress: Union[Callable[[float], object], None] = None,
 ) -> Sample: ...
+def field(
+    field: _Surface,
+    *,
+    params: Union[Mapping[str, float], None] = None,
+    gradient: Union[_Function, None] = None,
+) -> Field: ...
+def union(a: _Surface, b: _Surface) -> Field: ...
+def intersection(a: _Surface, b: _Surface) -> Field: ...
+def difference(a: _Surface, b: _Surface) -> Field: ...
+def smooth_union(a: _Surface, b: _Surface, width: float) -> Field: ...
+def offset(a: _Surface, distance: float) -> Field: ...
 def fit_points(
     points: npt.ArrayLike,
     normals: Union[npt.ArrayLike, None] = None,

@@ -1,4 +1,4 @@
-"""What can be sampled: formulas, functions, and surfaces through points."""
+"""What can be sampled: formulas, functions, surfaces through points, and solids of any two."""
 
 from __future__ import annotations
 
@@ -30,7 +30,21 @@ def numbers(name, value, shape, what):
     return array
 
 
-class Model:
+class Field:
+    """A field that can be sampled, or combined with another one: from :func:`field`,
+    :func:`union` and the like.
+
+    Attributes:
+        bounds: The box of its surface, ``((x0, y0, z0), (x1, y1, z1))``, where that is known; else
+            None.
+    """
+
+    def __init__(self, field):
+        self._field = field
+        self.bounds = field.bounds
+
+
+class Model(Field):
     """A surface through points, from :func:`fit_points`.
 
     Attributes:
@@ -41,10 +55,9 @@ class Model:
     """
 
     def __init__(self, field, report):
-        self._field = field
+        super().__init__(field)
         self.report = report
         self.warnings = report["warnings"]
-        self.bounds = field.bounds
 
     def __repr__(self):
         return f"<Model of {self.report['points']:,} points>"
@@ -109,8 +122,8 @@ def _checked(function, argument, tail):
     return call
 
 
-def field_of(field, params, gradient):
-    """The core's field of what :func:`sample` was given."""
+def field_of(field, params=None, gradient=None, name="field"):
+    """The core's field of what a function of the package was given by this name."""
     if gradient is not None and not callable(gradient):
         raise TypeError(f"gradient must be a function, and not {type(gradient).__name__}")
     if isinstance(field, str):
@@ -119,15 +132,16 @@ def field_of(field, params, gradient):
         return _core.Field.formula(field, _parameters(params))
     if params is not None:
         raise TypeError("params belongs to a formula: give a function its values by a closure")
-    if isinstance(field, Model):
+    if isinstance(field, Field):
         if gradient is not None:
-            raise TypeError("gradient belongs to a function: a model has its own")
+            raise TypeError("gradient belongs to a function: give it to field()")
         return field._field
     if callable(field):
         slope = None if gradient is None else _checked(gradient, "gradient", (3,))
-        return _core.Field.function(_checked(field, "field", ()), slope)
+        return _core.Field.function(_checked(field, name, ()), slope)
     raise TypeError(
-        f"field must be a formula (str), a function or a Model, and not {type(field).__name__}"
+        f"{name} must be a formula (str), a function, a Model or another Field, and not "
+        f"{type(field).__name__}"
     )
 
 
@@ -140,3 +154,82 @@ def _parameters(params):
         (name, float(numbers(f"params[{name!r}]", value, (), "a number")))
         for name, value in params.items()
     ]
+
+
+def field(field, *, params=None, gradient=None):
+    """A field with its parameters or its gradient, to be combined with another one.
+
+    Args:
+        field: A formula, a function or a :class:`Model`, as :func:`sample` takes it.
+        params: Values of the parameters of a formula, by name; others are 1.
+        gradient: The gradient of a function, as :func:`sample` takes it.
+
+    Returns:
+        A :class:`Field`.
+    """
+    return Field(field_of(field, params, gradient))
+
+
+def union(a, b):
+    """The union of two solids: min(a, b), which is negative where one of the two is.
+
+    Where the surfaces meet at an angle, particles lie on the edge and the mesh is closed along it.
+    Edges are looked for in cells of a 128th of the box: a smaller loop may be missed, and there is
+    no proof that every component was found. Of two formulas write one with ``min``, ``max`` and
+    ``-``, which has both.
+
+    Args:
+        a: A formula, a function, a :class:`Model` or another :class:`Field`. It should have a
+            gradient where it is zero, as a distance has.
+        b: Another one.
+
+    Returns:
+        A :class:`Field`, whose box is known where those of both are.
+
+    Raises:
+        FormulaError: If a formula cannot be read.
+        TypeError: If an argument is of a wrong type.
+    """
+    return Field(field_of(a, name="a").union(field_of(b, name="b")))
+
+
+def intersection(a, b):
+    """The intersection of two solids: max(a, b), which is negative where both are.
+
+    See :func:`union`. Its box is that of ``a``, else that of ``b``.
+    """
+    return Field(field_of(a, name="a").intersection(field_of(b, name="b")))
+
+
+def difference(a, b):
+    """The difference of two solids: max(a, -b), which is negative where a is and b is not.
+
+    See :func:`union`. Its box is that of ``a``.
+    """
+    return Field(field_of(a, name="a").difference(field_of(b, name="b")))
+
+
+def smooth_union(a, b, width):
+    """The union of two solids, rounded where the fields differ by less than the width.
+
+    It is ``smin(a, b, width)`` of formulas. The width is a length where a and b are distances. A
+    solid with edges is blended as if it were smooth: the mesh may be open along those that remain.
+    See :func:`union`.
+
+    Raises:
+        ValueError: If the width is negative or not finite.
+    """
+    width = float(numbers("width", width, (), "a number"))
+    if width < 0:
+        raise ValueError(f"width is {width}, but must not be negative")
+    return Field(field_of(a, name="a").smooth_union(field_of(b, name="b"), width))
+
+
+def offset(a, distance):
+    """The field a - distance: where a is the distance from a solid, this solid is larger by
+    ``distance``, or smaller by a negative one.
+
+    Raises:
+        ValueError: If the distance is not finite.
+    """
+    return Field(field_of(a, name="a").offset(float(numbers("distance", distance, (), "a number"))))

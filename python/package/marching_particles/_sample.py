@@ -170,14 +170,16 @@ def sample(
 
     Args:
         field: A formula such as ``"x^2 + y^2 + z^2 = a"``; a function of a float64 array (n, 3) of
-            points that returns n values, NaN where it has none; or a :class:`Model` from
-            :func:`fit_points`. f < 0 inside. What a function raises comes through unchanged.
+            points that returns n values, NaN where it has none; a :class:`Model` from
+            :func:`fit_points`; or a :class:`Field` from :func:`union` and the like. f < 0 inside.
+            What a function raises comes through unchanged.
         count: Number of particles, met to within 3 %; 1 to 4,000,000.
-        radius: Repulsion radius, half the distance between neighbours. Without count, radius and
-            spacing it is 0.6 % of the diagonal of the box.
+        radius: Repulsion radius, half the distance between neighbours: a length, or a share of the
+            diagonal of the box such as ``"1%"``. Without count, radius and spacing it is 0.6 %.
         spacing: Distance between neighbours, twice the radius.
-        bounds: The box, ``((x0, y0, z0), (x1, y1, z1))``. Without it a box is fitted to the
-            surface; of a function only by its signs on grids, so give it where it is known.
+        bounds: The box, ``((x0, y0, z0), (x1, y1, z1))``. Without it a model has its own, and
+            another box is fitted to the surface; of functions and what is made of them only by
+            their signs on grids, so give it where it is known.
         params: Values of the parameters of a formula, by name; others are 1.
         gradient: A function of the points that returns the gradients of the function ``field``, (n,
             3). Without it they are found by differences, with several times as many calls.
@@ -210,8 +212,11 @@ def sample(
         )
     if count is not None:
         count = integer("count", count, *_core.COUNTS)
+    share = None
     if spacing is not None:
         radius = _length("spacing", spacing) / 2
+    elif isinstance(radius, str):
+        radius, share = None, _share("radius", radius)
     elif radius is not None:
         radius = _length("radius", radius)
     if method not in METHODS:
@@ -231,6 +236,7 @@ def sample(
         field_of(field, params, gradient),
         count=count,
         radius=radius,
+        share=share,
         bounds=bounds,
         adaptive=bool(adaptive),
         refined=method == "refined",
@@ -239,6 +245,19 @@ def sample(
         progress=progress,
     )
     return Sample(core)
+
+
+def _share(name, text):
+    """The share that a text such as "0.6%" says."""
+    digits = text.strip()
+    try:
+        if digits[-1:] != "%":
+            raise ValueError
+        # Rounded once, as the same share of the library is.
+        return float(digits[:-1].strip() + "e-2")
+    except ValueError:
+        what = 'a length, or a share of the diagonal of the box such as "1%"'
+        raise ValueError(f"{name} must be {what}, and not {text!r}") from None
 
 
 def _length(name, value):

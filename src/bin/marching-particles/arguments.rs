@@ -8,7 +8,7 @@ use marching_particles::export::VERTICES;
 use marching_particles::field::{model, rbf::Pull};
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::job::CENTRES;
-use marching_particles::session::{BoxCell, BoxFaces, BoxMode, FileRecord, SolidSettings};
+use marching_particles::session::{BoxCell, BoxFaces, BoxMode, FileRecord, Language, SolidSettings};
 use marching_particles::{Format, Measured, MeshFormat, Placement, Unit, UpAxis, Vertices, gallery};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -162,6 +162,7 @@ Examples:
   marching-particles sample --points scan.ply --centres 400 --out even.ply --mesh even.glb
   marching-particles sample --points scan.ply --formula \"max(model, abs(z) - 0.1)\" --mesh slice.stl
   marching-particles sample --surface torus --mesh - --format glb --quiet | viewer
+  marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --count 5000 --print python
   marching-particles sample --formula \"(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3\" --relax 0
 
 Exit codes:
@@ -232,6 +233,12 @@ pub(crate) struct SampleArguments {
     /// Print one line of JSON instead of text
     #[arg(long, help_heading = "Output")]
     pub(crate) json: bool,
+
+    /// Print the program that makes these particles, in place of making them: on the library in
+    /// Rust, on the package for npm (js), on the Python package, or as a command (shell). No file
+    /// is written; --mesh chooses the method as usual. For formulas
+    #[arg(long, value_name = "LANGUAGE", value_parser = one_of(&Language::ALL), conflicts_with = "json", help_heading = "Output")]
+    pub(crate) print: Option<(&'static str, Language)>,
 
     /// Print nothing but errors, and the line of --json; show no progress bar (there is none
     /// without a terminal)

@@ -1,6 +1,7 @@
 //! Command-line tool that samples a surface, writes particles to files and reports their quality.
 
 mod arguments;
+mod code;
 mod failure;
 mod options;
 mod outcome;

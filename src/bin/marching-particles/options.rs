@@ -93,8 +93,12 @@ pub(crate) fn list(text: &str) -> Vec<&str> {
 
 /// A length from an argument.
 fn length(text: &str) -> Result<Length, String> {
-    let length = match text.strip_suffix('%') {
-        Some(share) => Length::Share(number(share)? / 100.0),
+    let length = match text.strip_suffix('%').map(str::trim) {
+        // A decimal is rounded once, so that every share can be given.
+        Some(percent) => match format!("{percent}e-2").parse() {
+            Ok(share) => Length::Share(share),
+            Err(_) => Length::Share(number(percent)? / 100.0),
+        },
         None => Length::Units(number(text)?),
     };
     match length {
@@ -150,9 +154,27 @@ impl SamplingOptions {
         }
     }
 
-    /// Whether the options leave it open which method places the particles.
-    pub(crate) fn leaves_method_open(&self) -> bool {
-        ![METHOD, RELAX_STEPS].iter().any(|name| self.values.contains_key(*name))
+    /// Takes the refined method, unless the options say which method places the particles.
+    pub(crate) fn prefer_refined(&mut self) {
+        if ![METHOD, RELAX_STEPS].iter().any(|name| self.values.contains_key(*name)) {
+            self.values.insert(METHOD.to_owned(), "refined".into());
+        }
+    }
+
+    /// [`SamplingOptions::settings`], in which a radius that was given as a length stays one.
+    pub(crate) fn settings_by_length(&self, bounds: &Bounds) -> Settings {
+        let mut settings = self.settings(bounds);
+        for (name, length) in &self.lengths {
+            if let (&RADIUS, &Length::Units(length)) = (name, length) {
+                settings.radius = Some(length);
+            }
+        }
+        settings
+    }
+
+    /// Whether a length is given that is a share of the box in the settings.
+    pub(crate) fn depends_on_box(&self) -> bool {
+        self.lengths.iter().any(|(name, length)| *name != RADIUS && matches!(length, Length::Units(_)))
     }
 }
 
@@ -290,6 +312,7 @@ mod tests {
     fn length_is_a_share_or_in_units() {
         assert_eq!(length("0.6%"), Ok(Length::Share(0.006)));
         assert_eq!(length("2 %"), Ok(Length::Share(0.02)));
+        assert_eq!(length("0.7%"), Ok(Length::Share(0.007)));
         assert_eq!(length("0.01"), Ok(Length::Units(0.01)));
         assert_eq!(length("sqrt(2)/4"), Ok(Length::Units(2_f64.sqrt() / 4.0)));
         assert_eq!(length("1/2%"), Ok(Length::Share(0.005)));

@@ -4,7 +4,7 @@ use crate::arguments::{BoxChoice, SampleArguments, SurfaceArguments};
 use crate::failure::{Failure, LIMIT};
 use crate::outcome::{MeshCounts, Outcome, Seconds};
 use crate::output::{OutputFile, STANDARD, record_path};
-use crate::{points, summary};
+use crate::{code, points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
 use marching_particles::export::VERTICES;
 use marching_particles::field::formula::{self, MODEL};
@@ -17,8 +17,8 @@ use marching_particles::session::{
     BoxFaces, Fault, FaultKind, FieldAnswer, FieldRequest, FileRecord, Session, Source,
 };
 use marching_particles::{
-    Bounds, Error, Field, Format, MeshFile, MeshFormat, Method, Parameter, ParticleFile, Phase, Reach,
-    RecordText, Run, Settings, StopReason, Vertices, gallery,
+    Bounds, Error, Field, Format, MeshFile, MeshFormat, Parameter, ParticleFile, Phase, Reach, RecordText,
+    Run, Settings, StopReason, Vertices, gallery,
 };
 use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
@@ -61,7 +61,13 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         let record = read_record(path, &arguments.surface)?;
         arguments.complete(record);
     }
+    if !arguments.mesh.is_empty() {
+        arguments.sampling.prefer_refined();
+    }
     let arguments = &arguments;
+    if let Some((_, language)) = arguments.print {
+        return code::print(arguments, language);
+    }
     let formats = formats(arguments, &arguments.out, Format::of_extension, &Format::ALL)?;
     let mesh_formats = self::formats(arguments, &arguments.mesh, MeshFormat::of_extension, &MeshFormat::ALL)?;
     let is_piped = arguments.out.iter().chain(&arguments.mesh).any(|path| is_standard(path));
@@ -84,9 +90,6 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     let settings_in = |bounds: &Bounds| {
         let mut settings = arguments.sampling.settings(bounds);
         settings.bounds = arguments.surface.sampled;
-        if !arguments.mesh.is_empty() && arguments.sampling.leaves_method_open() {
-            settings.method = Method::Refined;
-        }
         settings
     };
     let (settings, start) = timed(&mut seconds.seeding, || {

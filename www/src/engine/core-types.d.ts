@@ -20,6 +20,12 @@ export type Choice = {
   label: string,
 };
 
+/** A program. */
+export type Code = {
+  /** Its text, which ends with a line break. */
+  text: string,
+};
+
 /** A way to colour the particles. */
 export type Colour = {
   /** Identifier. */

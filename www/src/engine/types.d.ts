@@ -419,6 +419,8 @@ export interface EngineCommands {
   savePng: (options?: { width?: number; height?: number; transparent?: boolean }) => Promise<Blob>;
   /** the particles; `ply` has the record of what they were made from, `json` is the record alone */
   exportFile: (format: ParticleFormat, options?: { link?: string }) => Promise<Blob>;
+  /** the program that makes the particles of the last run; rejects with the reason where there is none */
+  code: (language: Language) => Promise<string>;
   /** draws the mesh of the refined method, whatever method is set, until `leaveMesh` */
   makeMesh: () => void;
   /** draws particles by the method that is set, as before the mesh was made */
@@ -441,6 +443,8 @@ export interface EngineCommands {
 export type ParticleFormat = 'ply' | 'csv' | 'json';
 /** File formats for a mesh. */
 export type MeshFormat = 'glb' | '3mf' | 'stl' | 'obj' | 'ply';
+/** Languages of the program that makes the particles. */
+export type Language = 'rust' | 'js' | 'python' | 'shell';
 /** Commands and counts of an engine for tests. */
 export interface EngineDebug {
   loseDevice: (reason?: string) => void;

@@ -2,7 +2,7 @@
 import { FILE_SURFACE } from '../engine/constants.js';
 
 /**
- * @import { Engine, FileRequest, MeshFormat, ParticleFormat } from '../engine/types.js'
+ * @import { Engine, FileRequest, Language, MeshFormat, ParticleFormat } from '../engine/types.js'
  * @import { Toast } from './types.js'
  */
 
@@ -24,6 +24,20 @@ export async function copyLink(engine, toast) {
     }
   } catch {
     toast({ id: 'share', kind: 'error', text: 'The link could not be made.' });
+  }
+}
+
+/**
+ * Copies the program that makes these particles.
+ * @param {Engine} engine @param {Toast} toast @param {Language} language @param {string} name  of the language
+ */
+export async function copyCode(engine, toast, language, name) {
+  try {
+    await navigator.clipboard.writeText(await engine.code(language));
+    toast({ id: 'code', kind: 'info', text: `${name} code copied.` });
+  } catch (error) {
+    const why = error instanceof Error ? error.message : String(error);
+    toast({ id: 'code', kind: 'error', text: `No code was copied: ${why}.` });
   }
 }
 

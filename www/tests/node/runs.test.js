@@ -156,6 +156,22 @@ test('a formula without a surface leaves the last one, dimmed, says why, and tak
   expect(p.engine.empty.value).toBe(false);
 });
 
+test('the code of a run is that of the command line', async () => {
+  const kept = await readFile(new URL('../../../tests/golden/code.json', import.meta.url), 'utf8');
+  /** @type {{digest: string, programs: Record<import('../../src/engine/types.js').Language, string>}[]} */
+  const [cushion] = JSON.parse(kept);
+  const p = await open();
+  const settings = { size_mode: 'count', count: 2000, method: 'refined' };
+  const report = await p.set({ formula: 'x^4 + y^4 + z^4 = a', parameters: { a: 0.5 }, settings });
+  expect(report?.digest).toBe(cushion.digest);
+  for (const language of /** @type {const} */ (['rust', 'js', 'python', 'shell']))
+    expect(await p.engine.code(language)).toBe(cushion.programs[language]);
+  // What lacks a word in a language says so.
+  await p.set({ settings: { box_faces: 'closed' } });
+  await expect(p.engine.code('python')).rejects.toThrow('cannot close a solid');
+  expect(await p.engine.code('shell')).toContain('--closed');
+});
+
 test('PLY and CSV hold every particle', async () => {
   const p = await open();
   const { count } = p.particles();

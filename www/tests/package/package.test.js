@@ -10,6 +10,11 @@ const { runs } = JSON.parse(readFileSync(new URL('../../../tests/golden/digests.
 const golden = runs.find((/** @type {{name: string}} */ { name }) => name === GYROID.golden);
 
 const SPHERE = 'x^2 + y^2 + z^2 = a';
+/** Points of a ball, on a spiral from pole to pole. */
+const ROUND = Array.from({ length: 400 }, (_, i) => {
+  const [z, angle] = [1 - (2 * i + 1) / 400, 2.399963 * i];
+  return [Math.sqrt(1 - z * z) * Math.cos(angle), Math.sqrt(1 - z * z) * Math.sin(angle), z];
+}).flat();
 /** @type {ReturnType<typeof install>} */
 let there;
 /** @type {typeof import('../../package/index.js')} */
@@ -206,13 +211,7 @@ describe('a function of the program', () => {
 });
 
 describe('points', () => {
-  /** @type {number[]} */
-  const points = [];
-  // A spiral from pole to pole.
-  for (let i = 0; i < 400; i += 1) {
-    const [z, angle] = [1 - (2 * i + 1) / 400, 2.399963 * i];
-    points.push(Math.sqrt(1 - z * z) * Math.cos(angle), Math.sqrt(1 - z * z) * Math.sin(angle), z);
-  }
+  const points = ROUND;
 
   test('have a surface through them, with their normals or without', async () => {
     for (const field of [{ points }, { points: Float32Array.from(points), normals: points }]) {
@@ -223,6 +222,31 @@ describe('points', () => {
       expect((await ball.mesh()).components).toMatchObject([{ euler: 2 }]);
     }
   });
+
+  test('are an operand of a formula, with its parameters', async () => {
+    const options = { count: 1000, formula: 'max(model, z - h)', params: { h: 0.25 } };
+    const cut = await made.sample({ points, normals: points }, options);
+    expect(cut.params).toEqual({ h: 0.25 });
+    let top = -1;
+    for (let i = 2; i < 3 * cut.count; i += 3) top = Math.max(top, cut.positions[i]);
+    expect(top).toBeCloseTo(0.25, 5);
+    // The edge is closed.
+    expect((await cut.mesh()).components).toMatchObject([{ euler: 2, open_edges: 0 }]);
+    await expect(cut.moved({ h: 0 })).rejects.toMatchObject({ name: 'InputError' });
+  });
+});
+
+test('programs that the command line prints make the same particles', async () => {
+  /** @type {{arguments: string[], digest: string, programs: {js: string}}[]} */
+  const cases = JSON.parse(readFileSync(new URL('../../../tests/golden/code.json', import.meta.url), 'utf8'));
+  const printed = cases.filter(({ programs }) => programs.js.startsWith('import '));
+  expect(printed.length).toBeGreaterThan(4);
+  for (const [k, { arguments: given, digest, programs }] of printed.entries()) {
+    const path = there.write(`printed-${k}.js`, programs.js.replace('const particles', 'export const particles'));
+    const { particles } = await import(/* @vite-ignore */ pathToFileURL(path).href);
+    expect(particles.digest, given.join(' ')).toBe(digest);
+    particles.dispose();
+  }
 });
 
 test('in one file, sampled in the thread that imports it, particles are the same', async () => {
@@ -278,6 +302,9 @@ describe('what is wrong has a name and says what to do', () => {
     ['InputError', 'normals: one for each point, not 1 for 2', { points: [1, 2, 3, 4, 5, 6], normals: [0, 0, 1] }, {}],
     ['InputError', 'points lie on a straight', { points: [0, 0, 0, 1, 0, 0] }, {}],
     ['InputError', 'a function or points have none', () => 1, { params: { a: 1 } }],
+    ['InputError', 'formula: for points', SPHERE, { formula: 'max(model, z)' }],
+    ['InputError', 'formula: a text', { points: [1, 2, 3] }, { formula: 3 }],
+    ['InputError', 'radius: for particles of one size', SPHERE, { radius: 0.01, adaptive: true }],
     ['InputError', 'adaptive: true or false', SPHERE, { adaptive: 'yes' }],
     ['InputError', 'measure: true or false', SPHERE, { measure: 1 }],
     ['InputError', 'spacing: a length above 0', SPHERE, { spacing: 0 }],
@@ -295,6 +322,9 @@ describe('what is wrong has a name and says what to do', () => {
     ['InputError', 'signal: the signal', SPHERE, { signal: {} }],
     ['InputError', 'onProgress: a function', SPHERE, { onProgress: 1 }],
     ['FormulaError', 'missing', 'x^2 +', {}],
+    ['FormulaError', 'as an operand of max', { points: ROUND }, { formula: 'model * x' }],
+    ['FormulaError', 'missing', { points: ROUND }, { formula: 'max(model, ' }],
+    ['InputError', 'no parameter “b”', { points: ROUND }, { formula: 'max(model, z)', params: { b: 1 } }],
     ['NoSurfaceError', 'no zero', 'x^2 + 1', {}],
     ['NoSurfaceError', 'f has no value anywhere', () => NaN, {}],
     ['NoSurfaceError', 'f has the same value', () => 1, {}],

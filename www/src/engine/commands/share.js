@@ -23,8 +23,8 @@ const MIME = { glb: 'model/gltf-binary', '3mf': 'model/3mf', stl: 'model/stl' };
 export const fetchExports = () => import('../share/exports.js');
 
 /**
- * @typedef {Pick<EngineCommands, 'link' | 'openLink' | 'set' | 'picture' | 'savePng' | 'exportFile' | 'exportMesh'>}
- *   ShareCommands
+ * @typedef {'link' | 'openLink' | 'set' | 'picture' | 'savePng' | 'exportFile' | 'exportMesh' | 'code'} Shared
+ * @typedef {Pick<EngineCommands, Shared>} ShareCommands
  */
 
 /** @param {Parts} parts @returns {ShareCommands} */
@@ -78,6 +78,7 @@ export function shareCommands({ store, columns, picture: { viewer }, scheduler, 
       const all = description(store).columns;
       return format === 'csv' ? csv(columns, all) : ply(columns, all, record);
     },
+    code: (language) => scheduler.sampling.client.code(language),
     async exportMesh(format, options) {
       const bytes = await scheduler.sampling.client.meshFile({ ...options, format });
       return new Blob([bytes], { type: MIME[format] ?? 'application/octet-stream' });

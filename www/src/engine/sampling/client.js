@@ -8,7 +8,7 @@ import { Requests } from '../bundle/requests.js';
 import { Supervisor } from './supervisor.js';
 
 /**
- * @import { FileRequest } from '../types.js'
+ * @import { FileRequest, Language } from '../types.js'
  * @import { ClientEvents, Clock, FromWorker, ToWorker, WorkerLike } from './types.js'
  */
 
@@ -22,7 +22,7 @@ export class SamplingClient {
   #wishes = { curvature: false, mesh: false };
   /** The files that are being written. */
   #files = new Requests();
-  /** The texts that are being read as numbers. */
+  /** The texts that are being read as numbers, and the programs that are being written. */
   #texts = new Requests();
   #isBusy = false;
 
@@ -105,6 +105,19 @@ export class SamplingClient {
     return this.#texts.make((request) => this.post({ type: 'number', request, text })).catch(() => null);
   }
 
+  /**
+   * Returns the program that makes the particles of the last run.
+   * @param {Language} language
+   * @returns {Promise<string>}
+   * @throws if there is none, with the reason
+   */
+  code(language) {
+    return this.#texts.make((request) => {
+      if (this.isThere) this.post({ type: 'code', request, language });
+      else this.#texts.refuse(request, lost());
+    });
+  }
+
   /** Gives up all files and texts, because the worker is gone. */
   forgetFiles() {
     this.#texts.refuseAll(lost());
@@ -138,6 +151,10 @@ export class SamplingClient {
         return;
       case 'number':
         return this.#texts.answer(message.request, message.value);
+      case 'code':
+        if (message.answer.ok) this.#texts.answer(message.request, message.answer.text);
+        else this.#texts.refuse(message.request, new Error(message.answer.error));
+        return;
       case 'file':
         if (message.bytes) this.#files.answer(message.request, message.bytes);
         else this.#files.refuse(message.request, lost());

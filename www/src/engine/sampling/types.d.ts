@@ -1,5 +1,7 @@
 // Messages between the page and the sampler's worker, and the record of the runs.
+
 import type { Timers, WorkerEnv } from '../bundle/types.js';
+import type { Answer, Code } from '../core-types.js';
 import type { Solved } from '../points/types.js';
 import type { Store } from '../store.js';
 import type {
@@ -15,6 +17,7 @@ import type {
   Figures,
   FileRecord,
   FileRequest,
+  Language,
   Measures,
   Report,
   SampleKind,
@@ -48,8 +51,9 @@ export type Job = SampleJob | RelaxJob;
  * `curvature` says whether the page shows the curvature. If so, it is sent with the other columns, and at once for the
  * particles that the worker holds. `mesh` says whether the page draws a mesh. If so, it is made at the end of every
  * run, and sent with the last columns. `export` asks for the mesh as a file, once no job is left. `number` asks for
- * the number that a text without names stands for. `measure` measures particles that the sampler has not placed: a
- * worker that is asked has no jobs. The first message is `core`, or `no_core` if the core could not be loaded.
+ * the number that a text without names stands for, `code` for the program that makes the particles. `measure` measures
+ * particles that the sampler has not placed: a worker that is asked has no jobs. The first message is `core`, or
+ * `no_core` if the core could not be loaded.
  */
 export type ToWorker =
   | { type: 'core'; module: WebAssembly.Module }
@@ -59,6 +63,7 @@ export type ToWorker =
   | { type: 'mesh'; on: boolean }
   | { type: 'export'; request: number; file: Partial<FileRequest> }
   | { type: 'number'; request: number; text: string }
+  | { type: 'code'; request: number; language: Language }
   | { type: 'measure'; request: number; field: Partial<FieldRequest>; placed: PlacedColumns; isAdaptive: boolean }
   | { type: 'stop' }
   | { type: 'drawn'; id: number };
@@ -109,6 +114,7 @@ export type FromWorker =
   | { type: 'failed'; fault: LoadFault; message: string }
   | { type: 'beat' }
   | { type: 'number'; request: number; value: number | null }
+  | { type: 'code'; request: number; answer: Answer<Code, string> }
   | { type: 'field'; id: number; answer: FieldAnswer }
   | { type: 'dropped'; id: number }
   | { type: 'box'; id: number; answer: FieldOk }

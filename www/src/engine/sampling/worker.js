@@ -168,6 +168,9 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
     case 'number':
       post({ type: 'number', request: data.request, value: core?.number(data.text) ?? null });
       break;
+    case 'code':
+      if (core) post({ type: 'code', request: data.request, answer: core.code(data.language) });
+      break;
     case 'measure':
       placed.push(data);
       void pump();

@@ -8,11 +8,11 @@ import { h } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatShare } from '../format.js';
 import { attachMenu } from '../menu.js';
-import { copyLink, exportFile } from '../share.js';
+import { copyCode, copyLink, exportFile } from '../share.js';
 import { createSlider } from '../slider.js';
 
 /**
- * @import { Engine, ViewState } from '../../engine/types.js'
+ * @import { Engine, Language, ViewState } from '../../engine/types.js'
  * @import { IconName } from '../icons.js'
  * @import { ButtonProps, Motion } from '../types.js'
  * @import { ToolbarOptions } from './types.js'
@@ -77,6 +77,8 @@ export function createToolbar(engine, { hide, shortcuts, picture, makeMesh, moti
       ),
       heading('Mesh'),
       choice('Export mesh…', makeMesh, 'GLB, 3MF, STL, OBJ or PLY'),
+      heading('Code that makes these particles'),
+      codes(engine, toast),
     ],
     { label: 'Export' },
   );
@@ -107,6 +109,21 @@ function pointsToggle(engine) {
 
 /** @param {string} text */
 const heading = (text) => h('p', { class: 'menu-head quiet' }, text);
+
+/** Creates the buttons that copy a program. @param {Engine} engine @param {ToolbarOptions['toast']} toast */
+function codes(engine, toast) {
+  /** @type {[Language, string][]} */
+  const languages = [
+    ['python', 'Python'],
+    ['js', 'JavaScript'],
+    ['rust', 'Rust'],
+    ['shell', 'Shell'],
+  ];
+  const buttons = languages.map(([language, name]) =>
+    button({ class: 'small', data: { closes: '' }, press: () => copyCode(engine, toast, language, name) }, name),
+  );
+  return line('Copy', buttons);
+}
 
 /** @param {string} label @param {() => void} press @param {string} [note] */
 const choice = (label, press, note) =>

@@ -2,6 +2,7 @@
 /* eslint-disable */
 import type {
     Answer,
+    Code,
     Description,
     Fault,
     FieldAnswer,
@@ -29,6 +30,11 @@ export class Core {
      * Ends the run and keeps the particles: `Progress`.
      */
     cancel(): Progress;
+    /**
+     * The program that makes the particles of the last run, in the language of this word (`rust`,
+     * `js`, `python` or `shell`): an `Answer` with `Code`.
+     */
+    code(language: string): Answer<Code, string>;
     /**
      * Component of each particle, 0 the largest, from the last report; 0xffffffff for none.
      */
@@ -214,6 +220,10 @@ export class Core {
      * Natural neighbours per particle, as of the last report.
      */
     valence(): Uint8Array<ArrayBuffer>;
+    /**
+     * A session whose first formula is that of no surface of the gallery, whatever its text.
+     */
+    static without_surface(): Core;
 }
 
 export type InitInput = RequestInfo | URL | Response | BufferSource | WebAssembly.Module;

@@ -261,6 +261,7 @@ export function fakeCore({
       throw new Error('a core of a few lines does not describe itself');
     },
     digest: () => 'd',
+    code: () => /** @type {const} */ ({ ok: true, text: 'code' }),
     limit_memory() {},
     mesh_file: () => null,
     record: () => null,

@@ -1,0 +1,138 @@
+"""Solids of any two fields."""
+
+import numpy as np
+import pytest
+
+import marching_particles as mp
+
+BOX = ((-2, -2, -2), (2, 2, 2))
+BLOCK = "max(abs(x) - 1, abs(y) - 1, abs(z) - 0.5)"
+
+
+def ball(points):
+    return np.linalg.norm(points, axis=1) - 1
+
+
+def rod(points):
+    return np.linalg.norm(points[:, :2], axis=1) - 0.4
+
+
+def moved(x):
+    return lambda points: ball(points - np.array([x, 0, 0]))
+
+
+def euler(sample):
+    """The Euler number of the welded mesh, which must be closed."""
+    mesh = sample.weld()
+    edges = np.sort(np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]]))
+    edges, uses = np.unique(edges, axis=0, return_counts=True)
+    assert (uses == 2).all()
+    return len(mesh.points) - len(edges) + len(mesh.faces)
+
+
+def test_two_functions_meet_in_an_edge():
+    both = mp.sample(mp.union(moved(-0.5), moved(0.5)), count=2000, bounds=BOX)
+    assert both.report["creases"] == 1 and euler(both) == 2
+    lens = mp.sample(mp.intersection(moved(-0.5), moved(0.5)), count=1000, bounds=BOX)
+    assert lens.report["creases"] == 1 and abs(lens.points[:, 0]).max() < 0.51
+
+
+def test_a_function_is_taken_from_a_formula():
+    drilled = mp.sample(mp.difference(BLOCK, rod), count=3000, bounds=BOX)
+    assert euler(drilled) == 0
+
+
+def test_results_are_combined_again():
+    field = mp.difference(mp.difference(BLOCK, rod), mp.offset(moved(1), -0.6))
+    assert field.bounds is None
+    sample = mp.sample(field, count=3000, bounds=BOX)
+    assert euler(sample) == 0
+    assert np.linalg.norm(sample.points - np.array([1, 0, 0]), axis=1).min() > 0.4 - 1e-4
+
+
+def test_a_smooth_union_has_no_edge_and_bulges():
+    sharp, smooth = (mp.smooth_union(moved(-0.8), moved(0.8), width) for width in (0, 0.4))
+    waist = []
+    for field in (sharp, smooth):
+        sample = mp.sample(field, count=3000, bounds=BOX)
+        assert euler(sample) == 2
+        waist.append(np.linalg.norm(sample.points[abs(sample.points[:, 0]) < 0.1], axis=1).min())
+    assert waist[1] > waist[0] + 0.05
+
+
+def test_an_offset_of_a_distance_is_a_larger_solid():
+    sample = mp.sample(mp.offset(ball, 0.25), count=500, bounds=BOX)
+    np.testing.assert_allclose(np.linalg.norm(sample.points, axis=1), 1.25, atol=1e-4)
+
+
+def test_a_formula_has_its_parameters_and_a_function_its_gradient():
+    calls = []
+
+    def gradient(points):
+        calls.append(len(points))
+        return points / np.maximum(ball(points) + 1, 1e-9)[:, None]
+
+    a = mp.field("x^2 + y^2 + z^2 = a", params={"a": 0.25})
+    b = mp.field(moved(0), gradient=gradient)
+    sample = mp.sample(mp.intersection(a, b), count=300, bounds=BOX)
+    np.testing.assert_allclose(np.linalg.norm(sample.points, axis=1), 0.5, atol=1e-4)
+    assert calls
+
+
+@pytest.fixture(scope="module")
+def model():
+    random = np.random.default_rng(0)
+    points = random.normal(size=(1000, 3))
+    points /= np.linalg.norm(points, axis=1, keepdims=True)
+    return mp.fit_points(points, points, centres=100)
+
+
+def test_a_model_is_cut_in_its_own_box(model):
+    half = mp.intersection(model, "z")
+    assert half.bounds == model.bounds
+    sample = mp.sample(half, count=1000)
+    assert sample.points[:, 2].max() < 1e-4 and euler(sample) == 2
+
+
+def test_the_box_of_a_combination_holds_its_surface(model):
+    lo, hi = np.array(model.bounds)
+    assert mp.intersection("z", model).bounds == mp.difference(model, ball).bounds == model.bounds
+    assert mp.union(model, ball).bounds is None and mp.difference(ball, model).bounds is None
+    np.testing.assert_allclose(mp.offset(model, 0.5).bounds, (lo - 0.5, hi + 0.5))
+    np.testing.assert_allclose(mp.offset(model, -0.5).bounds, (lo, hi))
+    np.testing.assert_allclose(mp.smooth_union(model, model, 0.6).bounds, (lo - 0.1, hi + 0.1))
+
+
+def test_what_a_function_raises_comes_through():
+    with pytest.raises(ZeroDivisionError):
+        mp.sample(mp.union(BLOCK, lambda points: 1 / 0), bounds=BOX)
+    with pytest.raises(mp.FieldError, match=r"b returned an array of the shape"):
+        mp.sample(mp.union(BLOCK, lambda points: points), bounds=BOX)
+
+
+@pytest.mark.parametrize(
+    ("make", "kind", "says"),
+    [
+        (lambda: mp.union(1, BLOCK), TypeError, r"a must be a formula \(str\), .* and not int"),
+        (lambda: mp.union(BLOCK, None), TypeError, "b must be a formula .* and not NoneType"),
+        (lambda: mp.intersection(BLOCK, np.eye(3)), TypeError, "b must be .* and not ndarray"),
+        (lambda: mp.difference("x +", BLOCK), mp.FormulaError, "missing"),
+        (lambda: mp.union(BLOCK), TypeError, "missing 1 required"),
+        (lambda: mp.smooth_union(BLOCK, ball, "wide"), TypeError, "width must be a number"),
+        (lambda: mp.smooth_union(BLOCK, ball, -1), ValueError, "width is -1.0, but must not be"),
+        (lambda: mp.smooth_union(BLOCK, ball, np.nan), ValueError, "width is nan"),
+        (lambda: mp.offset(ball, [1, 2]), ValueError, r"distance must be a number, and not of"),
+        (lambda: mp.offset(ball, np.inf), ValueError, "distance is inf"),
+        (lambda: mp.field(BLOCK, gradient=ball), TypeError, "a formula has its own"),
+        (lambda: mp.field(ball, params={"a": 1}), TypeError, "params belongs to a formula"),
+        (
+            lambda: mp.sample(mp.field(ball), gradient=ball),
+            TypeError,
+            r"gradient belongs to a function: give it to field\(\)",
+        ),
+        (lambda: mp.sample(mp.field("a x"), params={"a": 1}), TypeError, "params belongs to a formula"),
+    ],
+)
+def test_arguments(make, kind, says):
+    with pytest.raises(kind, match=says):
+        make()

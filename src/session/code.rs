@@ -1,0 +1,470 @@
+//! The program that makes the particles of a run: in Rust on the library, in JavaScript on the
+//! package for npm, in Python on its package, and as a command. It says what differs from the
+//! defaults, and nothing else.
+
+use super::setting::{Setting, SettingGroup, SettingValue, with_values};
+use super::{BoxCell, BoxFaces, BoxMode, FileRecord, Session};
+use crate::field::gallery;
+use crate::math::{Bounds, grouped, shortest_text};
+use crate::sampler::{Method, Sampling, Settings, SizeMode};
+use core::fmt::Write as _;
+use serde::Serialize;
+
+/// A language in which a program can be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// Rust, with the library.
+    Rust,
+    /// JavaScript, with the package for npm.
+    JavaScript,
+    /// Python, with its package.
+    Python,
+    /// A command for a POSIX shell.
+    Shell,
+}
+
+impl Language {
+    /// Every language, with the word by which it is asked for.
+    pub const ALL: [(&'static str, Self); 4] =
+        [("rust", Self::Rust), ("js", Self::JavaScript), ("python", Self::Python), ("shell", Self::Shell)];
+
+    /// The language by its word.
+    #[must_use]
+    pub fn named(word: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(name, _)| *name == word).map(|&(_, language)| language)
+    }
+
+    /// What runs the program, in words.
+    fn runner(self) -> &'static str {
+        match self {
+            Self::Rust => "the library",
+            Self::JavaScript => "the package for npm",
+            Self::Python => "the Python package",
+            Self::Shell => "the command line",
+        }
+    }
+}
+
+/// A program.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Code {
+    /// Its text, which ends with a line break.
+    pub text: String,
+}
+
+/// Largest length of a line, where it can be broken.
+const WIDTH: usize = 100;
+
+/// The settings for which every language has a word of its own.
+const NAMED: [&str; 6] = ["sampling", "size_mode", "radius_share", "count", "method", "seed"];
+
+/// The largest whole number up to which JavaScript has them all.
+const LAST_SAFE: u64 = (1 << 53) - 1;
+
+impl Session {
+    /// The program that makes the particles of the last run again, if that is on a formula: all of
+    /// them, also where the run was stopped.
+    ///
+    /// # Errors
+    ///
+    /// Why there is no such program, in a sentence.
+    pub fn code(&self, language: Language) -> Result<Code, String> {
+        let (Some(record), Some(settings)) = (&self.made, self.started) else {
+            let why =
+                "these particles are of no run on a formula, or have followed a moving surface: sample again";
+            return Err(why.to_owned());
+        };
+        if let Some(model) = &record.model {
+            return Err(format!("{model} is fitted to points, and there is code for formulas alone"));
+        }
+        let mut settings = settings;
+        // Steps that were made after the run belong to it.
+        if let (Method::Front, Some(progress)) = (settings.method, self.run.progress()) {
+            settings.relax_steps = settings.relax_steps.max(progress.relax_step);
+        }
+        let program = Program { record, settings, is_box_found: self.is_box_found };
+        let text = match language {
+            Language::Rust => program.rust(),
+            Language::JavaScript => program.javascript()?,
+            Language::Python => program.python()?,
+            Language::Shell => program.shell()?,
+        };
+        Ok(Code { text })
+    }
+}
+
+/// What the program says.
+struct Program<'a> {
+    record: &'a FileRecord,
+    /// The settings of the run; their box is to be said, whatever would be found.
+    settings: Settings,
+    /// Whether the search for a box finds the one of the run.
+    is_box_found: bool,
+}
+
+impl Program<'_> {
+    fn is_closed(&self) -> bool {
+        self.record.solid.box_faces == BoxFaces::Closed
+    }
+
+    fn is_adaptive(&self) -> bool {
+        self.settings.sampling == Sampling::Adaptive
+    }
+
+    /// The box that is sampled, if it has to be said. Around a closed solid it is that of the
+    /// settings alone.
+    fn sampled_box(&self) -> Option<Bounds> {
+        let own = (!self.is_closed() && !self.is_box_found).then_some(self.record.bounds);
+        self.settings.bounds.or(own)
+    }
+
+    /// The settings that differ from those that a size by itself brings, and have an effect, but
+    /// for the [`NAMED`] ones.
+    fn others(&self) -> Vec<Setting> {
+        let usual = match self.settings.size_mode {
+            SizeMode::Count => Settings::with_count(self.settings.count),
+            SizeMode::Radius => Settings::DEFAULT,
+        };
+        let (values, usual) = (with_values(&self.settings), with_values(&usual));
+        let is_effective = |setting: &Setting| {
+            // The steps of the front count where it cannot be refined.
+            setting.when.iter().filter(|condition| condition.name != "method").all(|condition| {
+                let holds = values.iter().any(|other| {
+                    other.name == condition.name && other.default == SettingValue::Choice(condition.value)
+                });
+                holds == condition.equal
+            })
+        };
+        let is_other = |(value, usual): &(&Setting, Setting)| {
+            let is_own = value.group == SettingGroup::Box || NAMED.contains(&value.name);
+            !is_own && value.default != usual.default && is_effective(value)
+        };
+        values.iter().zip(usual).filter(is_other).map(|(value, _)| *value).collect()
+    }
+
+    /// Refuses what a package cannot say.
+    fn check_plain(&self, language: Language) -> Result<(), String> {
+        let solid = self.record.solid;
+        let others = self.others();
+        // The packages have no limit to raise.
+        let other = others.iter().find(|setting| setting.name != "max_particles");
+        let what = if self.is_closed() {
+            Some("close a solid by its box".to_owned())
+        } else if solid.thickness > 0.0 {
+            Some("make a sheet of a thickness".to_owned())
+        } else if let Some(setting) = other {
+            Some(format!("set “{}” (--{})", setting.label, setting.option()))
+        } else if language == Language::JavaScript && self.settings.seed > LAST_SAFE {
+            Some(format!("take a seed above {LAST_SAFE}"))
+        } else {
+            None
+        };
+        what.map_or(Ok(()), |what| {
+            Err(format!("{} cannot {what}: Rust and the command line can", language.runner()))
+        })
+    }
+
+    fn rust(&self) -> String {
+        let Self { record, settings, .. } = self;
+        let mut imports = vec!["Formula", "Settings", "sample"];
+        let mut surface = vec![format!("Formula::parse({:?})?", record.formula)];
+        surface.extend(record.parameters.iter().map(|(name, value)| format!(".with({name:?}, {value:?})?")));
+        if record.solid.thickness > 0.0 {
+            surface.push(format!(".thickened({:?})", record.solid.thickness));
+        }
+        if let Some(faces) = record.faces {
+            imports.push("Bounds");
+            let close = if record.solid.box_cell == BoxCell::Periodic { "repeated_in" } else { "closed_by" };
+            surface.push(format!(".{close}(&{})", rust_box(&faces)));
+        }
+        let mut made = vec![match settings.size_mode {
+            SizeMode::Count => {
+                format!("Settings::with_count({})", grouped(settings.count as usize).replace(',', "_"))
+            }
+            SizeMode::Radius => "Settings::default()".to_owned(),
+        }];
+        if self.is_adaptive() {
+            made.push(".adaptive()".to_owned());
+        }
+        if settings.method == Method::Refined {
+            made.push(".refined()".to_owned());
+        }
+        if settings.seed != 0 {
+            made.push(format!(".seeded({})", settings.seed));
+        }
+        if let Some(bounds) = self.sampled_box() {
+            imports.push("Bounds");
+            made.push(format!(".in_box({})", rust_box(&bounds)));
+        }
+        let mut assigned = Vec::new();
+        match (settings.radius, settings.radius_share) {
+            _ if self.is_adaptive() || settings.size_mode == SizeMode::Count => {}
+            (Some(length), _) => assigned.push(format!("settings.radius = Some({length:?});")),
+            (None, share) if share == Settings::DEFAULT.radius_share => {}
+            (None, share) => assigned.push(format!("settings.radius_share = {share:?};")),
+        }
+        for setting in self.others() {
+            let value = match setting.default {
+                SettingValue::Number(number) => format!("{number:?}"),
+                SettingValue::Integer(whole) => grouped(whole as usize).replace(',', "_"),
+                SettingValue::Choice(word) => {
+                    let kind = if setting.name == "gaps" { "GapPolicy" } else { "LawKind" };
+                    imports.push(kind);
+                    format!("{kind}::{}", variant(word))
+                }
+            };
+            assigned.push(format!("settings.{} = {value};", setting.name));
+        }
+        imports.sort_unstable();
+        imports.dedup();
+        let mut text = format!("use marching_particles::{{{}}};\n\n", imports.join(", "));
+        text.push_str("fn main() -> Result<(), Box<dyn std::error::Error>> {\n");
+        push_chain(&mut text, "let surface = ", &surface, ";");
+        if assigned.is_empty() {
+            push_chain(&mut text, "let settings = ", &made, ";");
+        } else {
+            push_chain(&mut text, "let mut settings = ", &made, ";");
+            assigned.iter().for_each(|line| push_line(&mut text, line));
+        }
+        push_line(&mut text, "let particles = sample(surface, &settings)?;");
+        push_line(&mut text, "println!(\"{} particles\", particles.report().count);");
+        push_line(&mut text, "Ok(())");
+        text.push_str("}\n");
+        text
+    }
+
+    /// The arguments beside the formula, as Python and JavaScript name them.
+    fn arguments(&self, language: Language) -> Result<Vec<String>, String> {
+        self.check_plain(language)?;
+        let Self { record, settings, .. } = self;
+        let is_python = language == Language::Python;
+        let (quote, is, yes) = if is_python { ('"', "=", "True") } else { ('\'', ": ", "true") };
+        let mut given = Vec::new();
+        if !record.parameters.is_empty() {
+            let entries = record.parameters.iter().map(|(name, value)| {
+                let is_plain = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+                let key = if is_plain && !is_python { name.clone() } else { quoted(name, quote) };
+                format!("{key}: {}", shortest_text(*value))
+            });
+            let entries = entries.collect::<Vec<_>>().join(", ");
+            given.push((
+                "params",
+                if is_python { format!("{{{entries}}}") } else { format!("{{ {entries} }}") },
+            ));
+        }
+        match (settings.size_mode, settings.radius) {
+            (SizeMode::Count, _) => given.push(("count", settings.count.to_string())),
+            _ if self.is_adaptive() => {}
+            (SizeMode::Radius, Some(length)) if is_python => given.push(("radius", shortest_text(length))),
+            // The package takes half of it.
+            (SizeMode::Radius, Some(length)) => given.push(("spacing", shortest_text(2.0 * length))),
+            (SizeMode::Radius, None) if is_python => {
+                given.push(("radius", quoted(&percent_text(settings.radius_share), quote)));
+            }
+            (SizeMode::Radius, None) => given.push(("radius", shortest_text(settings.radius_share))),
+        }
+        if let Some(Bounds { min, max }) = self.sampled_box() {
+            let [min, max] = [min, max].map(|corner| corner.map(shortest_text).join(", "));
+            given.push((
+                "bounds",
+                if is_python {
+                    format!("(({min}), ({max}))")
+                } else {
+                    format!("{{ min: [{min}], max: [{max}] }}")
+                },
+            ));
+        }
+        if self.is_adaptive() {
+            given.push(("adaptive", yes.to_owned()));
+        }
+        if settings.method == Method::Refined {
+            given.push(("method", quoted("refined", quote)));
+        }
+        if settings.seed != 0 {
+            given.push(("seed", settings.seed.to_string()));
+        }
+        Ok(given.into_iter().map(|(name, value)| format!("{name}{is}{value}")).collect())
+    }
+
+    fn javascript(&self) -> Result<String, String> {
+        let options = self.arguments(Language::JavaScript)?;
+        let head = format!("const particles = await sample({}", quoted(&self.record.formula, '\''));
+        let line = match &options[..] {
+            [] => format!("{head});"),
+            _ => format!("{head}, {{ {} }});", options.join(", ")),
+        };
+        let call = if options.is_empty() || line.chars().count() <= WIDTH {
+            line
+        } else {
+            format!("{head}, {{\n  {},\n}});", options.join(",\n  "))
+        };
+        Ok(format!("import {{ sample }} from 'marching-particles';\n\n{call}\n"))
+    }
+
+    fn python(&self) -> Result<String, String> {
+        let mut arguments = vec![quoted(&self.record.formula, '"')];
+        arguments.extend(self.arguments(Language::Python)?);
+        let line = format!("particles = mp.sample({})", arguments.join(", "));
+        let call = if line.chars().count() <= WIDTH {
+            line
+        } else {
+            format!("particles = mp.sample(\n    {},\n)", arguments.join(",\n    "))
+        };
+        Ok(format!("import marching_particles as mp\n\n{call}\n"))
+    }
+
+    fn shell(&self) -> Result<String, String> {
+        let Self { record, settings, .. } = self;
+        let solid = record.solid;
+        if self.is_closed() && settings.bounds.is_some() {
+            let why = "the command line chooses the box around a closed solid itself: Rust can take another";
+            return Err(why.to_owned());
+        }
+        let named = record.surface.as_deref().and_then(gallery::find);
+        let mut words = vec!["marching-particles sample".to_owned()];
+        match named {
+            Some(surface) => words.push(format!("--surface {}", surface.id)),
+            None => words.push(format!("--formula {}", in_shell(&record.formula))),
+        }
+        for (name, &value) in &record.parameters {
+            let usual = named.map(|surface| surface.parameters.iter().find(|p| p.name == *name));
+            if usual.is_none_or(|usual| usual.is_none_or(|usual| usual.value != value)) {
+                words.push(format!("--param {}", in_shell(&format!("{name}={}", shortest_text(value)))));
+            }
+        }
+        // A named surface brings its own box, which makes room for a unit cell.
+        let clip = record.faces.unwrap_or(record.bounds);
+        let is_fixed = solid.box_mode == BoxMode::Fixed && solid.box_cell == BoxCell::Periodic;
+        let is_own = named.is_some_and(|surface| solid.own_box(surface) == clip) && !is_fixed;
+        let is_found = self.is_box_found || is_own;
+        if let Some(bounds) = settings.bounds.or((!is_found).then_some(clip)) {
+            words.push(format!("--box {}", shell_box(&bounds)));
+        }
+        if self.is_closed() {
+            words.push("--closed".to_owned());
+        }
+        if solid.box_cell == BoxCell::Periodic && self.is_closed() {
+            words.push("--periodic".to_owned());
+        }
+        if solid.thickness > 0.0 {
+            words.push(format!("--thickness {}", shortest_text(solid.thickness)));
+        }
+        match (settings.size_mode, settings.radius) {
+            (SizeMode::Count, _) => words.push(format!("--count {}", settings.count)),
+            _ if self.is_adaptive() => {}
+            (SizeMode::Radius, Some(length)) => words.push(format!("--radius {}", shortest_text(length))),
+            (SizeMode::Radius, None) => {
+                words.push(format!("--radius {}", percent_text(settings.radius_share)))
+            }
+        }
+        if self.is_adaptive() {
+            words.push("--adaptive".to_owned());
+        }
+        if settings.method == Method::Refined {
+            words.push("--method refined".to_owned());
+        }
+        if settings.seed != 0 {
+            words.push(format!("--seed {}", settings.seed));
+        }
+        for setting in self.others() {
+            let value = match setting.default {
+                SettingValue::Number(share) if setting.is_share() => percent_text(share),
+                SettingValue::Number(number) => shortest_text(number),
+                SettingValue::Integer(whole) => whole.to_string(),
+                SettingValue::Choice(word) => word.replace('_', "-"),
+            };
+            words.push(format!("--{} {value}", setting.option()));
+        }
+        Ok(format!("{}\n", words.join(" ")))
+    }
+}
+
+/// A share in per cent, which is read as the same number: its decimal point moves by two digits.
+fn percent_text(share: f64) -> String {
+    let text = share.to_string();
+    let (whole, fraction) = text.split_once('.').unwrap_or((&text, ""));
+    let fraction = format!("{fraction:0<2}");
+    let (moved, rest) = fraction.split_at(2);
+    let digits = format!("{whole}{moved}");
+    let whole = match digits.trim_start_matches('0') {
+        "" => "0",
+        digits => digits,
+    };
+    if rest.is_empty() { format!("{whole}%") } else { format!("{whole}.{rest}%") }
+}
+
+/// A text between quotes, as Python and JavaScript read it.
+fn quoted(text: &str, quote: char) -> String {
+    let mut out = String::from(quote);
+    for c in text.chars() {
+        match c {
+            '\n' => out.push_str("\\n"),
+            '\\' => out.push_str("\\\\"),
+            c if c == quote => out.extend(['\\', c]),
+            c if c.is_ascii_control() => {
+                let _ = write!(out, "\\x{:02x}", u32::from(c));
+            }
+            c => out.push(c),
+        }
+    }
+    out.push(quote);
+    out
+}
+
+/// A text as a word of a shell.
+fn in_shell(text: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_=.,-+".contains(c);
+    if !text.is_empty() && text.chars().all(is_plain) {
+        return text.to_owned();
+    }
+    format!("'{}'", text.replace('\'', "'\\''"))
+}
+
+/// The half-width of a box, if it is a cube around the origin.
+fn half_width(bounds: &Bounds) -> Option<f64> {
+    let half = bounds.max[0];
+    (*bounds == Bounds::cube(half)).then_some(half)
+}
+
+fn shell_box(bounds: &Bounds) -> String {
+    let Bounds { min, max } = *bounds;
+    match half_width(bounds) {
+        Some(half) => shortest_text(half),
+        None if *bounds == Bounds::symmetric(max) => max.map(shortest_text).join(","),
+        None => [min, max].map(|corner| corner.map(shortest_text).join(",")).join(","),
+    }
+}
+
+fn rust_box(bounds: &Bounds) -> String {
+    match half_width(bounds) {
+        Some(half) => format!("Bounds::cube({half:?})"),
+        None => format!("Bounds {{ min: {:?}, max: {:?} }}", bounds.min, bounds.max),
+    }
+}
+
+/// The variant of a choice: `max_curvature` is `MaxCurvature`.
+fn variant(word: &str) -> String {
+    let mut name = String::new();
+    for part in word.split('_') {
+        let mut letters = part.chars();
+        name.extend(letters.next().map(|first| first.to_ascii_uppercase()));
+        name.push_str(letters.as_str());
+    }
+    name
+}
+
+/// Adds an indented line to a function of Rust.
+fn push_line(text: &mut String, line: &str) {
+    let _ = writeln!(text, "    {line}");
+}
+
+/// Adds a chain of calls, with a line for each if it is too long for one.
+fn push_chain(text: &mut String, head: &str, links: &[String], tail: &str) {
+    let line = format!("{head}{}{tail}", links.concat());
+    if links.len() == 1 || line.chars().count() + 4 <= WIDTH {
+        push_line(text, &line);
+    } else {
+        push_line(text, &format!("{head}{}{tail}", links.join("\n        ")));
+    }
+}
