@@ -75,4 +75,5 @@ mod smooth;
 mod solid_table;
 mod solids;
 mod systems;
+mod thickness;
 mod tips;
