@@ -75,7 +75,7 @@
 //! |---|---|
 //! | the job | [`sample`], [`Sample`], [`Run`], [`Start`], [`Progress`], [`Phase`], [`StopReason`], [`Reporting`] |
 //! | its settings | [`Settings`], [`Sampling`], [`Radius`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Bounds`], [`Reach`] |
-//! | formulas | [`Formula`], [`Expr`], [`Parameter`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [gallery] |
+//! | formulas | [`Formula`], [`Expr`], [`Parameter`], [`Thickness`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [`PorosityError`], [gallery] |
 //! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [glam] |
 //! | solids of two fields | [`union`], [`intersection`], [`difference`], [`smooth_union`], [`offset`], [`Combined`] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
@@ -145,7 +145,9 @@ pub use export::{
     Format, MeshBuffers, MeshFile, MeshFormat, ParticleFile, Placement, RecordText, Unit, UpAxis, Vertices,
 };
 pub use extent::Reach;
-pub use field::formula::{Expr, Formula, FormulaError, FormulaErrorKind, Mended, Parameter};
+pub use field::formula::{
+    Expr, Formula, FormulaError, FormulaErrorKind, Mended, Parameter, PorosityError, Thickness,
+};
 #[cfg(feature = "points")]
 pub use field::model::{CENTRES, GivenMesh, GivenTopology, ModelInfo, NormalSource};
 #[cfg(feature = "points")]

@@ -4,6 +4,7 @@
 
 use super::setting::{Setting, SettingGroup, SettingValue, with_values};
 use super::{BoxCell, BoxFaces, BoxMode, FileRecord, Session};
+use crate::field::formula::Thickness;
 use crate::field::gallery;
 use crate::math::{Bounds, grouped, shortest_text};
 use crate::sampler::{Method, Sampling, Settings, SizeMode};
@@ -145,13 +146,13 @@ impl Program<'_> {
 
     /// Refuses what a package cannot say.
     fn check_plain(&self, language: Language) -> Result<(), String> {
-        let solid = self.record.solid;
+        let solid = &self.record.solid;
         let others = self.others();
         // The packages have no limit to raise.
         let other = others.iter().find(|setting| setting.name != "max_particles");
         let what = if self.is_closed() {
             Some("close a solid by its box".to_owned())
-        } else if solid.thickness > 0.0 {
+        } else if solid.thickness.is_some() {
             Some("make a sheet of a thickness".to_owned())
         } else if let Some(setting) = other {
             Some(format!("set “{}” (--{})", setting.label, setting.option()))
@@ -170,8 +171,12 @@ impl Program<'_> {
         let mut imports = vec!["Formula", "Settings", "sample"];
         let mut surface = vec![format!("Formula::parse({:?})?", record.formula)];
         surface.extend(record.parameters.iter().map(|(name, value)| format!(".with({name:?}, {value:?})?")));
-        if record.solid.thickness > 0.0 {
-            surface.push(format!(".thickened({:?})", record.solid.thickness));
+        match &record.solid.thickness {
+            Thickness::Formula(text) => surface.push(format!(".thickened_by({text:?})?")),
+            &Thickness::Number(thickness) if thickness > 0.0 => {
+                surface.push(format!(".thickened({thickness:?})"));
+            }
+            Thickness::Number(_) => {}
         }
         if let Some(faces) = record.faces {
             imports.push("Bounds");
@@ -316,7 +321,7 @@ impl Program<'_> {
 
     fn shell(&self) -> Result<String, String> {
         let Self { record, settings, .. } = self;
-        let solid = record.solid;
+        let solid = &record.solid;
         if self.is_closed() && settings.bounds.is_some() {
             let why = "the command line chooses the box around a closed solid itself: Rust can take another";
             return Err(why.to_owned());
@@ -347,8 +352,8 @@ impl Program<'_> {
         if solid.box_cell == BoxCell::Periodic && self.is_closed() {
             words.push("--periodic".to_owned());
         }
-        if solid.thickness > 0.0 {
-            words.push(format!("--thickness {}", shortest_text(solid.thickness)));
+        if solid.thickness.is_some() {
+            words.push(format!("--thickness {}", in_shell(&solid.thickness.to_string())));
         }
         match (settings.size_mode, settings.radius) {
             (SizeMode::Count, _) => words.push(format!("--count {}", settings.count)),

@@ -13,6 +13,8 @@ pub enum FaultKind {
     Request,
     /// A setting is out of its range, or the memory does not hold the run.
     Settings,
+    /// The formula of the thickness has a mistake; the span is in it.
+    Thickness,
     /// A run would have more particles than the limit allows, see [`Fault::excess`].
     TooMany,
     /// There is no surface of that name.
@@ -95,5 +97,12 @@ impl Fault {
             name: error.name,
             ..Self::new(FaultKind::Formula(error.kind), &error.message)
         }
+    }
+
+    /// An error in the formula `text` of the thickness.
+    #[must_use]
+    pub fn in_thickness(error: FormulaError, text: &str) -> Self {
+        let message = format!("Thickness: {}", error.message);
+        Self { kind: FaultKind::Thickness, message, ..Self::in_formula(error, text) }
     }
 }

@@ -2,10 +2,10 @@
 //! field, belongs to a gallery surface, or is fitted around the surface of a formula; the solid
 //! that is made of the surface in the box; and the creases of the solid.
 
-use super::{FieldAnswer, Session, Source};
+use super::{Fault, FaultKind, FieldAnswer, Session, Source};
 use crate::extent::{self, Extent, Reach};
 use crate::field::Field;
-use crate::field::formula::Formula;
+use crate::field::formula::{Formula, Thickness};
 use crate::field::gallery::Surface;
 use crate::math::Bounds;
 use crate::sampler::{FoundCreases, Settings, SettingsError};
@@ -51,7 +51,7 @@ pub enum BoxCell {
 
 /// Settings that act before a run: the box, and the solid that is made of the surface of a formula.
 /// They mean nothing to a model from points.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SolidSettings {
     /// Choice of the box.
@@ -61,42 +61,47 @@ pub struct SolidSettings {
     /// What opposite faces of the box have in common, where they close the solid.
     pub box_cell: BoxCell,
     /// Thickness of the sheet around the surface that is sampled in its place, in the units of the
-    /// coordinates; 0 for the surface itself. See [`Formula::thickened`].
-    pub thickness: f64,
+    /// coordinates; 0 for the surface itself. See [`Formula::thickened_by`].
+    pub thickness: Thickness,
 }
 
 impl SolidSettings {
     /// Names of these settings, which the page gives together with those of a run.
     pub const NAMES: [&str; 4] = ["box_mode", "box_faces", "box_cell", "thickness"];
-    /// The values of [`SolidSettings::thickness`] that are accepted.
+    /// The numbers that [`SolidSettings::thickness`] can be.
     pub const THICKNESSES: RangeInclusive<f64> = 0.0..=*Bounds::DIAGONALS.end();
 
-    /// Checks that the thickness is a number in its range.
+    /// Checks that a thickness that is a number is in its range.
     ///
     /// # Errors
     ///
     /// [`SettingsError::OutOfRange`] if it is not.
     pub fn validate(&self) -> Result<(), SettingsError> {
         let (min, max) = Self::THICKNESSES.into_inner();
-        let value = self.thickness;
-        if (min..=max).contains(&value) {
-            return Ok(());
+        match self.thickness {
+            Thickness::Number(value) if !(min..=max).contains(&value) => {
+                Err(SettingsError::OutOfRange { name: "thickness", value, min, max })
+            }
+            _ => Ok(()),
         }
-        Err(SettingsError::OutOfRange { name: "thickness", value, min, max })
     }
 
     /// The thickness of the sheet, if there is one.
-    fn sheet(&self) -> Option<f64> {
-        Some(self.thickness).filter(|&thickness| thickness > 0.0)
+    #[must_use]
+    pub fn sheet(&self) -> Option<&Thickness> {
+        Some(&self.thickness).filter(|thickness| **thickness != Thickness::default())
     }
 
     /// The field of the solid that is made of the surface of `field`: the surface or the sheet
-    /// around it, closed by a box where one is given.
+    /// around it, closed by a box where one is given. A thickness that the surface cannot have
+    /// makes no sheet.
     #[must_use]
     pub fn made_of(&self, field: Formula, closing: Option<&Bounds>) -> Formula {
         let mut solid = field.without_solid();
-        if let Some(thickness) = self.sheet() {
-            solid = solid.thickened(thickness);
+        if let Some(thickness) = self.sheet()
+            && let Ok(sheet) = solid.clone().thickened_by(thickness.clone())
+        {
+            solid = sheet;
         }
         match closing {
             Some(bounds) if self.box_cell == BoxCell::Periodic => solid.repeated_in(bounds),
@@ -116,14 +121,17 @@ impl SolidSettings {
             return Some(bounds);
         }
         let solid = self.made_of(field.clone(), None);
-        Some(extent::unit_cell(&solid, field.surface_periods(), &bounds))
+        Some(extent::unit_cell(&solid, solid.surface_periods(), &bounds))
     }
 
     /// The box that a surface of the gallery brings with it. Around a surface that is closed
-    /// without it, there is room for the sheet.
+    /// without it, there is room for a sheet whose thickness is a number.
     #[must_use]
     pub fn own_box(&self, surface: &Surface) -> Bounds {
-        let room = if surface.closed { DVec3::splat(0.5 * self.thickness) } else { DVec3::ZERO };
+        let room = match self.thickness {
+            Thickness::Number(thickness) if surface.closed => DVec3::splat(0.5 * thickness),
+            _ => DVec3::ZERO,
+        };
         Bounds::new(surface.bounds.lo() - room, surface.bounds.hi() + room)
     }
 }
@@ -179,8 +187,8 @@ pub(super) struct Fitting {
 impl Fitting {
     /// Forgets all but the choice of the user, and what belongs to another clip box.
     pub(super) fn discard(&mut self) {
-        let closed = core::mem::take(&mut self.closed);
-        *self = Self { choice: self.choice, closed, ..Self::default() };
+        let (choice, closed) = (core::mem::take(&mut self.choice), core::mem::take(&mut self.closed));
+        *self = Self { choice, closed, ..Self::default() };
     }
 
     /// Forgets what belongs to another field or another choice of the box; the box itself stays
@@ -197,9 +205,11 @@ impl Session {
     ///
     /// # Errors
     ///
-    /// If the thickness is out of its range; nothing is changed then.
-    pub fn choose(&mut self, choice: SolidSettings) -> Result<(), SettingsError> {
-        choice.validate()?;
+    /// If the thickness is out of its range, or a formula that the present one cannot have;
+    /// nothing is changed then.
+    pub fn choose(&mut self, choice: SolidSettings) -> Result<(), Fault> {
+        choice.validate().map_err(|error| Fault::new(FaultKind::Settings, &error))?;
+        self.check_thickness(&choice.thickness)?;
         if choice.thickness != self.fitting.choice.thickness {
             self.fitting.restart();
         }
@@ -244,7 +254,7 @@ impl Session {
         if !self.has_extent() || !self.is_to_fit() {
             return Some((self.own_box(), None));
         }
-        let choice = self.fitting.choice;
+        let choice = self.fitting.choice.clone();
         let search = &mut self.fitting.unclosed;
         let found = match self.run.field() {
             Source::Formula(field) => search.step(|| choice.made_of(field.clone(), None), budget),
@@ -261,7 +271,7 @@ impl Session {
     /// Takes the solid that is made of the surface in a clip box as the field of the next run.
     /// Returns the box, which a unit cell may have moved.
     fn make_solid(&mut self, clip: Bounds) -> Bounds {
-        let choice = self.fitting.choice;
+        let choice = self.fitting.choice.clone();
         let Some(field) = self.own_formula() else { return clip };
         let closing = choice.faces(field, clip, self.is_to_choose());
         let is_cell = closing.is_some() && choice.box_cell == BoxCell::Periodic;
@@ -329,8 +339,33 @@ impl Session {
     }
 
     /// Whether the box is to be fitted: not where it was given, nor around a surface of the
-    /// gallery, which has its own.
+    /// gallery, which has its own. How much room a sheet takes whose thickness is a formula, only a
+    /// search for its box tells.
     fn is_to_fit(&self) -> bool {
-        self.is_to_choose() && self.surface.is_none()
+        let is_formula = matches!(self.fitting.choice.thickness, Thickness::Formula(_));
+        let has_own_box = |surface: &Surface| !(surface.closed && is_formula);
+        self.is_to_choose() && !self.surface.is_some_and(has_own_box)
+    }
+
+    /// Checks that the surface of the present formula can have a thickness.
+    ///
+    /// # Errors
+    ///
+    /// A mistake in the formula of the thickness, or a name that the present one does not have.
+    pub fn check_thickness(&self, thickness: &Thickness) -> Result<(), Fault> {
+        match (self.own_formula(), thickness) {
+            (Some(field), Thickness::Formula(text)) => {
+                field.check_thickness(thickness).map_err(|error| Fault::in_thickness(error, text))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Ends a thickness with names that another field does not have.
+    pub(super) fn keep_thickness_of(&mut self, field: &Formula) {
+        let thickness = &mut self.fitting.choice.thickness;
+        if field.check_thickness(thickness).is_err() {
+            *thickness = Thickness::default();
+        }
     }
 }

@@ -241,7 +241,8 @@ impl Session {
     }
 
     /// Changes the field, which ends a run on another one. Its particles stay until the next
-    /// [`Session::start`].
+    /// [`Session::start`]. A thickness by a formula ends with a field that does not have its names:
+    /// the solid is to be [chosen](Session::choose) again.
     ///
     /// # Errors
     ///
@@ -352,6 +353,7 @@ impl Session {
         own: Bounds,
         is_given: bool,
     ) {
+        self.keep_thickness_of(&field);
         let present = self.source().formula();
         let is_same_text = present.is_some_and(|p| p.text() == field.text());
         // A formula that was compiled anew is not yet made to the solid that is to be sampled.

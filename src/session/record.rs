@@ -107,7 +107,7 @@ impl Session {
             parameters: values,
             bounds: self.run.bounds(),
             faces: (self.fitting.choice.box_faces == BoxFaces::Closed).then_some(self.clip),
-            solid: self.fitting.choice,
+            solid: self.fitting.choice.clone(),
             settings: Settings { bounds: None, ..*settings },
         })
     }

@@ -103,6 +103,8 @@ pub enum SettingKind {
     Number,
     /// Whole numbers.
     Integer,
+    /// Numbers, or texts of formulas in x, y and z.
+    Formula,
     /// A few named values.
     Choice,
 }
@@ -300,11 +302,12 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
             min: *thicknesses.start(),
             max: *thicknesses.end(),
             accepted_max: *thicknesses.end(),
+            kind: SettingKind::Formula,
             ..of_box(number(
                 "thickness",
-                SolidSettings::default().thickness,
+                0.0,
                 "Thickness",
-                "Thickness t of a sheet that is sampled in place of the surface, |f| ≤ t/2 |∇f|, in the units of x, y and z; 0 for the surface itself. Of formulas.",
+                "Thickness t of a sheet that is sampled in place of the surface, |f| ≤ t/2 |∇f|, in the units of x, y and z; 0 for the surface itself. A formula such as 0.1 + 0.05z makes it vary. Of formulas.",
             ))
         },
         choice(

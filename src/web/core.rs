@@ -82,6 +82,11 @@ impl Core {
         number(text).ok()
     }
 
+    /// Why the present surface cannot have the thickness of this text; nothing if it can.
+    pub fn thickness_fault(&self, text: &str) -> Option<String> {
+        self.session.check_thickness(&text.into()).err().map(|fault| fault.message)
+    }
+
     /// Refuses runs that need more than about `megabytes` with their report.
     pub fn limit_memory(&mut self, megabytes: usize) {
         self.session.run.limit_memory(megabytes << 20);
@@ -401,7 +406,7 @@ impl Core {
     /// takes.
     fn read_settings(&mut self, settings: JsValue) -> Result<Settings, Fault> {
         let solid: SolidSettings = read(settings.clone(), FaultKind::Settings)?;
-        self.session.choose(solid).map_err(|error| Fault::new(FaultKind::Settings, &error))?;
+        self.session.choose(solid)?;
         let of_run = js_sys::Object::assign(&js_sys::Object::new(), settings.unchecked_ref());
         for name in SolidSettings::NAMES {
             // Nothing is deleted where it is not there; a copy can be changed.

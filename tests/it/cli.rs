@@ -22,7 +22,7 @@ fn stderr(output: &Output) -> String {
 
 /// Runs `sample --json` with `arguments` and returns the line that it prints.
 #[track_caller]
-fn sample(arguments: &[&str]) -> Value {
+pub(crate) fn sample(arguments: &[&str]) -> Value {
     let output = run(&[&["sample", "--json"], arguments].concat());
     assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
     assert_eq!(stderr(&output), "", "no bar and no chatter without a terminal");
@@ -34,14 +34,14 @@ fn sample(arguments: &[&str]) -> Value {
 /// Runs the tool, which must fail with `code` and print nothing on standard output, and returns its
 /// message.
 #[track_caller]
-fn fails(code: i32, arguments: &[&str]) -> String {
+pub(crate) fn fails(code: i32, arguments: &[&str]) -> String {
     let output = run(arguments);
     assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", stderr(&output));
     assert_eq!(stdout(&output), "");
     stderr(&output)
 }
 
-fn file(name: &str) -> PathBuf {
+pub(crate) fn file(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
 

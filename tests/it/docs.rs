@@ -5,7 +5,7 @@
 //! `UPDATE_GOLDEN=1 cargo test --test it docs::` writes what differs.
 
 use marching_particles::math::shortest_text;
-use marching_particles::session::{Condition, Setting, SettingValue, settings};
+use marching_particles::session::{Condition, Setting, SettingKind, SettingValue, settings};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
@@ -46,6 +46,9 @@ fn values(setting: &Setting) -> String {
     let (min, max) = setting.accepted().into_inner();
     match setting.default {
         _ if setting.is_share() => format!("{} to {} of the box diagonal", percent(min), percent(max)),
+        _ if setting.kind == SettingKind::Formula => {
+            format!("{} to {}, or a formula", shortest_text(min), shortest_text(max))
+        }
         SettingValue::Integer(_) if max >= u64::MAX as f64 => "any whole number".to_owned(),
         _ => {
             format!("{} to {} {}", shortest_text(min), shortest_text(max), setting.unit).trim_end().to_owned()

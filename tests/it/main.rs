@@ -78,4 +78,5 @@ mod smooth;
 mod solid_table;
 mod solids;
 mod systems;
+mod thickness;
 mod tips;

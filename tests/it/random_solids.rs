@@ -67,7 +67,7 @@ fn check(seed: u64) -> bool {
     let bounds = one_of(&mut random, &boxes);
     let choice = SolidSettings {
         box_faces: one_of(&mut random, &[BoxFaces::Open, BoxFaces::Closed]),
-        thickness: one_of(&mut random, &[0.0, 0.0, 0.0, 0.1]),
+        thickness: one_of(&mut random, &[0.0, 0.0, 0.0, 0.1]).into(),
         ..SolidSettings::default()
     };
     let settings = settings!(radius_share: one_of(&mut random, &[0.02, 0.05]),

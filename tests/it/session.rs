@@ -563,19 +563,20 @@ fn a_surface_that_was_not_refined_is_warned_of() {
 
 mod solids {
     use super::{request, run, sized};
+    use marching_particles::Thickness;
     use marching_particles::math::Bounds;
     use marching_particles::sampler::{Settings, StopReason};
     use marching_particles::session::{BoxCell, BoxFaces, BoxMode, FieldRequest, Session, SolidSettings};
 
     fn solid(box_faces: BoxFaces, thickness: f64) -> SolidSettings {
-        SolidSettings { box_faces, thickness, ..SolidSettings::default() }
+        SolidSettings { box_faces, thickness: thickness.into(), ..SolidSettings::default() }
     }
 
     const OPEN: SolidSettings = SolidSettings {
         box_mode: BoxMode::Fit,
         box_faces: BoxFaces::Open,
         box_cell: BoxCell::Lone,
-        thickness: 0.0,
+        thickness: Thickness::Number(0.0),
     };
 
     /// A run of the session on a field, in which the box is found in slices of work, as the page
@@ -608,7 +609,7 @@ mod solids {
         let mut session = Session::new();
         let periodic = SolidSettings { box_cell: BoxCell::Periodic, ..solid(BoxFaces::Closed, 0.0) };
         let gyroid = r#"{"surface":"gyroid"}"#;
-        let cell = run_on(&mut session, gyroid, periodic, &settings);
+        let cell = run_on(&mut session, gyroid, periodic.clone(), &settings);
         let period = core::f64::consts::TAU;
         assert!((cell.size() - period).abs().max_element() < 1e-9, "{cell:?}");
         assert!(session.report().pairs.is_some_and(|pairs| pairs > 200));
@@ -635,7 +636,8 @@ mod solids {
         assert!(open_edges(&mut session) > 0);
         for thickness in [0.0, 0.5] {
             let closed = solid(BoxFaces::Closed, thickness);
-            assert_eq!(run_on(&mut session, gyroid, closed, &settings), own, "the panel has the closing box");
+            let bounds = run_on(&mut session, gyroid, closed.clone(), &settings);
+            assert_eq!(bounds, own, "the panel has the closing box");
             assert!(session.run.bounds().holds_inside(&own));
             assert_eq!(open_edges(&mut session), 0, "thickness {thickness}");
             let report = session.report();
@@ -678,7 +680,7 @@ mod solids {
         let mut session = Session::new();
         let closed = solid(BoxFaces::Closed, 0.0);
         let cylinder = r#"{"surface":"sphere","formula":"x^2 + y^2 - a","parameters":{"a":1}}"#;
-        let fitted = run_on(&mut session, cylinder, closed, &settings);
+        let fitted = run_on(&mut session, cylinder, closed.clone(), &settings);
         let sampled = session.run.bounds();
         assert!(sampled.min[2] < fitted.min[2] && sampled.max[2] > fitted.max[2], "{sampled:?} {fitted:?}");
         assert_eq!(open_edges(&mut session), 0);

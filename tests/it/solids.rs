@@ -6,12 +6,12 @@ use marching_particles::field::{Creased, Enclosure, Field, Frame, gallery};
 use marching_particles::math::Bounds;
 use marching_particles::slices::complete;
 
-fn field(text: &str) -> Formula {
+pub(crate) fn field(text: &str) -> Formula {
     Formula::parse(text).unwrap_or_else(|error| panic!("{text}: {error:?}"))
 }
 
 /// Points of a grid of 7 × 7 × 7 in a box.
-fn grid(bounds: &Bounds) -> impl Iterator<Item = DVec3> {
+pub(crate) fn grid(bounds: &Bounds) -> impl Iterator<Item = DVec3> {
     let (lo, size) = (bounds.lo(), bounds.size());
     (0..343).map(move |i| {
         let node = DVec3::new(f64::from(i % 7), f64::from(i / 7 % 7), f64::from(i / 49));
@@ -20,7 +20,7 @@ fn grid(bounds: &Bounds) -> impl Iterator<Item = DVec3> {
 }
 
 /// Checks that single precision, differences and bounds agree with the values of a field.
-fn is_consistent(field: &Formula, bounds: &Bounds, what: &str) {
+pub(crate) fn is_consistent(field: &Formula, bounds: &Bounds, what: &str) {
     let mut field = field.evaluator(Frame::default());
     for p in grid(bounds) {
         let (value, gradient) = field.value_and_gradient(p);

@@ -9,7 +9,9 @@ use marching_particles::field::{model, rbf::Pull};
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::job::CENTRES;
 use marching_particles::session::{BoxCell, BoxFaces, BoxMode, FileRecord, Language, SolidSettings};
-use marching_particles::{Format, Measured, MeshFormat, Placement, Unit, UpAxis, Vertices, gallery};
+use marching_particles::{
+    Format, Measured, MeshFormat, Placement, Thickness, Unit, UpAxis, Vertices, gallery,
+};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -157,6 +159,7 @@ Examples:
   marching-particles sample --formula \"x^4 - 5x^2 + y^4 - 5y^2 + z^4 - 5z^2 + 11.8\"
   marching-particles sample --formula \"sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)\" --box 5 --radius 0.05
   marching-particles sample --surface gyroid --thickness 0.3 --closed --mesh part.stl
+  marching-particles sample --surface gyroid --thickness \"1 + 0.1z\" --closed --porosity 70% --mesh graded.stl
   marching-particles sample --formula \"x^2 + y^2 + z^2 = 1\" --mesh ball.3mf --scale 25 --unit mm
   marching-particles sample --like part.glb --radius 0.3% --mesh finer.glb
   marching-particles sample --points scan.ply --centres 400 --out even.ply --mesh even.glb
@@ -184,6 +187,12 @@ pub(crate) struct SampleArguments {
 
     #[command(flatten)]
     pub(crate) surface: SurfaceArguments,
+
+    /// Share of the box of --closed that the sheet leaves empty, by the volume of the mesh: 70% or
+    /// 0.7. Finds the thickness; a --thickness by a formula is scaled. Corrected by up to two more
+    /// runs. For formulas
+    #[arg(long, value_name = "SHARE%", value_parser = porosity, requires = "closed", conflicts_with = "points", help_heading = "Surface")]
+    pub(crate) porosity: Option<f64>,
 
     #[command(flatten)]
     pub(crate) sampling: SamplingOptions,
@@ -237,7 +246,7 @@ pub(crate) struct SampleArguments {
     /// Print the program that makes these particles, in place of making them: on the library in
     /// Rust, on the package for npm (js), on the Python package, or as a command (shell). No file
     /// is written; --mesh chooses the method as usual. For formulas
-    #[arg(long, value_name = "LANGUAGE", value_parser = one_of(&Language::ALL), conflicts_with = "json", help_heading = "Output")]
+    #[arg(long, value_name = "LANGUAGE", value_parser = one_of(&Language::ALL), conflicts_with_all = ["json", "porosity"], help_heading = "Output")]
     pub(crate) print: Option<(&'static str, Language)>,
 
     /// Print nothing but errors, and the line of --json; show no progress bar (there is none
@@ -303,10 +312,14 @@ pub(crate) struct SurfaceArguments {
     #[arg(skip)]
     pub(crate) pulls: Vec<Pull>,
 
-    /// Sheet of this thickness around the surface, |f| ≤ T/2 |∇f|, in place of the surface. For
-    /// formulas
-    #[arg(long, value_name = "T", conflicts_with = "points", value_parser = thickness, help_heading = "Surface")]
-    pub(crate) thickness: Option<f64>,
+    /// Sheet of this thickness around the surface, |f| ≤ T/2 |∇f|, in place of the surface: a
+    /// number, or a formula of x, y, z and the parameters, such as "0.1 + 0.05z". There is no sheet
+    /// where it is negative. For formulas
+    #[arg(
+        long, value_name = "T", conflicts_with = "points", value_parser = thickness, allow_hyphen_values = true,
+        help_heading = "Surface"
+    )]
+    pub(crate) thickness: Option<Thickness>,
 }
 
 impl SurfaceArguments {
@@ -349,8 +362,12 @@ impl SampleArguments {
             surface.add_parameters(record.parameters);
             surface.closed |= record.solid.box_faces == BoxFaces::Closed;
             surface.periodic |= record.solid.box_cell == BoxCell::Periodic;
-            surface.thickness =
-                surface.thickness.or((record.solid.thickness > 0.0).then_some(record.solid.thickness));
+            // A porosity asks for another thickness than that of the file.
+            let kept = record
+                .solid
+                .sheet()
+                .filter(|thickness| self.porosity.is_none() || matches!(thickness, Thickness::Formula(_)));
+            surface.thickness = surface.thickness.take().or(kept.cloned());
         }
         self.sampling.complete(&record.settings);
     }
@@ -390,7 +407,7 @@ impl SurfaceArguments {
             box_mode: if is_fixed { BoxMode::Fixed } else { BoxMode::Fit },
             box_faces: if self.closed { BoxFaces::Closed } else { BoxFaces::Open },
             box_cell: if self.periodic { BoxCell::Periodic } else { BoxCell::Lone },
-            thickness: self.thickness.unwrap_or(0.0),
+            thickness: self.thickness.clone().unwrap_or_default(),
         }
     }
 }
@@ -420,11 +437,23 @@ pub(crate) struct Surfaces {
     pub(crate) json: bool,
 }
 
-/// A length that a sheet can have.
-fn thickness(text: &str) -> Result<f64, String> {
-    let thickness = number(text)?;
-    SolidSettings { thickness, ..SolidSettings::default() }.validate().map_err(|error| error.to_string())?;
-    Ok(thickness)
+/// A length that a sheet can have, or a formula.
+fn thickness(text: &str) -> Result<Thickness, String> {
+    let solid = SolidSettings { thickness: text.into(), ..SolidSettings::default() };
+    solid.validate().map_err(|error| error.to_string())?;
+    Ok(solid.thickness)
+}
+
+/// A share between 0 and 1.
+fn porosity(text: &str) -> Result<f64, String> {
+    let share = match text.strip_suffix('%') {
+        Some(percent) => number(percent)? / 100.0,
+        None => number(text)?,
+    };
+    if share > 0.0 && share < 1.0 {
+        return Ok(share);
+    }
+    Err("a porosity is a share between 0 and 1, such as 70% or 0.7".to_owned())
 }
 
 /// A positive factor.
@@ -495,6 +524,22 @@ mod tests {
         for bad in ["a", "a=1", "a=1..", "1..2", "a=..2", "a=1..b", "a=nan..1"] {
             assert!(sweep(bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn porosity_is_a_share_between_0_and_1() {
+        assert_eq!(porosity("70%"), Ok(0.7));
+        assert_eq!(porosity("2/3"), Ok(2.0 / 3.0));
+        for bad in ["70", "0", "1", "-1%", "100%", "nan", "x", "", "%"] {
+            assert!(porosity(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn thickness_is_a_length_or_a_formula() {
+        assert_eq!(thickness("pi/10"), Ok(Thickness::Number(std::f64::consts::PI / 10.0)));
+        assert_eq!(thickness("-z"), Ok(Thickness::Formula("-z".to_owned())));
+        assert!(thickness("-0.1").is_err());
     }
 
     #[test]

@@ -7,6 +7,7 @@ mod options;
 mod outcome;
 mod output;
 mod points;
+mod porosity;
 mod sample;
 mod summary;
 mod surfaces;

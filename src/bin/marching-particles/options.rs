@@ -214,7 +214,9 @@ impl FromArgMatches for SamplingOptions {
                     self.lengths.push((name, length));
                     continue;
                 }
-                SettingKind::Number => (*matches.get_one::<f64>(name).ok_or_else(|| missing(name))?).into(),
+                SettingKind::Number | SettingKind::Formula => {
+                    (*matches.get_one::<f64>(name).ok_or_else(|| missing(name))?).into()
+                }
             };
             if name == COUNT {
                 self.values.insert(SIZE_MODE.to_owned(), COUNT.into());
@@ -262,7 +264,7 @@ fn option(setting: &Setting) -> Arg {
             arg.value_name("N").value_parser(move |text: &str| whole_up_to(text, &range, largest))
         }
         SettingKind::Number if setting.is_share() => arg.value_name("SHARE%|LENGTH").value_parser(length),
-        SettingKind::Number => arg.value_name("NUMBER").value_parser(number),
+        SettingKind::Number | SettingKind::Formula => arg.value_name("NUMBER").value_parser(number),
     }
 }
 

@@ -3,7 +3,7 @@
 use marching_particles::field::model::ModelInfo;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::Settings;
-use marching_particles::{Inside, Report, Sample, Triangulation};
+use marching_particles::{Inside, Report, Sample, Thickness, Triangulation};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -33,6 +33,10 @@ pub(crate) struct Outcome {
     pub(crate) parameters: BTreeMap<String, f64>,
     pub(crate) bounds: Bounds,
     pub(crate) settings: Settings,
+    /// Thickness of the sheet, if one is sampled.
+    pub(crate) thickness: Option<Thickness>,
+    /// The porosity, if one is requested.
+    pub(crate) porosity: Option<Porosity>,
     pub(crate) predicted_count: u64,
     #[serde(flatten)]
     pub(crate) report: Report,
@@ -49,6 +53,14 @@ pub(crate) struct Outcome {
     /// Whether one of the files is of a format that is printed in.
     #[serde(skip)]
     pub(crate) is_printed: bool,
+}
+
+/// Share of the box that the solid leaves empty.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Porosity {
+    pub(crate) wanted: f64,
+    /// That of the mesh; none if it is open.
+    pub(crate) reached: Option<f64>,
 }
 
 /// Counts of a mesh, as the output gives them.

@@ -4,6 +4,7 @@ use crate::arguments::{BoxChoice, SampleArguments, SurfaceArguments};
 use crate::failure::{Failure, LIMIT};
 use crate::outcome::{MeshCounts, Outcome, Seconds};
 use crate::output::{OutputFile, STANDARD, record_path};
+use crate::porosity::Wish;
 use crate::{code, points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
 use marching_particles::export::VERTICES;
@@ -14,11 +15,11 @@ use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::DEFAULT_CENTRES;
 use marching_particles::sampler::{COUNT_ROOM, SizeMode};
 use marching_particles::session::{
-    BoxFaces, Fault, FaultKind, FieldAnswer, FieldRequest, FileRecord, Session, Source,
+    BoxFaces, Fault, FaultKind, FieldAnswer, FieldRequest, FileRecord, Session, SolidSettings, Source,
 };
 use marching_particles::{
     Bounds, Error, Field, Format, MeshFile, MeshFormat, Parameter, ParticleFile, Phase, Reach, RecordText,
-    Run, Settings, StopReason, Vertices, gallery,
+    Run, Settings, StopReason, Thickness, Vertices, gallery,
 };
 use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
@@ -61,7 +62,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         let record = read_record(path, &arguments.surface)?;
         arguments.complete(record);
     }
-    if !arguments.mesh.is_empty() {
+    if !arguments.mesh.is_empty() || arguments.porosity.is_some() {
         arguments.sampling.prefer_refined();
     }
     let arguments = &arguments;
@@ -92,26 +93,36 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         settings.bounds = arguments.surface.sampled;
         settings
     };
-    let (settings, start) = timed(&mut seconds.seeding, || {
-        let settings = fit(&mut session, &settings_in, false)?;
-        Ok::<_, Failure>((settings, session.start(&settings)?))
-    })?;
-    let predicted_count = start.predicted_count;
+    let mut wish = match arguments.porosity {
+        Some(wanted) => {
+            let solid = arguments.surface.solid();
+            let begin = || Wish::begin(&mut session, solid, wanted, &settings_in);
+            Some(timed(&mut seconds.seeding, begin)?)
+        }
+        None => None,
+    };
     let bar = bar(arguments.quiet);
     let measured = arguments.report.measured();
-    session.run.plan(measured, !mesh_formats.is_empty());
-    step_to_end(&mut session.run, &mut seconds, &bar);
-    let peak_sampling_mb = peak_mb();
+    let is_mesh = !mesh_formats.is_empty() || wish.is_some();
+    let (settings, predicted_count, is_joined, peak_sampling_mb) = loop {
+        let (settings, start) = timed(&mut seconds.seeding, || {
+            let settings = fit(&mut session, &settings_in, false)?;
+            Ok::<_, Failure>((settings, session.start(&settings)?))
+        })?;
+        session.run.plan(measured, is_mesh);
+        step_to_end(&mut session.run, &mut seconds, &bar);
+        let peak = peak_mb();
+        let is_joined = is_mesh && session.run.count() > 0;
+        let volume = if is_joined { join(&mut session.run, &mut seconds, &bar) } else { None };
+        let is_corrected = match &mut wish {
+            Some(wish) => timed(&mut seconds.seeding, || wish.corrects(&mut session, volume))?,
+            None => false,
+        };
+        if !is_corrected {
+            break (settings, start.predicted_count, is_joined, peak);
+        }
+    };
     let reach = session.run.reach();
-    let is_joined = !mesh_formats.is_empty() && session.run.count() > 0;
-    if is_joined {
-        bar.set_message("joining the particles");
-        timed(&mut seconds.mesh, || {
-            while session.run.join(SLICES).is_none() {
-                set_fraction(&bar, session.run.fraction());
-            }
-        });
-    }
     let mut made = session.record(None).expect("a run that has started has a record");
     // The steps that were asked for, though an even surface takes fewer.
     made.settings.relax_steps = settings.relax_steps;
@@ -159,6 +170,8 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         parameters: made.parameters,
         bounds: made.bounds,
         settings: made.settings,
+        thickness: made.solid.sheet().cloned(),
+        porosity: wish.map(|wish| wish.outcome()),
         predicted_count,
         report,
         mesh,
@@ -304,13 +317,13 @@ pub(crate) fn choose(
     let refused = |fault| refused_field(arguments, fault);
     let mut request =
         FieldRequest { bounds: given, pulls: arguments.pulls.clone(), ..FieldRequest::default() };
-    session.choose(solid).map_err(|error| Failure::Usage(error.to_string()))?;
     if let Some(fit) = fit_points(arguments, quiet)? {
-        if solid.box_faces == BoxFaces::Closed || solid.thickness > 0.0 {
+        if solid.box_faces == BoxFaces::Closed || solid.sheet().is_some() {
             return Err(Failure::Usage(
                 "--closed and --thickness are for formulas, not for models from points".into(),
             ));
         }
+        session.choose(solid).map_err(|fault| Failure::Usage(fault.message))?;
         request.formula.clone_from(&arguments.formula);
         request.parameters = arguments.parameters.iter().cloned().collect();
         let answer = session.set_points(fit.data, fit.info.clone(), fit.bounds, &request).map_err(refused)?;
@@ -336,7 +349,19 @@ pub(crate) fn choose(
         ));
     }
     check_parameters(arguments, &answer)?;
+    // Its thickness may have names of the formula.
+    session.choose(solid.clone()).map_err(|fault| refused_solid(&solid, fault))?;
     Ok(None)
+}
+
+/// Why a solid was refused.
+pub(crate) fn refused_solid(solid: &SolidSettings, fault: Fault) -> Failure {
+    match (&fault.kind, &solid.thickness) {
+        (FaultKind::Thickness, Thickness::Formula(text)) => {
+            Failure::Formula { text: text.clone(), fault: Box::new(fault) }
+        }
+        _ => Failure::Usage(fault.message),
+    }
 }
 
 /// Refuses a value for a parameter that the formula does not have.
@@ -435,6 +460,20 @@ fn step_to_end(run: &mut Run<Source>, seconds: &mut Seconds, bar: &ProgressBar) 
         }
         steps = steps.wrapping_add(1);
     }
+}
+
+/// Joins the particles of a run, and adds the time to `seconds`. Returns the volume of the mesh, if
+/// it is closed.
+fn join(run: &mut Run<Source>, seconds: &mut Seconds, bar: &ProgressBar) -> Option<f64> {
+    bar.set_message("joining the particles");
+    timed(&mut seconds.mesh, || {
+        loop {
+            match run.join(SLICES) {
+                Some(mesh) => break mesh.volume,
+                None => set_fraction(bar, run.fraction()),
+            }
+        }
+    })
 }
 
 fn set_fraction(bar: &ProgressBar, fraction: f64) {

@@ -1,6 +1,6 @@
 //! Report of a run as text.
 
-use crate::outcome::{MeshCounts, Outcome};
+use crate::outcome::{MeshCounts, Outcome, Porosity};
 use marching_particles::field::model::{ModelInfo, NormalSource};
 use marching_particles::math::{counted, grouped, significant};
 use marching_particles::session::{ReportRow, describe};
@@ -23,6 +23,16 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
         let values: Vec<String> =
             outcome.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         writeln!(out, "{}", values.join(", "))?;
+    }
+    if let Some(thickness) = &outcome.thickness {
+        write!(out, "sheet of thickness {thickness}")?;
+        match outcome.porosity {
+            Some(Porosity { wanted, reached: Some(reached) }) => {
+                let [wanted, reached] = [wanted, reached].map(|share| significant(100.0 * share));
+                writeln!(out, ", which leaves {reached} % of the box empty (wanted: {wanted} %)")?;
+            }
+            _ => writeln!(out)?,
+        }
     }
     writeln!(
         out,
@@ -84,6 +94,12 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     for warning in &report.warnings {
         let kind = if warning.severity() == Severity::Note { "note" } else { "warning" };
         writeln!(out, "{kind}: {warning}")?;
+    }
+    if outcome.porosity.is_some_and(|porosity| porosity.reached.is_none()) {
+        writeln!(
+            out,
+            "warning: the mesh is open, so that its porosity is not known: a smaller --radius may close it"
+        )?;
     }
     if let Some(mesh) = outcome.mesh.as_ref().filter(|mesh| outcome.is_printed && mesh.volume.is_none()) {
         let loops = counted(mesh.borders + mesh.holes, "border loop", "border loops");

@@ -343,6 +343,15 @@ impl Graph {
         (part, roots[0])
     }
 
+    /// Adds node `root` of another graph, with what it needs, and returns its index in this one.
+    pub(super) fn add_part(&mut self, other: &Self, root: Id) -> Id {
+        let mut map = vec![0; other.len()];
+        for id in other.needed_by(&[root]) {
+            map[id as usize] = self.built(other.node(id).mapped(|operand| map[operand as usize]));
+        }
+        map[root as usize]
+    }
+
     /// A graph of `outputs` with their indices in it: `write` adds each node that they need, in the
     /// same order.
     pub(super) fn rewritten(

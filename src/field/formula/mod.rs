@@ -66,6 +66,7 @@ mod operations;
 mod parse;
 mod patches;
 mod periods;
+mod porosity;
 mod powers;
 mod program;
 mod regular;
@@ -77,6 +78,7 @@ mod statements;
 mod steps;
 #[cfg(test)]
 mod tests;
+mod thickness;
 mod token;
 
 pub use ast::{FUNCTIONS, FunctionInfo};
@@ -87,8 +89,10 @@ pub use lex::name_pattern;
 pub use mathml::{MathGroup, MathNode, MathToken};
 #[doc(hidden)]
 pub use operand::MODEL;
+pub use porosity::PorosityError;
 #[doc(hidden)]
 pub use spelling::similar;
+pub use thickness::Thickness;
 
 use super::{Creased, Evaluator, Facts, Field, Frame, Jet, UnitCell};
 use crate::math::Bounds;
@@ -99,11 +103,13 @@ use compiled::Compiled;
 use core::any::Any;
 use evaluator::FormulaEvaluator;
 use glam::DVec3;
-use graph::{Graph, Id};
+use graph::{Graph, Id, Node};
+use operations::Binary;
 use serde::{Deserialize, Serialize};
 use solids::Solid;
 use std::borrow::Cow;
 use std::sync::Arc;
+use thickness::Sheet;
 
 /// Maximum length of a formula in bytes of UTF-8. Longer text is refused before it is parsed, so
 /// that the time that a typed character takes is bounded: a sum of this length is parsed and
@@ -327,11 +333,19 @@ impl Formula {
         self.closed_by(bounds)
     }
 
-    /// The period of the surface, which no box closes, along each axis: see [`Facts::periods`].
+    /// The period of the surface, or of the sheet around it, which no box closes, along each axis:
+    /// see [`Facts::periods`].
     #[must_use]
     pub fn surface_periods(&self) -> [Option<f64>; 3] {
         let (graph, root) = &*self.surface;
-        [0, 1, 2].map(|axis| periods::period(graph, *root, axis, &self.values))
+        let (mut graph, mut root) = (Cow::Borrowed(graph), *root);
+        if let Some(sheet) = &self.solid.sheet {
+            let graph = graph.to_mut();
+            let half = sheet.half(graph);
+            // Any function of both has the periods that they have in common.
+            root = graph.intern(Node::Binary(Binary::Max, root, half));
+        }
+        [0, 1, 2].map(|axis| periods::period(&graph, root, axis, &self.values))
     }
 
     /// Field of the sheet of this thickness around the surface: |f| − t/2 |∇f|, which is negative
@@ -340,9 +354,42 @@ impl Formula {
     /// formula.
     #[must_use]
     pub fn thickened(mut self, thickness: f64) -> Self {
-        self.solid.thickness = Some(thickness);
+        self.solid.sheet = Some(Sheet::even(thickness));
         self.make_solid();
         self
+    }
+
+    /// [`Formula::thickened`] by a thickness t(x, y, z), an expression in the coordinates and the
+    /// parameters of this formula: |f| − t/2 |∇f|, with t and ∇f of the same place. The sheet ends
+    /// in an edge where t falls to 0; there is none where t is negative or has no value.
+    ///
+    /// ```
+    /// use marching_particles::{Bounds, Formula, Settings, sample};
+    ///
+    /// let plane = Formula::parse("z = 0")?.thickened_by("0.2 + 0.1 x")?;
+    /// // A wedge of the heights 0.1 and 0.3 at its ends.
+    /// let wedge = sample(plane.closed_by(&Bounds::cube(1.0)), &Settings::with_count(1_000))?;
+    /// assert!(wedge.volume().is_some_and(|volume| (volume - 0.8).abs() < 1e-3));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Any of [`FormulaErrorKind`], with its span in bytes of `thickness`:
+    /// [`FormulaErrorKind::UnknownName`] for a name that is no parameter of the formula.
+    pub fn thickened_by(mut self, thickness: impl Into<Thickness>) -> Result<Self, FormulaError> {
+        self.solid.sheet = Some(Sheet::new(&thickness.into(), &self.parameters)?);
+        self.make_solid();
+        Ok(self)
+    }
+
+    /// Checks that the surface can have this thickness.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Formula::thickened_by`].
+    pub(crate) fn check_thickness(&self, thickness: &Thickness) -> Result<(), FormulaError> {
+        Sheet::new(thickness, &self.parameters).map(drop)
     }
 
     /// Field of the surface itself again, after [`Formula::thickened`] and [`Formula::closed_by`].
@@ -357,8 +404,8 @@ impl Formula {
 
     /// Thickness of the sheet that is sampled in place of the surface, see [`Formula::thickened`].
     #[must_use]
-    pub fn thickness(&self) -> Option<f64> {
-        self.solid.thickness
+    pub fn thickness(&self) -> Option<&Thickness> {
+        self.solid.sheet.as_ref().map(|sheet| &sheet.thickness)
     }
 
     /// The box whose faces close the solid, see [`Formula::closed_by`].
@@ -579,8 +626,7 @@ impl Field for Formula {
     fn facts(&self) -> Facts {
         let of_surface = self.surface_periods();
         let is_closed = self.solid.closed.is_some();
-        let has_coordinates =
-            self.surface.0.nodes().iter().any(|node| matches!(node, graph::Node::Coordinate(_)));
+        let has_coordinates = self.surface.0.nodes().iter().any(|node| matches!(node, Node::Coordinate(_)));
         let first = self.parameters.first().filter(|_| !has_coordinates);
         Facts {
             periods: if is_closed { [None; 3] } else { of_surface },

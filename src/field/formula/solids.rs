@@ -8,6 +8,7 @@ use super::branches::by_signs;
 use super::derivative;
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
+use super::thickness::Sheet;
 use crate::math::Bounds;
 
 /// Maximum number of smooth functions that the sheets of a thickened surface are put together from;
@@ -15,12 +16,12 @@ use crate::math::Bounds;
 /// taken as they are, and edges of a sheet may be off where gradients of different length meet.
 const MAX_SHEETS: usize = 128;
 
-/// The solid that is made of a surface: its thickness and the box that closes it. Without both it
-/// is the surface itself.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// The solid that is made of a surface: its sheet and the box that closes it. Without both it is
+/// the surface itself.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Solid {
-    /// Thickness of the sheet around the surface.
-    pub(super) thickness: Option<f64>,
+    /// The sheet around the surface.
+    pub(super) sheet: Option<Sheet>,
     /// The box whose faces close the solid.
     pub(super) closed: Option<Bounds>,
     /// Whether that box is a [cell](crate::field::UnitCell).
@@ -41,14 +42,15 @@ impl Solid {
     /// The node of the function that is at most 0 in the solid made of f, which is node `root`.
     pub(super) fn made_of(&self, graph: &mut Graph, root: Id) -> Id {
         // Of a sheet, and of what a box closes, the limits of the surface are faces.
-        let is_solid = self.thickness.is_some() || self.closed.is_some();
+        let is_solid = self.sheet.is_some() || self.closed.is_some();
         let limited = graph.limited(root).filter(|_| is_solid);
         let surface = limited.map_or(root, |[f, _]| f);
         let mut solid = surface;
-        if let Some(thickness) = self.thickness {
+        if let Some(sheet) = &self.sheet {
             graph.let_zero_annihilate();
             let apart = by_signs(graph, surface, &mut Vec::new());
-            solid = thickened(graph, apart, thickness);
+            let half = sheet.half(graph);
+            solid = thickened(graph, apart, half);
         }
         if let Some([_, limit]) = limited {
             solid = graph.binary(Binary::Max, solid, limit);
@@ -72,14 +74,14 @@ impl Solid {
 }
 
 /// The node of |f| − t/2 |∇f|, of the places whose distance from the surface is at most t/2 to
-/// first order.
+/// first order, with node `half` for t/2. Where t varies it is that of the place, not that of the
+/// nearest point of the surface, which differs by about |∇t| t/2.
 ///
 /// Where f has choices, so has the distance: the sheets beside max(a, b) = 0 are those beside a = 0
 /// and b = 0, each by its own gradient. These sheets meet in edges. With the one gradient of max(a,
 /// b) they would miss each other by the jump of |∇f|. Nor has a product a gradient where its
 /// factors cross: each of them has a sheet of its own.
-fn thickened(graph: &mut Graph, root: Id, thickness: f64) -> Id {
-    let half = graph.constant(0.5 * thickness);
+fn thickened(graph: &mut Graph, root: Id, half: Id) -> Id {
     let mut sheets = SheetBuilder { graph, half, left: MAX_SHEETS };
     let [above, below] = [false, true].map(|is_negative| {
         let f = Signed::of(sheets.graph, root, is_negative);

@@ -153,7 +153,7 @@ export type Fault = {
 };
 
 /** Kind of the error with which a command is refused. */
-export type FaultKind = "request" | "settings" | "too_many" | "unknown_surface" | "box" | "points" | FormulaErrorKind;
+export type FaultKind = "request" | "settings" | "thickness" | "too_many" | "unknown_surface" | "box" | "points" | FormulaErrorKind;
 
 /** The field as it now is. */
 export type FieldAnswer = {
@@ -1252,7 +1252,7 @@ export type Setting = {
 export type SettingGroup = "Box" | "Sampling" | "Advanced";
 
 /** Type of the values of a setting. */
-export type SettingKind = "number" | "integer" | "choice";
+export type SettingKind = "number" | "integer" | "formula" | "choice";
 
 /** Scale of a slider. */
 export type SettingScale = "linear" | "log";

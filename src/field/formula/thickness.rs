@@ -1,0 +1,185 @@
+//! The thickness of a sheet: a number, or an expression in the coordinates and the parameters of
+//! the formula whose surface it thickens.
+
+use super::ast::{Equation, Expr, ExprKind, Factor};
+use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
+use super::graph::{Graph, Id};
+use super::{Parameter, build, display, number, repair, syntax};
+use core::fmt::{self, Display, Formatter};
+use serde::de::{self, Deserializer, Visitor};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Thickness of the sheet that is sampled in place of a surface, in the units of the coordinates:
+/// a number or a text in JSON.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Thickness {
+    /// The same everywhere.
+    Number(f64),
+    /// An expression in x, y, z and the parameters of the formula, such as `0.1 + 0.05 z`. There is
+    /// no sheet where it is negative or zero.
+    Formula(String),
+}
+
+impl Default for Thickness {
+    /// No sheet.
+    fn default() -> Self {
+        Self::Number(0.0)
+    }
+}
+
+impl From<f64> for Thickness {
+    fn from(thickness: f64) -> Self {
+        Self::Number(thickness)
+    }
+}
+
+impl From<&str> for Thickness {
+    /// A number where the text is one, else a formula. Whether it is one that a surface can have,
+    /// [`Formula::thickened_by`](super::Formula::thickened_by) says.
+    fn from(text: &str) -> Self {
+        number(text).map_or_else(|_| Self::Formula(text.to_owned()), Self::Number)
+    }
+}
+
+impl Display for Thickness {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(thickness) => f.write_str(&crate::math::shortest_text(*thickness)),
+            Self::Formula(text) => f.write_str(text),
+        }
+    }
+}
+
+impl Thickness {
+    /// Whether it makes a sheet: whether it is anything but the number 0.
+    #[must_use]
+    pub fn is_some(&self) -> bool {
+        *self != Self::default()
+    }
+
+    /// The thickness times a number, for a formula with these parameters.
+    pub(super) fn scaled(&self, factor: f64, parameters: &[Parameter]) -> Result<Self, FormulaError> {
+        Ok(match self {
+            Self::Number(thickness) => Self::Number(factor * thickness),
+            Self::Formula(text) => {
+                let mut expression = expression(text, parameters)?;
+                let number = Expr { kind: ExprKind::Number(factor), span: 0..0 };
+                let factors = vec![(Factor::Times, number), (Factor::Times, expression.left)];
+                expression.left = Expr { kind: ExprKind::Product(factors), span: 0..0 };
+                Self::Formula(display::plain_equation(&expression))
+            }
+        })
+    }
+}
+
+impl<'de> Deserialize<'de> for Thickness {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        // What serde derives for this takes several kilobytes of WebAssembly.
+        struct NumberOrText;
+        impl Visitor<'_> for NumberOrText {
+            type Value = Thickness;
+
+            fn expecting(&self, f: &mut Formatter<'_>) -> fmt::Result {
+                f.write_str("a number or a formula")
+            }
+
+            fn visit_f64<E: de::Error>(self, value: f64) -> Result<Thickness, E> {
+                Ok(Thickness::Number(value))
+            }
+
+            fn visit_i64<E: de::Error>(self, value: i64) -> Result<Thickness, E> {
+                Ok(Thickness::Number(value as f64))
+            }
+
+            fn visit_u64<E: de::Error>(self, value: u64) -> Result<Thickness, E> {
+                Ok(Thickness::Number(value as f64))
+            }
+
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<Thickness, E> {
+                Ok(Thickness::Formula(text.to_owned()))
+            }
+        }
+        deserializer.deserialize_any(NumberOrText)
+    }
+}
+
+/// The sheet around the surface of a formula.
+#[derive(Clone, Debug)]
+pub(super) struct Sheet {
+    pub(super) thickness: Thickness,
+    /// The graph of half of the thickness, and its node.
+    half: Arc<(Graph, Id)>,
+}
+
+impl PartialEq for Sheet {
+    fn eq(&self, other: &Self) -> bool {
+        self.thickness == other.thickness
+    }
+}
+
+impl Sheet {
+    /// The sheet of a thickness that is the same everywhere.
+    pub(super) fn even(thickness: f64) -> Self {
+        let mut graph = Graph::default();
+        let half = graph.constant(0.5 * thickness);
+        Self { thickness: thickness.into(), half: Arc::new((graph, half)) }
+    }
+
+    /// The sheet of a thickness, around the surface of a formula with these parameters.
+    pub(super) fn new(thickness: &Thickness, parameters: &[Parameter]) -> Result<Self, FormulaError> {
+        let text = match thickness {
+            Thickness::Number(thickness) => return Ok(Self::even(*thickness)),
+            Thickness::Formula(text) => text,
+        };
+        let expression = expression(text, parameters)?;
+        let names: Vec<&str> = parameters.iter().map(|parameter| &*parameter.name).collect();
+        let mut graph = Graph::default();
+        let whole = build::build(&mut graph, &expression, &names)?;
+        let half = graph.constant(0.5);
+        let half = graph.mul(whole, half);
+        Ok(Self { thickness: thickness.clone(), half: Arc::new(graph.part(half)) })
+    }
+
+    /// The node of half of the thickness, in a graph to which it is added.
+    pub(super) fn half(&self, graph: &mut Graph) -> Id {
+        let (half, root) = &*self.half;
+        graph.add_part(half, *root)
+    }
+}
+
+/// The syntax tree of a thickness, whose names are those of parameters.
+fn expression(text: &str, parameters: &[Parameter]) -> Result<Equation, FormulaError> {
+    let known: Vec<&str> = parameters.iter().map(|parameter| &*parameter.name).collect();
+    let no_parameter = |name: &str| {
+        let own = if known.is_empty() { "there is none".to_owned() } else { known.join(", ") };
+        format!(
+            "The formula has no parameter `{name}`: a thickness is made of x, y, z and the parameters of the \
+             formula ({own})"
+        )
+    };
+    let read = syntax(text, &known).map_err(|error| repair::throughout(text, &known, error));
+    let (parsed, unknown) = read.map_err(|error| match (&error.kind, &error.name) {
+        (ErrorKind::Empty, _) => FormulaError { message: EXAMPLES.to_owned(), ..error },
+        // What the name may be meant for is suggested, but it cannot become a slider.
+        (_, Some(name)) => FormulaError { message: no_parameter(name), name: None, ..error },
+        _ => error,
+    })?;
+    if let Some(right) = &parsed.equation.right {
+        let span = parsed.equation.left.span.end..right.span.end;
+        return Err(
+            FormulaError::new(ErrorKind::UnexpectedSymbol, span, "A thickness has no `=`").suggest("")
+        );
+    }
+    if let Some(condition) = parsed.equation.region.first() {
+        let message = "A thickness has no conditions in braces: it is 0 where `if(c, t, 0)` makes it so";
+        return Err(FormulaError::new(ErrorKind::UnexpectedSymbol, condition.span.clone(), message));
+    }
+    match parsed.names.into_iter().find(|(name, _)| unknown.contains(name)) {
+        Some((name, span)) => Err(FormulaError::new(ErrorKind::UnknownName, span, no_parameter(&name))),
+        None => Ok(parsed.equation),
+    }
+}
+
+const EXAMPLES: &str = "A thickness is a number such as `0.2`, or a formula such as `0.1 + 0.05 z`";
