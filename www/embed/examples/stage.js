@@ -7,7 +7,6 @@ export function show(id, object) {
   if (!host) return;
   const renderer = new WebGLRenderer({ antialias: true, alpha: true });
   renderer.setPixelRatio(devicePixelRatio);
-  renderer.setSize(host.clientWidth, host.clientHeight);
   host.replaceChildren(renderer.domElement);
 
   const scene = new Scene();
@@ -15,19 +14,28 @@ export function show(id, object) {
   light.position.set(-1, -2, 3);
   scene.add(object, new HemisphereLight(0xffffff, 0x667788, 1.6), light);
   const { center, radius } = new Box3().setFromObject(object).getBoundingSphere(new Sphere());
-  const camera = new PerspectiveCamera(35, host.clientWidth / host.clientHeight, 0.1 * radius, 10 * radius);
+  const camera = new PerspectiveCamera(35, 1, 0.1 * radius, 10 * radius);
   camera.up.set(0, 0, 1);
 
-  // Seen from all around, or from one side for those who ask for less motion.
-  const isCalm = matchMedia('(prefers-reduced-motion: reduce)').matches;
-  renderer.setAnimationLoop((ms) => {
-    const angle = isCalm ? 0.6 : 0.6 + ms / 6000;
+  let angle = 0.6;
+  function draw() {
     camera.position
       .set(Math.cos(angle), Math.sin(angle), 0.55)
-      .multiplyScalar(3 * radius)
+      .multiplyScalar(2.8 * radius)
       .add(center);
     camera.lookAt(center);
     renderer.render(scene, camera);
-    if (isCalm) renderer.setAnimationLoop(null);
+  }
+  new ResizeObserver(() => {
+    renderer.setSize(host.clientWidth, host.clientHeight);
+    camera.aspect = host.clientWidth / host.clientHeight;
+    camera.updateProjectionMatrix();
+    draw();
+  }).observe(host);
+  // Seen from all around, or from one side for those who ask for less motion.
+  if (matchMedia('(prefers-reduced-motion: reduce)').matches) return;
+  renderer.setAnimationLoop((ms) => {
+    angle = 0.6 + ms / 6000;
+    draw();
   });
 }

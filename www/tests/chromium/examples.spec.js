@@ -25,6 +25,18 @@ test('the examples run, under the policy of the page, with their code beside the
   expect(code).toEqual(names.map(codeOf));
   for (const id of ['gyroid', 'function']) await expect(page.locator(`#${id} canvas`)).toBeVisible();
 
+  // The pictures fill their stages, also when the window gets smaller.
+  const widths = () =>
+    page
+      .locator('.stage')
+      .evaluateAll((stages) =>
+        stages.map(({ clientWidth, firstElementChild: canvas }) => [clientWidth, canvas?.clientWidth]),
+      );
+  for (const width of [1200, 500]) {
+    await page.setViewportSize({ width, height: 800 });
+    await expect.poll(async () => (await widths()).every(([stage, canvas]) => stage === canvas)).toBe(true);
+  }
+
   const knot = page.locator('#knot');
   await knot.scrollIntoViewIfNeeded();
   const reported = () => knot.evaluate((/** @type {any} */ { report }) => report?.components ?? null);

@@ -77,7 +77,7 @@ export function createToolbar(engine, { hide, shortcuts, picture, makeMesh, moti
       ),
       heading('Mesh'),
       choice('Export mesh…', makeMesh, 'GLB, 3MF, STL, OBJ or PLY'),
-      heading('Code that makes these particles'),
+      heading('Copy as code'),
       codes(engine, toast),
     ],
     { label: 'Export' },
@@ -122,7 +122,7 @@ function codes(engine, toast) {
   const buttons = languages.map(([language, name]) =>
     button({ class: 'small', data: { closes: '' }, press: () => copyCode(engine, toast, language, name) }, name),
   );
-  return line('Copy', buttons);
+  return h('div', { class: 'menu-line codes', role: 'group', 'aria-label': 'Copy code' }, buttons);
 }
 
 /** @param {string} label @param {() => void} press @param {string} [note] */
