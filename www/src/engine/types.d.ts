@@ -371,6 +371,8 @@ export interface EngineCommands {
   declareParameter: (name: string) => void;
   /** the number that a text stands for in the language of formulas, such as `pi/2`; null for any other text */
   readNumber: (text: string) => Promise<number | null>;
+  /** why the present surface cannot have the thickness of this formula; null if it can */
+  thicknessFault: (text: string) => Promise<string | null>;
   /** `enlarges`: nobody has set this box, so the camera fits it and the next formula ends it */
   setBounds: (bounds: Bounds | null, options?: { live?: boolean; enlarges?: boolean }) => void;
   /** whether the box was enlarged by a press, around an `endless` surface or another; reads the state */

@@ -32,7 +32,7 @@ export function keptOf(engine) {
   }
   if (settings.thickness !== undefined)
     kept.push({
-      text: `Thickness ${formatSignificant(Number(settings.thickness), 3)}`,
+      text: `Thickness ${typeof settings.thickness === 'string' ? settings.thickness : formatSignificant(settings.thickness, 3)}`,
       end: 'End the thickness',
       act: () => engine.resetSetting('thickness'),
     });

@@ -31,7 +31,8 @@ import { change, changeView, description, showAll } from '../store.js';
  */
 /**
  * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'pull' | 'setPulls' | 'declareParameter' |
- *   'readNumber' | 'setBounds' | 'enlargement' | 'setPlane' | 'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands
+ *   'readNumber' | 'thicknessFault' | 'setBounds' | 'enlargement' | 'setPlane' | 'fitBox' | 'setSetting' |
+ *   'resetSetting'>} InputCommands
  */
 
 /**
@@ -192,6 +193,7 @@ export function inputCommands({ store, scheduler, framing }) {
       if (text.trim() !== '' && Number.isFinite(plain)) return plain;
       return scheduler.sampling.client.number(text);
     },
+    thicknessFault: (text) => scheduler.sampling.client.thicknessFault(text),
     setBounds(bounds, { live = false, enlarges = false } = {}) {
       const valid = bounds === null ? null : validBounds(bounds, description(store).limits);
       if (valid === undefined) return;

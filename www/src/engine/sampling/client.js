@@ -22,7 +22,7 @@ export class SamplingClient {
   #wishes = { curvature: false, mesh: false };
   /** The files that are being written. */
   #files = new Requests();
-  /** The texts that are being read as numbers, and the programs that are being written. */
+  /** The texts that are being read as numbers or thicknesses, and the programs that are being written. */
   #texts = new Requests();
   #isBusy = false;
 
@@ -118,6 +118,17 @@ export class SamplingClient {
     });
   }
 
+  /**
+   * Returns why the present surface cannot have a thickness that is given as a formula; null if it can, and without a
+   * worker.
+   * @param {string} text
+   * @returns {Promise<string | null>}
+   */
+  thicknessFault(text) {
+    if (!this.isThere) return Promise.resolve(null);
+    return this.#texts.make((request) => this.post({ type: 'thickness', request, text })).catch(() => null);
+  }
+
   /** Gives up all files and texts, because the worker is gone. */
   forgetFiles() {
     this.#texts.refuseAll(lost());
@@ -155,6 +166,8 @@ export class SamplingClient {
         if (message.answer.ok) this.#texts.answer(message.request, message.answer.text);
         else this.#texts.refuse(message.request, new Error(message.answer.error));
         return;
+      case 'thickness':
+        return this.#texts.answer(message.request, message.fault);
       case 'file':
         if (message.bytes) this.#files.answer(message.request, message.bytes);
         else this.#files.refuse(message.request, lost());

@@ -64,6 +64,7 @@ export type ToWorker =
   | { type: 'export'; request: number; file: Partial<FileRequest> }
   | { type: 'number'; request: number; text: string }
   | { type: 'code'; request: number; language: Language }
+  | { type: 'thickness'; request: number; text: string }
   | { type: 'measure'; request: number; field: Partial<FieldRequest>; placed: PlacedColumns; isAdaptive: boolean }
   | { type: 'stop' }
   | { type: 'drawn'; id: number };
@@ -115,6 +116,7 @@ export type FromWorker =
   | { type: 'beat' }
   | { type: 'number'; request: number; value: number | null }
   | { type: 'code'; request: number; answer: Answer<Code, string> }
+  | { type: 'thickness'; request: number; fault: string | null }
   | { type: 'field'; id: number; answer: FieldAnswer }
   | { type: 'dropped'; id: number }
   | { type: 'box'; id: number; answer: FieldOk }

@@ -171,6 +171,9 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
     case 'code':
       if (core) post({ type: 'code', request: data.request, answer: core.code(data.language) });
       break;
+    case 'thickness':
+      post({ type: 'thickness', request: data.request, fault: core?.thickness_fault(data.text) ?? null });
+      break;
     case 'measure':
       placed.push(data);
       void pump();

@@ -359,6 +359,8 @@ export function validSetting(description, name, value) {
   if (!info) return undefined;
   if (info.kind === 'choice')
     return info.choices?.some((c) => c.value === value) ? /** @type {string} */ (value) : undefined;
+  if (info.kind === 'formula' && typeof value === 'string')
+    return value.trim() !== '' && value.length <= description.limits.formula_bytes ? value : undefined;
   const v = within(value, info.min, info.max);
   return v !== undefined && info.kind === 'integer' ? Math.round(v) : v;
 }

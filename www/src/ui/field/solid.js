@@ -10,6 +10,7 @@ const THICKNESS = 'thickness';
 const CLOSED = 'closed';
 const CELL = 'box_cell';
 const PERIODIC = 'periodic';
+const NEGATIVE = 'A thickness is a number from 0 on, in the units of x, y and z, or a formula such as 0.1 + 0.05z.';
 
 /** @param {Engine} engine @param {Description} description */
 export function createSolid(engine, { settings }) {
@@ -41,7 +42,6 @@ export function createSolid(engine, { settings }) {
   const box = h('input', {
     type: 'text',
     class: 'box',
-    inputmode: 'decimal',
     placeholder: 'none',
     autocomplete: 'off',
     'aria-describedby': told,
@@ -50,15 +50,16 @@ export function createSolid(engine, { settings }) {
   });
   const thickness = h('label', { class: 'check' }, 'Thickness', box);
   async function commit() {
-    const number = box.value.trim() === '' ? 0 : await engine.readNumber(box.value);
-    const value = number !== null && number >= 0 ? number : null;
-    wrong.value = value === null ? 'A thickness is a number from 0 on, in the units of x, y and z.' : '';
-    if (value === 0) engine.resetSetting(THICKNESS);
-    else if (value !== null) engine.setSetting(THICKNESS, value);
+    const text = box.value.trim();
+    const number = text === '' ? 0 : await engine.readNumber(text);
+    if (number === null) wrong.value = (await engine.thicknessFault(text)) ?? '';
+    else wrong.value = number < 0 ? NEGATIVE : '';
+    if (wrong.value !== '') return;
+    if (number === 0) engine.resetSetting(THICKNESS);
+    else engine.setSetting(THICKNESS, number ?? text);
   }
   live(box, () => {
-    const value = Number(chosen.value[THICKNESS] ?? 0);
-    box.value = value > 0 ? String(value) : '';
+    box.value = String(chosen.value[THICKNESS] || '');
     wrong.value = '';
   });
   const help = () => ({

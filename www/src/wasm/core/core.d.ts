@@ -207,6 +207,10 @@ export class Core {
      */
     step(budget: number): Progress;
     /**
+     * Why the present surface cannot have the thickness of this text; nothing if it can.
+     */
+    thickness_fault(text: string): string | undefined;
+    /**
      * The triangles of the mesh, three rows each, counter-clockwise round their normals; none
      * before it is complete.
      */

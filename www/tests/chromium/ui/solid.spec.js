@@ -8,7 +8,7 @@ test('a periodic surface becomes a closed part, and a surface again', async ({ p
     /** @type {any} */ (window).marchingParticles.set({ surface: 'schwarz-p', settings: { radius_share: 0.012 } }),
   );
   const closed = page.getByRole('checkbox', { name: 'Closed' });
-  const thickness = page.getByLabel('Thickness');
+  const thickness = page.getByRole('textbox', { name: 'Thickness' });
   const before = await state(page);
   await closed.check();
   await settled(page);
@@ -21,6 +21,20 @@ test('a periodic surface becomes a closed part, and a surface again', async ({ p
     await thickness.press('Enter');
     await expect(page.getByRole('alert').filter({ hasText: 'from 0 on' })).toBeVisible();
     expect((await state(page)).settings.thickness).toBeUndefined();
+    await thickness.fill('0.2 + q z');
+    await thickness.press('Enter');
+    await expect(page.getByRole('alert').filter({ hasText: 'no parameter `q`' })).toBeVisible();
+    expect((await state(page)).settings.thickness).toBeUndefined();
+  });
+  await test.step('a formula makes the thickness vary', async () => {
+    await thickness.fill('1 + 0.05z');
+    await thickness.press('Enter');
+    await settled(page);
+    expect((await state(page)).settings.thickness).toBe('1 + 0.05z');
+    await expect(thickness).toHaveValue('1 + 0.05z');
+    await page.getByRole('button', { name: 'Undo' }).click();
+    await settled(page);
+    await expect(thickness).toHaveValue('');
   });
   await test.step('links and the history have the choices', async () => {
     const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.link());

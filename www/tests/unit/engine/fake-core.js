@@ -110,6 +110,7 @@ export function fakeCore({
     },
     /** @param {string} text @returns {number | undefined} */
     number: (text) => (Number.isFinite(Number(text)) ? Number(text) : undefined),
+    thickness_fault: () => undefined,
     /** @param {Uint8Array} bytes @param {SolvedModel} about @param {Partial<FieldRequest>} request @returns {FieldAnswer} */
     set_points(bytes, { info, bounds: own }, { bounds }) {
       calls.push(`set_points ${bytes.length}`);
