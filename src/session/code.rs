@@ -152,7 +152,7 @@ impl Program<'_> {
         let other = others.iter().find(|setting| setting.name != "max_particles");
         let what = if self.is_closed() {
             Some("close a solid by its box".to_owned())
-        } else if solid.thickness.is_some() {
+        } else if solid.sheet().is_some() {
             Some("make a sheet of a thickness".to_owned())
         } else if let Some(setting) = other {
             Some(format!("set “{}” (--{})", setting.label, setting.option()))
@@ -171,12 +171,10 @@ impl Program<'_> {
         let mut imports = vec!["Formula", "Settings", "sample"];
         let mut surface = vec![format!("Formula::parse({:?})?", record.formula)];
         surface.extend(record.parameters.iter().map(|(name, value)| format!(".with({name:?}, {value:?})?")));
-        match &record.solid.thickness {
-            Thickness::Formula(text) => surface.push(format!(".thickened_by({text:?})?")),
-            &Thickness::Number(thickness) if thickness > 0.0 => {
-                surface.push(format!(".thickened({thickness:?})"));
-            }
-            Thickness::Number(_) => {}
+        match record.solid.sheet() {
+            Some(Thickness::Number(thickness)) => surface.push(format!(".thickened({thickness:?})")),
+            Some(Thickness::Formula(text)) => surface.push(format!(".thickened_by({text:?})?")),
+            None => {}
         }
         if let Some(faces) = record.faces {
             imports.push("Bounds");
@@ -352,15 +350,15 @@ impl Program<'_> {
         if solid.box_cell == BoxCell::Periodic && self.is_closed() {
             words.push("--periodic".to_owned());
         }
-        if solid.thickness.is_some() {
-            words.push(format!("--thickness {}", in_shell(&solid.thickness.to_string())));
+        if let Some(thickness) = solid.sheet() {
+            words.push(format!("--thickness {}", in_shell(&thickness.to_string())));
         }
         match (settings.size_mode, settings.radius) {
             (SizeMode::Count, _) => words.push(format!("--count {}", settings.count)),
             _ if self.is_adaptive() => {}
             (SizeMode::Radius, Some(length)) => words.push(format!("--radius {}", shortest_text(length))),
             (SizeMode::Radius, None) => {
-                words.push(format!("--radius {}", percent_text(settings.radius_share)));
+                words.push(format!("--radius {}", percent_text(settings.radius_share)))
             }
         }
         if self.is_adaptive() {

@@ -125,6 +125,7 @@ fn mistakes_of_a_thickness_are_told_in_its_text() {
         ("0.1 + b z", Kind::UnknownName, "b", "has no parameter `b`"),
         ("0.1 + 2 rr", Kind::UnknownName, "rr", "(r)"),
         ("0.1 = z", Kind::UnexpectedSymbol, " = z", "no `=`"),
+        ("0.1 {z > 0}", Kind::UnexpectedSymbol, "z > 0", "no condition in braces"),
         ("0.1 + sin z y", Kind::MissingBrackets, "sin z", ""),
         ("0.1 + sni(z)", Kind::UnknownFunction, "sni", ""),
         ("z/0", Kind::NotFinite, "0", ""),
@@ -221,7 +222,7 @@ fn a_session_refuses_a_thickness_with_other_names() {
 
 #[cfg(feature = "cli")]
 mod cli {
-    use crate::cli::{fails, file, sample};
+    use crate::cli::{fails, file, run, sample, stdout};
 
     #[test]
     fn the_mesh_has_the_porosity_that_is_wanted() {
@@ -251,6 +252,16 @@ mod cli {
         let run = sample(&arguments);
         assert_eq!((&run["thickness"], &run["mesh"]["borders"]), (&"0.2 + 0.1 x r".into(), &0.into()));
         assert_eq!(sample(&["--like", &path])["digest"], run["digest"]);
+    }
+
+    #[test]
+    fn programs_have_the_thickness() {
+        let printed = |language: &str| {
+            let arguments = ["sample", "--surface", "gyroid", "--thickness", "0.3 + 0.02z", "--closed"];
+            stdout(&run(&[&arguments[..], &["--print", language]].concat()))
+        };
+        assert!(printed("rust").contains(r#".thickened_by("0.3 + 0.02z")?"#), "{}", printed("rust"));
+        assert!(printed("shell").contains("--closed --thickness '0.3 + 0.02z'"), "{}", printed("shell"));
     }
 
     #[test]

@@ -53,12 +53,6 @@ impl Display for Thickness {
 }
 
 impl Thickness {
-    /// Whether it makes a sheet: whether it is anything but the number 0.
-    #[must_use]
-    pub fn is_some(&self) -> bool {
-        *self != Self::default()
-    }
-
     /// The thickness times a number, for a formula with these parameters.
     pub(super) fn scaled(&self, factor: f64, parameters: &[Parameter]) -> Result<Self, FormulaError> {
         Ok(match self {
@@ -173,7 +167,7 @@ fn expression(text: &str, parameters: &[Parameter]) -> Result<Equation, FormulaE
         );
     }
     if let Some(condition) = parsed.equation.region.first() {
-        let message = "A thickness has no conditions in braces: it is 0 where `if(c, t, 0)` makes it so";
+        let message = "A thickness has no condition in braces: `if(z > 0, 0.2, 0.1)` chooses one";
         return Err(FormulaError::new(ErrorKind::UnexpectedSymbol, condition.span.clone(), message));
     }
     match parsed.names.into_iter().find(|(name, _)| unknown.contains(name)) {
