@@ -68,6 +68,7 @@ mod patches;
 mod periods;
 mod porosity;
 mod powers;
+mod products;
 mod program;
 mod regular;
 mod repair;

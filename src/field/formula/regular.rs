@@ -16,8 +16,8 @@ use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
 use super::solids::{Opened, Signed};
 
-/// Maximum number of faces of a solid that is looked at; a function in k absolute values, one in the
-/// other, has 2ᵏ.
+/// Maximum number of faces of a solid that is looked at; a function in k absolute values, one in
+/// the other, has 2ᵏ.
 const MAX_FACES: usize = 128;
 /// Maximum number of roots in each other that a face may have.
 const MAX_ROOTS: usize = 8;

@@ -4,10 +4,10 @@
 //! Both are further nodes of the graph of f, so that derivatives, bounds and branches are found as
 //! for any formula.
 
-use super::branches::by_signs;
 use super::derivative;
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
+use super::products::by_signs;
 use super::thickness::Sheet;
 use crate::math::Bounds;
 

@@ -2,7 +2,7 @@
 // Lengths are in the field's own coordinates, angles in radians (`…_rad`), pixels are CSS pixels unless a name says
 // otherwise.
 import type { Columns, MEASURED } from './columns.js';
-import type { Answer, Phase as CorePhase, PointsProgress, Start } from './core-types.js';
+import type { Answer, Code, Phase as CorePhase, PointsProgress, Start } from './core-types.js';
 import type { Surface } from './lesson/types.js';
 
 export type Signal<T> = import('@preact/signals-core').Signal<T>;
@@ -447,6 +447,7 @@ export type ParticleFormat = 'ply' | 'csv' | 'json';
 export type MeshFormat = 'glb' | '3mf' | 'stl' | 'obj' | 'ply';
 /** Languages of the program that makes the particles. */
 export type Language = 'rust' | 'js' | 'python' | 'shell';
+export type CodeAnswer = Answer<Code, string>;
 /** Commands and counts of an engine for tests. */
 export interface EngineDebug {
   loseDevice: (reason?: string) => void;

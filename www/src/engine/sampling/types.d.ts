@@ -1,11 +1,11 @@
 // Messages between the page and the sampler's worker, and the record of the runs.
 
 import type { Timers, WorkerEnv } from '../bundle/types.js';
-import type { Answer, Code } from '../core-types.js';
 import type { Solved } from '../points/types.js';
 import type { Store } from '../store.js';
 import type {
   Bounds,
+  CodeAnswer,
   ColumnRange,
   Columns,
   CoreProgress,
@@ -115,7 +115,7 @@ export type FromWorker =
   | { type: 'failed'; fault: LoadFault; message: string }
   | { type: 'beat' }
   | { type: 'number'; request: number; value: number | null }
-  | { type: 'code'; request: number; answer: Answer<Code, string> }
+  | { type: 'code'; request: number; answer: CodeAnswer }
   | { type: 'thickness'; request: number; fault: string | null }
   | { type: 'field'; id: number; answer: FieldAnswer }
   | { type: 'dropped'; id: number }
