@@ -3,6 +3,7 @@
  *
  * Writes readme/page-{light,dark}.webp (the whole page), readme/sizes-{light,dark}.webp (adaptive sampling and models
  * from points), readme/meshes-{light,dark}.webp (refined runs as meshes), readme/solids-{light,dark}.webp (sharp edges),
+ * readme/sheets-{light,dark}.webp (sheets whose thickness is a formula),
  * readme/moved-{light,dark}.webp (a film of particles that follow a surface) and readme/levels-{light,dark}.webp (generation
  * levels growing).
  */
@@ -77,6 +78,15 @@ const SOLIDS = [
     ...(k < 4 ? { colour: 'level', draw: 'discs' } : { ...MESH_VIEW, colour: 'normal', marks: false }),
     camera: { yaw: 0.5, pitch: 0.55, fit: true },
   },
+}));
+
+/** What the strip of sheets shows: parts of one gyroid, whose thickness is a number, and then a formula. */
+const SHEETS = [0.6, '0.65 + 0.13z', '1.1 - 0.2 hypot(x, y)', '0.25 + 0.7 smoothstep(-1, 1, x)'].map((thickness) => ({
+  surface: 'gyroid',
+  bounds: { min: [-3.6, -3.6, -3.6], max: [3.6, 3.6, 3.6] },
+  settings: { box_faces: 'closed', thickness, size_mode: 'count', count: 6000, method: 'refined' },
+  zoom: 0.95,
+  view: { ...MESH_VIEW, colour: 'normal', edges: false, marks: false, camera: { yaw: 0.5, pitch: 0.35, fit: true } },
 }));
 
 /** Pictures of the film, and the time for which each of them is shown: it plays for six seconds. */
@@ -301,6 +311,7 @@ async function film(name, scenes) {
 await strip('sizes', SIZES);
 await strip('meshes', MESHES);
 await strip('solids', SOLIDS, 4);
+await strip('sheets', SHEETS);
 await film('moved', [tanglecubeSplits, ellipsoidIsPulled]);
 
 const LEVEL_STATES = [...LEVELS, null].map((level) => ({
