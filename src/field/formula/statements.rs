@@ -357,6 +357,11 @@ impl Parser<'_> {
         let region = self.region()?;
         match self.peek().token {
             Token::Separator | Token::End => {}
+            Token::Equals if right.is_none() && !region.is_empty() => {
+                let message = "Conditions in braces stand at the end: `z = x*y {x < 1}`";
+                let span = self.peek().span.clone();
+                return Err(FormulaError::new(ErrorKind::UnexpectedSymbol, span, message));
+            }
             Token::Equals => return Err(self.second_equation()),
             _ => return Err(self.unexpected()),
         }
