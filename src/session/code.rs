@@ -358,7 +358,7 @@ impl Program<'_> {
             _ if self.is_adaptive() => {}
             (SizeMode::Radius, Some(length)) => words.push(format!("--radius {}", shortest_text(length))),
             (SizeMode::Radius, None) => {
-                words.push(format!("--radius {}", percent_text(settings.radius_share)))
+                words.push(format!("--radius {}", percent_text(settings.radius_share)));
             }
         }
         if self.is_adaptive() {

@@ -34,7 +34,7 @@ fn a_surface_ends_at_its_limits_with_particles_on_the_rim() {
         },
         Limited {
             formula: "z = x^2 - y^2 {x^2 + y^2 < 1}",
-            beyond: |p| p.x.hypot(p.y) - 1.0,
+            beyond: |p| p.truncate().length() - 1.0,
             // ∫ √(1 + 4r²) over the disc.
             area: Some(PI / 6.0 * (125.0_f64.sqrt() - 1.0)),
             topology: [1, 1, 1],

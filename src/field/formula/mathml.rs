@@ -73,7 +73,9 @@ pub(super) fn equation(equation: &Equation) -> MathNode {
     let right = equation.right.as_ref().map_or_else(|| mn("0"), expression);
     let mut parts = vec![expression(&equation.left), mo("="), right];
     for (index, condition) in equation.region.iter().enumerate() {
-        parts.extend([mo(if index == 0 { "{" } else { "," }), expression(condition)]);
+        let before = if index == 0 { &[EM_SPACE, "{"][..] } else { &[","] };
+        parts.extend(before.iter().map(|&text| mo(text)));
+        parts.push(expression(condition));
     }
     if !equation.region.is_empty() {
         parts.push(mo("}"));
@@ -100,6 +102,8 @@ fn table(rows: impl Iterator<Item = Vec<MathNode>>) -> MathNode {
     group(MathGroup::Mtable, rows.collect::<Vec<_>>())
 }
 
+/// U+2003 EM SPACE.
+const EM_SPACE: &str = "\u{2003}";
 /// U+2062 INVISIBLE TIMES.
 const INVISIBLE_TIMES: &str = "\u{2062}";
 /// U+2061 FUNCTION APPLICATION.

@@ -225,8 +225,7 @@ impl Forming {
     fn without_skins(&mut self, solid: Solid, known: &mut Vec<(Id, bool)>, is_new: &mut bool) -> Sided {
         let (parts, is_all) = match solid {
             Solid::Face(face) => {
-                for k in 0..known.len() {
-                    let (other, is_inside) = known[k];
+                for &(other, is_inside) in known.iter() {
                     let Some(is_same) = self.compared(face, other) else { continue };
                     *is_new = true;
                     if !is_same && is_inside && !self.flush.contains(&other) {
