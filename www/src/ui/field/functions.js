@@ -10,7 +10,7 @@ import { h, marked } from '../dom.js';
 const SYNTAX = [
   'Write a function of x, y and z, or an equation. A product needs no sign: `2x y`. Powers: `x^2` or `x²`. `1/2x` is `(1/2)x`. Unknown names become sliders.',
   'Definitions stand before the surface, each ended by a `;` or by its line: `r = hypot(x, y); (r - 1)^2 + z^2 = 0.1`. Functions, too: `f(a, b) = a^2 + b^2`. Shift Enter begins a line. Comments: `// …`, `# …`, `/* … */`.',
-  'Conditions compare with `<`, `<=`, `>` and `>=`, joined by `and`, `or`, `not`: `x < 1 and y > 0 ? a : b`. The remainder is `a % b`.',
+  'Conditions compare with `<`, `<=`, `>` and `>=`, joined by `and`, `or`, `not`: `x < 1 and y > 0 ? a : b`. In braces after the formula they limit the surface: `z = x*y {x^2 + y^2 < 1}`. The remainder is `a % b`.',
   'There are no vectors: write `hypot(x, z)` for `length(p.xz)`. Formulas of LaTeX, MATLAB, Python, GLSL and Mathematica are read where they mean the same here.',
 ];
 
