@@ -252,7 +252,9 @@ impl Particles {
     /// The first rows of the particles on the rim of the surface: on one side of a segment there is
     /// no patch. Ascending.
     pub(crate) fn on_rim(&self) -> std::collections::BTreeSet<u32> {
-        let patches: std::collections::BTreeSet<u32> = self.patch.iter().copied().collect();
+        // Those that end at creases.
+        let patches: std::collections::BTreeSet<u32> =
+            self.patch[..self.twins.len()].iter().copied().collect();
         let is_end =
             |sides: &Vec<[u32; 2]>| sides.as_flattened().iter().any(|patch| !patches.contains(patch));
         let of_rim = self.segments.iter().zip(&self.sides).filter(|(_, sides)| is_end(sides));

@@ -35,7 +35,7 @@ impl Language {
         Self::ALL.iter().find(|(name, _)| *name == word).map(|&(_, language)| language)
     }
 
-    /// What runs the program, in words.
+    /// The name of what a program in this language runs on.
     fn runner(self) -> &'static str {
         match self {
             Self::Rust => "the library",
@@ -95,7 +95,7 @@ impl Session {
     }
 }
 
-/// What the program says.
+/// A run, of which programs are written.
 struct Program<'a> {
     record: &'a FileRecord,
     /// The settings of the run; their box is to be said, whatever would be found.
@@ -260,7 +260,7 @@ impl Program<'_> {
             (SizeMode::Count, _) => given.push(("count", settings.count.to_string())),
             _ if self.is_adaptive() => {}
             (SizeMode::Radius, Some(length)) if is_python => given.push(("radius", shortest_text(length))),
-            // The package takes half of it.
+            // The package has no radius as a length, but the distance of neighbours, which is two.
             (SizeMode::Radius, Some(length)) => given.push(("spacing", shortest_text(2.0 * length))),
             (SizeMode::Radius, None) if is_python => {
                 given.push(("radius", quoted(&percent_text(settings.radius_share), quote)));

@@ -165,6 +165,10 @@ fn a_cutter_that_lies_flush_with_a_face_leaves_no_skin() {
         let facts = Formula::parse(formula).expect("a formula").facts();
         assert_eq!(facts.flush_faces, faces, "{formula}");
     }
+    // Bodies in millimetres whose distances differ by a number around the origin.
+    let rounded = "hypot(max(abs(x) - 50, 0), max(abs(y) - 50, 0), max(abs(z) - 50, 0))";
+    let solid = Formula::parse(&format!("max({rounded} - 5, min({rounded} - 3, z))")).expect("a formula");
+    assert_eq!(solid.value(DVec3::new(54.0, 0.0, 0.5)), 0.5);
     // Planes that coincide for one value of a parameter may part for another.
     let facts = Formula::parse("max(z - a, min(x, b - z))").expect("a formula").facts();
     assert_eq!(facts.flush_faces, Vec::<String>::new());

@@ -59,7 +59,7 @@ pub(crate) struct Outcome {
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Porosity {
     pub(crate) wanted: f64,
-    /// That of the mesh; none if it is open.
+    /// The porosity by the volume of the mesh; none if the mesh is open.
     pub(crate) reached: Option<f64>,
 }
 

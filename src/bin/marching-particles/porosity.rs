@@ -79,7 +79,7 @@ impl Wish {
         Ok(true)
     }
 
-    /// What has become of the wish.
+    /// The wanted porosity, and that of the last mesh.
     pub(crate) fn outcome(&self) -> Porosity {
         Porosity { wanted: self.wanted, reached: self.reached }
     }

@@ -15,14 +15,22 @@
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
 use super::solids::{Opened, Signed};
+use glam::DVec3;
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
 
 /// Maximum number of faces of a solid that is looked at; a function in k absolute values, one in
 /// the other, has 2ᵏ.
 const MAX_FACES: usize = 128;
 /// Maximum number of roots in each other that a face may have.
 const MAX_ROOTS: usize = 8;
-/// Number of places at which faces are compared, and the least number at which both need a value.
-const PLACES: [u32; 2] = [16, 6];
+/// Half-widths of the boxes around the origin in which faces are compared: a bend in millimetres
+/// lies far from one in units, and beside a high power a number counts near the origin alone.
+const HALVES: [f64; 6] = [0.1, 1.0, 10.0, 100.0, 1e3, 1e4];
+/// Number of places in each of the boxes.
+const PLACES: usize = 8;
+/// Least number of places at which both faces have a value, where they are compared.
+const LEAST_KNOWN: usize = 8;
 /// Largest difference of faces that count as equal, as a share of them: rounding makes it.
 const ROUNDING: f64 = 1e-9;
 
@@ -40,21 +48,25 @@ pub(super) fn regular(graph: &Graph, root: Id) -> Option<Regular> {
     if graph.limited(root).is_some() {
         return None;
     }
-    let mut forming =
-        Forming { graph: graph.clone(), left: MAX_FACES, values: Vec::new(), flush: Vec::new() };
+    let parameter = |node: &Node| match node {
+        Node::Parameter(index) => Some(*index as usize + 1),
+        _ => None,
+    };
+    let parameters = graph.nodes().iter().filter_map(parameter).max().unwrap_or(0);
+    let graph = graph.clone();
+    let mut forming = Forming { graph, left: MAX_FACES, parameters, values: Vec::new(), flush: Vec::new() };
     let negative = forming.is_solid_where_positive(root);
     let whole = Signed::of(&mut forming.graph, root, negative);
     let parts = forming.opened(whole);
     if matches!(parts, Solid::Face(_)) {
         return None;
     }
-    let (mut ends, mut is_new) = (0, false);
+    let mut is_new = false;
     let parts = parts.with_faces(&mut |face| {
         let ended = forming.ended(face, MAX_ROOTS);
-        ends += usize::from(ended.is_some());
+        is_new |= ended.is_some();
         ended
     });
-    is_new |= ends > 0;
     let parts = match forming.without_skins(parts, &mut Vec::new(), &mut is_new) {
         Sided::Parts(parts) if is_new => parts,
         _ => return None,
@@ -69,22 +81,24 @@ pub(super) fn regular(graph: &Graph, root: Id) -> Option<Regular> {
 /// A solid, by the nodes of its faces, each of which is at most 0 on its inner side.
 enum Solid {
     Face(Id),
-    /// What is inside of all parts.
+    /// The intersection of solids.
     All(Vec<Self>),
-    /// What is inside of any part.
+    /// The union of solids.
     Any(Vec<Self>),
 }
 
-/// What is left of a part of a solid where other faces are known to be positive or negative.
+/// A part of a solid, in a place where the signs of some faces are known.
 enum Sided {
-    /// All of the place is inside, but for the faces.
+    /// The part fills the place.
     Inside,
+    /// The part has nothing in the place.
     Outside,
+    /// The part ends in the place, at these faces.
     Parts(Solid),
 }
 
 impl Solid {
-    /// Solids in the place of faces, if `change` gives one.
+    /// Puts the solids that `change` gives in the place of faces.
     fn with_faces(self, change: &mut dyn FnMut(Id) -> Option<Self>) -> Self {
         let mut each = |parts: Vec<Self>| parts.into_iter().map(|part| part.with_faces(change)).collect();
         match self {
@@ -99,14 +113,17 @@ struct Forming {
     graph: Graph,
     /// Number of faces that may still be added.
     left: usize,
+    /// Number of parameters.
+    parameters: usize,
     /// Values of faces at some places, for those that have been compared.
     values: Vec<(Id, Vec<f64>)>,
+    /// The faces with which a cutter lies flush.
     flush: Vec<Id>,
 }
 
 impl Forming {
-    /// Whether the solid lies where f is positive: a minimum of roots from which something is
-    /// subtracted is meant so.
+    /// Whether the solid lies where f is positive, as that of min(√u − a, b) does: the faces of a
+    /// minimum have roots, and all of these count positively.
     fn is_solid_where_positive(&mut self, root: Id) -> bool {
         let whole = Signed::of(&mut self.graph, root, false);
         let Opened::Both { is_max: false, .. } = whole.opened(&mut self.graph) else { return false };
@@ -122,7 +139,7 @@ impl Forming {
         signs == [false, true]
     }
 
-    /// The faces of a function, put together as it puts them.
+    /// The solid where a function is at most 0.
     fn opened(&mut self, f: Signed) -> Solid {
         match f.opened(&mut self.graph) {
             Opened::Both { is_max, operands } if self.left > 1 => {
@@ -141,6 +158,7 @@ impl Forming {
         }
     }
 
+    /// The node of a function that is at most 0 in the solid.
     fn node(&mut self, solid: &Solid) -> Id {
         let (operation, parts) = match solid {
             Solid::Face(face) => return *face,
@@ -151,8 +169,8 @@ impl Forming {
         nodes[1..].iter().fold(nodes[0], |total, &node| self.graph.binary(operation, total, node))
     }
 
-    /// What has the sign of a face whose root ends it, with roots up to so deep in each other; none
-    /// if it has no such root, or several.
+    /// The solid behind a face that a root ends, by faces that end nowhere. Roots may be nested
+    /// `most` deep. None if the face has no such root, or several.
     fn ended(&mut self, face: Id, most: usize) -> Option<Solid> {
         let End { term, share, factor, base, inverse } = self.root_of(face).filter(|_| most > 0)?;
         // The face is rest + factor · base^(1/inverse).
@@ -161,7 +179,7 @@ impl Forming {
         let level = self.graph.mul(rest, scale);
         let one_less = self.graph.constant(inverse - 1.0);
         let raise = self.graph.constant(inverse);
-        let outside = if factor < 0.0 {
+        let faces = if factor < 0.0 {
             // Inside where the root is at least the level.
             let zero = self.graph.constant(0.0);
             let above = if is_never_negative(&self.graph, level) {
@@ -179,7 +197,7 @@ impl Forming {
             vec![self.graph.neg(base), self.graph.sub(base, power)]
         };
         let mut parts: Vec<Solid> = Vec::new();
-        for face in outside {
+        for face in faces {
             match self.ended(face, most - 1) {
                 Some(Solid::All(more)) => parts.extend(more),
                 Some(part) => parts.push(part),
@@ -220,8 +238,8 @@ impl Forming {
         found
     }
 
-    /// The solid without the faces that others hide, where some faces are known to be at most 0, or
-    /// else at least 0.
+    /// The solid without its skins, in a place where each of the `known` faces is at most 0, or,
+    /// with `false`, at least 0.
     fn without_skins(&mut self, solid: Solid, known: &mut Vec<(Id, bool)>, is_new: &mut bool) -> Sided {
         let (parts, is_all) = match solid {
             Solid::Face(face) => {
@@ -277,8 +295,9 @@ impl Forming {
     fn compared(&mut self, face: Id, other: Id) -> Option<bool> {
         let [a, b] = [face, other].map(|face| self.values_of(face));
         let pairs = || a.iter().zip(&b).filter(|(a, b)| a.is_finite() && b.is_finite());
-        let [_, least] = PLACES;
-        if pairs().count() < least as usize {
+        // A face that is one number at all places, as beyond its bends, tells nothing.
+        let is_known = pairs().count() >= LEAST_KNOWN && pairs().any(|(value, _)| *value != a[0]);
+        if !is_known {
             return None;
         }
         let (first, other_first) = pairs().max_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()))?;
@@ -296,22 +315,16 @@ impl Forming {
             return values.clone();
         }
         let nodes = self.graph.needed_by(&[face]);
-        let count = nodes.iter().filter_map(|&id| match self.graph.node(id) {
-            Node::Parameter(index) => Some(index as usize + 1),
-            _ => None,
-        });
-        let count = count.max().unwrap_or(0);
-        let mut results = Vec::new();
-        let [places, _] = PLACES;
-        let values: Vec<f64> = (0..places)
-            .map(|place| {
-                let mut next = spread(place);
-                let point = core::array::from_fn(|_| 4.0 * next() - 2.0);
-                let parameters: Vec<f64> = (0..count).map(|_| 0.25 + 2.0 * next()).collect();
-                self.graph.evaluate(&nodes, &parameters, glam::DVec3::from_array(point), &mut results);
-                results[face as usize]
-            })
-            .collect();
+        let (mut results, mut random) = (Vec::new(), Pcg32::seed_from_u64(0));
+        let mut between =
+            |lo: f64, hi: f64| lo + (hi - lo) * f64::from(random.next_u32()) / f64::from(u32::MAX);
+        let mut values = Vec::with_capacity(HALVES.len() * PLACES);
+        for half in HALVES.into_iter().flat_map(|half| [half; PLACES]) {
+            let point = DVec3::from_array([0, 1, 2].map(|_| between(-half, half)));
+            let parameters: Vec<f64> = (0..self.parameters).map(|_| between(0.25, 2.25)).collect();
+            self.graph.evaluate(&nodes, &parameters, point, &mut results);
+            values.push(results[face as usize]);
+        }
         self.values.push((face, values.clone()));
         values
     }
@@ -325,19 +338,6 @@ struct End {
     factor: f64,
     base: Id,
     inverse: f64,
-}
-
-/// Numbers between 0 and 1 that are spread over that range, others for each place (M. Roberts, "The
-/// unreasonable effectiveness of quasirandom sequences", 2018).
-fn spread(place: u32) -> impl FnMut() -> f64 {
-    let mut step = 0.5;
-    let mut at = f64::from(place + 1);
-    move || {
-        // A step of its own for each number, of an irrational kind.
-        step = (step + 0.618_033_988_749_894_9) % 1.0;
-        at += 1.0;
-        (at * (0.1 + step)) % 1.0
-    }
 }
 
 /// Whether the value of a node is never negative, as far as its form shows that.

@@ -98,7 +98,7 @@ pub(super) struct Signed {
     shift: Id,
 }
 
-/// What a function is at its root, as far as its sign goes.
+/// The outermost operation of a function, of those that decide its sign.
 pub(super) enum Opened {
     /// The greater or the lesser of two functions.
     Both { is_max: bool, operands: [Signed; 2] },

@@ -15,7 +15,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Thickness {
-    /// The same everywhere.
+    /// A thickness that is the same everywhere.
     Number(f64),
     /// An expression in x, y, z and the parameters of the formula, such as `0.1 + 0.05 z`. There is
     /// no sheet where it is negative or zero.

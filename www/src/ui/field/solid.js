@@ -1,6 +1,6 @@
 /** The choices of the solid that is made of a surface: closed by the clip box, a sheet of some thickness. */
 import { computed, signal } from '@preact/signals-core';
-import { h, live, uniqueId } from '../dom.js';
+import { h, live, marked, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 
 /** @import { Description, Engine, SettingInfo } from '../../engine/types.js' */
@@ -81,6 +81,8 @@ export function createSolid(engine, { settings }) {
       explain(periodic, () => ({ ...about(CELL), title: 'Periodic' }), { side: 'above' }),
       explain(thickness, () => about(THICKNESS), { side: 'above' }),
     ),
-    h('p', { class: 'fault-line', id: told, role: 'alert', hidden: () => wrong.value === '' }, () => wrong.value),
+    h('p', { class: 'fault-line', id: told, role: 'alert', hidden: () => wrong.value === '' }, () =>
+      marked(wrong.value),
+    ),
   );
 }
