@@ -23,7 +23,7 @@ test('a periodic surface becomes a closed part, and a surface again', async ({ p
     expect((await state(page)).settings.thickness).toBeUndefined();
     await thickness.fill('0.2 + q z');
     await thickness.press('Enter');
-    await expect(page.getByRole('alert').filter({ hasText: 'no parameter `q`' })).toBeVisible();
+    await expect(page.getByRole('alert').filter({ hasText: 'no parameter q' })).toBeVisible();
     expect((await state(page)).settings.thickness).toBeUndefined();
   });
   await test.step('a formula makes the thickness vary', async () => {
