@@ -1,14 +1,18 @@
-//! Floors and folded angles as choices.
+//! Floors, folded angles and ridges as choices.
 //!
 //! In a box ⌊u⌋ takes few whole numbers. It is then a chain of choices between them, by whether u
 //! has come to the next one. asin(sin u) and acos(cos u) are folds of a line: u or −u, moved by a
 //! multiple of π, from one fold to the next. So the search for creases finds the edges of roofs,
 //! triangle waves and repeated cells as it finds those of a minimum.
+//!
+//! |u|ᵖ with p < 2 has a ridge at u = 0: its slope jumps, or it bends without bounds, and neither
+//! uᵖ nor (−u)ᵖ goes on beyond it. Close to 0 it is taken as straight, so that the ridge is a crease
+//! where two functions meet that have values on both sides.
 
 use super::compiled::Compiled;
-use super::graph::{Graph, Id, Node};
+use super::graph::{Blend, Graph, Id, Node};
 use super::interval;
-use super::operations::Unary;
+use super::operations::{Binary, Unary};
 use crate::math::{Bounds, Interval};
 use core::f64::consts::PI;
 
@@ -17,13 +21,15 @@ const MOST_STEPS: f64 = 64.0;
 /// Room around the box in which the choices still give f, as a share of its longest side: a coarse
 /// front marches some spacings beyond the box.
 const MARGIN: f64 = 0.5;
+/// Half-width of the strip in which a power is straight, as a share of the largest |u|.
+const STRIP: f64 = 1e-6;
 
 /// The graph of f with its floors and folds as choices, which is f in the box and around it; none
 /// if f has none, or only such with too many steps.
 pub(super) fn as_choices(f: &Compiled, values: &[f64], bounds: &Bounds) -> Option<(Graph, Id)> {
     let graph = &*f.graph;
     let nodes = graph.needed_by(&[f.root]);
-    if !nodes.iter().any(|&id| Fold::of(graph, id).is_some()) {
+    if !nodes.iter().any(|&id| Fold::of(graph, id).is_some() || Ridge::of(graph, id).is_some()) {
         return None;
     }
     let around = bounds.enlarged(MARGIN * bounds.size().max_element());
@@ -35,9 +41,13 @@ pub(super) fn as_choices(f: &Compiled, values: &[f64], bounds: &Bounds) -> Optio
             let range = ranges[fold.argument() as usize].at(0).bounds;
             fold.chain(&mut other, map[fold.argument() as usize], range)
         });
-        is_new |= chain.is_some();
+        let range = |id: Id| ranges[id as usize].at(0).bounds;
+        let straight =
+            || Ridge::of(graph, id).and_then(|ridge| ridge.straight(&mut other, |id| map[id as usize], range));
+        let choice = chain.or_else(straight);
+        is_new |= choice.is_some();
         let plain = graph.node(id).mapped(|operand| map[operand as usize]);
-        map[id as usize] = chain.unwrap_or_else(|| other.intern(plain));
+        map[id as usize] = choice.unwrap_or_else(|| other.intern(plain));
     }
     let root = map[f.root as usize];
     is_new.then_some((other, root))
@@ -124,5 +134,82 @@ impl Fold {
             k -= 1.0;
         }
         Some(chain)
+    }
+}
+
+/// The power (factor · |u|ⁿ)ᵉ, with an exponent that depends on no coordinate.
+struct Ridge {
+    factor: f64,
+    u: Id,
+    n: f64,
+    exponent: Exponent,
+}
+
+#[derive(Clone, Copy)]
+enum Exponent {
+    Number(f64),
+    Node(Id),
+}
+
+impl Ridge {
+    fn of(graph: &Graph, id: Id) -> Option<Self> {
+        let (mut base, exponent) = match graph.node(id) {
+            Node::Unary(Unary::Sqrt, base) => (base, Exponent::Number(1.0 / 2.0)),
+            Node::Unary(Unary::Cbrt, base) => (base, Exponent::Number(1.0 / 3.0)),
+            Node::Binary(Binary::Pow, base, exponent) if graph.is_uniform(exponent) => {
+                (base, Exponent::Node(exponent))
+            }
+            _ => return None,
+        };
+        let mut factor = 1.0;
+        while let Node::Binary(operation @ (Binary::Mul | Binary::Div), v, number) = graph.node(base)
+            && let Some(number) = graph.as_constant(number)
+        {
+            factor = if operation == Binary::Mul { factor * number } else { factor / number };
+            base = v;
+        }
+        let (u, n) = match graph.node(base) {
+            Node::Unary(Unary::Abs, u) => (u, 1.0),
+            Node::Power(u, n) if n > 0 && n % 2 == 0 => (u, f64::from(n)),
+            _ => return None,
+        };
+        (factor > 0.0 && !graph.is_uniform(u)).then_some(Self { factor, u, n, exponent })
+    }
+
+    /// The power as a function of |u| that has values at negative numbers, too: for w = |u| and p =
+    /// n · e it is wᵖ above a small δ, and its tangent at δ below. None if p is not between 0 and 2,
+    /// or is 1.
+    fn straight(
+        self,
+        graph: &mut Graph,
+        map: impl Fn(Id) -> Id,
+        range: impl Fn(Id) -> Interval,
+    ) -> Option<Id> {
+        let (value, exponent) = match self.exponent {
+            Exponent::Number(e) => (e, graph.constant(e)),
+            Exponent::Node(id) => (range(id).middle(), map(id)),
+        };
+        let p = self.n * value;
+        let Interval { lo, hi } = range(self.u);
+        let delta = STRIP * lo.abs().max(hi.abs());
+        if !(p > 0.0 && p < 2.0 && (p - 1.0).abs() > STRIP && delta.is_finite() && delta > 0.0) {
+            return None;
+        }
+        let n = graph.constant(self.n);
+        let p = graph.mul(exponent, n);
+        let [zero, one, delta] = [0.0, 1.0, delta].map(|number| graph.constant(number));
+        let size = graph.unary(Unary::Abs, map(self.u));
+        let beyond = graph.sub(size, delta);
+        let below = graph.smin(Blend::Cubic, beyond, zero, delta);
+        let above = graph.sub(size, below);
+        let power = graph.pow(above, p);
+        let less = graph.sub(p, one);
+        let slope = graph.pow(delta, less);
+        let slope = graph.mul(p, slope);
+        let line = graph.mul(slope, below);
+        let sum = graph.add(power, line);
+        let factor = graph.constant(self.factor);
+        let factor = graph.pow(factor, exponent);
+        Some(graph.mul(sum, factor))
     }
 }
