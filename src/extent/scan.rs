@@ -55,6 +55,9 @@ const HALVINGS: u32 = 30;
 const OUTER: f64 = 0.25;
 /// Cells that are looked into for that at each side, the outermost first.
 const MOST_OUTER: usize = 64;
+/// A box of bends that becomes smaller than this share of itself when the cells are halved is that
+/// of the cells, not of the bends.
+const STEADY: f64 = 0.75;
 /// The box that holds nothing.
 const NOWHERE: Bounds = Bounds::new(DVec3::INFINITY, DVec3::NEG_INFINITY);
 
@@ -198,6 +201,8 @@ async fn bends(
     effort: Effort,
     left: &mut usize,
 ) -> Option<Bounds> {
+    // A box that is fine enough, until the next level tells whether it is that of the bends.
+    let mut fine: Option<Bounds> = None;
     loop {
         kept.retain(|cell| cell.extremes != [false; 3]);
         if kept.is_empty() || kept.len() > MANY_AT_FACES || kept.iter().any(|cell| level.is_at_face(cell.at))
@@ -205,9 +210,15 @@ async fn bends(
             return None;
         }
         let hull = kept.iter().fold(NOWHERE, |hull, cell| hull.joined(&level.cell(cell.at)));
-        if is_fine(&level, &hull, FINE) || level.depth >= DEPTH || *left == 0 {
+        if let Some(fine) = fine
+            && hull.size().max_element() >= STEADY * fine.size().max_element()
+        {
+            return Some(fine);
+        }
+        if level.depth >= DEPTH || *left == 0 {
             return Some(hull);
         }
+        fine = is_fine(&level, &hull, FINE).then_some(hull);
         level = ScanLevel { size: 0.5 * level.size, cells: 2 * level.cells, depth: level.depth + 1, ..level };
         kept = visit(field, &level, &eighths(&kept), effort, left).await;
     }

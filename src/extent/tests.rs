@@ -80,6 +80,7 @@ fn what_goes_on_for_ever_keeps_a_sensible_box_and_is_said_to() {
         "x y z = 1",
         "tan(x) = y",
         "floor(x) = y",
+        "z = abs(x) - y^2",
     ] {
         let Extent { bounds, reach } = extent(text);
         assert_eq!(reach, Reach::Endless, "{text}: {bounds:?}");

@@ -59,6 +59,32 @@ fn a_surface_ends_at_its_limits_with_particles_on_the_rim() {
             area: None,
             topology: [1, 1, 1],
         },
+        // What ends where its function has no value: a root, one in another, another power, an
+        // arccosine.
+        Limited {
+            formula: "z = sqrt(1 - x^2 - y^2)",
+            beyond: |p| -p.z,
+            area: Some(2.0 * PI),
+            topology: [1, 1, 1],
+        },
+        Limited {
+            formula: "z = sqrt(1 - sqrt(x^2 + y^2 - 0.1))",
+            beyond: |p| (-p.z).max(0.1_f64.sqrt() - p.truncate().length()),
+            area: None,
+            topology: [1, 0, 2],
+        },
+        Limited {
+            formula: "y = z^2 - x^1.5 {abs(y) < 2, abs(z) < 1}",
+            beyond: |p| -p.x,
+            area: None,
+            topology: [1, 1, 1],
+        },
+        Limited {
+            formula: "2 - z = 2 acos(x^2 + y^2)",
+            beyond: |p| (p.z - 2.0).max(p.truncate().length() - 1.0),
+            area: None,
+            topology: [1, 1, 1],
+        },
         // The limits are beyond the surface.
         Limited {
             formula: "x^2 + y^2 + z^2 = 1 {x^2 + y^2 + z^2 < 4}",

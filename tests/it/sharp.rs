@@ -126,6 +126,34 @@ fn floors_and_folded_angles_bend_a_solid_at_edges() {
 }
 
 #[test]
+fn a_power_below_two_has_its_ridges_as_creases() {
+    // The volume is 8 Γ(1 + 1/p)³ / Γ(1 + 3/p).
+    let cases = [
+        ("abs(x)^0.8 + abs(y)^0.8 + abs(z)^0.8 = 1", 0.701_51, 12),
+        ("abs(x)^1.1 + abs(y)^1.1 + abs(z)^1.1 = 1", 1.669_07, 12),
+        ("abs(x)^1.9 + abs(y)^1.9 + abs(z)^1.9 = 1", 3.971_86, 0),
+        ("sqrt(abs(x)) + sqrt(abs(y)) + sqrt(abs(z)) = 1", 4.0 / 45.0, 12),
+        // The hyperbolic octahedron.
+        ("cbrt(x^2) + cbrt(y^2) + cbrt(z^2) = 1", 4.0 * PI / 35.0, 12),
+        // In a solid, with a factor in the power.
+        ("max((2*abs(x))^0.7 + z - 1, abs(x) - 0.5, abs(y) - 1, -z)", 2.0 - 2.0 / 1.7, 9),
+        // Powers that end the solid: two roots in one function, one in a product, and one above 1.
+        ("max(1 - sqrt(x) - sqrt(y), x - 2, y - 2, abs(z) - 0.2)", 1.6 - 0.4 / 6.0, 9),
+        ("max(z - 0.2 - x*sqrt(y), x - 1, y - 1, -x, -z)", 0.2 + 1.0 / 3.0, 12),
+        ("max(z - 1 - x^1.5, -z, x - 1, abs(y) - 1)", 2.8, 12),
+    ];
+    for (formula, exact, creases) in cases {
+        let field = Formula::parse(formula).expect("a formula");
+        let sample = sample(field, &Settings::with_count(8_000)).expect("a sample");
+        let volume = sample.volume().expect("a closed mesh");
+        assert!((volume / exact - 1.0).abs() < 0.02, "{formula}: volume {volume} for {exact}");
+        let topology = &sample.mesh().topology;
+        assert_eq!((topology.components.len(), topology.euler()), (1, 2), "{formula}");
+        assert_eq!(sample.report().proof.creases.unwrap_or(0), creases, "{formula}");
+    }
+}
+
+#[test]
 fn a_solid_ends_where_one_of_its_functions_has_no_value() {
     let cases = [
         ("max(z - sqrt(1 - x^2), -z, abs(x) - 1, abs(y) - 1)", [1, 2], Some(PI), [6, 4]),

@@ -308,7 +308,9 @@ impl Formula {
             self.use_compiled(compiled);
         }
         let (graph, root) = &*self.surface;
-        if self.solid != Solid::default() || regular::regular(graph, *root).is_some() {
+        let changes =
+            regular::within_limits(graph, *root).is_some() || regular::regular(graph, *root).is_some();
+        if changes || self.solid != Solid::default() {
             self.make_solid();
         }
         self
@@ -422,7 +424,15 @@ impl Formula {
 
     /// Compiles what the surface is made to, anew from f.
     fn make_solid(&mut self) {
-        let (mut graph, f) = (*self.surface).clone();
+        let (mut graph, mut f) = (*self.surface).clone();
+        // A box alone closes the solid behind the surface, which ends otherwise.
+        let is_surface = self.solid.sheet.is_some() || self.solid.closed.is_none();
+        if self.is_regular
+            && is_surface
+            && let Some(within) = regular::within_limits(&graph, f)
+        {
+            (graph, f) = within;
+        }
         let root = self.solid.made_of(&mut graph, f);
         let (mut graph, mut root) = graph.part(root);
         self.flush = Arc::default();

@@ -1,5 +1,5 @@
 //! Solids in their regular form: they end where one of their functions has no value, and have no
-//! skin.
+//! skin. Surfaces that end where their function has no value.
 //!
 //! A solid is put together by minima and maxima of functions, its *faces*, and lies where the whole
 //! comes to at most 0. Where only signs count, a face can be exchanged for another function of the
@@ -8,13 +8,21 @@
 //! - a − c √u has no value where u < 0, and an infinite slope where u = 0. It is at most 0 where
 //!   max(a/c, 0)² − u is, which has values and slopes everywhere. So the ball under z = √(1 − x² −
 //!   y²) ends at its equator, and a solid that lies deeper ends at a wall below it.
+//! - A sum of several roots, or a root within another function, is taken on beyond the end by √|u|,
+//!   and −u is a face more: max(f, −u) is at most 0 where f is, and ends with it. So does u |u|ᵖ⁻¹
+//!   take the place of uᵖ with p > 1.
 //! - Where a cutter lies flush with a face g of the solid, as in max(g, min(h, −g)), both are 0
 //!   where h < 0: a skin without thickness. The solid without its skins (the closure of its
 //!   interior; A. Requicha, "Representations for rigid solids", 1980) is max(g, h).
+//!
+//! A surface f = 0 of one function is exchanged in the same way, and has a [limit](Unary::Limit)
+//! where a solid has a further face: a − c √u = 0 is (a/c)² − u = 0 within a/c > 0. So the surface
+//! z = √(1 − x² − y²) ends in a rim.
 
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
 use super::solids::{Opened, Signed};
+use core::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec3;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -48,13 +56,7 @@ pub(super) fn regular(graph: &Graph, root: Id) -> Option<Regular> {
     if graph.limited(root).is_some() {
         return None;
     }
-    let parameter = |node: &Node| match node {
-        Node::Parameter(index) => Some(*index as usize + 1),
-        _ => None,
-    };
-    let parameters = graph.nodes().iter().filter_map(parameter).max().unwrap_or(0);
-    let graph = graph.clone();
-    let mut forming = Forming { graph, left: MAX_FACES, parameters, values: Vec::new(), flush: Vec::new() };
+    let mut forming = Forming::new(graph);
     let negative = forming.is_solid_where_positive(root);
     let whole = Signed::of(&mut forming.graph, root, negative);
     let parts = forming.opened(whole);
@@ -76,6 +78,39 @@ pub(super) fn regular(graph: &Graph, root: Id) -> Option<Regular> {
     let outputs: Vec<Id> = [solid].into_iter().chain(forming.flush).collect();
     let (graph, nodes) = forming.graph.rewritten(&outputs, Graph::intern);
     Some(Regular { graph, root: nodes[0], flush: nodes[1..].to_vec() })
+}
+
+/// The surface of one function in the limits within which that has values; none if it has some
+/// everywhere, or is put together from several functions.
+pub(super) fn within_limits(graph: &Graph, root: Id) -> Option<(Graph, Id)> {
+    let mut forming = Forming::new(graph);
+    let (f, limit) = match graph.limited(root) {
+        Some([f, limit]) => (f, Some(limit)),
+        None => (root, None),
+    };
+    let whole = Signed::of(&mut forming.graph, f, false);
+    if !matches!(forming.opened(whole), Solid::Face(_)) || forming.graph.factors(f).len() > 1 {
+        return None;
+    }
+    let (mut f, mut limits) = (f, Vec::new());
+    for _ in 0..MAX_ROOTS {
+        let Some((other, within)) = forming.without_inverse(f) else { break };
+        f = other;
+        limits.extend(within);
+    }
+    if let Some((other, within)) = forming.extended(f) {
+        f = other;
+        limits.extend(within);
+    }
+    let mut graph = forming.graph;
+    limits.retain(|&limit| graph.as_constant(limit).is_none_or(|limit| limit > 0.0));
+    if limits.is_empty() {
+        return None;
+    }
+    let limit = limits.into_iter().chain(limit).reduce(|a, b| graph.binary(Binary::Max, a, b))?;
+    let limit = graph.unary(Unary::Limit, limit);
+    let f = graph.binary(Binary::Max, f, limit);
+    Some(graph.part(f))
 }
 
 /// A solid, by the nodes of its faces, each of which is at most 0 on its inner side.
@@ -122,6 +157,15 @@ struct Forming {
 }
 
 impl Forming {
+    fn new(graph: &Graph) -> Self {
+        let parameter = |node: &Node| match node {
+            Node::Parameter(index) => Some(*index as usize + 1),
+            _ => None,
+        };
+        let parameters = graph.nodes().iter().filter_map(parameter).max().unwrap_or(0);
+        Self { graph: graph.clone(), left: MAX_FACES, parameters, values: Vec::new(), flush: Vec::new() }
+    }
+
     /// Whether the solid lies where f is positive, as that of min(√u − a, b) does: the faces of a
     /// minimum have roots, and all of these count positively.
     fn is_solid_where_positive(&mut self, root: Id) -> bool {
@@ -131,7 +175,7 @@ impl Forming {
         let parts = self.opened(whole);
         parts.with_faces(&mut |face| {
             if let Some(end) = self.root_of(face) {
-                signs[usize::from(end.factor > 0.0)] = true;
+                signs[usize::from(end.term.factor > 0.0)] = true;
             }
             None
         });
@@ -169,17 +213,16 @@ impl Forming {
         nodes[1..].iter().fold(nodes[0], |total, &node| self.graph.binary(operation, total, node))
     }
 
-    /// The solid behind a face that a root ends, by faces that end nowhere. Roots may be nested
-    /// `most` deep. None if the face has no such root, or several.
+    /// The solid behind a face that roots end, by faces that end nowhere. Roots may be nested
+    /// `most` deep. None if the face has no root that ends it.
     fn ended(&mut self, face: Id, most: usize) -> Option<Solid> {
-        let End { term, share, factor, base, inverse } = self.root_of(face).filter(|_| most > 0)?;
-        // The face is rest + factor · base^(1/inverse).
-        let rest = self.graph.combination([(face, 1.0), (term, -share)]);
-        let scale = self.graph.constant(-1.0 / factor);
-        let level = self.graph.mul(rest, scale);
-        let one_less = self.graph.constant(inverse - 1.0);
-        let raise = self.graph.constant(inverse);
-        let faces = if factor < 0.0 {
+        let Some(end) = self.root_of(face).filter(|_| most > 0) else {
+            let (face, ends) = self.extended(face)?;
+            return Some(Solid::All([face].into_iter().chain(ends).map(Solid::Face).collect()));
+        };
+        let level = self.level_of(face, &end.term);
+        let End { term, base, inverse } = end;
+        let faces = if term.factor < 0.0 {
             // Inside where the root is at least the level.
             let zero = self.graph.constant(0.0);
             let above = if is_never_negative(&self.graph, level) {
@@ -187,13 +230,12 @@ impl Forming {
             } else {
                 self.graph.binary(Binary::Max, level, zero)
             };
+            let raise = self.graph.constant(inverse);
             let power = self.graph.pow(above, raise);
             vec![self.graph.sub(power, base)]
         } else {
             // Inside where it is at most the level, and is a number.
-            let size = self.graph.unary(Unary::Abs, level);
-            let size = self.graph.pow(size, one_less);
-            let power = self.graph.mul(level, size);
+            let power = self.odd_power(level, inverse);
             vec![self.graph.neg(base), self.graph.sub(base, power)]
         };
         let mut parts: Vec<Solid> = Vec::new();
@@ -207,8 +249,63 @@ impl Forming {
         Some(if parts.len() == 1 { parts.remove(0) } else { Solid::All(parts) })
     }
 
+    /// What a function g is where the face is zero, whose summand it is but for a factor: the face
+    /// is factor · (g − level).
+    fn level_of(&mut self, face: Id, term: &Term) -> Id {
+        let rest = self.graph.combination([(face, 1.0), (term.node, -term.share)]);
+        let scale = self.graph.constant(-1.0 / term.factor);
+        self.graph.mul(rest, scale)
+    }
+
+    /// u |u|ᵖ⁻¹, which is uᵖ where that has a value, for p > 1.
+    fn odd_power(&mut self, u: Id, p: f64) -> Id {
+        let size = self.graph.unary(Unary::Abs, u);
+        let one_less = self.graph.constant(p - 1.0);
+        let size = self.graph.pow(size, one_less);
+        self.graph.mul(u, size)
+    }
+
+    /// A function with the zeros of `f`, without the only root, arcsine or arccosine among its
+    /// summands, and functions that are at most 0 where the zeros are those of f.
+    fn without_inverse(&mut self, f: Id) -> Option<(Id, Vec<Id>)> {
+        if let Some(end) = self.root_of(f) {
+            let level = self.level_of(f, &end.term);
+            let raise = self.graph.constant(end.inverse);
+            let is_whole = end.inverse.fract() == 0.0;
+            let power =
+                if is_whole { self.graph.pow(level, raise) } else { self.odd_power(level, end.inverse) };
+            let is_turned = end.term.factor > 0.0;
+            let other =
+                if is_turned { self.graph.sub(end.base, power) } else { self.graph.sub(power, end.base) };
+            let limit = (!is_never_negative(&self.graph, level)).then(|| self.graph.neg(level));
+            return Some((other, limit.into_iter().collect()));
+        }
+        let (term, (is_sine, u)) = self.only_summand(f, Self::arc)?;
+        let level = self.level_of(f, &term);
+        let (operation, least, most) =
+            if is_sine { (Unary::Sin, -FRAC_PI_2, FRAC_PI_2) } else { (Unary::Cos, 0.0, PI) };
+        let value = self.graph.unary(operation, level);
+        // The arccosine falls where its argument grows.
+        let is_turned = (term.factor > 0.0) != is_sine;
+        let other = if is_turned { self.graph.sub(value, u) } else { self.graph.sub(u, value) };
+        let [least, most] = [least, most].map(|end| self.graph.constant(end));
+        Some((other, vec![self.graph.sub(least, level), self.graph.sub(level, most)]))
+    }
+
     /// The only root among the summands of a face whose argument may be negative.
-    fn root_of(&self, face: Id) -> Option<End> {
+    fn root_of(&mut self, face: Id) -> Option<End> {
+        let root = |forming: &mut Self, node: Id| forming.ending_power(node).filter(|(_, p)| *p < 1.0);
+        let (term, (base, exponent)) = self.only_summand(face, root)?;
+        Some(End { term, base, inverse: 1.0 / exponent })
+    }
+
+    /// The only summand of a face of which `kind` says something, but for its factor; none if there
+    /// are several.
+    fn only_summand<T>(
+        &mut self,
+        face: Id,
+        mut kind: impl FnMut(&mut Self, Id) -> Option<T>,
+    ) -> Option<(Term, T)> {
         let mut found = None;
         for (term, share) in self.graph.summands(face) {
             let (mut node, mut factor) = (term, share);
@@ -218,24 +315,76 @@ impl Forming {
                 factor = if operation == Binary::Mul { factor * number } else { factor / number };
                 node = v;
             }
-            let (base, inverse) = match self.graph.node(node) {
-                Node::Unary(Unary::Sqrt, base) => (base, 2.0),
-                Node::Binary(Binary::Pow, base, exponent) => {
-                    match self.graph.as_constant(exponent).filter(|p| (0.0..1.0).contains(p)) {
-                        Some(exponent) => (base, 1.0 / exponent),
-                        None => continue,
-                    }
-                }
-                _ => continue,
-            };
-            if factor == 0.0 || self.graph.is_uniform(base) || is_never_negative(&self.graph, base) {
+            if factor == 0.0 {
                 continue;
             }
-            if found.replace(End { term, share, factor, base, inverse }).is_some() {
+            let Some(kind) = kind(self, node) else { continue };
+            if found.replace((Term { node: term, share, factor }, kind)).is_some() {
                 return None;
             }
         }
         found
+    }
+
+    /// Whether a node is an arcsine, or with `false` an arccosine, and its argument, if that may be
+    /// beyond −1 … 1.
+    fn arc(&mut self, node: Id) -> Option<(bool, Id)> {
+        let (is_sine, u) = match self.graph.node(node) {
+            Node::Unary(Unary::Asin, u) => (true, u),
+            Node::Unary(Unary::Acos, u) => (false, u),
+            _ => return None,
+        };
+        let ends = !self.graph.is_uniform(u) && self.values_of(u).iter().any(|value| value.abs() > 1.0);
+        ends.then_some((is_sine, u))
+    }
+
+    /// The base and the exponent of a power that has no value where the base is negative, if it may
+    /// be.
+    fn ending_power(&mut self, node: Id) -> Option<(Id, f64)> {
+        let (base, exponent) = match self.graph.node(node) {
+            Node::Unary(Unary::Sqrt, base) => (base, 0.5),
+            Node::Power(root, n) if n > 0 && n % 2 != 0 => match self.graph.node(root) {
+                Node::Unary(Unary::Sqrt, base) => (base, 0.5 * f64::from(n)),
+                _ => return None,
+            },
+            Node::Binary(Binary::Pow, base, exponent) => (base, self.graph.as_constant(exponent)?),
+            _ => return None,
+        };
+        let may_end = exponent > 0.0 && exponent.fract() != 0.0 && !self.graph.is_uniform(base);
+        let ends = may_end
+            && !is_never_negative(&self.graph, base)
+            && self.values_of(base).iter().any(|&value| value < 0.0);
+        ends.then_some((base, exponent))
+    }
+
+    /// A face that goes on where powers of it have no value, and functions that are at most 0 where
+    /// these have one; none if they have values everywhere.
+    fn extended(&mut self, face: Id) -> Option<(Id, Vec<Id>)> {
+        let nodes = self.graph.needed_by(&[face]);
+        let (mut map, mut ends): (Vec<Id>, Vec<Id>) = ((0..self.graph.len() as Id).collect(), Vec::new());
+        for id in nodes {
+            map[id as usize] = match self.ending_power(id) {
+                None => {
+                    let node = self.graph.node(id).mapped(|operand| map[operand as usize]);
+                    self.graph.built(node)
+                }
+                Some((base, exponent)) => {
+                    let base = map[base as usize];
+                    let end = self.graph.neg(base);
+                    if !ends.contains(&end) {
+                        ends.push(end);
+                    }
+                    if exponent > 1.0 {
+                        self.odd_power(base, exponent)
+                    } else {
+                        let size = self.graph.unary(Unary::Abs, base);
+                        let exponent = self.graph.constant(exponent);
+                        self.graph.pow(size, exponent)
+                    }
+                }
+            };
+        }
+        (!ends.is_empty()).then(|| (map[face as usize], ends))
     }
 
     /// The solid without its skins, in a place where each of the `known` faces is at most 0, or,
@@ -330,12 +479,18 @@ impl Forming {
     }
 }
 
+/// A summand of a face.
+struct Term {
+    node: Id,
+    /// How often it stands in the face.
+    share: f64,
+    /// The face has this much of what the summand is but for a factor.
+    factor: f64,
+}
+
 /// A root that ends a face: factor · base^(1/inverse).
 struct End {
-    /// The summand that holds it, and how often it stands in the face.
-    term: Id,
-    share: f64,
-    factor: f64,
+    term: Term,
     base: Id,
     inverse: f64,
 }

@@ -6,8 +6,8 @@
 //! triangle waves and repeated cells as it finds those of a minimum.
 //!
 //! |u|ᵖ with p < 2 has a ridge at u = 0: its slope jumps, or it bends without bounds, and neither
-//! uᵖ nor (−u)ᵖ goes on beyond it. Close to 0 it is taken as straight, so that the ridge is a crease
-//! where two functions meet that have values on both sides.
+//! uᵖ nor (−u)ᵖ goes on beyond it. Close to 0 it is taken as straight. So the ridge is a crease, at
+//! which two functions meet that have values on both sides.
 
 use super::compiled::Compiled;
 use super::graph::{Blend, Graph, Id, Node};
@@ -42,8 +42,9 @@ pub(super) fn as_choices(f: &Compiled, values: &[f64], bounds: &Bounds) -> Optio
             fold.chain(&mut other, map[fold.argument() as usize], range)
         });
         let range = |id: Id| ranges[id as usize].at(0).bounds;
-        let straight =
-            || Ridge::of(graph, id).and_then(|ridge| ridge.straight(&mut other, |id| map[id as usize], range));
+        let straight = || {
+            Ridge::of(graph, id).and_then(|ridge| ridge.straight(&mut other, |id| map[id as usize], range))
+        };
         let choice = chain.or_else(straight);
         is_new |= choice.is_some();
         let plain = graph.node(id).mapped(|operand| map[operand as usize]);
