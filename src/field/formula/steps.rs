@@ -178,8 +178,8 @@ impl Ridge {
     }
 
     /// The power as a function of |u| that has values at negative numbers, too: for w = |u| and p =
-    /// n · e it is wᵖ above a small δ, and its tangent at δ below. None if p is not between 0 and 2,
-    /// or is 1.
+    /// n · e it is wᵖ above a small δ, and its tangent at δ below. None if p is not between 0 and
+    /// 2, or is 1.
     fn straight(
         self,
         graph: &mut Graph,

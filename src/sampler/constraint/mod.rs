@@ -12,7 +12,7 @@
 //!    method looks for a point on each pair of branches.
 //! 2. *Trace.* From such a point the curve is traced both ways, to where another branch takes
 //!    over: that place is a corner. From there the other creases of the corner are traced. A
-//!    crease that passes a corner of others is divided there.
+//!    crease that passes a corner of others is divided there, and so are creases that touch.
 //! 3. *Fill.* Particles are put on corners and along curves at equal distances, as many as fit
 //!    best. They do not move any more: fronts start from them, patch by patch, and end at them. For
 //!    a refinement they are put there for every level at once, also beyond the box where the
@@ -26,6 +26,7 @@ mod meeting;
 #[cfg(test)]
 mod tests;
 pub(super) mod tips;
+mod touch;
 mod trace;
 
 use crate::field::{SHARP, UnitCell};
@@ -183,6 +184,7 @@ impl Creases {
             }
         }
         creases.trace_from_corners(probe, bounds, step).await;
+        creases.touch(probe, step).await;
         creases.divide(probe, step);
         if let Some(cell) = unit_cell {
             creases.repeat(probe, &cell, step);

@@ -1,7 +1,7 @@
 //! Follows a crease from one of its points to both ends.
 
 use super::meeting::{FADED, MOST_TURN, Meeting, Third, common_point, touching_point};
-use super::{BESIDE, Crease, Creases, ONE_CORNER, ONE_END};
+use super::{BESIDE, Crease, Creases, ONE_CORNER, ONE_END, touch};
 use crate::math::Bounds;
 use crate::sampler::probe::Probe;
 use crate::slices::{Work, pause};
@@ -114,7 +114,7 @@ impl Walk<'_, '_> {
                 let end = self.turn(last, next, direction, is_forward);
                 return self.end_at(creases, [here, end], self.patches, ONE_END, points);
             }
-            if !self.is_same_crease(&next, self.step) {
+            if !self.is_same_crease(&next, self.step) && !self.is_touched(here, &next) {
                 return self.end_before(creases, here, &next, points);
             }
             if !self.bounds.holds(next.position) {
@@ -258,6 +258,21 @@ impl Walk<'_, '_> {
     /// Whether the patches lie beside a point of the curve as they do at its start.
     fn is_same_crease(&mut self, point: &Meeting, reach: f64) -> bool {
         point.are_left(self.probe, self.patches, reach).as_deref() == self.are_left
+    }
+
+    /// Whether another branch touches the crease on the way to a point or soon behind it, and gives
+    /// f beside it there, but not farther on.
+    fn is_touched(&mut self, here: DVec3, next: &Meeting) -> bool {
+        let (branches, way) = (self.start.branches, next.position - here);
+        let behind = next.position + way;
+        let behind = Meeting::of_branches(self.probe, branches, behind, way.length(), FADED);
+        behind.is_some_and(|behind| {
+            self.is_same_crease(&behind, self.step)
+                && self.branches_around(next).into_iter().any(|third| {
+                    let chord = [here, behind.position];
+                    touch::touching_point(self.probe, branches, third, chord, self.step).is_some()
+                })
+        })
     }
 
     /// The branches, other than those of the walk, that give f at a point and beside it.

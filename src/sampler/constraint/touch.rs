@@ -1,0 +1,83 @@
+//! Creases that touch: two of a cube's face circles meet in the middle of an edge where a ball
+//! touches that, and run on. They share a corner there.
+//!
+//! Three branches are zero at such a point, but one of them does not change its sign along the
+//! crease of the other two, so that no walk along the crease ends there, and Newton's method for
+//! three functions has no single root. The point is where the third branch is extreme along the
+//! crease.
+
+use super::meeting::{FADED, Meeting, is_on};
+use super::{Creases, LONGEST, NEAR, ONE_CORNER};
+use crate::sampler::probe::Probe;
+use crate::slices::pause;
+use glam::DVec3;
+
+/// Distance between creases, in steps, within which they touch: half of the digits of a place
+/// where a function is extreme.
+const TOUCH: f64 = 1e-6;
+/// Times that the way to a touching point is halved.
+const BISECTIONS: u32 = 30;
+
+impl Creases {
+    /// Adds a corner at each point at which a crease touches another one.
+    pub(super) async fn touch(&mut self, probe: &mut Probe<'_>, step: f64) {
+        for k in 0..self.curves.len() {
+            let curve = self.curves[k].clone();
+            for other in 0..self.curves.len() {
+                let beside = &self.curves[other];
+                let is_new = |patch: &&u32| !curve.patches.contains(patch);
+                let thirds: Vec<u32> = beside.patches.iter().filter(is_new).copied().collect();
+                if thirds.is_empty() {
+                    continue;
+                }
+                let patches = [&curve.patches[..], &beside.patches].concat();
+                for [here, next] in curve.chords() {
+                    let reach = 0.5 * here.distance(next) + NEAR * step;
+                    if !self.curves[other].is_near(here.midpoint(next), reach, LONGEST * step) {
+                        continue;
+                    }
+                    pause().await;
+                    for &third in &thirds {
+                        let place = touching_point(probe, curve.branches, third, [here, next], step);
+                        if let Some(place) = place {
+                            self.corner_at(place, &patches, ONE_CORNER * step);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The point on the crease of two branches, between two points of it, at which a third branch is
+/// zero and extreme along the crease.
+pub(super) fn touching_point(
+    probe: &mut Probe,
+    branches: [u32; 2],
+    third: u32,
+    [mut here, mut next]: [DVec3; 2],
+    step: f64,
+) -> Option<DVec3> {
+    let way = next - here;
+    let rise = |probe: &mut Probe, p: DVec3| {
+        let at = Meeting::of_branches(probe, branches, p, way.length(), FADED)?;
+        let along = if at.tangent.dot(way) < 0.0 { -at.tangent } else { at.tangent };
+        let (_, gradient) = probe.on(Some(third)).field.value_and_gradient(at.position);
+        probe.count(1);
+        Some((at.position, gradient.dot(along)))
+    };
+    let [(_, before), (_, after)] = [rise(probe, here)?, rise(probe, next)?];
+    let is_turning = before * after < 0.0;
+    if !is_turning {
+        return None;
+    }
+    for _ in 0..BISECTIONS {
+        let (middle, slope) = rise(probe, here.midpoint(next))?;
+        if slope * before > 0.0 {
+            here = middle;
+        } else {
+            next = middle;
+        }
+    }
+    is_on(probe, third, here, TOUCH * step).then_some(here)
+}
