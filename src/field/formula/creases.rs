@@ -74,7 +74,7 @@ impl Branches {
 
     /// Cells of the box, no wider than `width`, outside of which the surface of a function has no
     /// crease, and the branches of the function, joined to patches; none if no choice makes a
-    /// crease. Products are told by their factors if these cross; else floors and folds are
+    /// crease. Products are told by their factors if these cross; else floors, folds and ridges are
     /// choices.
     pub(super) async fn found_in(
         f: &Compiled,

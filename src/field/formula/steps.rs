@@ -10,7 +10,7 @@
 //! which two functions meet that have values on both sides.
 
 use super::compiled::Compiled;
-use super::graph::{Blend, Graph, Id, Node};
+use super::graph::{Blend, Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::interval;
 use super::operations::{Binary, Unary};
 use crate::math::{Bounds, Interval};
@@ -24,8 +24,8 @@ const MARGIN: f64 = 0.5;
 /// Half-width of the strip in which a power is straight, as a share of the largest |u|.
 const STRIP: f64 = 1e-6;
 
-/// The graph of f with its floors and folds as choices, which is f in the box and around it; none
-/// if f has none, or only such with too many steps.
+/// The graph of f with its floors, folds and ridges as choices, which is f in the box and around
+/// it; none if f has none, or only such with too many steps.
 pub(super) fn as_choices(f: &Compiled, values: &[f64], bounds: &Bounds) -> Option<(Graph, Id)> {
     let graph = &*f.graph;
     let nodes = graph.needed_by(&[f.root]);
@@ -37,15 +37,15 @@ pub(super) fn as_choices(f: &Compiled, values: &[f64], bounds: &Bounds) -> Optio
     interval::bounds(graph, &nodes, values, &around, &mut ranges);
     let (mut other, mut map, mut is_new) = (Graph::default(), vec![0; graph.len()], false);
     for id in nodes {
-        let chain = Fold::of(graph, id).and_then(|fold| {
-            let range = ranges[fold.argument() as usize].at(0).bounds;
-            fold.chain(&mut other, map[fold.argument() as usize], range)
-        });
         let range = |id: Id| ranges[id as usize].at(0).bounds;
-        let straight = || {
-            Ridge::of(graph, id).and_then(|ridge| ridge.straight(&mut other, |id| map[id as usize], range))
+        let new = |id: Id| map[id as usize];
+        let choice = if let Some(fold) = Fold::of(graph, id) {
+            fold.chain(&mut other, new(fold.argument()), range(fold.argument()))
+        } else if let Some(ridge) = Ridge::of(graph, id) {
+            ridge.straight(&mut other, new, range)
+        } else {
+            None
         };
-        let choice = chain.or_else(straight);
         is_new |= choice.is_some();
         let plain = graph.node(id).mapped(|operand| map[operand as usize]);
         map[id as usize] = choice.unwrap_or_else(|| other.intern(plain));
@@ -192,8 +192,9 @@ impl Ridge {
         };
         let p = self.n * value;
         let Interval { lo, hi } = range(self.u);
-        let delta = STRIP * lo.abs().max(hi.abs());
-        if !(p > 0.0 && p < 2.0 && (p - 1.0).abs() > STRIP && delta.is_finite() && delta > 0.0) {
+        // Wide enough for a blend.
+        let delta = (STRIP * lo.abs().max(hi.abs())).max(2.0 * MIN_BLEND_WIDTH);
+        if !(p > 0.0 && p < 2.0 && (p - 1.0).abs() > STRIP && delta.is_finite()) {
             return None;
         }
         let n = graph.constant(self.n);
