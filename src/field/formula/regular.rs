@@ -249,8 +249,8 @@ impl Forming {
         Some(if parts.len() == 1 { parts.remove(0) } else { Solid::All(parts) })
     }
 
-    /// What a function g is where the face is zero, whose summand it is but for a factor: the face
-    /// is factor · (g − level).
+    /// The level of a summand: the value that it has, without its factor, where the face is zero.
+    /// With g for the summand without its factor, the face is factor · (g − level).
     fn level_of(&mut self, face: Id, term: &Term) -> Id {
         let rest = self.graph.combination([(face, 1.0), (term.node, -term.share)]);
         let scale = self.graph.constant(-1.0 / term.factor);
@@ -299,8 +299,8 @@ impl Forming {
         Some(End { term, base, inverse: 1.0 / exponent })
     }
 
-    /// The only summand of a face of which `kind` says something, but for its factor; none if there
-    /// are several.
+    /// The only summand of a face for which `kind` has an answer, with the answer. A constant factor
+    /// of the summand is taken off before `kind` is asked. None if there are several.
     fn only_summand<T>(
         &mut self,
         face: Id,

@@ -12,8 +12,8 @@ use crate::sampler::probe::Probe;
 use crate::slices::pause;
 use glam::DVec3;
 
-/// Distance between creases, in steps, within which they touch: half of the digits of a place
-/// where a function is extreme.
+/// Largest distance, in steps, of a crease from the sheet of a third branch that it touches. Larger:
+/// creases that pass each other closely share a corner. Smaller: rounding hides that they touch.
 const TOUCH: f64 = 1e-6;
 /// Times that the way to a touching point is halved.
 const BISECTIONS: u32 = 30;
