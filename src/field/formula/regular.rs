@@ -299,8 +299,8 @@ impl Forming {
         Some(End { term, base, inverse: 1.0 / exponent })
     }
 
-    /// The only summand of a face for which `kind` has an answer, with the answer. A constant factor
-    /// of the summand is taken off before `kind` is asked. None if there are several.
+    /// The only summand of a face for which `kind` has an answer, with the answer. A constant
+    /// factor of the summand is taken off before `kind` is asked. None if there are several.
     fn only_summand<T>(
         &mut self,
         face: Id,
