@@ -12,8 +12,9 @@ use crate::sampler::probe::Probe;
 use crate::slices::pause;
 use glam::DVec3;
 
-/// Largest distance, in steps, of a crease from the sheet of a third branch that it touches. Larger:
-/// creases that pass each other closely share a corner. Smaller: rounding hides that they touch.
+/// Largest distance, in steps, of a crease from the sheet of a third branch that it touches.
+/// Larger: creases that pass each other closely share a corner. Smaller: rounding hides that they
+/// touch.
 const TOUCH: f64 = 1e-6;
 /// Times that the way to a touching point is halved.
 const BISECTIONS: u32 = 30;
