@@ -6,6 +6,20 @@ use crate::math::{Bounds, FNV_START, NONE, fnv};
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 
+/// A point of the surface and the unit normal there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OrientedPoint {
+    pub(crate) position: Vec3,
+    pub(crate) normal: Vec3,
+}
+
+impl OrientedPoint {
+    /// The position and normal of row `i`.
+    pub(crate) fn of(particles: &Particles, i: usize) -> Self {
+        Self { position: particles.local[i], normal: particles.normal[i] }
+    }
+}
+
 /// Particle columns. A particle has one row; one on a crease, or at the tip of a cone, has several,
 /// with one position and a normal each: see [`Particles::twins`]. On a surface that is smooth
 /// everywhere row `i` is particle `i`.

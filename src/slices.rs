@@ -20,6 +20,30 @@ pub type Work<'a, T> = Pin<Box<dyn Future<Output = T> + Send + 'a>>;
 #[cfg(target_arch = "wasm32")]
 pub type Work<'a, T> = Pin<Box<dyn Future<Output = T> + 'a>>;
 
+/// [`Send`] natively. In WebAssembly, where a function of JavaScript is never sent to another
+/// thread, everything is.
+#[cfg(not(target_arch = "wasm32"))]
+pub trait MaybeSend: Send {}
+#[cfg(not(target_arch = "wasm32"))]
+impl<T: Send + ?Sized> MaybeSend for T {}
+/// [`Send`] natively. In WebAssembly, where a function of JavaScript is never sent to another
+/// thread, everything is.
+#[cfg(target_arch = "wasm32")]
+pub trait MaybeSend {}
+#[cfg(target_arch = "wasm32")]
+impl<T: ?Sized> MaybeSend for T {}
+
+/// [`Sync`] natively, everything in WebAssembly: see [`MaybeSend`].
+#[cfg(not(target_arch = "wasm32"))]
+pub trait MaybeSync: Sync {}
+#[cfg(not(target_arch = "wasm32"))]
+impl<T: Sync + ?Sized> MaybeSync for T {}
+/// [`Sync`] natively, everything in WebAssembly: see [`MaybeSend`].
+#[cfg(target_arch = "wasm32")]
+pub trait MaybeSync {}
+#[cfg(target_arch = "wasm32")]
+impl<T: ?Sized> MaybeSync for T {}
+
 /// Items in a slice of work, of 10 to 50 µs, of which each takes up to a microsecond or two: they
 /// search a tree, or evaluate a field.
 pub const HEAVY: usize = 32;

@@ -15,6 +15,7 @@ mod given;
 pub mod model;
 pub mod rbf;
 
+pub use crate::slices::{MaybeSend, MaybeSync};
 pub use combined::{Combined, difference, intersection, offset, smooth_union, union};
 pub use evaluator::{Bounded, Evaluator, Frame, Patches};
 pub use function::{BatchField, FnField};
@@ -84,30 +85,6 @@ impl Enclosure {
     /// The enclosure of a field that is defined nowhere in the box.
     pub const NOWHERE: Self = Self { value: Interval::NOTHING, may_vanish: false, ..Self::UNKNOWN };
 }
-
-/// [`Send`] natively. In WebAssembly, where a function of JavaScript is never sent to another
-/// thread, everything is.
-#[cfg(not(target_arch = "wasm32"))]
-pub trait MaybeSend: Send {}
-#[cfg(not(target_arch = "wasm32"))]
-impl<T: Send + ?Sized> MaybeSend for T {}
-/// [`Send`] natively. In WebAssembly, where a function of JavaScript is never sent to another
-/// thread, everything is.
-#[cfg(target_arch = "wasm32")]
-pub trait MaybeSend {}
-#[cfg(target_arch = "wasm32")]
-impl<T: ?Sized> MaybeSend for T {}
-
-/// [`Sync`] natively, everything in WebAssembly: see [`MaybeSend`].
-#[cfg(not(target_arch = "wasm32"))]
-pub trait MaybeSync: Sync {}
-#[cfg(not(target_arch = "wasm32"))]
-impl<T: Sync + ?Sized> MaybeSync for T {}
-/// [`Sync`] natively, everything in WebAssembly: see [`MaybeSend`].
-#[cfg(target_arch = "wasm32")]
-pub trait MaybeSync {}
-#[cfg(target_arch = "wasm32")]
-impl<T: ?Sized> MaybeSync for T {}
 
 /// A scalar field f with its derivatives; f < 0 inside the surface.
 ///

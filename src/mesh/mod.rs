@@ -6,6 +6,7 @@
 //!
 //! * [`build`]: from points with normals to triangles.
 //! * [`facing`]: which side of a closed mesh is its inside.
+//! * `stars`: the natural neighbours of points.
 //! * [`half_edge`]: a surface that can be changed: flips, splits, collapses, insertions, undone by
 //!   a journal; subdivision.
 //!
@@ -14,3 +15,4 @@
 pub mod build;
 pub mod facing;
 pub mod half_edge;
+pub(crate) mod stars;

@@ -32,7 +32,7 @@ pub(super) async fn label(points: &MeasuredPoints, spacing: &[f32], mesh: &[[u32
         pause().await;
     }
     for i in (0..n).filter(|&i| !is_used[i]) {
-        points.rings.of(i).for_each(|j| join(i, j));
+        points.stars.of(i).for_each(|j| join(i, j));
     }
     // What joins patches is the particles on creases.
     (0..n).for_each(|i| forest.join(i as u32, points.creases.first(i) as u32));

@@ -1,5 +1,6 @@
 //! The rows of particles on creases: which are of one patch, and which of one particle.
 
+use super::points::MeasuredPoints;
 use crate::field::Evaluator;
 use crate::math::{Bounds, NONE, sort_pairs, unkey};
 use crate::mesh::build;
@@ -107,6 +108,21 @@ impl CreaseRows {
         keys.first().map_or((f32::INFINITY, NONE), |&key| unkey(key))
     }
 
+    /// Distance of the nearest point that is of another particle than point `i`, if that of its own
+    /// patch is so far.
+    pub(super) fn nearest_within(&self, tree: &Tree, i: usize, of_patch: f32) -> f32 {
+        if self.is_empty() {
+            return of_patch;
+        }
+        if of_patch.is_infinite() {
+            return self.nearest(tree, i).0.sqrt();
+        }
+        let (p, mut near) = (tree.position[i], Vec::new());
+        tree.within_box(p - of_patch, p + of_patch, &mut near);
+        let others = near.into_iter().filter(|&j| !self.are_one(i, j as usize));
+        others.map(|j| tree.position[j as usize].distance(p)).fold(of_patch, f32::min)
+    }
+
     /// Whether point `i` is at a tip, where f has no gradient and the sheet is a cone.
     pub(super) fn is_tip(&self, i: usize) -> bool {
         self.is_tip.get(i) == Some(&true)
@@ -197,25 +213,28 @@ impl CreaseRows {
         self.patch.get(i).is_none_or(|&patch| field.branch_at(p.as_dvec3()) == patch)
     }
 
+    /// The rows of the particles at the points, with these normals. Rows that are left out have no
+    /// position.
+    pub(super) fn placed(&self, tree: &Tree, normal: &[Vec3], rows: &Particles) -> Particles {
+        let count = rows.patch.len();
+        let (mut local, mut normals) = (vec![Vec3::NAN; count], vec![Vec3::ZERO; count]);
+        for (k, &row) in tree.origin.iter().enumerate() {
+            (local[row as usize], normals[row as usize]) = (tree.position[k], normal[k]);
+        }
+        Particles { local, normal: normals, ..rows.clone() }
+    }
+
     /// The triangles over points with these normals, each patch up to its creases.
     pub(super) async fn mesh(
         &self,
-        tree: &Tree,
-        normal: &[Vec3],
+        MeasuredPoints { tree, normal, sheets, .. }: &MeasuredPoints,
         rows: &Particles,
         bounds: Option<&Bounds>,
     ) -> Vec<[u32; 3]> {
-        let count = rows.patch.len();
-        // Rows that are left out have no position.
-        let (position, normals) = (vec![Vec3::NAN; count], vec![Vec3::ZERO; count]);
-        let mut particles = Particles { local: position, normal: normals, ..rows.clone() };
-        let mut place = vec![NONE; count];
-        for (k, &row) in tree.origin.iter().enumerate() {
-            let row = row as usize;
-            (particles.local[row], particles.normal[row]) = (tree.position[k], normal[k]);
-            place[row] = k as u32;
-        }
-        let mesh = build::in_slices(&particles, bounds, None).await;
+        let Some(sheets) = sheets else { return Vec::new() };
+        let mesh = build::join(&self.placed(tree, normal, rows), sheets, bounds).await;
+        let mut place = vec![NONE; rows.patch.len()];
+        (0..).zip(&tree.origin).for_each(|(k, &row)| place[row as usize] = k);
         mesh.into_corners().into_iter().map(|triangle| triangle.map(|row| place[row as usize])).collect()
     }
 }

@@ -28,7 +28,7 @@ pub(super) async fn of_points(points: &MeasuredPoints, wanted: Option<&WantedRad
                 } as f32;
                 exp(-2.0 * share * share)
             };
-            points.rings.of(i).map(pair).sum::<f32>() / SIX
+            points.stars.of(i).map(pair).sum::<f32>() / SIX
         }));
         pause().await;
     }

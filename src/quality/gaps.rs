@@ -33,7 +33,7 @@ pub(super) async fn spacing_of(points: &MeasuredPoints) -> Vec<f32> {
         spacing.extend(range.map(|i| {
             let p = points.tree.position[i];
             lengths_sq.clear();
-            lengths_sq.extend(points.rings.of(i).map(|j| p.distance_squared(points.tree.position[j])));
+            lengths_sq.extend(points.stars.of(i).map(|j| p.distance_squared(points.tree.position[j])));
             sort_few(&mut lengths_sq, |a, b| a < b);
             lengths_sq.get(RANK - 1).or(lengths_sq.last()).copied().unwrap_or(0.0_f32).sqrt()
         }));

@@ -7,24 +7,25 @@
 //!
 //! *Natural neighbours* are defined in the tangent plane. The points of the same sheet are rotated
 //! into the tangent plane of a point, at their true distances, and its natural neighbours are those
-//! whose Voronoi cells share an edge with its own. Two points are on the same sheet if their
-//! normals are within 90° and the line between them leaves one tangent plane about as it arrives at
-//! the other, which separates sheets that face the same way; where those are near, the field
-//! between the points decides. The cell is clipped by the nearest points until no farther one can
-//! matter. The result is the same as from the convex hull of the inverted points q/|q|², without a
-//! hull.
+//! whose Voronoi cells share an edge with its own: its star, by which particles are
+//! [joined](crate::mesh::build), too. Two points are on the same sheet if their normals are within
+//! 90° and the line between them leaves one tangent plane about as it arrives at the other, which
+//! separates sheets that face the same way; where those are near, the field between the points
+//! decides.
 //!
-//! On a surface with creases the neighbours of a particle are those of its own patch, evaluated on
-//! the branch of that patch. The triangles are then those of [`mesh::build`](crate::mesh::build),
-//! which end at the creases. A particle on a crease has no full ring of neighbours, and the figures
-//! of order leave it out; in distances, holes, angles and the topology it counts, once.
+//! A mesh fills the places in on which stars disagree. The figures do without: their triangles are
+//! those that stars see, so that nothing that was filled in says that a surface is closed.
+//!
+//! On a surface with creases the neighbours of a particle are those of its own patch, and the
+//! triangles are those of the mesh, which end at the creases. A particle on a crease has no full
+//! ring of neighbours, and the figures of order leave it out; in distances, holes, angles and the
+//! topology it counts, once.
 //!
 //! The whole report costs a few microseconds for each particle. It is deterministic, with the same
 //! bits natively and in WebAssembly if the field has the same bits.
 
 mod accuracy;
 mod border;
-mod cell;
 mod components;
 mod creases;
 mod energy;
@@ -32,7 +33,6 @@ pub mod figures;
 mod gaps;
 mod holes;
 mod moments;
-mod one_rings;
 mod options;
 mod order;
 mod places;
@@ -40,7 +40,7 @@ mod points;
 mod prepared;
 mod probe;
 mod projection;
-mod sheets;
+pub(crate) mod sheets;
 mod sizes;
 mod spacing;
 mod triangles;
@@ -53,8 +53,8 @@ pub use spacing::Histogram;
 use crate::field::{Evaluator, Field, Frame};
 use crate::math::{Bounds, NONE, SQRT_3};
 use crate::mesh::facing::{Inside, facing};
+use crate::mesh::stars::Sheets;
 use crate::slices::{self, MEDIUM, pause, ranges};
-use crate::spatial::tree::Tree;
 use crate::topology::Topology;
 use accuracy::{first_order_height, height_along};
 use border::Border;
@@ -154,7 +154,7 @@ pub fn measure(
 ) -> Measurements {
     let frame = Frame::default().scaled_to(&field, position.iter().copied());
     let field = &mut *field.evaluator(frame);
-    let surroundings = Surroundings { bounds, tree: None };
+    let surroundings = Surroundings { bounds, sheets: None };
     slices::complete(in_slices(position, normal, field, surroundings, options, &mut None))
 }
 
@@ -163,8 +163,8 @@ pub fn measure(
 pub(crate) struct Surroundings<'a> {
     /// The box that was sampled.
     pub(crate) bounds: Option<&'a Bounds>,
-    /// The tree over all points, by their indices.
-    pub(crate) tree: Option<&'a Arc<Tree>>,
+    /// The sheets of all points, by their indices.
+    pub(crate) sheets: Option<&'a Arc<Sheets>>,
 }
 
 /// Number of slices that measurements of one surface are expected to take, of so many points each.
@@ -188,11 +188,11 @@ pub(crate) async fn in_slices(
     position: &[Vec3],
     normal: &[Vec3],
     field: &mut dyn Evaluator,
-    Surroundings { bounds, tree }: Surroundings<'_>,
+    Surroundings { bounds, sheets }: Surroundings<'_>,
     options: &MeasureOptions<'_>,
     crossings: &mut Option<Vec<Vec3>>,
 ) -> Measurements {
-    let prepared = Prepared::new(position, normal, field, bounds, options, tree).await;
+    let prepared = Prepared::new(position, normal, field, bounds, options, sheets).await;
     let DistinctFigures { mut figures, component, energy, mut pairs, holes, opening, inside } =
         figures_of(&prepared, field, bounds, options, crossings).await;
     let Prepared { points, drop, .. } = &prepared;
@@ -209,7 +209,7 @@ pub(crate) async fn in_slices(
     };
     for (k, &i) in points.tree.origin.iter().enumerate() {
         let i = i as usize;
-        report.valence[i] = points.rings.valence(k).min(255) as u8;
+        report.valence[i] = points.stars.valence(k).min(255) as u8;
         report.nearest[i] = points.nearest(k);
         report.residual[i] = points.residual[k] as f32;
         report.energy[i] = energy[k];
@@ -407,7 +407,7 @@ async fn measure_triangles(
     } else {
         // This is the share of the sectors between consecutive neighbours of inner points that a
         // triangle fills.
-        share(corners, (0..n).filter(|&i| is_whole(i)).map(|i| points.rings.valence(i)).sum())
+        share(corners, (0..n).filter(|&i| is_whole(i)).map(|i| points.stars.valence(i)).sum())
     };
 }
 

@@ -21,11 +21,11 @@ impl ValenceTally {
     /// Takes in point `i`.
     pub(super) fn add(&mut self, points: &MeasuredPoints, i: usize) {
         self.count += 1;
-        if !points.rings.closed[i] {
+        if points.stars.is_open[i] {
             self.open += 1;
             return;
         }
-        let neighbours = points.rings.valence(i);
+        let neighbours = points.stars.valence(i);
         self.valence.add(neighbours as f64);
         self.six += usize::from(neighbours == 6);
         self.five_seven += usize::from(neighbours == 5 || neighbours == 7);
@@ -33,7 +33,7 @@ impl ValenceTally {
         let (u, v) = (u.as_dvec3(), v.as_dvec3());
         let p = points.tree.position[i].as_dvec3();
         let mut sum = DVec2::ZERO;
-        for j in points.rings.of(i) {
+        for j in points.stars.of(i) {
             let offset = points.tree.position[j].as_dvec3() - p;
             let q = DVec2::new(offset.dot(u), offset.dot(v));
             let length_sq = q.length_squared();

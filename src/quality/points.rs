@@ -1,17 +1,17 @@
-//! The points to be measured, with their normals and one-rings.
+//! The points to be measured, with their normals and stars.
 
 use super::accuracy::{NormalAngles, first_order_height, height_along};
 use super::creases::CreaseRows;
-use super::one_rings::OneRings;
-use super::sheets::Sheets;
+use super::sheets::ByField;
 use crate::field::Evaluator;
+use crate::mesh::stars::{Sheets, StarPoints, Stars};
 use crate::particles::Particles;
 use crate::slices::{HEAVY, pause, ranges};
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
-/// The points to be measured, with their normals, residuals and one-rings. All columns are in tree
+/// The points to be measured, with their normals, residuals and stars. All columns are in tree
 /// order.
 pub(super) struct MeasuredPoints {
     pub(super) tree: Arc<Tree>,
@@ -22,15 +22,19 @@ pub(super) struct MeasuredPoints {
     pub(super) residual: Vec<f64>,
     /// Angles between the given normals and ∇f.
     pub(super) normal_angles: NormalAngles,
-    pub(super) rings: OneRings,
+    pub(super) stars: Stars,
+    /// Distance of the nearest point of another particle, of any sheet and patch.
+    nearest: Vec<f32>,
     pub(super) creases: CreaseRows,
+    /// The sheets of the patches; none on a surface without creases.
+    pub(super) sheets: Option<Arc<Sheets>>,
     /// Whether a duplicate of the point was dropped, so that the distance to the nearest point
     /// is 0.
     has_duplicate: Vec<bool>,
 }
 
 impl MeasuredPoints {
-    /// The points that are not dropped; `of_all` is the tree over all of them, where it is there.
+    /// The points that are not dropped; `known` are the sheets of all points, where they are there.
     pub(super) async fn new(
         position: &[Vec3],
         given: &[Vec3],
@@ -38,12 +42,15 @@ impl MeasuredPoints {
         has_duplicate: &[bool],
         drop: &[bool],
         rows: Option<&Particles>,
-        of_all: Option<&Arc<Tree>>,
+        known: Option<&Arc<Sheets>>,
     ) -> Self {
-        let kept = || position.iter().copied().zip(0..).filter(|&(_, i)| !drop[i as usize]).collect();
-        let tree = match of_all {
-            Some(tree) if !drop.contains(&true) => Arc::clone(tree),
-            _ => Arc::new(Tree::in_slices(kept()).await),
+        let known = known.filter(|sheets| sheets.hold(position.len()) && !drop.contains(&true));
+        let tree = match known.and_then(|sheets| sheets.only()) {
+            Some(sheet) => Arc::clone(&sheet.tree),
+            None => {
+                let kept = position.iter().copied().zip(0..).filter(|&(_, i)| !drop[i as usize]);
+                Arc::new(Tree::in_slices(kept.collect()).await)
+            }
         };
         let creases = CreaseRows::new(&tree, rows);
         let mut normal = Vec::with_capacity(tree.len());
@@ -72,12 +79,28 @@ impl MeasuredPoints {
             }
             pause().await;
         }
-        let sheets = Sheets { tree: &tree, normal: &normal, height: &height, creases: &creases };
-        let rings = OneRings::new(&sheets, field).await;
+        let judge = &mut ByField::new(field);
+        let mut sheets = None;
+        let stars = match (known.and_then(|sheets| sheets.only()), rows.filter(|_| !creases.is_empty())) {
+            (Some(sheet), _) => sheet.stars.completed(&sheet.points(), |_| false, judge).await,
+            (None, None) => {
+                let points = StarPoints { tree: &tree, normal: &normal, tips: &[] };
+                Stars::new(&points, judge).await.completed(&points, |_| false, judge).await
+            }
+            (None, Some(rows)) => {
+                let of_all = match known {
+                    Some(sheets) => Arc::clone(sheets),
+                    None => Arc::new(Sheets::new(&creases.placed(&tree, &normal, rows), judge).await),
+                };
+                Stars::gathered(sheets.insert(of_all), &tree, rows.twins.len(), judge).await
+            }
+        };
+        pause().await;
+        let nearest = (0..tree.len()).map(|i| creases.nearest_within(&tree, i, stars.nearest[i])).collect();
         let mut residual = height;
         residual.iter_mut().for_each(|height| *height = height.abs());
         let has_duplicate = tree.origin.iter().map(|&i| has_duplicate[i as usize]).collect();
-        Self { tree, normal, residual, normal_angles, rings, creases, has_duplicate }
+        Self { tree, normal, residual, normal_angles, stars, nearest, creases, sheets, has_duplicate }
     }
 
     /// Returns the number of particles.
@@ -85,9 +108,15 @@ impl MeasuredPoints {
         self.tree.len() - self.creases.further()
     }
 
+    /// Returns the distance from point `i` to the nearest other point that was not dropped, of any
+    /// sheet.
+    pub(super) fn nearest_kept(&self, i: usize) -> f32 {
+        self.nearest[i]
+    }
+
     /// Returns the distance from point `i` to the nearest other point, of any sheet.
     pub(super) fn nearest(&self, i: usize) -> f32 {
-        if self.has_duplicate[i] { 0.0 } else { self.rings.nearest[i] }
+        if self.has_duplicate[i] { 0.0 } else { self.nearest[i] }
     }
 
     /// Returns the distance of two points.
@@ -98,8 +127,8 @@ impl MeasuredPoints {
     /// Returns the points `j` > `i` of which each is a natural neighbour of the other on the
     /// surface, if both are `inner`.
     pub(super) fn mutual<'a>(&'a self, inner: &'a [bool], i: usize) -> impl Iterator<Item = usize> + 'a {
-        self.rings.of(i).filter(move |&j| {
-            j > i && inner[i] && inner[j] && self.rings.adjacent(j, i) && self.creases.are_joined(i, j)
+        self.stars.of(i).filter(move |&j| {
+            j > i && inner[i] && inner[j] && self.stars.adjacent(j, i) && self.creases.are_joined(i, j)
         })
     }
 }

@@ -7,8 +7,8 @@ use super::points::MeasuredPoints;
 use super::triangles::{Triangles, area};
 use crate::field::Evaluator;
 use crate::math::{Bounds, IndexTable, SINGLE_ROUNDING, hash};
+use crate::mesh::stars::Sheets;
 use crate::slices::pause;
-use crate::spatial::tree::Tree;
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -32,15 +32,15 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
-    /// Prepares the points; `bounds` is the box that was sampled, and `tree` the one over all
-    /// points, where they are known.
+    /// Prepares the points; `bounds` is the box that was sampled, and `known` are the sheets of all
+    /// points, where they are there.
     pub(super) async fn new(
         position: &[Vec3],
         normal: &[Vec3],
         field: &mut dyn Evaluator,
         bounds: Option<&Bounds>,
         options: &MeasureOptions<'_>,
-        tree: Option<&Arc<Tree>>,
+        known: Option<&Arc<Sheets>>,
     ) -> Self {
         let rows = options.rows;
         // The further rows of a particle on a crease.
@@ -54,15 +54,15 @@ impl Prepared {
         pause().await;
         loop {
             let mut points =
-                MeasuredPoints::new(position, normal, field, &has_duplicate, &drop, rows, tree).await;
+                MeasuredPoints::new(position, normal, field, &has_duplicate, &drop, rows, known).await;
             let spacing = spacing_of(&points).await;
             let patched = rows.filter(|_| !points.creases.is_empty());
             let (triangles, mesh) = if let Some(rows) = patched {
-                let mesh = points.creases.mesh(&points.tree, &points.normal, rows, bounds).await;
+                let mesh = points.creases.mesh(&points, rows, bounds).await;
                 points.creases.find_edges(&mesh);
-                (Triangles::seen(&points.rings, &mesh), mesh)
+                (Triangles::seen(&points.stars, &mesh), mesh)
             } else {
-                let mut triangles = Triangles::new(&points.rings).await;
+                let mut triangles = Triangles::new(&points.stars).await;
                 let gaps = Gaps { points: &points, spacing: &spacing, bounds };
                 for list in [&mut triangles.unanimous, &mut triangles.majority, &mut triangles.single] {
                     gaps.drop_across(field, list).await;
@@ -124,7 +124,7 @@ fn drop_close(points: &MeasuredPoints, limit: f32, drop: &mut [bool]) -> bool {
     let mut near = Vec::new();
     let mut any = false;
     for i in 0..tree.len() {
-        if points.rings.nearest[i] < limit {
+        if points.nearest_kept(i) < limit {
             near.clear();
             tree.within_box(tree.position[i] - limit, tree.position[i] + limit, &mut near);
             if near.iter().any(|&j| {

@@ -9,11 +9,12 @@
 //! The points are taken to lie where their residuals say, so that the lift does not suffer from
 //! their distances from the surface.
 
-use super::creases::CreaseRows;
+use super::accuracy::first_order_height;
 use crate::field::Evaluator;
 use crate::math::SINGLE_ROUNDING;
-use crate::spatial::tree::Tree;
-use glam::{DVec3, Vec3};
+use crate::mesh::stars::TellsApart;
+use crate::particles::OrientedPoint;
+use glam::DVec3;
 
 /// A pair is doubtful from this share of the distance of the sheet that faces the other way: those
 /// on either side of it are farther apart than that.
@@ -23,48 +24,48 @@ const SHARE: f64 = 0.5;
 /// the distance to another sheet.
 const STEPS: u32 = 8;
 
-/// The points, in tree order, with the normals and heights that tell sheets apart.
-pub(super) struct Sheets<'a> {
-    pub(super) tree: &'a Tree,
-    /// Unit normals.
-    pub(super) normal: &'a [Vec3],
-    /// First-order heights f/|∇f| above the surface.
-    pub(super) height: &'a [f64],
-    pub(super) creases: &'a CreaseRows,
+/// Tells sheets of a field apart.
+pub(crate) struct ByField<'a> {
+    field: &'a mut dyn Evaluator,
+    patch: Option<u32>,
 }
 
-impl Sheets<'_> {
-    /// Point `i` led onto the surface, and its normal.
-    fn on_surface(&self, i: usize) -> (DVec3, DVec3) {
-        let normal = self.normal[i].as_dvec3();
-        let height = self.height[i];
-        let height = if height.is_finite() { height } else { 0.0 };
-        (self.tree.position[i].as_dvec3() - normal * height, normal)
+impl<'a> ByField<'a> {
+    pub(crate) fn new(field: &'a mut dyn Evaluator) -> Self {
+        Self { field, patch: None }
     }
 
-    /// The distance along the normal of point `i` of the nearest sheet that faces the other way, by
-    /// those of the points `near`; infinite if there is none.
-    pub(super) fn facing_away(&self, i: usize, near: impl Iterator<Item = usize>) -> f64 {
-        let (p, n) = self.on_surface(i);
-        let distances = near.filter(|&j| self.normal[i].dot(self.normal[j]) < 0.0).map(|j| {
-            let (q, m) = self.on_surface(j);
+    /// The point led onto the surface, and its normal.
+    fn on_surface(&mut self, OrientedPoint { position, normal }: OrientedPoint) -> (DVec3, DVec3) {
+        let (position, normal) = (position.as_dvec3(), normal.as_dvec3());
+        let (value, gradient) = self.field.on(self.patch).value_and_gradient(position);
+        let height = first_order_height(value, gradient.length());
+        (position - normal * if height.is_finite() { height } else { 0.0 }, normal)
+    }
+}
+
+impl TellsApart for ByField<'_> {
+    fn turn_to(&mut self, patch: Option<u32>) {
+        self.patch = patch;
+    }
+
+    fn facing_away(&mut self, point: OrientedPoint, others: &[OrientedPoint]) -> f64 {
+        let (p, n) = self.on_surface(point);
+        let distances = others.iter().map(|&other| {
+            let (q, m) = self.on_surface(other);
             (0.5 * (q - p).dot(n - m)).abs()
         });
         distances.fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether two points that face the same way are on two sheets, where one that faces the other
-    /// way is `facing_away` from the first: if doubtful, whether the way along the surface from one
-    /// leads past the other.
-    pub(super) fn are_two(&self, field: &mut dyn Evaluator, i: usize, j: usize, facing_away: f64) -> bool {
-        if facing_away == f64::INFINITY {
-            return false;
-        }
-        let ((p, n), (q, m)) = (self.on_surface(i), self.on_surface(j));
+    /// If doubtful, whether the way along the surface from one point leads past the other.
+    fn are_two(&mut self, one: OrientedPoint, other: OrientedPoint, facing_away: f64) -> bool {
+        let ((p, n), (q, m)) = (self.on_surface(one), self.on_surface(other));
         let lift = (0.5 * (q - p).dot(n + m)).abs();
         if lift <= SHARE * facing_away || lift <= SINGLE_ROUNDING * (q - p).length() {
             return false;
         }
+        let field = self.field.on(self.patch);
         let (mut at, mut normal) = (p, n);
         for left in (0..=STEPS).rev() {
             // One Newton step to the surface.

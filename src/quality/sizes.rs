@@ -39,16 +39,16 @@ impl WantedRadii {
     /// Adds the pairs of natural neighbours, of which at least one is `inner`, by their ratios.
     /// Returns the smallest ratio; NaN if there is none.
     pub(super) async fn add_pairs(&self, points: &MeasuredPoints, inner: &[bool], pairs: &mut Pairs) -> f64 {
-        let MeasuredPoints { tree, rings, creases, .. } = points;
+        let MeasuredPoints { tree, stars, creases, .. } = points;
         let mut least = f64::NAN;
         for range in ranges(inner.len(), MEDIUM) {
             for i in range.filter(|&i| inner[i]) {
-                for j in rings.of(i) {
+                for j in stars.of(i) {
                     let ratio = self.ratio(points, i, j);
                     least = least.min(ratio);
                     // A pair of inner points that are neighbours of each other is seen from both;
                     // it is added at the earlier one.
-                    let is_seen_again = j < i && inner[j] && rings.adjacent(j, i);
+                    let is_seen_again = j < i && inner[j] && stars.adjacent(j, i);
                     if ratio.is_finite() && !is_seen_again && creases.is_first_pair(i, j) {
                         pairs.add(ratio, creases.particle(tree, i), creases.particle(tree, j));
                     }

@@ -50,7 +50,7 @@ pub(super) async fn add_pairs(points: &MeasuredPoints, inner: &[bool], d_hex: f6
     let mut near = Vec::new();
     for range in ranges(inner.len(), MEDIUM) {
         for i in range.filter(|&i| inner[i] && creases.is_first(i)) {
-            let nearest = f64::from(points.rings.nearest[i]) / d_hex;
+            let nearest = f64::from(points.nearest_kept(i)) / d_hex;
             if !nearest.is_finite() || !pairs.matters(nearest) {
                 continue;
             }

@@ -1,14 +1,12 @@
 //! Triangles of natural neighbours that their corners agree on, and the figures of their angles.
 //!
-//! Triangles that are in doubt are left out. [`crate::mesh::build`] is another triangulator, which
-//! fills such places in to make one manifold. The sampler refines on that manifold, and what
-//! measures particles must not depend on what made them: therefore this room has a triangulator of
-//! its own.
+//! Triangles that are in doubt are left out. [`crate::mesh::build`] makes one manifold of the same
+//! stars, and fills such places in: what it has filled must not say that the surface is closed.
 
 use super::figures::Angles;
 use super::moments::{Moments, share};
-use super::one_rings::OneRings;
 use crate::math::{IndexTable, SQRT_3, hash, key, unkey};
+use crate::mesh::stars::Stars;
 use crate::slices::{MEDIUM, pause, ranges};
 use glam::{DVec3, Vec3};
 
@@ -26,10 +24,10 @@ pub(super) struct Triangles {
 
 impl Triangles {
     /// Counts, for each triangle that a corner sees, how many of its corners do.
-    pub(super) async fn new(rings: &OneRings) -> Self {
-        let mut triangles = Self { unanimous: Vec::with_capacity(2 * rings.len()), ..Self::default() };
-        for range in ranges(rings.len(), MEDIUM) {
-            range.for_each(|i| triangles.add(rings, i));
+    pub(super) async fn new(stars: &Stars) -> Self {
+        let mut triangles = Self { unanimous: Vec::with_capacity(2 * stars.len()), ..Self::default() };
+        for range in ranges(stars.len(), MEDIUM) {
+            range.for_each(|i| triangles.add(stars, i as u32));
             pause().await;
         }
         triangles
@@ -37,24 +35,25 @@ impl Triangles {
 
     /// The triangles of a mesh: those that all corners see are unanimous, and the others count as
     /// well.
-    pub(super) fn seen(rings: &OneRings, mesh: &[[u32; 3]]) -> Self {
-        let is_seen = |&[a, b, c]: &[u32; 3]| {
-            let [a, b, c] = [a, b, c].map(|i| i as usize);
-            rings.sees(a, b, c) && rings.sees(b, c, a) && rings.sees(c, a, b)
-        };
+    pub(super) fn seen(stars: &Stars, mesh: &[[u32; 3]]) -> Self {
+        let is_seen =
+            |&[a, b, c]: &[u32; 3]| stars.sees(a, b, c) && stars.sees(b, c, a) && stars.sees(c, a, b);
         let (unanimous, majority) = mesh.iter().partition(|triangle| is_seen(triangle));
         Self { unanimous, majority, single: Vec::new() }
     }
 
     /// Adds the triangles of which `i` is the smallest corner that sees them, so that each is added
     /// once.
-    fn add(&mut self, rings: &OneRings, i: usize) {
-        for (a, b) in rings.pairs(i) {
-            let by_a = rings.sees(a, b, i);
+    fn add(&mut self, stars: &Stars, i: u32) {
+        let range = stars.range(i as usize);
+        for entry in range.clone() {
+            let a = stars.neighbour(entry);
+            let Some(b) = stars.next(&range, entry) else { continue };
+            let by_a = stars.sees(a, b, i);
             if by_a && a < i {
                 continue;
             }
-            let by_b = rings.sees(b, i, a);
+            let by_b = stars.sees(b, i, a);
             if by_b && b < i {
                 continue;
             }
@@ -63,7 +62,7 @@ impl Triangles {
                 1 => &mut self.majority,
                 _ => &mut self.single,
             };
-            list.push([i as u32, a as u32, b as u32]);
+            list.push([i, a, b]);
         }
     }
 

@@ -2,12 +2,13 @@
 
 use crate::field::{Evaluator, Field, Frame};
 use crate::math::Bounds;
+use crate::mesh::stars::{Sheet, Sheets};
 use crate::particles::Particles;
+use crate::quality::sheets::ByField;
 use crate::quality::{self, Figures};
 use crate::sampler::Sampling;
 use crate::sampler::sheet::repulsion_weight;
 use crate::slices::{Estimated, pause};
-use crate::spatial::tree::Tree;
 use glam::Vec3;
 use serde::Deserialize;
 use std::sync::Arc;
@@ -47,8 +48,8 @@ pub(super) struct Measuring {
     /// Number of particles that face another sheet; none if the present particles are still to be
     /// measured.
     pub(super) facing: Option<usize>,
-    /// The tree over the present particles, if they have been measured.
-    pub(super) tree: Option<Arc<Tree>>,
+    /// The sheets of the present particles, if they have been measured.
+    pub(super) sheets: Option<Arc<Sheets>>,
 }
 
 impl Measuring {
@@ -62,7 +63,7 @@ impl Measuring {
     /// Gives a measurement under way up, and says that the last one is of other particles or
     /// another field.
     pub(super) fn stop(&mut self) {
-        (self.work, self.facing, self.tree) = (None, None, None);
+        (self.work, self.facing, self.sheets) = (None, None, None);
     }
 
     /// Estimated share of the measuring that is done.
@@ -94,20 +95,20 @@ pub(super) fn measured_columns(particles: &Particles) -> Particles {
     }
 }
 
-/// [`quality::measure`], a slice at a time; see [`quality::in_slices`] for `crossings`. `tree` is
-/// that over the particles, where it is there.
+/// [`quality::measure`], a slice at a time; see [`quality::in_slices`] for `crossings`. The
+/// `sheets` are those of the particles, where they are there.
 pub(super) async fn measure(
     particles: &Particles,
     field: &mut dyn Evaluator,
     bounds: &Bounds,
     sampling: Sampling,
     crossings: &mut Option<Vec<Vec3>>,
-    tree: Option<&Arc<Tree>>,
+    sheets: Option<&Arc<Sheets>>,
 ) -> quality::Measurements {
     let radii = (sampling == Sampling::Adaptive).then_some(&particles.radius[..]);
     let options =
         quality::MeasureOptions { radii, rows: Some(particles), ..quality::MeasureOptions::default() };
-    let surroundings = quality::Surroundings { bounds: Some(bounds), tree };
+    let surroundings = quality::Surroundings { bounds: Some(bounds), sheets };
     quality::in_slices(&particles.local, &particles.normal, field, surroundings, &options, crossings).await
 }
 
@@ -117,8 +118,8 @@ pub(super) struct MeasuringResult {
     pub(super) now: quality::Measurements,
     /// Number of particles that face another sheet.
     pub(super) facing: usize,
-    /// The tree over the particles.
-    pub(super) tree: Arc<Tree>,
+    /// The sheets of the particles.
+    pub(super) sheets: Arc<Sheets>,
 }
 
 /// Number of slices that the measurement of these particles is expected to take.
@@ -155,43 +156,40 @@ impl MeasuringInput {
             Some(front) => Some(measure(&front, field, &bounds, sampling, crossings, None).await.figures),
             None => None,
         };
-        let tree = Arc::new(Tree::in_slices(now.local.iter().copied().zip(0..).collect()).await);
-        let report = measure(&now, field, &bounds, sampling, crossings, Some(&tree)).await;
-        let facing = facing_another_sheet(&now, &tree).await;
-        MeasuringResult { front, now: report, facing, tree }
+        let sheets = Arc::new(Sheets::new(&now, &mut ByField::new(field)).await);
+        let report = measure(&now, field, &bounds, sampling, crossings, Some(&sheets)).await;
+        let facing = facing_another_sheet(&now, &sheets).await;
+        MeasuringResult { front, now: report, facing, sheets }
     }
 }
 
-/// Number of particles nearer than 2r to one of the same patch that faces the other way.
-async fn facing_another_sheet(particles: &Particles, tree: &Tree) -> usize {
+/// Number of rows nearer than 2r to one of the same patch that faces the other way.
+async fn facing_another_sheet(particles: &Particles, sheets: &Sheets) -> usize {
     /// Particles whose normals have this cosine with one direction, or a larger one, are within
     /// 120° of each other, so that they repel each other. The third digit is for rounding.
     const ALIKE: f32 = 0.505;
     let mut near = Vec::new();
     let mut count = 0;
-    for leaf in tree.leaves() {
-        let own = &tree.origin[leaf.range.clone()];
-        let mean: Vec3 = own.iter().map(|&i| particles.normal[i as usize]).sum();
-        let widest = own.iter().map(|&i| 2.0 * particles.radius[i as usize]).fold(0.0, f32::max);
-        near.clear();
-        tree.within_box(leaf.lo - widest, leaf.hi + widest, &mut near);
-        let mean = mean.normalize_or_zero();
-        let is_alike = |&k: &u32| particles.normal[tree.origin[k as usize] as usize].dot(mean) >= ALIKE;
-        if !near.iter().all(is_alike) {
-            for &i in own {
-                let i = i as usize;
-                let (p, n) = (particles.local[i], particles.normal[i]);
-                let reach = 2.0 * particles.radius[i];
-                let is_facing = near.iter().any(|&k| {
-                    let j = tree.origin[k as usize] as usize;
-                    repulsion_weight(particles.normal[j].dot(n)) <= 0.0
-                        && particles.patch.get(j) == particles.patch.get(i)
-                        && tree.position[k as usize].distance_squared(p) < reach * reach
-                });
-                count += usize::from(is_facing);
+    for Sheet { tree, normal, .. } in &sheets.all {
+        for leaf in tree.leaves() {
+            let reach = |i: usize| 2.0 * particles.radius[tree.origin[i] as usize];
+            let mean: Vec3 = normal[leaf.range.clone()].iter().sum();
+            let widest = leaf.range.clone().map(reach).fold(0.0, f32::max);
+            near.clear();
+            tree.within_box(leaf.lo - widest, leaf.hi + widest, &mut near);
+            let mean = mean.normalize_or_zero();
+            if !near.iter().all(|&k| normal[k as usize].dot(mean) >= ALIKE) {
+                let is_facing = |i: usize| {
+                    near.iter().any(|&k| {
+                        let k = k as usize;
+                        repulsion_weight(normal[k].dot(normal[i])) <= 0.0
+                            && tree.position[k].distance_squared(tree.position[i]) < reach(i) * reach(i)
+                    })
+                };
+                count += leaf.range.filter(|&i| is_facing(i)).count();
             }
+            pause().await;
         }
-        pause().await;
     }
     count
 }

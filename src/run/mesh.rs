@@ -7,13 +7,12 @@ use crate::field::Field;
 use crate::math::{Bounds, sort_few};
 use crate::mesh::build::{self, Triangulation};
 use crate::mesh::facing::Inside;
+use crate::mesh::stars::Sheets;
 use crate::particles::Particles;
 use crate::slices::{Estimated, MEDIUM};
-use crate::spatial::tree::Tree;
 use crate::topology::Component;
 use serde::Serialize;
 use std::io;
-use std::sync::Arc;
 
 /// Counts and sizes of a mesh: triangles, components, borders and volume.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -99,17 +98,18 @@ impl Meshing {
 }
 
 /// Joins particles to triangles, or takes those that are `known`. `bounds` is the clip box, counted
-/// from the origin of the particles, and `tree` the one over them, where it is there.
+/// from the origin of the particles, and `sheets` are theirs, where they are there: without them
+/// near sheets are told apart by directions alone.
 pub(super) async fn joined(
     particles: &Particles,
     known: &[[u32; 3]],
     bounds: &Bounds,
-    tree: Option<&Arc<Tree>>,
+    sheets: Option<&Sheets>,
 ) -> Triangulation {
-    if known.is_empty() {
-        build::in_slices(particles, Some(bounds), tree).await
-    } else {
-        Triangulation::known(known.to_vec(), particles).await
+    match sheets {
+        _ if !known.is_empty() => Triangulation::known(known.to_vec(), particles).await,
+        Some(sheets) => build::join(particles, sheets, Some(bounds)).await,
+        None => build::in_slices(particles, Some(bounds)).await,
     }
 }
 
@@ -157,9 +157,9 @@ impl<F: Field> Run<F> {
             let (mut particles, bounds) = (self.particles().clone(), self.local_bounds());
             particles.truncate(self.rows());
             let known = self.sampler.triangles().to_vec();
-            let tree = self.measuring.tree.clone();
+            let sheets = self.measuring.sheets.clone();
             let expected = if known.is_empty() { build::expected_slices(particles.len()) } else { 0 };
-            let work = async move { joined(&particles, &known, &bounds, tree.as_ref()).await };
+            let work = async move { joined(&particles, &known, &bounds, sheets.as_deref()).await };
             self.meshing.state = MeshState::Joining(Estimated::new(Box::pin(work), expected));
         }
         if let MeshState::Joining(work) = &mut self.meshing.state {

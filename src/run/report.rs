@@ -334,12 +334,12 @@ impl<F: Field> Run<F> {
         }
     }
 
-    fn keep(&mut self, MeasuringResult { front, now, facing, tree }: MeasuringResult) {
+    fn keep(&mut self, MeasuringResult { front, now, facing, sheets }: MeasuringResult) {
         if front.is_some() {
             (self.measuring.front, self.measuring.front_figures) = (None, front);
         }
-        (self.measuring.measured, self.measuring.facing, self.measuring.tree) =
-            (now, Some(facing), Some(tree));
+        (self.measuring.measured, self.measuring.facing, self.measuring.sheets) =
+            (now, Some(facing), Some(sheets));
     }
 
     /// The report, with the measurements that are there.

@@ -6,11 +6,11 @@ use crate::export::{self, Format, MeshBuffers, MeshFile, MeshFormat, ParticleFil
 use crate::field::{Field, IntoField};
 use crate::math::Bounds;
 use crate::mesh::build::Triangulation;
+use crate::mesh::stars::Sheets;
 use crate::particles::Particles;
 use crate::quality;
 use crate::sampler::Settings;
 use crate::slices;
-use crate::spatial::tree::Tree;
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -60,8 +60,8 @@ pub struct Sample {
     bounds: Bounds,
     /// The triangles that a refined run has led to.
     known: Vec<[u32; 3]>,
-    /// The tree over the particles, where they were measured.
-    tree: Option<Arc<Tree>>,
+    /// The sheets of the particles, where they were measured.
+    sheets: Option<Arc<Sheets>>,
     mesh: OnceLock<Triangulation>,
 }
 
@@ -72,7 +72,7 @@ impl Sample {
             known: run.sampler.triangles().to_vec(),
             particles: run.sampler.into_particles(),
             measured: run.measuring.measured,
-            tree: run.measuring.tree,
+            sheets: run.measuring.sheets,
             report,
             mesh: run.meshing.into_joined().map_or_else(OnceLock::new, OnceLock::from),
         }
@@ -108,8 +108,8 @@ impl Sample {
     #[must_use]
     pub fn mesh(&self) -> &Triangulation {
         let bounds = || self.bounds.relative_to(self.particles.origin);
-        let tree = self.tree.as_ref();
-        self.mesh.get_or_init(|| slices::complete(joined(&self.particles, &self.known, &bounds(), tree)))
+        let sheets = self.sheets.as_deref();
+        self.mesh.get_or_init(|| slices::complete(joined(&self.particles, &self.known, &bounds(), sheets)))
     }
 
     /// The warnings about the [mesh](Sample::mesh): another topology than that of the particles as

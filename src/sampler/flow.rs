@@ -29,7 +29,7 @@
 use crate::field::Evaluator;
 use crate::math::functions::{atan2, cos, sin};
 use crate::math::{Bounds, place_text, refill, sort_few, tangent_frame};
-use crate::particles::{Particles, SlotFate, Slots};
+use crate::particles::{OrientedPoint, Particles, SlotFate, Slots};
 use crate::sampler::discovery::survey::{SAMPLES, Survey};
 use crate::sampler::front::widest_gap;
 use crate::sampler::neighbours::constants::GAUSSIAN_RANGE;
@@ -39,7 +39,7 @@ use crate::sampler::probe::Probe;
 use crate::sampler::projection::{ChildCircle, CircleLanding, tolerance};
 use crate::sampler::relaxation::TRANSPORT_REACH;
 use crate::sampler::relaxation::repulsion::{END_ENERGY, pair_energy};
-use crate::sampler::sheet::{OrientedPoint, SheetRule, UNCOVERED, is_cover, is_level};
+use crate::sampler::sheet::{SheetRule, UNCOVERED, is_cover, is_level};
 use crate::sampler::sizing::Sizing;
 use crate::spatial::Neighbour;
 use core::f32::consts::{FRAC_PI_3, PI, TAU};

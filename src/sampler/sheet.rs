@@ -9,10 +9,10 @@
 //! | which particles around a point a front takes for its own | [`SheetRule`]: by the lift, then by the field |
 //! | how much two particles repel each other | [`repulsion_weight`]: continuous in their normals |
 //! | which particles repel each other beside near sheets | [`numbers`]: those of fronts that have met |
-//! | which particles may be corners of one triangle | `mesh::build::ball`, which knows no field: by directions and heights |
+//! | which particles may be corners of one triangle | `mesh::stars`: by directions and heights, and once the run has ended by `quality::sheets`, which asks the field |
 //!
-//! `discovery::sheets` *proves* that points are connected. `quality::sheets` judges
-//! finished particles, and shares nothing with these rules, so that a fault here shows there.
+//! `discovery::sheets` *proves* that points are connected. `quality::sheets` shares nothing with the
+//! rules of this module, so that a fault here shows there.
 //!
 //! The *lift* of two points is the mean height of each above the tangent plane at the other, along
 //! the normals. On one sheet the two heights have opposite signs and cancel but for the change of
@@ -22,7 +22,7 @@
 
 use crate::field::descent;
 use crate::math::Forest;
-use crate::particles::Particles;
+use crate::particles::{OrientedPoint, Particles};
 use crate::sampler::neighbours::grids::RadiusRange;
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::Probe;
@@ -30,19 +30,7 @@ use crate::sampler::projection::ResidualLimits;
 use crate::spatial::Neighbour;
 use glam::Vec3;
 
-/// A point of the surface and the unit outward normal there.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct OrientedPoint {
-    pub(crate) position: Vec3,
-    pub(crate) normal: Vec3,
-}
-
 impl OrientedPoint {
-    /// The position and normal of particle `i`.
-    pub(crate) fn of(particles: &Particles, i: usize) -> Self {
-        Self { position: particles.local[i], normal: particles.normal[i] }
-    }
-
     /// The pair of this point and one at `offset` from it with the unit normal `other`.
     pub(crate) fn pair(self, offset: Vec3, other: Vec3) -> PointPair {
         PointPair { offset, normal: self.normal, other }

@@ -3,6 +3,7 @@
 
 use super::methods::Verdict;
 use super::{Output, Sampler, Tools};
+use crate::particles::OrientedPoint;
 use crate::sampler::attempt::{Attempt, Refining};
 use crate::sampler::constraint::tips::{self, Tip};
 use crate::sampler::discovery::audit::holds_any;
@@ -16,7 +17,6 @@ use crate::sampler::progress::RefineProgress;
 use crate::sampler::refine::{Coarse, Components, MovingMesh, Next, Refinement, Refusal, SurfaceFacts, Turn};
 use crate::sampler::relaxation::{MoveLimits, Relaxation, RepulsionLaw, Sweep, Swept};
 use crate::sampler::settings::{GapPolicy, Method, Sampling, SizeMode};
-use crate::sampler::sheet::OrientedPoint;
 use core::ops::Range;
 use glam::{DVec3, Vec3};
 use rand_core::SeedableRng;

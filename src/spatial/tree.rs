@@ -110,13 +110,6 @@ impl Tree {
         Self { position, origin, nodes }
     }
 
-    /// Returns whether a box holds all points.
-    pub(crate) fn is_within(&self, lo: Vec3, hi: Vec3) -> bool {
-        self.nodes
-            .first()
-            .is_none_or(|all| all.lo.truncate().cmpge(lo).all() && all.hi.truncate().cmple(hi).all())
-    }
-
     /// Returns the number of points.
     pub(crate) fn len(&self) -> usize {
         self.position.len()
@@ -261,14 +254,8 @@ pub(crate) struct PointsInBox {
 impl PointsInBox {
     /// Replaces the content by the points in the closed box from `lo` to `hi`.
     pub(crate) fn gather(&mut self, tree: &Tree, lo: Vec3, hi: Vec3) {
-        self.gather_those(tree, lo, hi, |_| true);
-    }
-
-    /// [`PointsInBox::gather`], of the points that are to be kept.
-    pub(crate) fn gather_those(&mut self, tree: &Tree, lo: Vec3, hi: Vec3, is_kept: impl Fn(u32) -> bool) {
         self.index.clear();
         tree.within_box(lo, hi, &mut self.index);
-        self.index.retain(|&i| is_kept(i));
         self.position.clear();
         self.position.extend(self.index.chunks(LANES).map(|chunk| {
             let mut lanes = [Lanes::splat(f32::INFINITY); 3];

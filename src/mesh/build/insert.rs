@@ -1,9 +1,9 @@
 //! Points in no triangle go into the triangle below them.
 
-use super::ball::MAX_LIFT;
 use super::holes::{AGREEMENT, faces_as_corners};
 use super::patch::Patch;
 use crate::math::unkey;
+use crate::mesh::stars::MAX_LIFT;
 use crate::spatial::tree::Tree;
 
 /// Number of nearest points among whose triangles the one below a point is searched for.

@@ -21,28 +21,23 @@
 //! cut by the dynamic programme of Klincsek, "Minimal Triangulations of Polygonal Domains", Annals
 //! of Discrete Mathematics 9, 1980.
 
-mod ball;
 mod creases;
 mod holes;
 mod insert;
 mod patch;
 mod rim;
 mod settle;
-mod stars;
 
 use super::facing::{Facing, Inside, facing};
+use super::stars::{ByDirection, Sheet, Sheets};
 use crate::math::{Bounds, sort_pairs};
 use crate::particles::Particles;
 use crate::slices::{self, LIGHT, pause, ranges};
-use crate::spatial::tree::Tree;
 use crate::topology::Topology;
-use creases::Sheet;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use holes::Borders;
 use patch::Patch;
 use rim::Rim;
-use stars::Stars;
-use std::sync::Arc;
 
 /// Triangles over points, with their topology and the points and borders that are left.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -212,7 +207,7 @@ impl Joined {
 /// If the columns differ in length, or there are 2³¹ rows or more.
 #[must_use]
 pub fn triangulate(particles: &Particles, bounds: Option<&Bounds>) -> Triangulation {
-    slices::complete(in_slices(particles, bounds, None))
+    slices::complete(in_slices(particles, bounds))
 }
 
 /// Number of slices that joining so many points is expected to take.
@@ -223,119 +218,60 @@ pub(crate) fn expected_slices(points: usize) -> u64 {
 }
 
 /// [`triangulate`] in slices of work. The last few look at all rows and triangles, for some 50 ns
-/// each. `tree` is that over all particles, where it is there.
-pub(crate) async fn in_slices(
-    particles: &Particles,
-    bounds: Option<&Bounds>,
-    tree: Option<&Arc<Tree>>,
-) -> Triangulation {
-    let Particles { local: position, normal, .. } = particles;
-    if particles.patch.is_empty() {
-        return join(position, normal, bounds, &[], &[], tree).await.counted(particles).await;
-    }
+/// each.
+pub(crate) async fn in_slices(particles: &Particles, bounds: Option<&Bounds>) -> Triangulation {
+    join(particles, &Sheets::new(particles, &mut ByDirection).await, bounds).await
+}
+
+/// Joins particles, whose sheets these are.
+pub(crate) async fn join(particles: &Particles, sheets: &Sheets, bounds: Option<&Bounds>) -> Triangulation {
     let mut whole = Joined::default();
-    let tips = particles.tips();
-    let is_image = |row: u32| {
-        particles.opposite.iter().any(|faces| particles.is_on(row as usize, Some(faces.patches[1])))
-    };
-    for Sheet { rows, border } in Sheet::all(particles).into_iter().filter(|sheet| !is_image(sheet.rows[0])) {
+    let is_image =
+        |sheet: &&Sheet| particles.opposite.iter().any(|faces| sheet.patch == Some(faces.patches[1]));
+    for sheet in sheets.all.iter().filter(|sheet| !is_image(sheet)) {
         pause().await;
-        let [position, normal] =
-            [position, normal].map(|column| rows.iter().map(|&row| column[row as usize]).collect::<Vec<_>>());
-        let tips: Vec<u32> =
-            (0..).zip(&rows).filter(|(_, row)| tips.binary_search(row).is_ok()).map(|(v, _)| v).collect();
-        let joined = join(&position, &normal, bounds, &border, &tips, None).await;
-        let row = |v: u32| rows[v as usize];
-        whole.triangles.extend(joined.triangles.iter().map(|triangle| triangle.map(row)));
-        whole.unfilled.extend(joined.unfilled.iter().map(|hole| hole.iter().map(|&v| row(v)).collect()));
+        sheet.join(bounds, &mut whole).await;
     }
     for faces in &particles.opposite {
         pause().await;
         creases::repeat(&mut whole.triangles, &mut whole.unfilled, faces, &particles.patch);
     }
-    pause().await;
-    creases::separate(&mut whole.triangles, particles);
+    if !particles.patch.is_empty() {
+        pause().await;
+        creases::separate(&mut whole.triangles, particles);
+    }
     whole.counted(particles).await
 }
 
-/// Joins points in the box that cuts their surface. The `rim` has the edges along which the surface
-/// is known to end, as pairs of indices with the surface on the left, seen from outside: no
-/// triangle lies beyond them, and what is open on their left is a hole. The points `tips`, in
-/// ascending order, are at the apex of a cone of the surface, each with the mean normal of the
-/// cone; several may be at one place if they face different ways. `of_all` is the tree over all
-/// points, where it is there.
-async fn join(
-    position: &[Vec3],
-    normal: &[Vec3],
-    bounds: Option<&Bounds>,
-    rim: &[[u32; 2]],
-    tips: &[u32],
-    of_all: Option<&Arc<Tree>>,
-) -> Joined {
-    assert_eq!(position.len(), normal.len(), "every point has a normal");
-    assert!(position.len() < 1 << 31, "indices of points have 31 bits");
-    let is_usable = |i: usize| position[i].is_finite() && normal[i].try_normalize().is_some();
-    let mut usable: Vec<bool> = (0..position.len()).map(is_usable).collect();
-    loop {
-        let points = JoinablePoints::new(position, normal, &usable, of_all).await;
-        let tips: Vec<u32> = (0..)
-            .zip(&points.tree.origin)
-            .filter(|&(_, i)| tips.binary_search(i).is_ok())
-            .map(|(k, _)| k)
-            .collect();
-        let stars = Stars::new(&points.tree, &points.normal, &tips).await;
-        if stars.twins.is_empty() {
-            return points.join(&stars, bounds, rim).await;
-        }
-        // They would be neighbours of everything that the first one is a neighbour of.
-        for &twin in &stars.twins {
-            usable[points.tree.origin[twin as usize] as usize] = false;
-        }
-    }
-}
-
-/// The points that can be joined, in tree order.
-struct JoinablePoints {
-    tree: Arc<Tree>,
-    /// Unit normals.
-    normal: Vec<Vec3>,
-}
-
-impl JoinablePoints {
-    async fn new(position: &[Vec3], normal: &[Vec3], usable: &[bool], of_all: Option<&Arc<Tree>>) -> Self {
-        let points = || position.iter().copied().zip(0..).filter(|&(_, i)| usable[i as usize]).collect();
-        let tree = match of_all {
-            Some(tree) if tree.len() == position.len() && !usable.contains(&false) => Arc::clone(tree),
-            _ => Arc::new(Tree::in_slices(points()).await),
-        };
-        let normal = tree.origin.iter().map(|&i| normal[i as usize].normalize_or_zero()).collect();
-        Self { tree, normal }
-    }
-
-    /// The edges along which the surface ends, between points that can be joined.
-    fn rim(&self, edges: &[[u32; 2]]) -> Rim {
-        if edges.is_empty() {
+impl Sheet {
+    /// The edges along which the sheet is known to end, as places in its tree, with the sheet on
+    /// the left, seen from outside.
+    fn rim(&self) -> Rim {
+        if self.border.is_empty() {
             return Rim::default();
         }
         let mut place: Vec<(u32, u32)> = self.tree.origin.iter().copied().zip(0..).collect();
         sort_pairs(&mut place);
         let in_tree = |i: u32| place.binary_search_by_key(&i, |&(i, _)| i).ok().map(|k| place[k].1);
-        let edges = edges.iter().filter_map(|&[a, b]| Some([in_tree(a)?, in_tree(b)?]));
+        let edges = self.border.iter().filter_map(|&[a, b]| Some([in_tree(a)?, in_tree(b)?]));
         Rim::new(edges.collect(), &self.tree.position, &self.normal)
     }
 
-    async fn join(&self, stars: &Stars, bounds: Option<&Bounds>, rim: &[[u32; 2]]) -> Joined {
-        let rim = self.rim(rim);
-        let mut patch = Patch::new(&self.tree.position, &self.normal, stars).await;
+    /// Adds the triangles and holes of the sheet, in the box that cuts the surface. No triangle
+    /// lies beyond its rim, and what is open on the left of that is a hole.
+    async fn join(&self, bounds: Option<&Bounds>, joined: &mut Joined) {
+        let Self { tree, normal, stars, .. } = self;
+        let rim = self.rim();
+        let mut patch = Patch::new(&tree.position, normal, stars).await;
         let borders = Borders { bounds, rim: &rim };
         settle::settle(&mut patch).await;
         rim.clear(&mut patch).await;
         holes::fill(&mut patch, &borders).await;
         let mut keys = Vec::new();
-        for range in ranges(self.tree.len(), LIGHT) {
+        for range in ranges(tree.len(), LIGHT) {
             for v in range.start as u32..range.end as u32 {
                 if patch.around(v).next().is_none() && !rim.holds(v) {
-                    insert::insert(&mut patch, &self.tree, v, &mut keys);
+                    insert::insert(&mut patch, tree, v, &mut keys);
                     pause().await;
                 }
             }
@@ -344,12 +280,11 @@ impl JoinablePoints {
         holes::unpinch(&mut patch, &rim);
         pause().await;
 
-        let origin = |v: u32| self.tree.origin[v as usize];
-        let triangles: Vec<[u32; 3]> = patch.triangles().map(|triangle| triangle.map(origin)).collect();
+        let row = |v: u32| tree.origin[v as usize];
+        joined.triangles.extend(patch.triangles().map(|triangle| triangle.map(row)));
         pause().await;
-        let mut unfilled = borders.holes(&patch);
-        unfilled.retain(|hole| !borders.is_open(&patch, hole));
-        unfilled.iter_mut().flatten().for_each(|v| *v = origin(*v));
-        Joined { triangles, unfilled }
+        let mut holes = borders.holes(&patch);
+        holes.retain(|hole| !borders.is_open(&patch, hole));
+        joined.unfilled.extend(holes.into_iter().map(|hole| hole.into_iter().map(row).collect()));
     }
 }

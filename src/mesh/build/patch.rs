@@ -1,7 +1,7 @@
 //! The triangles on which stars agree, and changes to them in a few places.
 
-use super::stars::Stars;
 use crate::math::{NONE, sort_few, tangent_frame};
+use crate::mesh::stars::Stars;
 use crate::slices::{LIGHT, MEDIUM, pause, ranges};
 use glam::{DVec3, Vec3};
 
@@ -306,10 +306,12 @@ pub(super) fn with_plane<T>(
     triangles: &[[u32; 3]],
     work: impl FnOnce(&mut Patch, &crate::spatial::tree::Tree, &[u32]) -> T,
 ) -> T {
+    use crate::mesh::stars::{ByDirection, StarPoints};
     use crate::{slices, spatial::tree::Tree};
     let tree = Tree::new(points);
     let normal = vec![Vec3::Z; points.len()];
-    let stars = slices::complete(Stars::new(&tree, &normal, &[]));
+    let of_tree = StarPoints { tree: &tree, normal: &normal, tips: &[] };
+    let stars = slices::complete(Stars::new(&of_tree, &mut ByDirection));
     let mut patch = slices::complete(Patch::new(&tree.position, &normal, &stars));
     let mut in_tree: Vec<u32> = (0..points.len() as u32).collect();
     in_tree.iter().for_each(|&v| patch.clear(v));

@@ -5,13 +5,13 @@
 use crate::field::Evaluator;
 use crate::field::descent::Descent;
 use crate::math::{Bounds, median, newton, sort_by_key, sort_numbers};
+use crate::particles::OrientedPoint;
 use crate::sampler::discovery::completeness::Search;
 use crate::sampler::discovery::dips::{Bottom, Crossing, Dip, End};
 use crate::sampler::discovery::grid::{Dense, Grid, GridLayer};
 use crate::sampler::discovery::nearness::{Nearness, STEPS, UNRESOLVED, nearest};
 use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::projection::{ResidualLimits, Tolerance, tolerance};
-use crate::sampler::sheet::OrientedPoint;
 use glam::{DVec3, Vec3};
 use rand_core::Rng;
 

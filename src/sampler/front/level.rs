@@ -3,14 +3,14 @@
 
 use crate::differential::Curvature;
 use crate::math::{Bounds, tangent_frame};
-use crate::particles::{Particles, SlotFate, Slots};
+use crate::particles::{OrientedPoint, Particles, SlotFate, Slots};
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::fates::FateCounts;
 use crate::sampler::front::plan::FrontPlan;
 use crate::sampler::neighbours::grids::{GridHandle, RadiusGrids};
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::Probe;
-use crate::sampler::sheet::{OrientedPoint, PointPair, SheetRule};
+use crate::sampler::sheet::{PointPair, SheetRule};
 use crate::sampler::sizing::Sizing;
 use crate::spatial::Neighbour;
 use core::ops::Range;

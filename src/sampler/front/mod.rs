@@ -18,7 +18,7 @@ pub(crate) use plan::FrontPlan;
 pub(crate) use uniform::gaps::widest_gap;
 
 use crate::math::{SQRT_3, sort_few};
-use crate::particles::{Particles, SlotFate, Slots};
+use crate::particles::{OrientedPoint, Particles, SlotFate, Slots};
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::front::adaptive::AdaptivePlacing;
 use crate::sampler::front::level::{ChildLanding, FrontLevel, Placing};
@@ -26,7 +26,7 @@ use crate::sampler::front::uniform::UniformPlacing;
 use crate::sampler::neighbours::grids::GridHandle;
 use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::settings::Sampling;
-use crate::sampler::sheet::{OrientedPoint, UNCOVERED, is_cover};
+use crate::sampler::sheet::{UNCOVERED, is_cover};
 use crate::spatial::Neighbour;
 use glam::Vec3;
 

@@ -2,14 +2,13 @@
 //! return to the surface.
 
 use crate::math::{larger, refill};
-use crate::particles::Particles;
+use crate::particles::{OrientedPoint, Particles};
 use crate::sampler::neighbours::constants::STALE_TURN;
 use crate::sampler::neighbours::lists::NeighbourLists;
 use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::relaxation::MoveLimits;
 use crate::sampler::relaxation::forces::Forces;
 use crate::sampler::relaxation::repulsion::{LandingBatch, MAX_MOVE, Repulsion};
-use crate::sampler::sheet::OrientedPoint;
 use core::ops::Range;
 use glam::Vec3;
 

@@ -19,7 +19,7 @@ mod surroundings;
 
 use crate::differential::Curvature;
 use crate::field::Evaluator;
-use crate::particles::{Particles, SlotFate};
+use crate::particles::{OrientedPoint, Particles, SlotFate};
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::front::level::{
     ChildLanding, FrontContext, FrontLevel, Placing, SlotFrame, SurfacePoint,
@@ -32,7 +32,7 @@ use crate::sampler::neighbours::constants::{GAUSSIAN_RANGE, GAUSSIAN_SKIN};
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::Probe;
 use crate::sampler::projection::{ChildCircle, CircleLanding, Tolerance};
-use crate::sampler::sheet::{OrientedPoint, PointPair, is_level, level_slack_sq};
+use crate::sampler::sheet::{PointPair, is_level, level_slack_sq};
 use core::ops::Range;
 use glam::Vec3;
 

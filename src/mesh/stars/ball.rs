@@ -1,23 +1,26 @@
 //! The points near a place, side by side in lanes, and the tangent plane that they are laid into.
 
+use super::StarPoints;
 use crate::math::{LANES, Lanes, tangent_frame, unkey};
 use crate::spatial::LANES_OF;
 use crate::spatial::tree::{PointsInBox, Tree};
 use glam::{Vec3, Vec4};
 
-/// Largest number of points in a ball. In a hexagonal lattice the first ball that is searched holds
-/// some 18.
-pub(super) const MOST: usize = 64;
+/// Largest number of points in a ball, and of neighbours of a point, where holes are no matter. In
+/// a hexagonal lattice the first ball that is searched holds some 18.
+pub(super) const NEAR: usize = 64;
+/// Largest number of points in a ball. Fewer leave more points without their neighbours across a
+/// hole.
+pub(super) const MOST: usize = 256;
 /// Numbers that are worked on at once: the lanes of a SIMD register.
 const WIDTH: usize = 4;
-const BLOCKS: usize = MOST / WIDTH;
 /// Two points are on one sheet only if the sine squared of the angle between their line and the
 /// normal is at least this: the line rises by 63° at most.
-const MIN_FLAT: f32 = 0.2;
+pub(super) const MIN_FLAT: f32 = 0.2;
 /// Two points are on one sheet only if their line rises from one tangent plane as it sinks below
 /// the other, up to this share of its length: that tells sheets apart that face the same way.
 /// Smaller: more particles are in no triangle; larger: a surface that crosses itself gets holes.
-pub(super) const MAX_LIFT: f32 = 0.35;
+pub(crate) const MAX_LIFT: f32 = 0.35;
 
 /// The points of a tree in a box, with their normals.
 #[derive(Default)]
@@ -61,6 +64,8 @@ pub(super) struct Ball {
     distance_sq: PerPoint,
     /// Squared distance of the nearest point, whatever its sheet.
     nearest_sq: f32,
+    /// Whether a point faces another way than the centre.
+    faces_another: bool,
 }
 
 impl Default for Ball {
@@ -73,6 +78,7 @@ impl Default for Ball {
             flat: [zero; 2],
             distance_sq: zero,
             nearest_sq: f32::INFINITY,
+            faces_another: false,
         }
     }
 }
@@ -89,7 +95,7 @@ impl Ball {
     ) -> bool {
         self.count = 0;
         let BallPoints { near: PointsInBox { index, position }, point } = surroundings;
-        let mut hits = [0_u32; MOST + LANES];
+        let mut hits = [0_u32; NEAR + LANES];
         let mut count = 0;
         let bound_sq = Vec4::splat(bound_sq);
         for (block, [x, y, z]) in position.iter().enumerate() {
@@ -104,7 +110,7 @@ impl Ball {
                 *hit = (block * LANES) as u32 + lane;
             }
             count += lanes.count;
-            if count > MOST {
+            if count > NEAR {
                 return false;
             }
         }
@@ -118,9 +124,15 @@ impl Ball {
         true
     }
 
-    /// Holds the points within `radius` of point `i`, or the nearest ones if those are too many;
+    /// Holds the points within `radius` of point `i`, or the `most` nearest ones if those are more;
     /// the square of the radius within which all are held.
-    pub(super) fn search(&mut self, tree: &Tree, normal: &[Vec3], i: u32, radius: f32) -> f32 {
+    pub(super) fn search(
+        &mut self,
+        &StarPoints { tree, normal, .. }: &StarPoints<'_>,
+        i: u32,
+        radius: f32,
+        most: usize,
+    ) -> f32 {
         self.count = 0;
         let centre = tree.position[i as usize];
         let mut near = Vec::new();
@@ -129,11 +141,11 @@ impl Ball {
             tree.within_box(centre - radius, centre + radius, &mut near);
             near.retain(|&j| j != i && (tree.position[j as usize] - centre).length_squared() < known_sq);
         }
-        if near.len() > MOST || radius == 0.0 {
+        if near.len() > most || radius == 0.0 {
             let mut keys = Vec::new();
-            tree.nearest_many(centre, MOST, |j| j != i, &mut keys);
+            tree.nearest_many(centre, most, |j| j != i, &mut keys);
             known_sq = match keys.last() {
-                Some(&last) if keys.len() == MOST => unkey(last).0,
+                Some(&last) if keys.len() == most => unkey(last).0,
                 _ => f32::MAX, // Every point of the set is held.
             };
             near = keys.into_iter().map(|key| unkey(key).1).collect();
@@ -179,7 +191,7 @@ impl Ball {
     }
 
     fn blocks(&self) -> usize {
-        self.count.div_ceil(WIDTH).min(BLOCKS)
+        self.count.div_ceil(WIDTH)
     }
 
     /// Lays the points of the centre's sheet, but those nearer than √`twin_sq`, into its tangent
@@ -193,6 +205,7 @@ impl Ball {
             row[padding.clone()].fill(value);
         }
         let mut nearest_sq = Vec4::INFINITY;
+        self.faces_another = false;
         for block in 0..self.blocks() {
             let [x, y, z, a, b, c] = &self.point;
             let [x, y, z, a, b, c] = [x, y, z, a, b, c].map(|row| four(row, block));
@@ -200,9 +213,11 @@ impl Ball {
             let lift = rise + (x * a + y * b + z * c);
             let flat_sq = along_u * along_u + along_v * along_v;
             let distance_sq = flat_sq + rise * rise;
-            nearest_sq = nearest_sq.min(distance_sq);
+            nearest_sq = nearest_sq.min(x * x + y * y + z * z);
+            let cosine = dot(a, b, c, normal);
+            self.faces_another |= cosine.cmplt(Vec4::ZERO).any();
             let stretch = Vec4::from_array((distance_sq / flat_sq).to_array().map(f32::sqrt));
-            let is_near = dot(a, b, c, normal).cmpgt(Vec4::ZERO)
+            let is_near = cosine.cmpgt(Vec4::ZERO)
                 & flat_sq.cmpge(distance_sq * MIN_FLAT)
                 & (lift * lift).cmple(distance_sq * (MAX_LIFT * MAX_LIFT))
                 & distance_sq.cmpgt(Vec4::splat(twin_sq));
@@ -217,6 +232,26 @@ impl Ball {
     /// The point with a number below [`MOST`], by its place in the tree.
     pub(super) fn index(&self, k: usize) -> u32 {
         self.index[k]
+    }
+
+    /// The points, by their places in the tree.
+    pub(super) fn indices(&self) -> impl Iterator<Item = u32> {
+        self.index[..self.count].iter().copied()
+    }
+
+    /// Whether a point faces another way than the centre.
+    pub(super) fn faces_another(&self) -> bool {
+        self.faces_another
+    }
+
+    /// Distance of the nearest point, whatever its sheet; infinite if there is none.
+    pub(super) fn nearest_of_all(&self) -> f32 {
+        self.nearest_sq.sqrt()
+    }
+
+    /// Takes a point from the sheet of the centre.
+    pub(super) fn leave_out(&mut self, k: usize) {
+        (self.flat[0][k], self.flat[1][k], self.distance_sq[k]) = (0.0, 0.0, f32::INFINITY);
     }
 
     /// Squared distance of a point from the centre.
@@ -250,21 +285,24 @@ impl Ball {
     /// is finite.
     #[inline]
     fn least(&self, numbers: impl Fn(usize) -> Vec4) -> Option<(f32, usize)> {
-        let mut values = [Vec4::INFINITY; BLOCKS];
-        let mut least = Vec4::INFINITY;
-        for (block, value) in values[..self.blocks()].iter_mut().enumerate() {
-            *value = numbers(block);
-            least = least.min(*value);
+        // In each lane, and the block where it was first met.
+        let (mut least, mut met_in) = (Vec4::INFINITY, Vec4::ZERO);
+        for block in 0..self.blocks() {
+            let value = numbers(block);
+            let is_less = value.cmplt(least);
+            least = Vec4::select(is_less, value, least);
+            met_in = Vec4::select(is_less, Vec4::splat(block as f32), met_in);
         }
-        let least = least.min_element();
-        for (block, value) in values[..self.blocks()].iter().enumerate() {
-            let lanes = value.cmpeq(Vec4::splat(least)).bitmask();
-            if lanes != 0 {
-                let first = WIDTH * block + lanes.trailing_zeros() as usize;
-                return (least < f32::INFINITY).then_some((least, first));
-            }
-        }
-        None
+        let value = least.min_element();
+        let lanes = (0..WIDTH).filter(|&lane| least[lane] == value);
+        let first = lanes.map(|lane| WIDTH * met_in[lane] as usize + lane).min();
+        first.filter(|_| value < f32::INFINITY).map(|first| (value, first))
+    }
+
+    /// Cotangent of the angle at a point over the chord from the centre to `end`.
+    pub(super) fn cotangent(&self, end: usize, at: usize) -> f32 {
+        let ([u, v], [x, y]) = (self.flat(end), self.flat(at));
+        (self.distance_sq[at] - (x * u + y * v)) / (x * v - y * u).abs()
     }
 
     fn flat(&self, k: usize) -> [f32; 2] {
