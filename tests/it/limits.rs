@@ -121,7 +121,7 @@ fn a_surface_ends_at_its_limits_with_particles_on_the_rim() {
 fn half_ellipsoid(a: f64) -> f64 {
     let parts = 1_000;
     let integrand = |k: i32| {
-        let (sine, cosine) = (f64::from(k) * FRAC_PI_2 / f64::from(parts)).sin_cos();
+        let (sine, cosine) = libm::sincos(f64::from(k) * FRAC_PI_2 / f64::from(parts));
         let weight = if k == 0 || k == parts { 1.0 } else { f64::from(2 + k % 2 * 2) };
         weight * sine * (cosine * cosine + a * a * sine * sine).sqrt()
     };

@@ -137,7 +137,7 @@ impl Meeting {
         // From 60° to the left to 60° to the right.
         let position = turn(sides, |share| {
             let slope = SQRT_3 * (1.0 - 2.0 * share);
-            landed(probe, self.position + (ahead + aside * slope).normalize() * length, length)
+            landed(probe, self.position + (ahead + aside * slope).normalize_or_zero() * length, length)
         })?;
         let way = (position - self.position).normalize_or_zero();
         // Written so that NaN fails.
