@@ -294,6 +294,12 @@ pub trait Patches {
     /// more than can be listed.
     fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>>;
 
+    /// Pairs of patches that meet without an edge somewhere and yet are no single patch, since they
+    /// or their neighbours meet at an angle elsewhere; the smaller number first.
+    fn tangent_pairs(&mut self) -> Vec<[u32; 2]> {
+        Vec::new()
+    }
+
     /// The evaluator of the smooth function of `branch`, wherever that gives f or not. Its bounds
     /// are those of the branch, its patches still those of f.
     ///
@@ -339,6 +345,11 @@ impl<'a> dyn Evaluator + 'a {
             let branch = self.branch_at(p);
             self.is_limit(branch)
         }
+    }
+
+    /// [`Patches::tangent_pairs`]; none of a smooth function.
+    pub(crate) fn tangent_pairs(&mut self) -> Vec<[u32; 2]> {
+        self.patches().map_or_else(Vec::new, |patches| patches.tangent_pairs())
     }
 
     /// [`Patches::branches_in`]; none of a smooth function.

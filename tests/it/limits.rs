@@ -1,8 +1,8 @@
 //! Surfaces that are limited by conditions, from the formula to the mesh with its rim.
 
-use core::f64::consts::PI;
+use core::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec3;
-use marching_particles::{Bounds, Formula, FormulaErrorKind, Sample, Settings, sample};
+use marching_particles::{Bounds, Field, Formula, FormulaErrorKind, Sample, Settings, sample};
 
 fn sampled(text: &str, settings: &Settings) -> Sample {
     sample(Formula::parse(text).expect("a formula"), settings).expect("a sample")
@@ -113,6 +113,113 @@ fn a_surface_ends_at_its_limits_with_particles_on_the_rim() {
                 assert!((figures.area / exact - 1.0).abs() < 0.005, "{what}: area {}", figures.area);
             }
         }
+    }
+}
+
+/// Area of the half ellipsoid z = a √(1 − x² − y²): the integral for a surface of revolution, over
+/// the angle, by Simpson's rule.
+fn half_ellipsoid(a: f64) -> f64 {
+    let parts = 1_000;
+    let integrand = |k: i32| {
+        let (sine, cosine) = libm::sincos(f64::from(k) * FRAC_PI_2 / f64::from(parts));
+        let weight = if k == 0 || k == parts { 1.0 } else { f64::from(2 + k % 2 * 2) };
+        weight * sine * (cosine * cosine + a * a * sine * sine).sqrt()
+    };
+    2.0 * PI * (0..=parts).map(integrand).sum::<f64>() * FRAC_PI_2 / f64::from(parts) / 3.0
+}
+
+#[test]
+fn a_parameter_as_the_factor_of_a_root_leaves_the_rim_clean_for_any_value() {
+    let settings = Settings::with_count(4_000).refined();
+    for (text, share) in [
+        ("z = a sqrt(1 - x^2 - y^2)", 1.0),
+        ("z = -a sqrt(1 - x^2 - y^2)", 1.0),
+        ("z = sqrt(1 - x^2 - y^2)*a/2", 0.5),
+        ("z/a = sqrt(1 - x^2 - y^2)", 1.0),
+        ("z = (a + 1) sqrt(1 - x^2 - y^2) {x^2 + y^2 + z^2 < 100}", f64::NAN),
+    ] {
+        let mut formula = Formula::parse(text).expect("a formula");
+        for a in [2.0, 0.5, -1.5] {
+            formula.set_parameter("a", a).expect("a parameter");
+            let height = if share.is_nan() { a + 1.0 } else { share * a };
+            let sample = sample(formula.clone(), &settings).expect("a sample");
+            let what = format!("{text}, a = {a}");
+            assert_eq!(sample.report().warnings, [], "{what}");
+            assert_eq!(sample.report().proof.creases, Some(1), "{what}");
+            let topology = &sample.mesh().topology;
+            assert_eq!((topology.euler(), topology.borders.len()), (1, 1), "{what}");
+            let figures = sample.report().measures.quality.as_ref().expect("figures");
+            let exact = half_ellipsoid(height);
+            assert!((figures.area / exact - 1.0).abs() < 0.005, "{what}: {} for {exact}", figures.area);
+        }
+    }
+}
+
+#[test]
+fn a_function_without_its_root_has_the_sign_of_the_formula() {
+    for text in [
+        "z = a sqrt(1 - x^2 - y^2)",
+        "a sqrt(1 - x^2 - y^2) = z",
+        "a*(1 - x^2 - y^2)^(1/3) = z",
+        "z = a asin(x^2 + y^2)",
+        "z = a acos(x^2 + y^2)",
+        "z^2 = a sqrt(x)",
+    ] {
+        for a in [1.0, 1.5, -1.5] {
+            let [own, written] = [Formula::parse(text), Formula::as_written(text, &[])]
+                .map(|formula| formula.and_then(|formula| formula.with("a", a)).expect("a formula"));
+            let mut compared = 0;
+            for k in 1..1_000 {
+                // Places of a sequence of low discrepancy, above or below the plane z = 0 as the
+                // surface is: elsewhere the limits are what counts.
+                let [x, y, z] = [0.819, 0.671, 0.5497].map(|share| (f64::from(k) * share).fract());
+                let p = DVec3::new(2.0 * x - 1.0, 2.0 * y - 1.0, 1.5 * z * a.signum());
+                let [(f, _), (g, _)] = [&own, &written].map(|field| field.value_and_gradient(p));
+                if g.is_finite() && g != 0.0 {
+                    compared += 1;
+                    assert!(f * g > 0.0, "{text}, a = {a}, at {p}: {f} for {g}");
+                }
+            }
+            assert!(compared > 100, "{text}, a = {a}: {compared} places");
+        }
+    }
+}
+
+#[test]
+fn a_surface_that_is_even_in_the_rest_ends_nowhere() {
+    for (text, topology) in [
+        ("z^2 = sqrt(x)", [1, 1]),
+        ("abs(z) = sqrt(x)", [1, 1]),
+        ("z^2 + y^2 = sqrt(x)", [1, 1]),
+        ("z^2 + y^2 = sqrt(1 - x^2)", [2, 0]),
+        ("z^2 = a sqrt(x)", [1, 1]),
+    ] {
+        let sample = sampled(text, &Settings::with_count(4_000).refined());
+        assert_eq!(sample.report().proof.undecided_cells, Some(0), "{text}");
+        let mesh = &sample.mesh().topology;
+        assert_eq!([mesh.euler(), mesh.borders.len() as i64], topology, "{text}");
+        let codes: Vec<_> = sample.report().warnings.iter().map(|warning| warning.code()).collect();
+        assert!(sample.report().growth.refined_levels.is_some(), "{text}: {codes:?}");
+    }
+    // A root that is as large as a number is left: its surface does not reach the end.
+    let formula = Formula::parse("sqrt(x^2 + y^2 + z^2 - x) = 1").expect("a formula");
+    assert_eq!(formula.value_and_gradient(DVec3::new(0.0, 3.0, 0.0)).0, 2.0);
+}
+
+#[test]
+fn a_slider_passes_zero_where_the_surface_is_a_disc() {
+    let mut formula = Formula::parse("z = a sqrt(1 - x^2 - y^2)").expect("a formula");
+    for a in [0.5, 0.0, -0.5, 0.0, 0.5] {
+        formula.set_parameter("a", a).expect("a parameter");
+        let sample = sample(formula.clone(), &Settings::with_count(2_000)).expect("a sample");
+        let topology = &sample.mesh().topology;
+        assert_eq!((topology.euler(), topology.borders.len()), (1, 1), "a = {a}");
+        let area = sample.report().measures.quality.as_ref().expect("figures").area;
+        let exact = if a == 0.0 { PI } else { half_ellipsoid(a) };
+        assert!((area / exact - 1.0).abs() < 0.01, "a = {a}: {area} for {exact}");
+        let heights = (0..sample.particles().len()).map(|i| sample.particles().place(i).z);
+        let (least, most) = heights.fold((0.0_f64, 0.0_f64), |(l, m), z| (l.min(z), m.max(z)));
+        assert!((least - a.min(0.0)).abs() < 0.01 && (most - a.max(0.0)).abs() < 0.01, "{least} to {most}");
     }
 }
 

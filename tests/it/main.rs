@@ -70,6 +70,7 @@ mod rbf;
 mod refine;
 mod relax;
 mod runs;
+mod seams;
 mod session;
 mod shaders;
 mod sharp;

@@ -158,6 +158,10 @@ fn a_solid_ends_where_one_of_its_functions_has_no_value() {
     let cases = [
         ("max(z - sqrt(1 - x^2), -z, abs(x) - 1, abs(y) - 1)", [1, 2], Some(PI), [6, 4]),
         ("max(z - sqrt(1 - x^2 - y^2), -z)", [1, 2], Some(2.0 / 3.0 * PI), [1, 0]),
+        // A factor that is a parameter; those without a value of their own are 1.
+        ("max(z - a sqrt(1 - x^2 - y^2), -z)", [1, 2], Some(2.0 / 3.0 * PI), [1, 0]),
+        ("max(z + (a - 3) sqrt(1 - x^2 - y^2), -z - 0.5)", [1, 2], Some(11.0 / 6.0 * PI), [1, 0]),
+        ("max(z + a sqrt(1 - x^2 - y^2), -z - 2, z + 0.5)", [1, 2], Some(31.0 / 24.0 * PI), [3, 0]),
         // A wall below the end of the root.
         ("max(z - sqrt(1 - x^2 - y^2) - 1, -z)", [1, 2], Some(5.0 / 3.0 * PI), [1, 0]),
         ("max(abs(y) - sqrt(x*(1 - x)), abs(z) - 0.2)", [1, 2], Some(0.1 * PI), [2, 0]),

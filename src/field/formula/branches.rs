@@ -461,6 +461,8 @@ pub(super) struct Branches {
     numbered: Vec<usize>,
     /// The patches of several branches.
     pub(super) patches: Vec<Patch>,
+    /// Pairs of patches that meet without an edge somewhere.
+    pub(super) apart: Vec<[u32; 2]>,
     /// The factors of the branches of the surface in a box, each by its branch and its number
     /// there, if it was found that some meet in creases in that box.
     pub(super) factors: Vec<(u32, usize)>,

@@ -69,7 +69,22 @@ struct TieCell {
 impl Branches {
     /// Cells of another box, no wider than `width`, outside of which the surface has no crease.
     pub(super) async fn crease_cells(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
-        self.search_creases(values, bounds, width, None).await.creases
+        let width_of_seams = (!self.apart.is_empty()).then_some(2.0 * width);
+        let found = self.search_creases(values, bounds, width, width_of_seams).await;
+        self.with_seams(values, found)
+    }
+
+    /// The cells with creases, and those in which patches meet without an edge and are no single
+    /// patch.
+    fn with_seams(&mut self, values: &[f64], TieCells { mut creases, seams }: TieCells) -> Vec<Bounds> {
+        let apart = self.apart.clone();
+        if !apart.is_empty() {
+            creases.extend(seams.into_iter().filter(|cell| {
+                let patches = self.patches_within(values, cell).unwrap_or_default();
+                apart.iter().any(|pair| pair.iter().all(|patch| patches.contains(patch)))
+            }));
+        }
+        creases
     }
 
     /// Cells of the box, no wider than `width`, outside of which the surface of a function has no
@@ -97,18 +112,18 @@ impl Branches {
     }
 
     async fn take_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
-        let TieCells { creases, seams } = self.search_creases(values, bounds, width, Some(2.0 * width)).await;
-        if creases.is_empty() && self.has_limits() {
+        let found = self.search_creases(values, bounds, width, Some(2.0 * width)).await;
+        if found.creases.is_empty() && self.has_limits() {
             self.crease(values, bounds);
-            return creases;
+            return found.creases;
         }
-        if creases.is_empty() {
+        if found.creases.is_empty() {
             *self = Self::default();
-            return creases;
+            return found.creases;
         }
-        let is_smooth = self.join_tangent(values, bounds, &seams).await;
+        let is_smooth = self.join_tangent(values, bounds, &found.seams).await;
         self.crease(values, bounds);
-        if is_smooth && !self.has_limits() { Vec::new() } else { creases }
+        if is_smooth && !self.has_limits() { Vec::new() } else { self.with_seams(values, found) }
     }
 
     /// Cells of a box outside of which f has no crease, and no seam if these are asked for. There

@@ -223,6 +223,10 @@ impl Patches for FormulaEvaluator<'_> {
         self.on_branches(|branches, values| branches.patches_within(values, &bounds))
     }
 
+    fn tangent_pairs(&mut self) -> Vec<[u32; 2]> {
+        self.on_branches(|branches, _| branches.apart.clone())
+    }
+
     fn has_limits(&mut self) -> bool {
         self.on_branches(|branches, _| branches.has_limits())
     }

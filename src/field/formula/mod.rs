@@ -106,6 +106,7 @@ use evaluator::FormulaEvaluator;
 use glam::DVec3;
 use graph::{Graph, Id, Node};
 use operations::Binary;
+use regular::Scales;
 use serde::{Deserialize, Serialize};
 use solids::Solid;
 use std::borrow::Cow;
@@ -185,6 +186,8 @@ pub struct Formula {
     /// cutter lies flush, in that form.
     is_regular: bool,
     flush: Arc<[String]>,
+    /// The factors whose signs that form depends on.
+    scales: Scales,
     /// The graph of the surface, and its node, from which a solid is made.
     surface: Arc<(Graph, Id)>,
     /// The solid that is sampled in place of the surface, if one is: a sheet of some thickness,
@@ -275,6 +278,7 @@ impl Formula {
             simplified: None,
             is_regular: false,
             flush: Arc::default(),
+            scales: Scales::default(),
             surface: Arc::new(compiled.graph.part(compiled.root)),
             solid: Solid::default(),
             branches: SharedBranches::new(Branches::new(&compiled, &values)),
@@ -308,8 +312,9 @@ impl Formula {
             self.use_compiled(compiled);
         }
         let (graph, root) = &*self.surface;
-        let changes =
-            regular::within_limits(graph, *root).is_some() || regular::regular(graph, *root).is_some();
+        let (values, scales) = (&self.values, &mut self.scales);
+        let changes = regular::within_limits(graph, *root, values, scales).is_some()
+            || regular::regular(graph, *root, values, scales).is_some();
         if changes || self.solid != Solid::default() {
             self.make_solid();
         }
@@ -427,16 +432,20 @@ impl Formula {
         let (mut graph, mut f) = (*self.surface).clone();
         // A box alone closes the solid behind the surface, which ends otherwise.
         let is_surface = self.solid.sheet.is_some() || self.solid.closed.is_none();
+        self.scales = Scales::default();
         if self.is_regular
             && is_surface
-            && let Some(within) = regular::within_limits(&graph, f)
+            && let Some(within) = regular::within_limits(&graph, f, &self.values, &mut self.scales)
         {
             (graph, f) = within;
         }
         let root = self.solid.made_of(&mut graph, f);
         let (mut graph, mut root) = graph.part(root);
         self.flush = Arc::default();
-        if let Some(regular) = self.is_regular.then(|| regular::regular(&graph, root)).flatten() {
+        let scales = &mut self.scales;
+        if self.is_regular
+            && let Some(regular) = regular::regular(&graph, root, &self.values, scales)
+        {
             let text = |&face: &Id| format!("{} = 0", display::node(&regular.graph, face, &self.parameters));
             self.flush = regular.flush.iter().map(text).collect();
             (graph, root) = regular.graph.part(regular.root);
@@ -516,6 +525,10 @@ impl Formula {
         };
         self.parameters[index].value = value;
         self.values[index] = value;
+        if self.scales.have_turned(&self.values) {
+            self.make_solid();
+            return Ok(());
+        }
         self.compiled.set_parameters(&self.values);
         self.branches.set_parameters(&self.values);
         Ok(())

@@ -56,7 +56,7 @@ impl Branches {
         let Meetings { seen, tangent, sharp, is_open } = self.meetings(values, bounds, cells).await;
         let mut patches: Vec<u32> =
             seen.iter().copied().max().map_or(Vec::new(), |last| (0..=last).collect());
-        for &pair in &tangent {
+        for &pair in tangent.iter().filter(|pair| !sharp.contains(pair)) {
             let of = |pair: [u32; 2]| ascending(pair.map(|branch| patches[branch as usize]));
             let [to, from] = of(pair);
             if to != from && !sharp.iter().any(|&edge| of(edge) == [to, from]) {
@@ -75,6 +75,16 @@ impl Branches {
             }
         }
         let is_whole = self.patches.iter().any(|patch| patch.branches == seen);
+        let mut apart = Vec::new();
+        for pair in &tangent {
+            let pair = ascending(pair.map(|branch| self.patch_of(branch)));
+            if pair[0] != pair[1] && !pair.iter().any(|&patch| self.is_limit(patch, values)) {
+                apart.push(pair);
+            }
+        }
+        apart.sort_unstable();
+        apart.dedup();
+        self.apart = apart;
         is_whole && sharp.is_empty() && !is_open
     }
 
@@ -129,7 +139,6 @@ impl Branches {
             pairs.sort_unstable();
             pairs.dedup();
         }
-        found.tangent.retain(|pair| !found.sharp.contains(pair));
         found
     }
 

@@ -18,6 +18,10 @@
 //! A surface f = 0 of one function is exchanged in the same way, and has a [limit](Unary::Limit)
 //! where a solid has a further face: a − c √u = 0 is (a/c)² − u = 0 within a/c > 0. So the surface
 //! z = √(1 − x² − y²) ends in a rim.
+//!
+//! The factor c may depend on parameters. Which function takes the place of a − c √u then follows
+//! from its sign, and for c = 0 it is a itself that ends where u < 0. The form is made anew when
+//! the [sign](Scales) changes.
 
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
@@ -50,13 +54,48 @@ pub(super) struct Regular {
     pub(super) flush: Vec<Id>,
 }
 
-/// The regular form of a solid; none if it has that form, is one face, or is the surface alone
-/// within limits.
-pub(super) fn regular(graph: &Graph, root: Id) -> Option<Regular> {
+/// The factors of roots that depend on parameters, each with the sign that it had when a form was
+/// made.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scales {
+    /// The graph of the factors.
+    graph: Graph,
+    signs: Vec<(Id, f64)>,
+}
+
+impl Scales {
+    /// The sign of a factor, which is noted: 1 or −1, or 0 if it is 0 or no number.
+    fn sign(&mut self, graph: &Graph, scale: Id, parameters: &[f64]) -> f64 {
+        let own = self.graph.add_part(graph, scale);
+        let sign = self.sign_now(own, parameters);
+        if self.signs.iter().all(|&(known, _)| known != own) {
+            self.signs.push((own, sign));
+        }
+        sign
+    }
+
+    fn sign_now(&self, scale: Id, parameters: &[f64]) -> f64 {
+        let mut results = Vec::new();
+        self.graph.evaluate(&self.graph.needed_by(&[scale]), parameters, DVec3::ZERO, &mut results);
+        match results[scale as usize] {
+            value if value.is_finite() && value != 0.0 => value.signum(),
+            _ => 0.0,
+        }
+    }
+
+    /// Whether a factor has another sign with these parameters, so that the form is another one.
+    pub(super) fn have_turned(&self, parameters: &[f64]) -> bool {
+        self.signs.iter().any(|&(scale, sign)| self.sign_now(scale, parameters) != sign)
+    }
+}
+
+/// The regular form of a solid for these values of the parameters; none if it has that form, is one
+/// face, or is the surface alone within limits. Notes the factors whose signs it depends on.
+pub(super) fn regular(graph: &Graph, root: Id, parameters: &[f64], scales: &mut Scales) -> Option<Regular> {
     if graph.limited(root).is_some() {
         return None;
     }
-    let mut forming = Forming::new(graph);
+    let mut forming = Forming::new(graph, parameters, scales);
     let negative = forming.is_solid_where_positive(root);
     let whole = Signed::of(&mut forming.graph, root, negative);
     let parts = forming.opened(whole);
@@ -80,10 +119,16 @@ pub(super) fn regular(graph: &Graph, root: Id) -> Option<Regular> {
     Some(Regular { graph, root: nodes[0], flush: nodes[1..].to_vec() })
 }
 
-/// The surface of one function in the limits within which that has values; none if it has some
-/// everywhere, or is put together from several functions.
-pub(super) fn within_limits(graph: &Graph, root: Id) -> Option<(Graph, Id)> {
-    let mut forming = Forming::new(graph);
+/// The surface of one function in the limits within which that has values, for these values of the
+/// parameters; none if it has some everywhere, or is put together from several functions. Notes the
+/// factors whose signs it depends on.
+pub(super) fn within_limits(
+    graph: &Graph,
+    root: Id,
+    parameters: &[f64],
+    scales: &mut Scales,
+) -> Option<(Graph, Id)> {
+    let mut forming = Forming::new(graph, parameters, scales);
     let (f, limit) = match graph.limited(root) {
         Some([f, limit]) => (f, Some(limit)),
         None => (root, None),
@@ -92,11 +137,13 @@ pub(super) fn within_limits(graph: &Graph, root: Id) -> Option<(Graph, Id)> {
     if !matches!(forming.opened(whole), Solid::Face(_)) || forming.graph.factors(f).len() > 1 {
         return None;
     }
-    let (mut f, mut limits) = (f, Vec::new());
+    let (mut f, mut limits, mut reaches_end) = (f, Vec::new(), false);
     for _ in 0..MAX_ROOTS {
-        let Some((other, within)) = forming.without_inverse(f) else { break };
+        let Some(Exchanged { other, within, level }) = forming.without_inverse(f) else { break };
         f = other;
         limits.extend(within);
+        // A root is as large as a number above 0 away from its end alone.
+        reaches_end |= !forming.graph.is_uniform(level);
     }
     if let Some((other, within)) = forming.extended(f) {
         f = other;
@@ -104,12 +151,13 @@ pub(super) fn within_limits(graph: &Graph, root: Id) -> Option<(Graph, Id)> {
     }
     let mut graph = forming.graph;
     limits.retain(|&limit| graph.as_constant(limit).is_none_or(|limit| limit > 0.0));
-    if limits.is_empty() {
+    if limits.is_empty() && !reaches_end {
         return None;
     }
-    let limit = limits.into_iter().chain(limit).reduce(|a, b| graph.binary(Binary::Max, a, b))?;
-    let limit = graph.unary(Unary::Limit, limit);
-    let f = graph.binary(Binary::Max, f, limit);
+    if let Some(limit) = limits.into_iter().chain(limit).reduce(|a, b| graph.binary(Binary::Max, a, b)) {
+        let limit = graph.unary(Unary::Limit, limit);
+        f = graph.binary(Binary::Max, f, limit);
+    }
     Some(graph.part(f))
 }
 
@@ -144,26 +192,24 @@ impl Solid {
     }
 }
 
-struct Forming {
+struct Forming<'a> {
     graph: Graph,
     /// Number of faces that may still be added.
     left: usize,
-    /// Number of parameters.
-    parameters: usize,
+    /// The values of the parameters.
+    parameters: &'a [f64],
+    /// The factors whose signs the form depends on.
+    scales: &'a mut Scales,
     /// Values of faces at some places, for those that have been compared.
     values: Vec<(Id, Vec<f64>)>,
     /// The faces with which a cutter lies flush.
     flush: Vec<Id>,
 }
 
-impl Forming {
-    fn new(graph: &Graph) -> Self {
-        let parameter = |node: &Node| match node {
-            Node::Parameter(index) => Some(*index as usize + 1),
-            _ => None,
-        };
-        let parameters = graph.nodes().iter().filter_map(parameter).max().unwrap_or(0);
-        Self { graph: graph.clone(), left: MAX_FACES, parameters, values: Vec::new(), flush: Vec::new() }
+impl<'a> Forming<'a> {
+    fn new(graph: &Graph, parameters: &'a [f64], scales: &'a mut Scales) -> Self {
+        let (values, flush) = (Vec::new(), Vec::new());
+        Self { graph: graph.clone(), left: MAX_FACES, parameters, scales, values, flush }
     }
 
     /// Whether the solid lies where f is positive, as that of min(√u − a, b) does: the faces of a
@@ -175,7 +221,7 @@ impl Forming {
         let parts = self.opened(whole);
         parts.with_faces(&mut |face| {
             if let Some(end) = self.root_of(face) {
-                signs[usize::from(end.term.factor > 0.0)] = true;
+                signs[usize::from(end.term.is_positive)] = true;
             }
             None
         });
@@ -222,7 +268,7 @@ impl Forming {
         };
         let level = self.level_of(face, &end.term);
         let End { term, base, inverse } = end;
-        let faces = if term.factor < 0.0 {
+        let faces = if !term.is_positive {
             // Inside where the root is at least the level.
             let zero = self.graph.constant(0.0);
             let above = if is_never_negative(&self.graph, level) {
@@ -253,8 +299,9 @@ impl Forming {
     /// With g for the summand without its factor, the face is factor · (g − level).
     fn level_of(&mut self, face: Id, term: &Term) -> Id {
         let rest = self.graph.combination([(face, 1.0), (term.node, -term.share)]);
-        let scale = self.graph.constant(-1.0 / term.factor);
-        self.graph.mul(rest, scale)
+        let inverse = self.graph.constant(-1.0 / term.factor);
+        let level = self.graph.mul(rest, inverse);
+        term.scale.map_or(level, |scale| self.graph.div(level, scale))
     }
 
     /// u |u|ᵖ⁻¹, which is uᵖ where that has a value, for p > 1.
@@ -265,20 +312,22 @@ impl Forming {
         self.graph.mul(u, size)
     }
 
-    /// A function with the zeros of `f`, without the only root, arcsine or arccosine among its
-    /// summands, and functions that are at most 0 where the zeros are those of f.
-    fn without_inverse(&mut self, f: Id) -> Option<(Id, Vec<Id>)> {
+    /// The function that takes the place of `f`, without the only root, arcsine or arccosine among
+    /// the summands of that.
+    fn without_inverse(&mut self, f: Id) -> Option<Exchanged> {
         if let Some(end) = self.root_of(f) {
             let level = self.level_of(f, &end.term);
             let raise = self.graph.constant(end.inverse);
             let is_whole = end.inverse.fract() == 0.0;
             let power =
                 if is_whole { self.graph.pow(level, raise) } else { self.odd_power(level, end.inverse) };
-            let is_turned = end.term.factor > 0.0;
-            let other =
-                if is_turned { self.graph.sub(end.base, power) } else { self.graph.sub(power, end.base) };
+            let other = if end.term.is_positive {
+                self.graph.sub(end.base, power)
+            } else {
+                self.graph.sub(power, end.base)
+            };
             let limit = (!is_never_negative(&self.graph, level)).then(|| self.graph.neg(level));
-            return Some((other, limit.into_iter().collect()));
+            return Some(Exchanged { other, within: limit.into_iter().collect(), level });
         }
         let (term, (is_sine, u)) = self.only_summand(f, Self::arc)?;
         let level = self.level_of(f, &term);
@@ -286,10 +335,11 @@ impl Forming {
             if is_sine { (Unary::Sin, -FRAC_PI_2, FRAC_PI_2) } else { (Unary::Cos, 0.0, PI) };
         let value = self.graph.unary(operation, level);
         // The arccosine falls where its argument grows.
-        let is_turned = (term.factor > 0.0) != is_sine;
+        let is_turned = term.is_positive != is_sine;
         let other = if is_turned { self.graph.sub(value, u) } else { self.graph.sub(u, value) };
         let [least, most] = [least, most].map(|end| self.graph.constant(end));
-        Some((other, vec![self.graph.sub(least, level), self.graph.sub(level, most)]))
+        let within = vec![self.graph.sub(least, level), self.graph.sub(level, most)];
+        Some(Exchanged { other, within, level })
     }
 
     /// The only root among the summands of a face whose argument may be negative.
@@ -299,8 +349,8 @@ impl Forming {
         Some(End { term, base, inverse: 1.0 / exponent })
     }
 
-    /// The only summand of a face for which `kind` has an answer, with the answer. A constant
-    /// factor of the summand is taken off before `kind` is asked. None if there are several.
+    /// The only summand of a face for which `kind` has an answer, with the answer. Factors of the
+    /// summand without coordinates are taken off before `kind` is asked. None if there are several.
     fn only_summand<T>(
         &mut self,
         face: Id,
@@ -308,18 +358,30 @@ impl Forming {
     ) -> Option<(Term, T)> {
         let mut found = None;
         for (term, share) in self.graph.summands(face) {
-            let (mut node, mut factor) = (term, share);
+            let (mut node, mut factor, mut scale) = (term, share, None);
             while let Node::Binary(operation @ (Binary::Mul | Binary::Div), v, u) = self.graph.node(node)
-                && let Some(number) = self.graph.as_constant(u)
+                && self.graph.is_uniform(u)
             {
-                factor = if operation == Binary::Mul { factor * number } else { factor / number };
+                match (self.graph.as_constant(u), operation) {
+                    (Some(number), Binary::Mul) => factor *= number,
+                    (Some(number), _) => factor /= number,
+                    (None, _) => {
+                        let so_far = scale.unwrap_or_else(|| self.graph.constant(1.0));
+                        scale = Some(self.graph.binary(operation, so_far, u));
+                    }
+                }
                 node = v;
             }
             if factor == 0.0 {
                 continue;
             }
             let Some(kind) = kind(self, node) else { continue };
-            if found.replace((Term { node: term, share, factor }, kind)).is_some() {
+            let sign = scale.map_or(1.0, |scale| self.scales.sign(&self.graph, scale, self.parameters));
+            if sign == 0.0 {
+                continue;
+            }
+            let term = Term { node: term, share, factor, scale, is_positive: factor * sign > 0.0 };
+            if found.replace((term, kind)).is_some() {
                 return None;
             }
         }
@@ -470,7 +532,7 @@ impl Forming {
         let mut values = Vec::with_capacity(HALVES.len() * PLACES);
         for half in HALVES.into_iter().flat_map(|half| [half; PLACES]) {
             let point = DVec3::from_array([0, 1, 2].map(|_| between(-half, half)));
-            let parameters: Vec<f64> = (0..self.parameters).map(|_| between(0.25, 2.25)).collect();
+            let parameters: Vec<f64> = self.parameters.iter().map(|_| between(0.25, 2.25)).collect();
             self.graph.evaluate(&nodes, &parameters, point, &mut results);
             values.push(results[face as usize]);
         }
@@ -479,16 +541,29 @@ impl Forming {
     }
 }
 
+/// A function that has the zeros of another one.
+struct Exchanged {
+    other: Id,
+    /// Functions that are at most 0 where the zeros are those of the other one.
+    within: Vec<Id>,
+    /// The value that the root, arcsine or arccosine has at these zeros.
+    level: Id,
+}
+
 /// A summand of a face.
 struct Term {
     node: Id,
     /// How often it stands in the face.
     share: f64,
-    /// The face has this much of what the summand is but for a factor.
+    /// The face has this much of what the summand is but for its factors.
     factor: f64,
+    /// A further factor that depends on parameters.
+    scale: Option<Id>,
+    /// Whether both factors together are positive.
+    is_positive: bool,
 }
 
-/// A root that ends a face: factor · base^(1/inverse).
+/// A root that ends a face: factor · scale · base^(1/inverse).
 struct End {
     term: Term,
     base: Id,

@@ -155,6 +155,7 @@ impl Creases {
                 points,
                 corners,
                 is_closed: curve.is_closed,
+                is_seam: curve.is_seam,
                 image: Some(Image { of: curve_place[k]?, pair: number }),
             });
         }

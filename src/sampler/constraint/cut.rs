@@ -5,7 +5,7 @@
 //! branches and the plane.
 
 use super::meeting::{Third, common_point};
-use super::{Crease, Creases, ONE_CORNER};
+use super::{Crease, Creases, ONE_CORNER, seam};
 use crate::math::Bounds;
 use crate::sampler::probe::Probe;
 use crate::slices::complete;
@@ -39,7 +39,12 @@ impl Creases {
             }
             let way = next - here;
             let start = here + way * ((offset - here[axis]) / way[axis]);
-            if let Some(mut place) = common_point(probe, curve.branches, third, start, way.length()) {
+            let place = if curve.is_seam {
+                seam::in_plane(probe, curve.branches[0], axis, offset, start, way.length())
+            } else {
+                common_point(probe, curve.branches, third, start, way.length())
+            };
+            if let Some(mut place) = place {
                 place[axis] = offset;
                 let corner = self.corner_at(place, &curve.patches, slack);
                 self.corners[corner].position[axis] = offset;

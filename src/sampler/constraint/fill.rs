@@ -194,8 +194,14 @@ impl Creases {
             // The chord is left for the curve. The ends of an open curve are exact already, and lie
             // on the box.
             let reach = a.position.distance(b.position);
-            let found = Meeting::of_branches(probe, curve.branches, place, reach, FADED).filter(|_| !is_end);
-            let position = found.map_or(place, |meeting| meeting.position).as_vec3();
+            let found = if is_end {
+                None
+            } else if curve.is_seam {
+                Meeting::beside_chord(probe, curve.branches, place, b.position - a.position)
+            } else {
+                Meeting::of_branches(probe, curve.branches, place, reach, FADED).map(|found| found.position)
+            };
+            let position = found.unwrap_or(place).as_vec3();
             let position = self.pinned(&curve.patches, position);
             // Several creases may end at one point of the box.
             let is_there = |known: &CreaseParticle| {

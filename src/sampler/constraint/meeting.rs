@@ -30,17 +30,17 @@ pub(super) struct Meeting {
     pub(super) branches: [u32; 2],
     /// Unit vector along the crease.
     pub(super) tangent: DVec3,
-    /// Sine of the angle between the branches.
+    /// Sine of the angle between the branches; 0 on a [seam](super::seam).
     pub(super) sine: f64,
 }
 
 /// Limits of a search within `reach`.
-fn limits(reach: f64) -> StepLimits {
+pub(super) fn limits(reach: f64) -> StepLimits {
     StepLimits { reach, at_rest: AT_REST * reach, ..StepLimits::steps(STEPS) }
 }
 
 /// Value and gradient of a branch at a point.
-fn branch(probe: &mut Probe, branch: u32, p: DVec3) -> (f64, DVec3) {
+pub(super) fn branch(probe: &mut Probe, branch: u32, p: DVec3) -> (f64, DVec3) {
     probe.count(1);
     probe.on(Some(branch)).field.value_and_gradient(p)
 }

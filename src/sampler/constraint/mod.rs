@@ -6,7 +6,8 @@
 //! ([`Patches::branch_at`](crate::field::Patches::branch_at)). Two patches meet along a *crease*,
 //! the curve on which both branches are zero; it ends at a corner, at the box, or runs back into
 //! itself. Where the factors of a product cross, four patches meet: each factor is
-//! two branches, one on either side of the other factor.
+//! two branches, one on either side of the other factor. Patches that meet without an edge and yet
+//! are no single one have a [seam] in the place of a crease.
 //!
 //! 1. *Search.* The field says in which small cells of the box creases can be. There Newton's
 //!    method looks for a point on each pair of branches.
@@ -23,6 +24,7 @@ mod cut;
 mod fill;
 mod ladder;
 mod meeting;
+mod seam;
 #[cfg(test)]
 mod tests;
 pub(super) mod tips;
@@ -79,6 +81,8 @@ pub(super) struct Crease {
     corners: [Option<usize>; 2],
     /// Whether the last point is followed by the first.
     is_closed: bool,
+    /// Whether the patches meet without an edge.
+    is_seam: bool,
     /// The crease on the opposite face of a cell of which this one is the image.
     image: Option<Image>,
 }
@@ -184,6 +188,7 @@ impl Creases {
             }
         }
         creases.trace_from_corners(probe, bounds, step).await;
+        creases.trace_seams(probe, bounds, cells, step).await;
         creases.touch(probe, step).await;
         creases.divide(probe, step);
         if let Some(cell) = unit_cell {
@@ -193,6 +198,30 @@ impl Creases {
         creases.is_open = !cells.is_empty() && !creases.are_there();
         creases.evaluations = probe.evaluations() - start;
         creases
+    }
+
+    /// Traces the seams of patches that meet without an edge and are no single patch, and the
+    /// creases between patches that meet at their ends.
+    async fn trace_seams(&mut self, probe: &mut Probe<'_>, bounds: &Bounds, cells: &[Bounds], step: f64) {
+        let pairs = probe.field.tangent_pairs();
+        if pairs.is_empty() {
+            return;
+        }
+        for cell in cells {
+            pause().await;
+            let branches = probe.field.branches_in(cell).unwrap_or_default();
+            for pair in pairs.iter().filter(|pair| pair.iter().all(|patch| branches.contains(patch))) {
+                let start = Meeting::on_seam(probe, *pair, cell).filter(|start| {
+                    bounds.holds(start.position) && !self.has_point(start.position, *pair, step)
+                });
+                if let Some(start) = start
+                    && start.are_left(probe, pair, step).is_some()
+                {
+                    trace::trace(probe, bounds, self, start, step).await;
+                }
+            }
+        }
+        self.trace_from_corners(probe, bounds, step).await;
     }
 
     /// Follows the creases between patches that meet at a corner: one shorter than a cell is not

@@ -1,7 +1,7 @@
 //! Follows a crease from one of its points to both ends.
 
 use super::meeting::{FADED, MOST_TURN, Meeting, Third, common_point, touching_point};
-use super::{BESIDE, Crease, Creases, ONE_CORNER, ONE_END, touch};
+use super::{BESIDE, Crease, Creases, ONE_CORNER, ONE_END, seam, touch};
 use crate::math::Bounds;
 use crate::sampler::probe::Probe;
 use crate::slices::{Work, pause};
@@ -41,7 +41,7 @@ pub(super) fn trace<'a>(
 ) -> Work<'a, ()> {
     let around = Bounds::new(start.position - BESIDE * step, start.position + BESIDE * step);
     let others = probe.field.branches_in(&around).unwrap_or_default();
-    let patches = start.patches(probe, &others, step);
+    let patches = if start.is_seam() { start.branches.to_vec() } else { start.patches(probe, &others, step) };
     Box::pin(async move {
         let are_left = start.are_left(probe, &patches, step);
         let mut walk = Walk { probe, bounds, start, patches: &patches, are_left: are_left.as_deref(), step };
@@ -79,6 +79,7 @@ pub(super) fn trace<'a>(
             points,
             corners: [first, end],
             is_closed,
+            is_seam: start.is_seam(),
             image: None,
         });
     })
@@ -107,14 +108,20 @@ impl Walk<'_, '_> {
         while points.len() < MOST_STEPS {
             pause().await;
             let here = last.position;
-            let Some((next, length)) = self.next(here, direction) else {
+            let next = if self.start.is_seam() {
+                self.next_of_seam(&last, direction, is_forward)
+            } else {
+                self.next(here, direction)
+            };
+            let Some((next, length)) = next else {
                 return WalkEnd::Corner(creases.corner_at(here, self.patches, ONE_END * self.step));
             };
             if (next.tangent.dot(direction) > 0.0) != is_forward {
                 let end = self.turn(last, next, direction, is_forward);
                 return self.end_at(creases, [here, end], self.patches, ONE_END, points);
             }
-            if !self.is_same_crease(&next, self.step) && !self.is_touched(here, &next) {
+            let is_seam = self.start.is_seam();
+            if !is_seam && !self.is_same_crease(&next, self.step) && !self.is_touched(here, &next) {
                 return self.end_before(creases, here, &next, points);
             }
             if !self.bounds.holds(next.position) {
@@ -155,6 +162,24 @@ impl Walk<'_, '_> {
                 && next.tangent.dot(direction).abs() >= MOST_TURN
                 && (next.position - here).dot(direction) >= MOST_TURN * next.position.distance(here)
             {
+                return Some((next, length));
+            }
+            length *= 0.5;
+        }
+        None
+    }
+
+    /// The next point of a seam, and the length of the step.
+    fn next_of_seam(&mut self, last: &Meeting, direction: DVec3, is_forward: bool) -> Option<(Meeting, f64)> {
+        let [a, b] = self.start.branches;
+        let is_first_left = self.are_left.is_some_and(|are_left| are_left[0]) == is_forward;
+        let sides = if is_first_left { [a, b] } else { [b, a] };
+        let mut length = self.step;
+        for _ in 0..=HALVINGS {
+            if let Some(mut next) = last.along_seam(self.probe, sides, direction, length) {
+                if !is_forward {
+                    next.tangent = -next.tangent;
+                }
                 return Some((next, length));
             }
             length *= 0.5;
@@ -304,7 +329,14 @@ impl Walk<'_, '_> {
             }
         }
         let place = here + way * share;
-        let end = common_point(self.probe, self.start.branches, plane, place, way.length()).unwrap_or(place);
+        let branches = self.start.branches;
+        let end = match plane {
+            Third::Plane { axis, offset } if self.start.is_seam() => {
+                seam::in_plane(self.probe, branches[0], axis, offset, place, way.length())
+            }
+            _ => common_point(self.probe, branches, plane, place, way.length()),
+        };
+        let end = end.unwrap_or(place);
         points.push(end.clamp(self.bounds.lo(), self.bounds.hi()));
         WalkEnd::Open
     }

@@ -1,0 +1,74 @@
+//! Patches that meet without an edge along one part of their border and at an angle along another,
+//! as where a fillet fades out.
+
+use glam::DVec3;
+use marching_particles::{Bounds, Field, Formula, Settings, sample};
+
+/// Places on each axis of the grid on which a volume is summed up.
+const SIDE: u32 = 100;
+
+/// Volume of the solid f < 0 in a cube of this half-width, from a grid.
+fn volume(field: &Formula, half: f64) -> f64 {
+    let at = |k: u32| half * ((2.0 * f64::from(k) + 1.0) / f64::from(SIDE) - 1.0);
+    let evaluator = &mut *field.evaluator(Default::default());
+    let mut inside = 0_u32;
+    for x in (0..SIDE).map(at) {
+        for y in (0..SIDE).map(at) {
+            for z in (0..SIDE).map(at) {
+                inside += u32::from(evaluator.value_and_gradient(DVec3::new(x, y, z)).0 < 0.0);
+            }
+        }
+    }
+    f64::from(inside) * (2.0 * half / f64::from(SIDE)).powi(3)
+}
+
+#[test]
+fn a_solid_is_closed_where_an_edge_of_it_fades_out() {
+    for text in [
+        // A fillet between two planes, whose width falls to 0 and stays so.
+        "max(smin(z, x, max(0, -y)), hypot(x, y, z) - 1)",
+        "max(smin2(z, x, max(0, -y)), hypot(x, y, z) - 1)",
+        // One between a plane and a ball, along half a circle.
+        "max(smin(z, hypot(x, y, z) - 0.5, max(0, -y)), hypot(x, y, z) - 1)",
+        // A plane, and beside it two sheets that rise from it: one without an edge, one with.
+        "max(z - max(x, 0)*(x + max(y, 0)), hypot(x, y, z) - 1)",
+        "max(z - max(x, 0)*(x + max(y, 0)^2), hypot(x, y, z) - 1)",
+        // The same, turned and moved: no plane of a grid runs along the seam.
+        "u = 0.6x - 0.8y - 0.03; v = 0.8x + 0.6y + 0.07; \
+         max(z - max(u, 0)*(u + max(v, 0)), hypot(x, y, z) - 1)",
+    ] {
+        let field = Formula::parse(text).expect("a formula");
+        let exact = volume(&field, 1.0);
+        for settings in [Settings::with_count(5_000), Settings::with_count(5_000).refined()] {
+            let what = format!("{text}, {:?}", settings.method);
+            let sample = sample(field.clone(), &settings).expect("a sample");
+            let topology = &sample.mesh().topology;
+            assert!(topology.is_closed(), "{what}: {} borders", topology.borders.len());
+            assert_eq!((topology.components.len(), topology.euler()), (1, 2), "{what}");
+            let found = sample.volume().expect("a closed mesh");
+            assert!((found / exact - 1.0).abs() < 0.01, "{what}: volume {found} for {exact}");
+            let accuracy = &sample.report().measures.quality.as_ref().expect("figures").accuracy;
+            assert!(accuracy.err_max < 1e-4, "{what}: off by {}", accuracy.err_max);
+        }
+    }
+}
+
+#[test]
+fn a_seam_that_runs_to_the_box_ends_on_its_faces() {
+    let field = Formula::parse("z = max(x, 0)*max(y, 0)").expect("a formula");
+    let bounds = Bounds::cube(2.0);
+    for settings in [Settings::with_count(4_000), Settings::with_count(4_000).refined()] {
+        let sample = sample(field.clone(), &settings.in_box(bounds)).expect("a sample");
+        let what = format!("{:?}", settings.method);
+        assert_eq!(sample.report().warnings, [], "{what}");
+        let topology = &sample.mesh().topology;
+        assert_eq!((topology.components.len(), topology.euler()), (1, 1), "{what}");
+        assert_eq!(topology.borders.len(), 1, "{what}");
+        // Both seams have a particle on the face to which they run.
+        for end in [DVec3::new(-2.0, 0.0, 0.0), DVec3::new(0.0, -2.0, 0.0)] {
+            let distances = (0..sample.particles().len()).map(|i| sample.particles().place(i).distance(end));
+            let least = distances.fold(f64::MAX, f64::min);
+            assert!(least < 1e-4, "{what}: {least} from {end}");
+        }
+    }
+}
