@@ -1,9 +1,7 @@
 //! The rows of particles on creases: which are of one patch, and which of one particle.
 
-use super::points::MeasuredPoints;
 use crate::field::Evaluator;
-use crate::math::{Bounds, NONE, sort_pairs, unkey};
-use crate::mesh::build;
+use crate::math::{NONE, sort_pairs, unkey};
 use crate::particles::Particles;
 use crate::spatial::tree::Tree;
 use core::ops::Range;
@@ -222,19 +220,5 @@ impl CreaseRows {
             (local[row as usize], normals[row as usize]) = (tree.position[k], normal[k]);
         }
         Particles { local, normal: normals, ..rows.clone() }
-    }
-
-    /// The triangles over points with these normals, each patch up to its creases.
-    pub(super) async fn mesh(
-        &self,
-        MeasuredPoints { tree, normal, sheets, .. }: &MeasuredPoints,
-        rows: &Particles,
-        bounds: Option<&Bounds>,
-    ) -> Vec<[u32; 3]> {
-        let Some(sheets) = sheets else { return Vec::new() };
-        let mesh = build::join(&self.placed(tree, normal, rows), sheets, bounds).await;
-        let mut place = vec![NONE; rows.patch.len()];
-        (0..).zip(&tree.origin).for_each(|(k, &row)| place[row as usize] = k);
-        mesh.into_corners().into_iter().map(|triangle| triangle.map(|row| place[row as usize])).collect()
     }
 }

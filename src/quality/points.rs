@@ -4,6 +4,8 @@ use super::accuracy::{NormalAngles, first_order_height, height_along};
 use super::creases::CreaseRows;
 use super::sheets::ByField;
 use crate::field::Evaluator;
+use crate::math::{Bounds, NONE};
+use crate::mesh::build;
 use crate::mesh::stars::{Sheets, StarPoints, Stars};
 use crate::particles::Particles;
 use crate::slices::{HEAVY, pause, ranges};
@@ -101,6 +103,16 @@ impl MeasuredPoints {
         residual.iter_mut().for_each(|height| *height = height.abs());
         let has_duplicate = tree.origin.iter().map(|&i| has_duplicate[i as usize]).collect();
         Self { tree, normal, residual, normal_angles, stars, nearest, creases, sheets, has_duplicate }
+    }
+
+    /// The triangles over the points, each patch up to its creases.
+    pub(super) async fn mesh(&self, rows: &Particles, bounds: Option<&Bounds>) -> Vec<[u32; 3]> {
+        let Some(sheets) = &self.sheets else { return Vec::new() };
+        let placed = self.creases.placed(&self.tree, &self.normal, rows);
+        let mesh = build::join(&placed, sheets, bounds).await;
+        let mut place = vec![NONE; placed.len()];
+        (0..).zip(&self.tree.origin).for_each(|(k, &row)| place[row as usize] = k);
+        mesh.into_corners().into_iter().map(|triangle| triangle.map(|row| place[row as usize])).collect()
     }
 
     /// Returns the number of particles.

@@ -11,8 +11,8 @@
 //! | which particles repel each other beside near sheets | [`numbers`]: those of fronts that have met |
 //! | which particles may be corners of one triangle | `mesh::stars`: by directions and heights, and once the run has ended by `quality::sheets`, which asks the field |
 //!
-//! `discovery::sheets` *proves* that points are connected. `quality::sheets` shares nothing with the
-//! rules of this module, so that a fault here shows there.
+//! `discovery::sheets` *proves* that points are connected. `quality::sheets` shares nothing with
+//! the rules of this module, so that a fault here shows there.
 //!
 //! The *lift* of two points is the mean height of each above the tangent plane at the other, along
 //! the normals. On one sheet the two heights have opposite signs and cancel but for the change of

@@ -272,16 +272,18 @@ impl Stars {
         };
         let mut known_sq = look(0.0, NEAR, star);
         let width_sq = star.width_sq();
-        if width_sq > known_sq {
-            let radius = if width_sq.is_finite() { width_sq.sqrt() } else { 0.0 };
-            known_sq = look(radius, MOST, star);
+        if width_sq > known_sq && width_sq.is_finite() {
+            // A wide ball holds too many points, and they would be looked through for the nearest.
+            let is_wide = width_sq > (MOST / NEAR) as f32 * known_sq;
+            // The hundredth is for rounding.
+            known_sq = look(if is_wide { 0.0 } else { 1.01 * width_sq.sqrt() }, MOST, star);
         }
         let is_certain = star.is_certain(known_sq);
         self.push(ball, star, known_sq.min(f32::MAX), is_certain);
     }
 
-    /// The [completed](Stars::completed) stars of all sheets, as those of a tree over their rows, of
-    /// which so many are on creases. A row that was left out has no neighbours.
+    /// The [completed](Stars::completed) stars of all sheets, as those of a tree over their rows,
+    /// of which so many are on creases. A row that was left out has no neighbours.
     pub(crate) async fn gathered(
         sheets: &Sheets,
         tree: &Tree,

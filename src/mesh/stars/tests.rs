@@ -12,7 +12,7 @@ fn on_sphere(count: usize) -> Vec<Vec3> {
     };
     let in_cube = core::iter::repeat_with(|| DVec3::new(next(), next(), next()));
     let in_ball = in_cube.filter(|p| (0.01..1.0).contains(&p.length_squared()));
-    in_ball.map(|p| p.normalize().as_vec3()).take(count).collect()
+    in_ball.map(|p| p.normalize_or_zero().as_vec3()).take(count).collect()
 }
 
 /// The natural neighbours of a point by looking at all points, in double precision: the cell is cut
@@ -33,7 +33,7 @@ fn naive(points: &StarPoints, i: usize) -> Vec<u32> {
         if centre.normal.dot(other.normal) <= 0.0 || lift.abs() > f64::from(MAX_LIFT) || !is_flat {
             continue;
         }
-        let q = flat.normalize() * offset.length();
+        let q = flat.normalize_or_zero() * offset.length();
         let side = |c: DVec2| c.dot(q) - 0.5 * q.length_squared();
         let mut cut = Vec::new();
         for (k, &(c, behind)) in cell.iter().enumerate() {
@@ -60,7 +60,7 @@ fn turned(mut cycle: Vec<u32>) -> Vec<u32> {
 
 #[test]
 fn stars_are_those_found_by_looking_at_all_points() {
-    let ellipsoid = |semiaxes: Vec3| move |p: Vec3| (p * semiaxes, (p / semiaxes).normalize());
+    let ellipsoid = |semiaxes: Vec3| move |p: Vec3| (p * semiaxes, (p / semiaxes).normalize_or_zero());
     for semiaxes in [Vec3::ONE, Vec3::new(1.0, 0.8, 0.5)] {
         let (position, normal): (Vec<Vec3>, Vec<Vec3>) =
             on_sphere(900).into_iter().map(ellipsoid(semiaxes)).unzip();
