@@ -8,7 +8,7 @@ use crate::math::{Bounds, NONE};
 use crate::mesh::build;
 use crate::mesh::stars::{Sheets, StarPoints, Stars};
 use crate::particles::Particles;
-use crate::slices::{HEAVY, pause, ranges};
+use crate::slices::{HEAVY, MEDIUM, pause, ranges};
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
@@ -97,8 +97,11 @@ impl MeasuredPoints {
                 Stars::gathered(sheets.insert(of_all), &tree, rows.twins.len(), judge).await
             }
         };
-        pause().await;
-        let nearest = (0..tree.len()).map(|i| creases.nearest_within(&tree, i, stars.nearest[i])).collect();
+        let mut nearest = Vec::with_capacity(tree.len());
+        for range in ranges(tree.len(), MEDIUM) {
+            pause().await;
+            nearest.extend(range.map(|i| creases.nearest_within(&tree, i, stars.nearest[i])));
+        }
         let mut residual = height;
         residual.iter_mut().for_each(|height| *height = height.abs());
         let has_duplicate = tree.origin.iter().map(|&i| has_duplicate[i as usize]).collect();

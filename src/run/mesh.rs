@@ -158,7 +158,8 @@ impl<F: Field> Run<F> {
             particles.truncate(self.rows());
             let known = self.sampler.triangles().to_vec();
             let sheets = self.measuring.sheets.clone();
-            let expected = if known.is_empty() { build::expected_slices(particles.len()) } else { 0 };
+            let expected =
+                if known.is_empty() { build::expected_slices(particles.len(), sheets.is_some()) } else { 0 };
             let work = async move { joined(&particles, &known, &bounds, sheets.as_deref()).await };
             self.meshing.state = MeshState::Joining(Estimated::new(Box::pin(work), expected));
         }

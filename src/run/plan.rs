@@ -11,11 +11,12 @@ fn run_cost(method: Method) -> f64 {
     }
 }
 
-/// Cost of the mesh, over that of measuring the particles once. A refined run has made it already.
-fn mesh_cost(method: Method) -> f64 {
-    match method {
-        Method::Front => 0.3,
-        Method::Refined => 0.1,
+/// Cost of the mesh, over that of measuring the particles once. A refined run has made it already,
+/// and measuring has found the neighbours that a front's is made of.
+fn mesh_cost(method: Method, measured: Measured) -> f64 {
+    match (method, measured) {
+        (Method::Front, Measured::Nothing) => 0.3,
+        _ => 0.1,
     }
 }
 
@@ -48,7 +49,8 @@ impl Plan {
             Measured::Particles => 1.0,
             Measured::FrontToo => 2.0,
         };
-        let (run, mesh) = (run_cost(method), if self.is_joined { mesh_cost(method) } else { 0.0 });
+        let mesh = if self.is_joined { mesh_cost(method, self.measured) } else { 0.0 };
+        let run = run_cost(method);
         let all = run + measuring + mesh;
         Shares { run: run / all, measuring: measuring / all, mesh: mesh / all }
     }

@@ -22,7 +22,7 @@ use glam::Vec3;
 
 /// Largest circumradius of a triangle, in units of the spacing at the corner. Smaller: more
 /// particles are in no triangle; larger: more gaps of the surface are closed.
-pub(crate) const WIDEST: f32 = 2.0;
+const WIDEST: f32 = 2.0;
 /// Points nearer than this share of the ball's radius are one point.
 const TWIN: f32 = 1e-5;
 /// Marks, in [`Stars::entry`], that the point, this neighbour and the next one form a triangle.
@@ -273,7 +273,7 @@ impl Stars {
         let mut known_sq = look(0.0, NEAR, star);
         let width_sq = star.width_sq();
         if width_sq > known_sq && width_sq.is_finite() {
-            // A wide ball holds too many points, and they would be looked through for the nearest.
+            // Of a wide ball that holds more points, the nearest are found sooner without it.
             let is_wide = width_sq > (MOST / NEAR) as f32 * known_sq;
             // The hundredth is for rounding.
             known_sq = look(if is_wide { 0.0 } else { 1.01 * width_sq.sqrt() }, MOST, star);
@@ -461,7 +461,7 @@ impl Star {
 
     /// Whether no point farther than √`known_sq` can matter.
     fn is_certain(&self, known_sq: f32) -> bool {
-        self.rays.iter().all(|ray| ray.width_sq <= known_sq)
+        !self.rays.is_empty() && self.width_sq() <= known_sq
     }
 
     /// The square of the largest width of a wedge; infinite where one takes half a turn or more.
