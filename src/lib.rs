@@ -38,6 +38,13 @@
 //!   its user should know, and a panic for a mistake in the calling code; routines that can panic
 //!   say when.
 //!
+//! # Features
+//!
+//! `points`, which is on by default, fits surfaces to points. With `parallel` all threads of the
+//! current [rayon](https://docs.rs/rayon) pool share measuring, fits to points and parts of the
+//! mesh, natively; the results are the same. Functions of the program are then called from several
+//! threads at once. `cli` is the command-line tool, with both of them.
+//!
 //! # Glossary
 //!
 //! The words of the paper, and a dozen more that the code uses everywhere. One word for one thing.

@@ -8,6 +8,9 @@
 //! A method of the sampler is such a function, too. It works on what the sampler has, with a field
 //! that comes anew with every step: see its desk.
 
+#[cfg(all(feature = "parallel", not(target_arch = "wasm32")))]
+use rayon::prelude::*;
+
 use core::future::poll_fn;
 use core::ops::Range;
 use core::pin::{Pin, pin};
@@ -61,6 +64,83 @@ pub fn pause() -> impl Future<Output = ()> + Send {
 /// Divides 0..`count` into ranges of `size`, one for each slice.
 pub fn ranges(count: usize, size: usize) -> impl Iterator<Item = Range<usize>> + Send {
     (0..count).step_by(size).map(move |first| first..(first + size).min(count))
+}
+
+/// Does `work` on each range of 0..`count` of `size` items and returns the results in order. Each is
+/// a slice of work.
+///
+/// With the feature `parallel` all threads of the current rayon pool share the ranges, and do some
+/// slices at once. Each thread has its own scratch memory, by `new_scratch`: no result may depend
+/// on what that held before.
+pub(crate) async fn map<S: MaybeSend, T: MaybeSend>(
+    count: usize,
+    size: usize,
+    new_scratch: impl Fn() -> S + MaybeSend,
+    work: impl Fn(&mut S, Range<usize>) -> T + MaybeSend + MaybeSync,
+) -> Vec<T> {
+    let all: Vec<Range<usize>> = ranges(count, size).collect();
+    let mut scratch: Vec<S> = (0..threads().min(all.len()).max(1)).map(|_| new_scratch()).collect();
+    let mut results = Vec::with_capacity(all.len());
+    // So many for each thread that it takes far longer to do them than to wake it.
+    let at_once = if scratch.len() > 1 { 64 * scratch.len() } else { 1 };
+    for group in all.chunks(at_once) {
+        share_out(&mut scratch, group, &work, &mut results);
+        for _ in group {
+            pause().await;
+        }
+    }
+    results
+}
+
+/// Does `work` on each part of `size` items, the last of which may be smaller, with the part's
+/// number. The threads share the parts as in [`map`].
+#[cfg(feature = "points")]
+pub(crate) async fn change<T: MaybeSend>(
+    items: &mut [T],
+    size: usize,
+    work: impl Fn(usize, &mut [T]) + MaybeSend + MaybeSync,
+) {
+    let at_once = if threads() > 1 { 4 * threads() } else { 1 };
+    for (first, items) in (0..).step_by(at_once).zip(items.chunks_mut(at_once * size)) {
+        let count = items.len().div_ceil(size);
+        if at_once > 1 {
+            #[cfg(all(feature = "parallel", not(target_arch = "wasm32")))]
+            items.par_chunks_mut(size).enumerate().for_each(|(k, part)| work(first + k, part));
+        } else {
+            work(first, items);
+        }
+        for _ in 0..count {
+            pause().await;
+        }
+    }
+}
+
+/// Number of threads that share the work.
+fn threads() -> usize {
+    #[cfg(all(feature = "parallel", not(target_arch = "wasm32")))]
+    return rayon::current_num_threads();
+    #[cfg(not(all(feature = "parallel", not(target_arch = "wasm32"))))]
+    1
+}
+
+/// Appends the results of `work` on these ranges, of which each thread takes some that follow each
+/// other.
+fn share_out<S: MaybeSend, T: MaybeSend>(
+    scratch: &mut [S],
+    ranges: &[Range<usize>],
+    work: &(impl Fn(&mut S, Range<usize>) -> T + MaybeSync),
+    results: &mut Vec<T>,
+) {
+    #[cfg(all(feature = "parallel", not(target_arch = "wasm32")))]
+    if scratch.len() > 1 {
+        let shares = ranges.par_chunks(ranges.len().div_ceil(scratch.len()));
+        let shares = scratch.par_iter_mut().zip(shares);
+        results.par_extend(
+            shares.flat_map_iter(|(scratch, ranges)| ranges.iter().map(|range| work(scratch, range.clone()))),
+        );
+        return;
+    }
+    results.extend(ranges.iter().map(|range| work(&mut scratch[0], range.clone())));
 }
 
 /// Does up to `budget` slices and returns the result, if the last one is done. The computation must
@@ -131,6 +211,42 @@ mod tests {
         assert_eq!(advance(work.as_mut(), 3), None);
         assert_eq!(advance(work.as_mut(), 1), Some(7));
         assert_eq!(complete(async { pause().await }), ());
+    }
+
+    #[test]
+    fn results_are_in_the_order_of_the_ranges_whatever_their_number() {
+        for (count, size) in [(0, 3), (1, 3), (7, 3), (10_000, 7)] {
+            let new_scratch = || Vec::new();
+            let sums = complete(map(count, size, new_scratch, |seen: &mut Vec<usize>, range| {
+                seen.clear();
+                seen.extend(range);
+                seen.iter().sum::<usize>()
+            }));
+            assert_eq!(sums, ranges(count, size).map(Iterator::sum).collect::<Vec<usize>>());
+        }
+    }
+
+    #[test]
+    #[cfg(feature = "points")]
+    fn every_part_is_changed_once() {
+        for count in [0, 1, 7, 10_000] {
+            let mut items = vec![1; count];
+            complete(change(&mut items, 7, |k, part| part.iter_mut().for_each(|item| *item += k)));
+            assert!(items.iter().enumerate().all(|(i, &item)| item == 1 + i / 7), "{count}");
+        }
+    }
+
+    #[test]
+    #[cfg(feature = "parallel")]
+    fn any_number_of_threads_does_the_same() {
+        for threads in [1, 2, 5] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| {
+                results_are_in_the_order_of_the_ranges_whatever_their_number();
+                #[cfg(feature = "points")]
+                every_part_is_changed_once();
+            });
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Components, borders and Euler number of a list of triangles, counted from the list alone.
 
 use crate::math::NONE;
-use crate::slices::{self, LIGHT, MEDIUM, pause, ranges};
+use crate::slices::{self, LIGHT, MEDIUM, pause};
 use core::ops::Range;
 
 /// A connected part of a mesh: vertices that edges join.
@@ -114,15 +114,24 @@ impl Topology {
 
     /// [`Topology::new`] in slices of work.
     pub(crate) async fn in_slices(triangles: &[[u32; 3]], vertex_count: usize) -> Self {
-        let mut corners = Corners::new(triangles, vertex_count).await;
+        let corners = Corners::new(triangles, vertex_count).await;
+        let parts = slices::map(vertex_count, MEDIUM, Vec::new, |own, vertices| {
+            let mut part = Self::default();
+            let add = |v: usize| {
+                own.clear();
+                own.extend_from_slice(&corners.ends[corners.range(v)]);
+                part.add_vertex(v as u32, own)
+            };
+            let stars: Vec<StarCounts> = vertices.map(add).collect();
+            (part, stars)
+        });
         let mut topology = Self::default();
         let mut stars = Vec::with_capacity(vertex_count);
-        for vertices in ranges(vertex_count, MEDIUM) {
-            for v in vertices {
-                let range = corners.range(v);
-                stars.push(topology.add_vertex(v as u32, &mut corners.ends[range]));
-            }
-            pause().await;
+        for (part, own) in parts.await {
+            topology.crowded_edges.extend(part.crowded_edges);
+            topology.pinched_vertices.extend(part.pinched_vertices);
+            topology.lone_edges.extend(part.lone_edges);
+            stars.extend(own);
         }
         topology.count_components(&corners, &stars).await;
         topology.trace_borders(&mut stars);

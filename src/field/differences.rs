@@ -229,6 +229,10 @@ impl Evaluator for Differences<'_> {
         self.frame
     }
 
+    fn another(&self) -> Box<dyn Evaluator + '_> {
+        Box::new(Differences::new(self.functions, self.frame))
+    }
+
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
         self.take(points);
         write_values(self.functions, &self.points, &mut self.value);

@@ -180,9 +180,13 @@ impl Frame {
 /// # Panics
 ///
 /// If an output is shorter than `points`.
-pub trait Evaluator: super::MaybeSend {
+pub trait Evaluator: super::MaybeSend + super::MaybeSync {
     /// The frame in which places are counted and values are given.
     fn frame(&self) -> Frame;
+
+    /// Another evaluator of the same function, or of the same branch of it, in the same frame, with
+    /// memory of its own: threads that measure have one each. It gives the same bits.
+    fn another(&self) -> Box<dyn Evaluator + '_>;
 
     /// f at each point.
     fn values(&mut self, points: &[Vec3], value: &mut [f32]);
@@ -360,14 +364,18 @@ impl<'a> dyn Evaluator + 'a {
 }
 
 /// The evaluator of a field by its own methods, one point at a time.
-pub(super) struct Pointwise<F> {
-    pub(super) field: F,
+pub(super) struct Pointwise<'a, F: ?Sized> {
+    pub(super) field: &'a F,
     pub(super) frame: Frame,
 }
 
-impl<F: Field> Evaluator for Pointwise<F> {
+impl<F: Field + ?Sized> Evaluator for Pointwise<'_, F> {
     fn frame(&self) -> Frame {
         self.frame
+    }
+
+    fn another(&self) -> Box<dyn Evaluator + '_> {
+        Box::new(Pointwise { field: self.field, frame: self.frame })
     }
 
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {

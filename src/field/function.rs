@@ -124,7 +124,8 @@ where
 /// A field given by a function of a batch of points, with its gradients or without.
 ///
 /// The function writes f at each point, of which there are 512 at most. It may fail: the run ends
-/// then, and gives the error. A function that has failed once is not asked again, by no run. What
+/// then, and gives the error. A function that has failed once is not asked again, by no run; with the feature
+/// `parallel` a few calls may be under way. What
 /// is said of [`FnField`] holds here, too.
 pub struct BatchField<F, E = FieldError, G = fn(&[DVec3], &mut [DVec3]) -> Result<(), E>> {
     values: F,

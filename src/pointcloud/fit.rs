@@ -19,9 +19,9 @@ use super::{Cloud, CloudError, ModelInfo};
 use crate::field::rbf::{CentredFrame, RbfData, RbfField};
 use crate::field::{Field, Frame};
 use crate::math::{Bounds, sort_numbers};
-use crate::slices::{HEAVY, LIGHT, pause, ranges};
+use crate::slices::{self, HEAVY, LIGHT};
 use glam::{BVec3, DVec3, Vec3};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DMatrixViewMut, DVector};
 use std::sync::Arc;
 
 /// Minimum number of centres: fewer bound no volume.
@@ -140,8 +140,8 @@ pub async fn approximate(
     let smoothing = smoothing(&points, &centres, |share| tell(TRIALS_END * share)).await?;
     let [begin, end] = ELIMINATION_SPAN;
     let (points, distance_sq) = in_cells(points, &centres).await;
-    let system =
-        System::new(&points, &centres, |share| tell(TRIALS_END + (begin - TRIALS_END) * share)).await?;
+    let of_system = |share| tell(TRIALS_END + (begin - TRIALS_END) * share);
+    let system = System::new(&points, &centres, of_system).await?;
     let smoothing = Smoothing { value: smoothing, distance_sq };
     let (x, condition) = system.solve(smoothing, |share| tell(begin + (end - begin) * share)).await?;
     if condition.is_nan() || condition >= MAX_CONDITION {
@@ -172,20 +172,28 @@ struct CellPoint {
 /// The points, each in the cell of its nearest centre, and the mean of their squared distances from
 /// these. Ties go to the smaller index.
 async fn in_cells(mut points: Vec<CellPoint>, centres: &[DVec3]) -> (Vec<CellPoint>, f64) {
-    let (mut sum, count) = (0.0, points.len() as f64);
-    for range in ranges(points.len(), LIGHT.div_ceil(centres.len())) {
-        for point in &mut points[range] {
-            let mut least = f64::INFINITY;
-            for (j, centre) in centres.iter().enumerate() {
-                let distance_sq = centre.distance_squared(point.position);
-                if distance_sq < least {
-                    (least, point.cell) = (distance_sq, j as u32);
-                }
+    let nearest = |point: &CellPoint| {
+        let (mut least, mut cell) = (f64::INFINITY, 0);
+        for (j, centre) in centres.iter().enumerate() {
+            let distance_sq = centre.distance_squared(point.position);
+            if distance_sq < least {
+                (least, cell) = (distance_sq, j as u32);
             }
-            sum += least;
         }
-        pause().await;
+        (least, cell)
+    };
+    let parts = slices::map(
+        points.len(),
+        LIGHT.div_ceil(centres.len()),
+        || (),
+        |(), range| points[range].iter().map(nearest).collect::<Vec<_>>(),
+    );
+    let (mut sum, nearest) = (0.0, parts.await.concat());
+    for (point, (distance_sq, cell)) in points.iter_mut().zip(nearest) {
+        point.cell = cell;
+        sum += distance_sq;
     }
+    let count = points.len() as f64;
     (points, sum / count)
 }
 
@@ -225,18 +233,18 @@ async fn smoothing(points: &[CellPoint], centres: &[DVec3], tell: impl Fn(f64)) 
 
 /// Sum of f² and `distance_sq` |∇f − n|² over the points.
 async fn error_at(field: &RbfField, points: &[CellPoint], distance_sq: f64) -> f64 {
-    let mut field = field.evaluator(Frame::default());
-    let mut sum = 0.0;
-    for points in points.chunks(HEAVY) {
+    let new_scratch = || field.evaluator(Frame::default());
+    let parts = slices::map(points.len(), HEAVY, new_scratch, |field, range| {
+        let points = &points[range];
         let positions: Vec<Vec3> = points.iter().map(|point| point.position.as_vec3()).collect();
         let (mut value, mut gradient) = (vec![0.0; points.len()], vec![DVec3::ZERO; points.len()]);
         field.exact_gradients(&positions, &mut value, &mut gradient);
-        for (point, (value, gradient)) in points.iter().zip(value.iter().zip(gradient)) {
-            sum += value * value + distance_sq * gradient.distance_squared(point.normal);
-        }
-        pause().await;
-    }
-    sum
+        let error = |(point, (value, gradient)): (&CellPoint, (f64, DVec3))| {
+            value * value + distance_sq * gradient.distance_squared(point.normal)
+        };
+        points.iter().zip(value.into_iter().zip(gradient)).map(error).collect::<Vec<f64>>()
+    });
+    parts.await.into_iter().flatten().sum()
 }
 
 /// The field with the unknowns `x`, which are α and −β of each centre in local coordinates.
@@ -319,12 +327,19 @@ impl System {
         for point in points {
             this.count[point.cell as usize] += 1.0;
         }
-        for columns in ranges(centres.len(), LIGHT.div_ceil(points.len())) {
-            tell(columns.start as f64 / centres.len() as f64);
-            for j in columns {
-                this.add_columns(points, centres, j);
-            }
-            pause().await;
+        let count = &this.count;
+        let of_centres = LIGHT.div_ceil(points.len());
+        let tenth = centres.len().div_ceil(10);
+        let tenths = this.matrix.as_mut_slice().chunks_mut(4 * side * tenth).zip(centres.chunks(tenth));
+        for (done, (columns, centres)) in (0..).zip(tenths) {
+            tell(f64::from(done) / 10.0);
+            slices::change(columns, 4 * side * of_centres, |k, columns| {
+                for (columns, &centre) in columns.chunks_exact_mut(4 * side).zip(&centres[k * of_centres..]) {
+                    let columns = &mut DMatrixViewMut::from_slice(columns, side, 4);
+                    add_columns(points, count, centre, columns);
+                }
+            })
+            .await;
         }
         for point in points {
             let (cell, count) = (point.cell as usize, this.count[point.cell as usize]);
@@ -333,29 +348,6 @@ impl System {
             }
         }
         Ok(this)
-    }
-
-    /// Writes the columns of centre `j`.
-    fn add_columns(&mut self, points: &[CellPoint], centres: &[DVec3], j: usize) {
-        for point in points {
-            let (cell, d) = (point.cell as usize, point.position - centres[j]);
-            let r = d.length();
-            if r == 0.0 {
-                continue;
-            }
-            let share = 1.0 / self.count[cell];
-            let gradient = 3.0 * r * d * share;
-            let mut block = self.matrix.view_mut((4 * cell, 4 * j), (4, 4));
-            block[(0, 0)] += r * r * r * share;
-            for a in 0..3 {
-                block[(0, 1 + a)] -= gradient[a];
-                block[(1 + a, 0)] += gradient[a];
-                for b in 0..3 {
-                    let identity = if a == b { r } else { 0.0 };
-                    block[(1 + a, 1 + b)] -= 3.0 * (identity + d[a] * d[b] / r) * share;
-                }
-            }
-        }
     }
 
     /// Solves for the unknowns, and estimates the condition number. `tell` gets the fraction of the
@@ -379,29 +371,55 @@ impl System {
     }
 }
 
+/// Writes the four columns of a centre. Each cell has `count` points.
+fn add_columns(points: &[CellPoint], count: &[f64], centre: DVec3, columns: &mut DMatrixViewMut<'_, f64>) {
+    for point in points {
+        let (cell, d) = (point.cell as usize, point.position - centre);
+        let r = d.length();
+        if r == 0.0 {
+            continue;
+        }
+        let share = 1.0 / count[cell];
+        let gradient = 3.0 * r * d * share;
+        let mut block = columns.rows_range_mut(4 * cell..4 * cell + 4);
+        block[(0, 0)] += r * r * r * share;
+        for a in 0..3 {
+            block[(0, 1 + a)] -= gradient[a];
+            block[(1 + a, 0)] += gradient[a];
+            for b in 0..3 {
+                let identity = if a == b { r } else { 0.0 };
+                block[(1 + a, 1 + b)] -= 3.0 * (identity + d[a] * d[b] / r) * share;
+            }
+        }
+    }
+}
+
 /// Residuals |f|/|∇f| of the points, and the point with the largest one. There is none where ∇f
 /// vanishes.
 async fn residuals(field: &RbfField, points: &[DVec3], tell: impl Fn(f64)) -> (Vec<f32>, DVec3) {
-    let mut field = field.evaluator(Frame::default());
+    let new_scratch = || field.evaluator(Frame::default());
+    let mut all: Vec<f32> = Vec::with_capacity(points.len());
+    for (done, points) in (0..).zip(points.chunks(points.len().div_ceil(10).max(1))) {
+        tell(f64::from(done) / 10.0);
+        let parts = slices::map(points.len(), HEAVY, new_scratch, |field, range| {
+            let batch: Vec<Vec3> = points[range].iter().map(|p| p.as_vec3()).collect();
+            let mut value = vec![0.0; batch.len()];
+            let mut gradient = vec![Vec3::ZERO; batch.len()];
+            field.gradients(&batch, &mut value, &mut gradient);
+            let residual = |(value, gradient): (&f32, &Vec3)| value.abs() / gradient.length();
+            value.iter().zip(&gradient).map(residual).collect::<Vec<f32>>()
+        });
+        all.extend(parts.await.concat());
+    }
     let mut residuals = Vec::with_capacity(points.len());
     let (mut largest, mut farthest) = (0.0, DVec3::ZERO);
-    for range in ranges(points.len(), HEAVY) {
-        tell(range.start as f64 / points.len() as f64);
-        let points = &points[range];
-        let batch: Vec<Vec3> = points.iter().map(|p| p.as_vec3()).collect();
-        let mut value = vec![0.0; batch.len()];
-        let mut gradient = vec![Vec3::ZERO; batch.len()];
-        field.gradients(&batch, &mut value, &mut gradient);
-        for (p, (value, gradient)) in points.iter().zip(value.iter().zip(&gradient)) {
-            let residual = value.abs() / gradient.length();
-            if residual.is_finite() {
-                residuals.push(residual);
-            }
-            if residual.is_finite() && residual > largest {
-                (largest, farthest) = (residual, *p);
-            }
+    for (p, residual) in points.iter().zip(all) {
+        if residual.is_finite() {
+            residuals.push(residual);
         }
-        pause().await;
+        if residual.is_finite() && residual > largest {
+            (largest, farthest) = (residual, *p);
+        }
     }
     (residuals, farthest)
 }

@@ -4,9 +4,9 @@
 //! the right of a panel, which takes nearly all of the time, is written out here. Neither uses a
 //! fused multiply-add, so the solution has the same bits natively and in WebAssembly.
 
-use crate::slices::{pause, ranges};
+use crate::slices::{self, pause, ranges};
 use core::ops::Range;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut, DVector};
 
 /// Columns per panel: enough to read a panel seldom, few enough to keep its rows in the cache. More
 /// make longer slices.
@@ -43,15 +43,14 @@ impl Decomposition {
         let mut this = Self { matrix, exchanges: Vec::new(), norm };
         // The work left is about the cube of the columns left.
         let left = |column: usize| (n.saturating_sub(column) as f64 / n as f64).powi(3);
-        for Range { start: panel, end } in ranges(n, PANEL) {
-            this.factorise(panel..end)?;
+        for range in ranges(n, PANEL) {
+            tell(1.0 - left(range.start));
+            let (first, end) = (range.start, range.end);
+            this.factorise(range)?;
             pause().await;
-            for open in (end..n).step_by(PANEL) {
-                let share = (open - end) as f64 / (n - end) as f64;
-                tell(1.0 - left(panel) + share * (left(panel) - left(end)));
-                this.update(panel, open);
-                pause().await;
-            }
+            let (eliminated, open) = this.matrix.as_mut_slice().split_at_mut(end * n);
+            let panel = &eliminated[first * n..];
+            slices::change(open, PANEL * n, |_, columns| update(panel, first, columns, n)).await;
         }
         Ok(this)
     }
@@ -76,28 +75,6 @@ impl Decomposition {
             }
         }
         Ok(())
-    }
-
-    /// Updates the columns from `next` on by the panel from `first` on: to L⁻¹ A in its rows, to A
-    /// − L U below.
-    fn update(&mut self, first: usize, next: usize) {
-        let n = self.matrix.nrows();
-        let (below, width) = (first + PANEL, PANEL.min(n - next));
-        let (panel, mut open) = self.matrix.columns_range_pair_mut(first..below, next..next + width);
-        let mut top = open.view_mut((first, 0), (PANEL, width));
-        panel.view((first, 0), (PANEL, PANEL)).solve_lower_triangular_with_diag_mut(&mut top, 1.0);
-
-        let (eliminated, open) = self.matrix.as_mut_slice().split_at_mut(next * n);
-        let panel = &eliminated[first * n..below * n];
-        for start in (below..n).step_by(ROWS) {
-            let rows = start..(start + ROWS).min(n);
-            for column in open[..width * n].chunks_exact_mut(n) {
-                let (above, target) = column[first..rows.end].split_at_mut(rows.start - first);
-                for (factors, columns) in above[..PANEL].as_chunks().0.iter().zip(panel.chunks_exact(4 * n)) {
-                    subtract(target, [0, 1, 2, 3].map(|k| &columns[k * n..][rows.clone()]), factors);
-                }
-            }
-        }
     }
 
     /// Solves A x = `right` in place.
@@ -134,6 +111,25 @@ impl Decomposition {
             x[slope.icamax()] = 1.0;
         }
         Ok(self.norm * estimate)
+    }
+}
+
+/// Updates the columns `open`, of `n` rows each, by the panel of columns from `first` on: to L⁻¹ A
+/// in the rows of the panel, to A − L U below.
+fn update(panel: &[f64], first: usize, open: &mut [f64], n: usize) {
+    let below = first + PANEL;
+    let mut columns = DMatrixViewMut::from_slice(open, n, open.len() / n);
+    let mut top = columns.rows_range_mut(first..below);
+    let lower = DMatrixView::from_slice(panel, n, PANEL);
+    lower.rows_range(first..below).solve_lower_triangular_with_diag_mut(&mut top, 1.0);
+    for start in (below..n).step_by(ROWS) {
+        let rows = start..(start + ROWS).min(n);
+        for column in open.chunks_exact_mut(n) {
+            let (above, target) = column[first..rows.end].split_at_mut(rows.start - first);
+            for (factors, columns) in above[..PANEL].as_chunks().0.iter().zip(panel.chunks_exact(4 * n)) {
+                subtract(target, [0, 1, 2, 3].map(|k| &columns[k * n..][rows.clone()]), factors);
+            }
+        }
     }
 }
 

@@ -38,6 +38,14 @@ pub(super) fn measure(residual: &[f64], normals: &NormalAngles, d_hex: f64) -> A
     Accuracy { err_max: largest / d_hex, err_mean: err.mean() / d_hex, undefined, nrm_mean, nrm_max }
 }
 
+/// Angle between a normal and a gradient in degrees, if both have a direction.
+pub(super) fn angle_between(normal: Vec3, gradient: DVec3) -> Option<f64> {
+    let normal = normal.as_dvec3();
+    let (across, along) = (normal.cross(gradient).length(), normal.dot(gradient).abs());
+    let has_angle = across + along > 0.0 && across.is_finite() && along.is_finite();
+    has_angle.then(|| libm::atan2(across, along).to_degrees())
+}
+
 /// Angles between the given normals and the gradient.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct NormalAngles {
@@ -46,15 +54,10 @@ pub(super) struct NormalAngles {
 }
 
 impl NormalAngles {
-    /// Takes in a normal and a gradient, if both have a direction.
-    pub(super) fn add(&mut self, normal: Vec3, gradient: DVec3) {
-        let normal = normal.as_dvec3();
-        let (across, along) = (normal.cross(gradient).length(), normal.dot(gradient).abs());
-        if across + along > 0.0 && across.is_finite() && along.is_finite() {
-            let degrees = libm::atan2(across, along).to_degrees();
-            self.angle.add(degrees);
-            self.largest = self.largest.max(degrees);
-        }
+    /// Takes in an angle in degrees.
+    pub(super) fn add(&mut self, angle: f64) {
+        self.angle.add(angle);
+        self.largest = self.largest.max(angle);
     }
 
     /// Returns the mean and the largest angle in degrees; NaN of no angles.

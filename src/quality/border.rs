@@ -2,7 +2,7 @@
 
 use crate::field::Evaluator;
 use crate::math::{Bounds, NONE};
-use crate::slices::pause;
+use crate::slices;
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
@@ -31,7 +31,7 @@ pub(super) struct Border {
 impl Border {
     /// Finds the border on those faces of `bounds` that are near a point of `tree`; the points have
     /// a spacing of about `d_hex`.
-    pub(super) async fn new(field: &mut dyn Evaluator, bounds: &Bounds, tree: &Tree, d_hex: f64) -> Self {
+    pub(super) async fn new(field: &dyn Evaluator, bounds: &Bounds, tree: &Tree, d_hex: f64) -> Self {
         let margin = MARGIN * d_hex;
         let mut curve = Vec::new();
         if bounds.is_valid() && margin > 0.0 && margin.is_finite() {
@@ -40,11 +40,7 @@ impl Border {
                 let faces =
                     [(own.min[axis] - bounds.min[axis], -1.0), (bounds.max[axis] - own.max[axis], 1.0)];
                 for (_, sign) in faces.into_iter().filter(|face| face.0 < margin) {
-                    let mut face = Face::new(bounds, axis, sign, d_hex);
-                    for row in 0..=face.rows {
-                        face.cross(field, row, &mut curve);
-                        pause().await;
-                    }
+                    curve.extend(Face::new(bounds, axis, sign, d_hex).crossings(field).await);
                 }
             }
         }
@@ -65,7 +61,7 @@ impl Border {
     }
 }
 
-/// A face of a box with a grid of values, of which two rows are kept at a time.
+/// A face of a box with a grid.
 struct Face {
     axis: usize,
     /// Outward direction along the axis, 1 or −1.
@@ -75,10 +71,6 @@ struct Face {
     size: DVec3,
     columns: usize,
     rows: usize,
-    points: Vec<Vec3>,
-    value: Vec<f32>,
-    /// Values of the row before.
-    above: Vec<f32>,
 }
 
 impl Face {
@@ -88,19 +80,7 @@ impl Face {
         let (columns, rows) = (cells((axis + 1) % 3), cells((axis + 2) % 3));
         let mut corner = bounds.lo();
         corner[axis] = if sign < 0.0 { bounds.min[axis] } else { bounds.max[axis] };
-        let (points, value) = (vec![Vec3::ZERO; columns + 1], vec![0.0; columns + 1]);
-        Self {
-            axis,
-            sign,
-            d_hex,
-            corner,
-            size,
-            columns,
-            rows,
-            points,
-            value,
-            above: vec![f32::NAN; columns + 1],
-        }
+        Self { axis, sign, d_hex, corner, size, columns, rows }
     }
 
     /// Returns a node of the grid.
@@ -112,32 +92,48 @@ impl Face {
         p
     }
 
-    /// Appends the points where the sign changes on the edges of a row of the grid and on those
-    /// from the row before.
-    fn cross(&mut self, field: &mut dyn Evaluator, row: usize, curve: &mut Vec<Vec3>) {
-        for column in 0..=self.columns {
-            self.points[column] = self.node(column, row).as_vec3();
-        }
-        field.values(&self.points, &mut self.value);
+    /// The points of the border on the edges of the grid.
+    async fn crossings(&self, field: &dyn Evaluator) -> Vec<Vec3> {
+        let of_row = |field: &mut dyn Evaluator, row: usize| {
+            let nodes: Vec<Vec3> =
+                (0..=self.columns).map(|column| self.node(column, row).as_vec3()).collect();
+            let mut value = vec![0.0; nodes.len()];
+            field.values(&nodes, &mut value);
+            value
+        };
+        let rows = self.rows + 1;
+        let new_scratch = || field.another();
+        let values =
+            slices::map(rows, 1, new_scratch, |field, range| of_row(&mut **field, range.start)).await;
+        let crossings = slices::map(rows, 1, new_scratch, |field, range| {
+            let row = range.start;
+            self.crossings_at(&mut **field, row, &values[row.saturating_sub(1)], &values[row])
+        });
+        crossings.await.concat()
+    }
+
+    /// The points of the border on the edges of a row of the grid and on those from the row before,
+    /// with the values of both.
+    fn crossings_at(&self, field: &mut dyn Evaluator, row: usize, above: &[f32], value: &[f32]) -> Vec<Vec3> {
+        let mut found = Vec::new();
         let mut add = |a: [usize; 2], fa: f32, b: [usize; 2], fb: f32| {
             let [a, b] = [a, b].map(|[column, row]| self.node(column, row));
             let p = a.lerp(b, f64::from(fa) / (f64::from(fa) - f64::from(fb)));
             if is_cut(field, p, (b - a).length(), self.axis, self.sign, self.d_hex) {
-                curve.push(p.as_vec3());
+                found.push(p.as_vec3());
             }
         };
         // This is false where either is NaN.
         let changes = |fa: f32, fb: f32| fa < 0.0 && fb >= 0.0 || fa >= 0.0 && fb < 0.0;
         for column in 0..=self.columns {
-            let value = self.value[column];
-            if row > 0 && changes(self.above[column], value) {
-                add([column, row - 1], self.above[column], [column, row], value);
+            if row > 0 && changes(above[column], value[column]) {
+                add([column, row - 1], above[column], [column, row], value[column]);
             }
-            if column > 0 && changes(self.value[column - 1], value) {
-                add([column - 1, row], self.value[column - 1], [column, row], value);
+            if column > 0 && changes(value[column - 1], value[column]) {
+                add([column - 1, row], value[column - 1], [column, row], value[column]);
             }
         }
-        core::mem::swap(&mut self.above, &mut self.value);
+        found
     }
 }
 

@@ -3,7 +3,7 @@
 use super::points::MeasuredPoints;
 use super::sizes::WantedRadii;
 use crate::math::functions::exp;
-use crate::slices::{MEDIUM, pause, ranges};
+use crate::slices::{self, MEDIUM};
 use core::f64::consts::E;
 
 /// Energy of six neighbours at the ideal distance: 6 exp(−2).
@@ -18,19 +18,16 @@ const SIX: f32 = (6.0 / (E * E)) as f32;
 pub(super) async fn of_points(points: &MeasuredPoints, wanted: Option<&WantedRadii>, d_hex: f64) -> Vec<f32> {
     let n = points.tree.len();
     let inverse = 1.0 / d_hex;
-    let mut energy = Vec::with_capacity(n);
-    for range in ranges(n, MEDIUM) {
-        energy.extend(range.map(|i| {
-            let pair = |j: usize| {
-                let share = match wanted {
-                    Some(wanted) => wanted.ratio(points, i, j),
-                    None => points.distance(i, j) * inverse,
-                } as f32;
-                exp(-2.0 * share * share)
-            };
-            points.stars.of(i).map(pair).sum::<f32>() / SIX
-        }));
-        pause().await;
-    }
-    energy
+    let of_point = |i: usize| {
+        let pair = |j: usize| {
+            let share = match wanted {
+                Some(wanted) => wanted.ratio(points, i, j),
+                None => points.distance(i, j) * inverse,
+            } as f32;
+            exp(-2.0 * share * share)
+        };
+        points.stars.of(i).map(pair).sum::<f32>() / SIX
+    };
+    let parts = slices::map(n, MEDIUM, || (), |(), range| range.map(of_point).collect::<Vec<f32>>());
+    parts.await.concat()
 }

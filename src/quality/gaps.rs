@@ -7,7 +7,7 @@ use super::projection::STEPS;
 use crate::field::descent::{Descent, descend};
 use crate::field::{BATCH, Evaluator};
 use crate::math::{Bounds, sort_few};
-use crate::slices::{MEDIUM, pause, ranges};
+use crate::slices::{self, MEDIUM};
 use glam::Vec3;
 
 /// An edge may lead across a gap if it is longer than this many times the spacing at either end.
@@ -27,19 +27,17 @@ const NEAR: f32 = 0.02;
 /// Returns the spacing at every point.
 pub(super) async fn spacing_of(points: &MeasuredPoints) -> Vec<f32> {
     let n = points.tree.len();
-    let mut lengths_sq = Vec::new();
-    let mut spacing = Vec::with_capacity(n);
-    for range in ranges(n, MEDIUM) {
-        spacing.extend(range.map(|i| {
-            let p = points.tree.position[i];
-            lengths_sq.clear();
-            lengths_sq.extend(points.stars.of(i).map(|j| p.distance_squared(points.tree.position[j])));
-            sort_few(&mut lengths_sq, |a, b| a < b);
-            lengths_sq.get(RANK - 1).or(lengths_sq.last()).copied().unwrap_or(0.0_f32).sqrt()
-        }));
-        pause().await;
-    }
-    spacing
+    let of_point = |lengths_sq: &mut Vec<f32>, i: usize| {
+        let p = points.tree.position[i];
+        lengths_sq.clear();
+        lengths_sq.extend(points.stars.of(i).map(|j| p.distance_squared(points.tree.position[j])));
+        sort_few(lengths_sq, |a, b| a < b);
+        lengths_sq.get(RANK - 1).or(lengths_sq.last()).copied().unwrap_or(0.0_f32).sqrt()
+    };
+    let parts = slices::map(n, MEDIUM, Vec::new, |lengths_sq, range| {
+        range.map(|i| of_point(lengths_sq, i)).collect::<Vec<f32>>()
+    });
+    parts.await.concat()
 }
 
 /// Search for triangles that lead across a gap of the surface.
@@ -51,29 +49,29 @@ pub(super) struct Gaps<'a> {
 
 impl Gaps<'_> {
     /// Keeps the triangles that lead across no gap.
-    pub(super) async fn drop_across(&self, field: &mut dyn Evaluator, triangles: &mut Vec<[u32; 3]>) {
-        let (mut is_across, mut long) = (Vec::new(), Vec::new());
-        let mut kept = 0;
-        for range in ranges(triangles.len(), MEDIUM) {
-            is_across.clear();
-            is_across.resize(range.len(), false);
-            long.clear();
-            for (triangle, &[a, b, c]) in triangles[range.clone()].iter().enumerate() {
-                let edges = [(a, b), (b, c), (c, a)].into_iter();
-                long.extend(edges.filter_map(|(i, j)| self.long_edge(triangle, i as usize, j as usize)));
-            }
-            for edges in long.chunks(BATCH) {
-                self.look_across(field, edges, &mut is_across);
-            }
-            for (k, &is_across) in range.zip(&is_across) {
-                if !is_across {
-                    triangles[kept] = triangles[k];
-                    kept += 1;
-                }
-            }
-            pause().await;
+    pub(super) async fn drop_across(&self, field: &dyn Evaluator, triangles: &mut Vec<[u32; 3]>) {
+        let parts = slices::map(
+            triangles.len(),
+            MEDIUM,
+            || field.another(),
+            |field, range| self.are_across(&mut **field, &triangles[range]),
+        );
+        let mut is_across = parts.await.into_iter().flatten();
+        triangles.retain(|_| !is_across.next().unwrap_or_default());
+    }
+
+    /// Whether each triangle leads across a gap.
+    fn are_across(&self, field: &mut dyn Evaluator, triangles: &[[u32; 3]]) -> Vec<bool> {
+        let mut is_across = vec![false; triangles.len()];
+        let mut long = Vec::new();
+        for (triangle, &[a, b, c]) in triangles.iter().enumerate() {
+            let edges = [(a, b), (b, c), (c, a)].into_iter();
+            long.extend(edges.filter_map(|(i, j)| self.long_edge(triangle, i as usize, j as usize)));
         }
-        triangles.truncate(kept);
+        for edges in long.chunks(BATCH) {
+            self.look_across(field, edges, &mut is_across);
+        }
+        is_across
     }
 
     /// The edge of a triangle, if it is long.

@@ -9,7 +9,7 @@ use super::sizes::WantedRadii;
 use super::triangles::area_vector;
 use crate::field::{BATCH, Evaluator};
 use crate::math::{LANES, Lanes, NONE};
-use crate::slices::{HEAVY, pause};
+use crate::slices::{self, HEAVY, MEDIUM, MaybeSend, MaybeSync, pause};
 use crate::spatial::tree::{PointsInBox, Tree};
 use glam::{DVec3, Vec3};
 use rand_core::{Rng, SeedableRng};
@@ -93,7 +93,7 @@ pub(super) struct Holes {
     pub(super) mean_sq: f64,
     /// Share of the random samples that lies outside the discs around them; NaN if there are none.
     pub(super) bare: f64,
-    /// The wide holes, and those that were the largest when they were found.
+    /// The wide holes, and the largest ones if they are not wide.
     pub(super) found: Vec<Hole>,
 }
 
@@ -105,21 +105,25 @@ pub(super) fn slices(count: usize) -> u64 {
 /// Measures the holes by about `count` random samples on the triangles, by their Voronoi corners
 /// and at `crossings`, random samples of the surface.
 pub(super) async fn measure(
-    field: &mut dyn Evaluator,
+    field: &dyn Evaluator,
     cover: &Cover<'_>,
     count: usize,
     crossings: &[Vec3],
 ) -> Holes {
     let mut search = HoleSearch::default();
-    search.add_samples(field, cover, count).await;
-    search.add_corners(field, cover).await;
+    {
+        let random = samples(cover, count).await;
+        search.add_all(field, cover, random.len(), |k| random[k].clone(), true).await;
+    }
+    let parts: Vec<&[[u32; 3]]> = cover.patches().flat_map(|triangles| triangles.chunks(BATCH)).collect();
+    search.add_all(field, cover, parts.len(), |k| corners(cover, parts[k]), false).await;
     let samples = search.samples as f64;
     let mut holes = Holes {
         widest: f64::from(search.widest_sq).sqrt(),
         relative: f64::from(search.relative_sq).sqrt(),
         mean_sq: search.sum_sq / samples,
         bare: search.bare as f64 / samples,
-        found: search.found,
+        found: search.wide.into_iter().chain(search.largest).collect(),
     };
     holes.add_missed(cover, crossings).await;
     holes
@@ -172,6 +176,11 @@ struct Surroundings {
 }
 
 impl Surroundings {
+    /// Has the next search gather the points anew.
+    fn clear(&mut self) {
+        (self.lo, self.hi) = (Vec3::ZERO, Vec3::ZERO);
+    }
+
     /// The squared distance of the nearest point of `tree` to `p` and that point, if it is below
     /// `bound_sq`; otherwise `bound_sq` and [`NONE`]. The box is gathered anew if it does not hold
     /// all of those; within `width` there are a few points.
@@ -205,7 +214,6 @@ impl Surroundings {
 /// Search for holes by samples of the surface over the triangles.
 #[derive(Default)]
 struct HoleSearch {
-    around: Surroundings,
     widest_sq: f32,
     relative_sq: f32,
     /// Sum of the squared distances of the random samples, and their number.
@@ -213,7 +221,10 @@ struct HoleSearch {
     samples: usize,
     /// Random samples outside the discs around them.
     bare: usize,
-    found: Vec<Hole>,
+    /// The wide holes.
+    wide: Vec<Hole>,
+    /// The largest hole, unless it is wide.
+    largest: Option<Hole>,
 }
 
 impl HoleSearch {
@@ -226,16 +237,58 @@ impl HoleSearch {
     /// Takes in an empty disc around `p`.
     fn widen(&mut self, p: Vec3, gap_sq: f32, ideal_sq: f32) {
         let relative_sq = gap_sq / ideal_sq;
-        if relative_sq > self.relative_sq.min(WIDE_SQ) {
-            self.found.push(hole(p, f64::from(gap_sq).sqrt(), f64::from(relative_sq).sqrt()));
+        let hole = || hole(p, f64::from(gap_sq).sqrt(), f64::from(relative_sq).sqrt());
+        if relative_sq > WIDE_SQ {
+            self.wide.push(hole());
+            self.largest = None;
+        } else if relative_sq > self.relative_sq {
+            self.largest = Some(hole());
         }
         self.widest_sq = self.widest_sq.max(gap_sq);
         self.relative_sq = self.relative_sq.max(relative_sq);
     }
 
-    /// Takes in a batch of samples once they are projected, of which the statistics are made if
-    /// they are `random`.
-    fn add(&mut self, field: &mut dyn Evaluator, cover: &Cover, batch: &mut Batch, random: bool) {
+    /// Takes in `count` batches of samples, of which the statistics are made if they are `random`.
+    async fn add_all(
+        &mut self,
+        field: &dyn Evaluator,
+        cover: &Cover<'_>,
+        count: usize,
+        batch: impl Fn(usize) -> Batch + MaybeSend + MaybeSync,
+        random: bool,
+    ) {
+        let known = (self.widest_sq, self.relative_sq);
+        let new_scratch = || (field.another(), Surroundings::default());
+        let parts = slices::map(count, 1, new_scratch, |(field, around), range| {
+            let mut part = Self { widest_sq: known.0, relative_sq: known.1, ..Self::default() };
+            around.clear();
+            range.for_each(|k| part.add(&mut **field, cover, batch(k), around, random));
+            part
+        });
+        for part in parts.await {
+            if part.relative_sq > self.relative_sq {
+                self.largest = part.largest;
+            }
+            self.widest_sq = self.widest_sq.max(part.widest_sq);
+            self.relative_sq = self.relative_sq.max(part.relative_sq);
+            self.sum_sq += part.sum_sq;
+            self.samples += part.samples;
+            self.bare += part.bare;
+            self.wide.extend(part.wide);
+        }
+    }
+
+    /// Takes in a batch of samples once they are projected.
+    fn add(
+        &mut self,
+        field: &mut dyn Evaluator,
+        cover: &Cover,
+        mut batch: Batch,
+        around: &mut Surroundings,
+        random: bool,
+    ) {
+        let Some(first) = batch.triangle.first() else { return };
+        let field = cover.creases.on(field, first[0] as usize);
         project(field, &mut batch.position, &batch.leash, LAST_STEP);
         for ((&p, &leash), triangle) in batch.position.iter().zip(&batch.leash).zip(&batch.triangle) {
             if !cover.counts(p) {
@@ -246,7 +299,7 @@ impl HoleSearch {
             if !random && !self.matters(corner_sq, ideal * ideal) {
                 continue;
             }
-            let (gap_sq, nearer) = self.around.nearest(cover.tree, p, corner_sq, leash);
+            let (gap_sq, nearer) = around.nearest(cover.tree, p, corner_sq, leash);
             // The circumcentre of a long triangle may come to a far place, where other points are
             // larger.
             if nearer != NONE {
@@ -268,41 +321,36 @@ impl HoleSearch {
                 self.widen(p, gap_sq, ideal_sq);
             }
         }
-        batch.clear();
     }
+}
 
-    /// Takes in the Voronoi corners on the surface: the projected circumcentres of the triangles.
-    async fn add_corners(&mut self, field: &mut dyn Evaluator, cover: &Cover<'_>) {
-        let mut batch = Batch::default();
-        for triangles in cover.patches() {
-            let field = cover.creases.on(field, triangles[0][0] as usize);
-            for chunk in triangles.chunks(BATCH) {
-                for &triangle in chunk {
-                    if let Some((centre, radius)) = circumcentre(&cover.tree.position, triangle) {
-                        batch.push(centre.as_vec3(), radius as f32, triangle);
-                    }
-                }
-                self.add(field, cover, &mut batch, false);
-                pause().await;
-            }
+/// The Voronoi corners of triangles: their circumcentres.
+fn corners(cover: &Cover<'_>, triangles: &[[u32; 3]]) -> Batch {
+    let mut batch = Batch::default();
+    for &triangle in triangles {
+        if let Some((centre, radius)) = circumcentre(&cover.tree.position, triangle) {
+            batch.push(centre.as_vec3(), radius as f32, triangle);
         }
     }
+    batch
+}
 
-    /// Takes in about `count` random samples: uniform on the triangles, one in each of `count`
-    /// equal shares of their area, and projected onto the surface.
-    async fn add_samples(&mut self, field: &mut dyn Evaluator, cover: &Cover<'_>, count: usize) {
-        let position = &cover.tree.position;
-        // Twice the areas, as `area_vector` has them.
-        let share = 2.0 * cover.mesh_area / count as f64;
-        let mut random = Pcg32::seed_from_u64(0);
-        let mut unit = move || f64::from(random.next_u32()) * (1.0 / 4_294_967_296.0);
+/// About `count` random samples: uniform on the triangles, one in each of `count` equal shares of
+/// their area.
+async fn samples(cover: &Cover<'_>, count: usize) -> Vec<Batch> {
+    let position = &cover.tree.position;
+    // Twice the areas, as `area_vector` has them.
+    let share = 2.0 * cover.mesh_area / count as f64;
+    let mut random = Pcg32::seed_from_u64(0);
+    let mut unit = move || f64::from(random.next_u32()) * (1.0 / 4_294_967_296.0);
+    let mut batches: Vec<Batch> = Vec::new();
+    let mut passed = 0.0;
+    let mut next = share * unit();
+    let mut stratum = 1.0;
+    for triangles in cover.patches() {
         let mut batch = Batch::default();
-        let mut passed = 0.0;
-        let mut next = share * unit();
-        let mut stratum = 1.0;
-        for triangles in cover.patches() {
-            let field = cover.creases.on(field, triangles[0][0] as usize);
-            for &triangle in triangles {
+        for chunk in triangles.chunks(MEDIUM) {
+            for &triangle in chunk {
                 passed += area_vector(position, triangle).length();
                 while next < passed && stratum <= count as f64 {
                     let [a, b, c] = triangle.map(|i| position[i as usize].as_dvec3());
@@ -315,23 +363,22 @@ impl HoleSearch {
                     let corner = (p - a).length().min((p - b).length()).min((p - c).length());
                     batch.push(p.as_vec3(), corner.max((b - c).length() * 0.5) as f32, triangle);
                     if batch.position.len() == BATCH {
-                        self.add(field, cover, &mut batch, true);
+                        batches.push(core::mem::take(&mut batch));
                         pause().await;
                     }
                     next = share * (stratum + unit());
                     stratum += 1.0;
                 }
             }
-            if !cover.creases.is_empty() {
-                self.add(field, cover, &mut batch, true);
-            }
+            pause().await;
         }
-        self.add(field, cover, &mut batch, true);
+        batches.push(batch);
     }
+    batches
 }
 
-/// A batch of samples to be projected.
-#[derive(Default)]
+/// A batch of samples of one patch.
+#[derive(Clone, Default)]
 struct Batch {
     position: Vec<Vec3>,
     /// Largest distance that the projection may move each.
@@ -341,12 +388,6 @@ struct Batch {
 }
 
 impl Batch {
-    fn clear(&mut self) {
-        self.position.clear();
-        self.leash.clear();
-        self.triangle.clear();
-    }
-
     fn push(&mut self, position: Vec3, leash: f32, triangle: [u32; 3]) {
         self.position.push(position);
         self.leash.push(leash);
@@ -384,7 +425,7 @@ mod tests {
                 lattice: 1.0,
             };
             let mut search = HoleSearch::default();
-            complete(search.add_corners(field, &cover));
+            complete(search.add_all(field, &cover, 1, |_| corners(&cover, cover.mesh), false));
             let widest = search.widest_sq.sqrt();
             assert!(holes.contains(&widest), "{widest}");
         }
@@ -413,7 +454,7 @@ mod tests {
             lattice: 1.0,
         };
         let mut search = HoleSearch::default();
-        complete(search.add_corners(field, &cover));
+        complete(search.add_all(field, &cover, 1, |_| corners(&cover, cover.mesh), false));
         let relative = search.relative_sq.sqrt();
         assert!((0.8..1.0).contains(&relative), "{relative}");
     }

@@ -54,7 +54,7 @@ use crate::field::{Evaluator, Field, Frame};
 use crate::math::{Bounds, NONE, SQRT_3};
 use crate::mesh::facing::{Inside, facing};
 use crate::mesh::stars::Sheets;
-use crate::slices::{self, MEDIUM, pause, ranges};
+use crate::slices::{self, MEDIUM, pause};
 use crate::topology::Topology;
 use accuracy::{first_order_height, height_along};
 use border::Border;
@@ -318,14 +318,14 @@ async fn figures_of(
 /// Returns, for each point, whether it is away from the border.
 async fn points_away_from(border: Option<&Border>, points: &MeasuredPoints) -> Vec<bool> {
     let n = points.tree.len();
-    let mut inner = vec![true; n];
-    if let Some(border) = border {
-        for range in ranges(n, MEDIUM) {
-            range.for_each(|i| inner[i] = !border.is_near(points.tree.position[i]));
-            pause().await;
-        }
-    }
-    inner
+    let Some(border) = border else { return vec![true; n] };
+    let parts = slices::map(
+        n,
+        MEDIUM,
+        || (),
+        |(), range| range.map(|i| !border.is_near(points.tree.position[i])).collect::<Vec<bool>>(),
+    );
+    parts.await.concat()
 }
 
 /// Measures valences, bond order and edges of the points that are `inner`, and returns the pairs of
@@ -336,25 +336,37 @@ async fn measure_neighbourhoods(
     wanted: Option<&WantedRadii>,
     figures: &mut Figures,
 ) -> Pairs {
-    let mut order = ValenceTally::default();
-    let (mut edge, mut size) = (Moments::default(), Moments::default());
-    let mut pairs = Pairs::default();
-    for range in ranges(points.tree.len(), MEDIUM) {
-        for i in range.filter(|&i| inner[i]) {
-            // On a crease a particle has neighbours on one side only.
-            if !points.creases.holds(i) {
-                order.add(points, i);
-            }
-            for j in points.mutual(inner, i).filter(|&j| points.creases.is_first_pair(i, j)) {
-                edge.add(points.distance(i, j));
-                let ratio = wanted.map_or(f64::NAN, |wanted| wanted.ratio(points, i, j));
-                if ratio.is_finite() {
-                    size.add(ratio);
+    let parts = slices::map(
+        points.tree.len(),
+        MEDIUM,
+        || (),
+        |(), range| {
+            let mut order = ValenceTally::default();
+            let (mut edge, mut size) = (Moments::default(), Moments::default());
+            for i in range.filter(|&i| inner[i]) {
+                // On a crease a particle has neighbours on one side only.
+                if !points.creases.holds(i) {
+                    order.add(points, i);
+                }
+                for j in points.mutual(inner, i).filter(|&j| points.creases.is_first_pair(i, j)) {
+                    edge.add(points.distance(i, j));
+                    let ratio = wanted.map_or(f64::NAN, |wanted| wanted.ratio(points, i, j));
+                    if ratio.is_finite() {
+                        size.add(ratio);
+                    }
                 }
             }
-        }
-        pause().await;
+            (order, edge, size)
+        },
+    );
+    let mut order = ValenceTally::default();
+    let (mut edge, mut size) = (Moments::default(), Moments::default());
+    for part in parts.await {
+        order.join(&part.0);
+        edge.join(&part.1);
+        size.join(&part.2);
     }
+    let mut pairs = Pairs::default();
     figures.order = order.figures();
     figures.edges.edge_cv = edge.variation();
     if let Some(wanted) = wanted {
@@ -383,10 +395,20 @@ async fn measure_triangles(
     let mut angles = TriangleAngles::default();
     let mut corners = 0;
     for list in [&triangles.unanimous, &triangles.majority] {
-        for chunk in list.chunks(MEDIUM) {
-            chunk.iter().filter(away).for_each(|&triangle| angles.add(&points.tree.position, triangle));
-            corners += chunk.iter().flatten().filter(|&&i| is_whole(i as usize)).count();
-            pause().await;
+        let parts = slices::map(
+            list.len(),
+            MEDIUM,
+            || (),
+            |(), range| {
+                let mut angles = TriangleAngles::default();
+                let own = &list[range];
+                own.iter().filter(away).for_each(|&triangle| angles.add(&points.tree.position, triangle));
+                (angles, own.iter().flatten().filter(|&&i| is_whole(i as usize)).count())
+            },
+        );
+        for (own, whole) in parts.await {
+            angles.join(&own);
+            corners += whole;
         }
     }
     figures.angles = angles.figures();

@@ -46,6 +46,16 @@ impl ValenceTally {
         self.psi6.add(sum.length() / neighbours as f64);
     }
 
+    /// Takes in the points of another tally.
+    pub(super) fn join(&mut self, other: &Self) {
+        self.count += other.count;
+        self.open += other.open;
+        self.six += other.six;
+        self.five_seven += other.five_seven;
+        self.valence.join(&other.valence);
+        self.psi6.join(&other.psi6);
+    }
+
     pub(super) fn figures(&self) -> Order {
         Order {
             six: share(self.six, self.count),

@@ -1,6 +1,6 @@
 //! The points to be measured, with their normals and stars.
 
-use super::accuracy::{NormalAngles, first_order_height, height_along};
+use super::accuracy::{NormalAngles, angle_between, first_order_height, height_along};
 use super::creases::CreaseRows;
 use super::sheets::ByField;
 use crate::field::Evaluator;
@@ -8,8 +8,9 @@ use crate::math::{Bounds, NONE};
 use crate::mesh::build;
 use crate::mesh::stars::{Sheets, StarPoints, Stars};
 use crate::particles::Particles;
-use crate::slices::{HEAVY, MEDIUM, pause, ranges};
+use crate::slices::{self, HEAVY, MEDIUM};
 use crate::spatial::tree::Tree;
+use core::ops::Range;
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
@@ -35,6 +36,48 @@ pub(super) struct MeasuredPoints {
     has_duplicate: Vec<bool>,
 }
 
+/// How far a point and its normal are from the surface.
+struct Deviation {
+    /// Unit normal: ∇f/|∇f|, or the given one where that is undefined.
+    normal: Vec3,
+    /// First-order distance from the surface.
+    residual: f64,
+    /// Angle between the given normal and ∇f.
+    angle: Option<f64>,
+}
+
+/// The deviations of the points of a range, in tree order.
+fn deviations(
+    field: &mut dyn Evaluator,
+    tree: &Tree,
+    creases: &CreaseRows,
+    given: &[Vec3],
+    range: Range<usize>,
+) -> Vec<Deviation> {
+    let (position, origin) = (&tree.position[range.clone()], &tree.origin[range.clone()]);
+    let (mut value, mut gradient) = ([0.0; HEAVY], [DVec3::ZERO; HEAVY]);
+    creases.exact_gradients(field, range.clone(), position, &mut value, &mut gradient);
+    let columns = range.zip(origin).zip(value).zip(gradient);
+    let deviation = |(((k, &i), value), gradient): (((usize, &u32), f64), DVec3)| {
+        let slope = gradient.length();
+        let given = given.get(i as usize).copied().unwrap_or(Vec3::ZERO);
+        if creases.is_tip(k) {
+            return Deviation { normal: given, residual: 0.0, angle: None };
+        }
+        let unit = Some((gradient / slope).as_vec3()).filter(|unit| unit.is_finite());
+        let mut height = first_order_height(value, slope);
+        if !height.is_finite() {
+            height = height_along(creases.on(field, k), tree.position[k].as_dvec3(), given, value);
+        }
+        Deviation {
+            normal: unit.or_else(|| given.try_normalize()).unwrap_or(Vec3::Z),
+            residual: height.abs(),
+            angle: angle_between(given, gradient),
+        }
+    };
+    columns.map(deviation).collect()
+}
+
 impl MeasuredPoints {
     /// The points that are not dropped; `known` are the sheets of all points, where they are there.
     pub(super) async fn new(
@@ -56,37 +99,26 @@ impl MeasuredPoints {
         };
         let creases = CreaseRows::new(&tree, rows);
         let mut normal = Vec::with_capacity(tree.len());
-        let mut height = Vec::with_capacity(tree.len());
+        let mut residual = Vec::with_capacity(tree.len());
         let mut normal_angles = NormalAngles::default();
-        for range in ranges(tree.len(), HEAVY) {
-            let (position, origin) = (&tree.position[range.clone()], &tree.origin[range.clone()]);
-            let (mut value, mut gradient) = ([0.0; HEAVY], [DVec3::ZERO; HEAVY]);
-            creases.exact_gradients(field, range.clone(), position, &mut value, &mut gradient);
-            for (((k, &i), value), &gradient) in range.zip(origin).zip(value).zip(&gradient) {
-                let slope = gradient.length();
-                let given = given.get(i as usize).copied().unwrap_or(Vec3::ZERO);
-                if creases.is_tip(k) {
-                    normal.push(given);
-                    height.push(0.0);
-                    continue;
-                }
-                normal_angles.add(given, gradient);
-                let unit = Some((gradient / slope).as_vec3()).filter(|unit| unit.is_finite());
-                normal.push(unit.or_else(|| given.try_normalize()).unwrap_or(Vec3::Z));
-                let mut own = first_order_height(value, slope);
-                if !own.is_finite() {
-                    own = height_along(creases.on(field, k), tree.position[k].as_dvec3(), given, value);
-                }
-                height.push(own);
-            }
-            pause().await;
+        let evaluator: &dyn Evaluator = field;
+        let parts = slices::map(
+            tree.len(),
+            HEAVY,
+            || evaluator.another(),
+            |field, range| deviations(&mut **field, &tree, &creases, given, range),
+        );
+        for Deviation { normal: own, residual: distance, angle } in parts.await.into_iter().flatten() {
+            normal.push(own);
+            residual.push(distance);
+            angle.into_iter().for_each(|angle| normal_angles.add(angle));
         }
-        let judge = &mut ByField::new(field);
+        let judge = &ByField::new(field);
         let mut sheets = None;
         let stars = match (known.and_then(|sheets| sheets.only()), rows.filter(|_| !creases.is_empty())) {
             (Some(sheet), _) => sheet.stars.completed(&sheet.points(), |_| false, judge).await,
             (None, None) => {
-                let points = StarPoints { tree: &tree, normal: &normal, tips: &[] };
+                let points = StarPoints { tree: &tree, normal: &normal, tips: &[], patch: None };
                 Stars::new(&points, judge).await.completed(&points, |_| false, judge).await
             }
             (None, Some(rows)) => {
@@ -97,13 +129,13 @@ impl MeasuredPoints {
                 Stars::gathered(sheets.insert(of_all), &tree, rows.twins.len(), judge).await
             }
         };
-        let mut nearest = Vec::with_capacity(tree.len());
-        for range in ranges(tree.len(), MEDIUM) {
-            pause().await;
-            nearest.extend(range.map(|i| creases.nearest_within(&tree, i, stars.nearest[i])));
-        }
-        let mut residual = height;
-        residual.iter_mut().for_each(|height| *height = height.abs());
+        let nearest = slices::map(
+            tree.len(),
+            MEDIUM,
+            || (),
+            |(), range| range.map(|i| creases.nearest_within(&tree, i, stars.nearest[i])).collect::<Vec<_>>(),
+        );
+        let nearest = nearest.await.concat();
         let has_duplicate = tree.origin.iter().map(|&i| has_duplicate[i as usize]).collect();
         Self { tree, normal, residual, normal_angles, stars, nearest, creases, sheets, has_duplicate }
     }

@@ -8,7 +8,7 @@
 use super::projection::project;
 use crate::field::{BATCH, Evaluator};
 use crate::math::Bounds;
-use crate::slices::{MEDIUM, pause};
+use crate::slices::{self, MEDIUM, pause, ranges};
 use glam::{DVec3, Vec3};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -32,81 +32,93 @@ const STREAM: u64 = 0x6c69_6e65_7300_0000;
 /// Returns random samples of the surface in `bounds`, uniform over its area; at most a few for each
 /// line.
 pub(super) async fn crossings(field: &mut dyn Evaluator, bounds: &Bounds) -> Vec<Vec3> {
-    let mut found = Vec::new();
-    if bounds.is_valid() {
-        let mut random = Pcg32::seed_from_u64(STREAM);
-        let mut changes = SignChanges::default();
-        for _ in 0..SLICES {
-            changes.add_lines(field, bounds, &mut random);
-            if changes.position.len() >= BATCH {
-                changes.settle(field, bounds, &mut found);
-            }
-            pause().await;
-        }
-        changes.settle(field, bounds, &mut found);
+    if !bounds.is_valid() {
+        return Vec::new();
     }
+    let mut random = Pcg32::seed_from_u64(STREAM);
+    let mut chords = Vec::with_capacity(LINES);
+    for range in ranges(LINES, MEDIUM) {
+        chords.extend(range.map(|_| chord(&mut random, bounds)));
+        pause().await;
+    }
+    let shared: &dyn Evaluator = field;
+    let parts = slices::map(
+        LINES,
+        LINES_AT_ONCE,
+        || shared.another(),
+        |field, lines| sign_changes(&mut **field, &chords[lines]),
+    );
+    let changes = parts.await.concat();
+    let parts = slices::map(
+        changes.len(),
+        BATCH,
+        || shared.another(),
+        |field, range| settled(&mut **field, bounds, &changes[range]),
+    );
+    let mut found = parts.await.concat();
     if field.has_limits() {
         found.retain(|place| !field.is_beyond_limits(place.as_dvec3()));
     }
     found
 }
 
-/// Changes of the sign of f between neighbouring points of lines.
-#[derive(Default)]
-struct SignChanges {
+/// A change of the sign of f between neighbouring points of a line.
+#[derive(Clone, Copy)]
+struct SignChange {
     /// Where f is 0 if it is linear between both points.
-    position: Vec<Vec3>,
+    position: Vec3,
     /// The distance between both points.
-    leash: Vec<f32>,
+    leash: f32,
     /// The larger |f| of both.
-    ends: Vec<f32>,
+    end: f32,
 }
 
-impl SignChanges {
-    /// Adds those on the next [`LINES_AT_ONCE`] lines.
-    fn add_lines(&mut self, field: &mut dyn Evaluator, bounds: &Bounds, random: &mut Pcg32) {
-        let mut points = [Vec3::ZERO; MEDIUM];
-        let mut values = [0.0_f32; MEDIUM];
-        for line in points.chunks_exact_mut(STATIONS) {
-            let (from, to) = chord(random, bounds);
-            for (k, point) in line.iter_mut().enumerate() {
-                *point = from.lerp(to, (k as f64 + 0.5) / STATIONS as f64).as_vec3();
-            }
+/// The changes on [`LINES_AT_ONCE`] lines with these ends.
+fn sign_changes(field: &mut dyn Evaluator, chords: &[(DVec3, DVec3)]) -> Vec<SignChange> {
+    let mut points = [Vec3::ZERO; MEDIUM];
+    let mut values = [0.0_f32; MEDIUM];
+    for (line, (from, to)) in points.chunks_exact_mut(STATIONS).zip(chords) {
+        for (k, point) in line.iter_mut().enumerate() {
+            *point = from.lerp(*to, (k as f64 + 0.5) / STATIONS as f64).as_vec3();
         }
-        field.values(&points, &mut values);
-        for (line, value) in points.chunks_exact(STATIONS).zip(values.chunks_exact(STATIONS)) {
-            for k in 1..STATIONS {
-                let (a, b) = (value[k - 1], value[k]);
-                // This is false where either is NaN.
-                if a <= 0.0 && b > 0.0 || a > 0.0 && b <= 0.0 {
-                    let share = a / (a - b);
-                    self.position
-                        .push(line[k - 1].lerp(line[k], if share.is_finite() { share } else { 0.5 }));
-                    self.leash.push((line[k] - line[k - 1]).length());
-                    self.ends.push(a.abs().max(b.abs()));
-                }
+    }
+    field.values(&points, &mut values);
+    let mut changes = Vec::new();
+    for (line, value) in points.chunks_exact(STATIONS).zip(values.chunks_exact(STATIONS)) {
+        for k in 1..STATIONS {
+            let (a, b) = (value[k - 1], value[k]);
+            // This is false where either is NaN.
+            if a <= 0.0 && b > 0.0 || a > 0.0 && b <= 0.0 {
+                let share = a / (a - b);
+                changes.push(SignChange {
+                    position: line[k - 1].lerp(line[k], if share.is_finite() { share } else { 0.5 }),
+                    leash: (line[k] - line[k - 1]).length(),
+                    end: a.abs().max(b.abs()),
+                });
             }
         }
     }
+    changes
+}
 
-    /// Appends those to `found` that lead to the surface, and forgets all.
-    fn settle(&mut self, field: &mut dyn Evaluator, bounds: &Bounds, found: &mut Vec<Vec3>) {
-        // All steps are taken: near a pole they lead away from it, by as much again at each step.
-        project(field, &mut self.position, &self.leash, 0.0);
-        let mut value = vec![0.0; self.position.len()];
-        let mut gradient = vec![Vec3::ZERO; self.position.len()];
-        field.gradients(&self.position, &mut value, &mut gradient);
-        for (k, &p) in self.position.iter().enumerate() {
-            // Towards a pole |f| grows beyond its values at the ends of the step, even where
-            // |f|/|∇f| becomes small.
-            let on_surface = value[k].abs() <= RESIDUAL * self.leash[k] * gradient[k].length()
-                && value[k].abs() <= self.ends[k];
-            if on_surface && bounds.contains(p) {
-                found.push(p);
-            }
-        }
-        *self = Self::default();
-    }
+/// The places on the surface in the box to which changes lead, at most [`BATCH`] of them.
+fn settled(field: &mut dyn Evaluator, bounds: &Bounds, changes: &[SignChange]) -> Vec<Vec3> {
+    let mut position: Vec<Vec3> = changes.iter().map(|change| change.position).collect();
+    let leash: Vec<f32> = changes.iter().map(|change| change.leash).collect();
+    // All steps are taken: near a pole they lead away from it, by as much again at each step.
+    project(field, &mut position, &leash, 0.0);
+    let mut value = vec![0.0; position.len()];
+    let mut gradient = vec![Vec3::ZERO; position.len()];
+    field.gradients(&position, &mut value, &mut gradient);
+    // Towards a pole |f| grows beyond its values at the ends of the step, even where |f|/|∇f|
+    // becomes small.
+    let is_on_surface = |k: usize, change: &SignChange| {
+        let size = value[k].abs();
+        size <= RESIDUAL * change.leash * gradient[k].length() && size <= change.end
+    };
+    let places = position.iter().zip(changes).enumerate();
+    let on_surface = places.filter(|&(k, (&p, change))| is_on_surface(k, change) && bounds.contains(p));
+    on_surface.map(|(_, (&p, _))| p).collect()
 }
 
 /// Returns the ends of a random chord of the box, uniform in the measure of lines: it starts at a

@@ -26,13 +26,13 @@ const STEPS: u32 = 8;
 
 /// Tells sheets of a field apart.
 pub(crate) struct ByField<'a> {
-    field: &'a mut dyn Evaluator,
+    field: Box<dyn Evaluator + 'a>,
     patch: Option<u32>,
 }
 
 impl<'a> ByField<'a> {
-    pub(crate) fn new(field: &'a mut dyn Evaluator) -> Self {
-        Self { field, patch: None }
+    pub(crate) fn new(field: &'a dyn Evaluator) -> Self {
+        Self { field: field.another(), patch: None }
     }
 
     /// The point led onto the surface, and its normal.
@@ -45,8 +45,8 @@ impl<'a> ByField<'a> {
 }
 
 impl TellsApart for ByField<'_> {
-    fn turn_to(&mut self, patch: Option<u32>) {
-        self.patch = patch;
+    fn on(&self, patch: Option<u32>) -> Box<dyn TellsApart + '_> {
+        Box::new(ByField { field: self.field.another(), patch })
     }
 
     fn facing_away(&mut self, point: OrientedPoint, others: &[OrientedPoint]) -> f64 {

@@ -7,7 +7,7 @@ use super::figures::Angles;
 use super::moments::{Moments, share};
 use crate::math::{IndexTable, SQRT_3, hash, key, unkey};
 use crate::mesh::stars::Stars;
-use crate::slices::{MEDIUM, pause, ranges};
+use crate::slices::{self, MEDIUM};
 use glam::{DVec3, Vec3};
 
 /// The triangles of a set of points, as indices in tree order, counter-clockwise around the normal
@@ -25,10 +25,21 @@ pub(super) struct Triangles {
 impl Triangles {
     /// Counts, for each triangle that a corner sees, how many of its corners do.
     pub(super) async fn new(stars: &Stars) -> Self {
+        let parts = slices::map(
+            stars.len(),
+            MEDIUM,
+            || (),
+            |(), range| {
+                let mut part = Self::default();
+                range.for_each(|i| part.add(stars, i as u32));
+                part
+            },
+        );
         let mut triangles = Self { unanimous: Vec::with_capacity(2 * stars.len()), ..Self::default() };
-        for range in ranges(stars.len(), MEDIUM) {
-            range.for_each(|i| triangles.add(stars, i as u32));
-            pause().await;
+        for mut part in parts.await {
+            triangles.unanimous.append(&mut part.unanimous);
+            triangles.majority.append(&mut part.majority);
+            triangles.single.append(&mut part.single);
         }
         triangles
     }
@@ -190,6 +201,17 @@ impl TriangleAngles {
         let angle = libm::atan2(twice_area, largest_cosine).to_degrees();
         self.smallest.add(angle);
         self.least = Some(self.least.unwrap_or(angle).min(angle));
+    }
+
+    /// Takes in the triangles of others.
+    pub(super) fn join(&mut self, other: &Self) {
+        self.count += other.count;
+        self.smallest.join(&other.smallest);
+        self.least = self.least.into_iter().chain(other.least).reduce(f64::min);
+        self.lt30 += other.lt30;
+        self.gt90 += other.gt90;
+        self.a_lt30 += other.a_lt30;
+        self.a_gt90 += other.a_gt90;
     }
 
     pub(super) fn figures(&self) -> Angles {

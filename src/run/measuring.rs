@@ -156,7 +156,7 @@ impl MeasuringInput {
             Some(front) => Some(measure(&front, field, &bounds, sampling, crossings, None).await.figures),
             None => None,
         };
-        let sheets = Arc::new(Sheets::new(&now, &mut ByField::new(field)).await);
+        let sheets = Arc::new(Sheets::new(&now, &ByField::new(field)).await);
         let report = measure(&now, field, &bounds, sampling, crossings, Some(&sheets)).await;
         let facing = facing_another_sheet(&now, &sheets).await;
         MeasuringResult { front, now: report, facing, sheets }

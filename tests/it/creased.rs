@@ -73,6 +73,10 @@ impl Evaluator for CreasedEvaluator<'_> {
         self.frame
     }
 
+    fn another(&self) -> Box<dyn Evaluator + '_> {
+        Box::new(CreasedEvaluator { field: self.field, patch: self.patch, frame: self.frame, branch: None })
+    }
+
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
         for (k, p) in points.iter().enumerate() {
             self.at(p.as_dvec3()).evaluator(self.frame).values(&[*p], &mut value[k..]);

@@ -80,4 +80,6 @@ mod solid_table;
 mod solids;
 mod systems;
 mod thickness;
+#[cfg(feature = "cli")]
+mod threads;
 mod tips;

@@ -13,6 +13,7 @@ use marching_particles::{
     Format, Measured, MeshFormat, Placement, Thickness, Unit, UpAxis, Vertices, gallery,
 };
 use std::collections::BTreeMap;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 /// Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles
@@ -21,6 +22,10 @@ use std::path::PathBuf;
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
+
+    /// Number of threads, one for each processor by default; it does not change the result
+    #[arg(long, value_name = "N", global = true)]
+    pub(crate) threads: Option<NonZeroUsize>,
 }
 
 const LONG_ABOUT: &str = "\

@@ -18,17 +18,19 @@ use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
 use failure::Failure;
 use std::io;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let result = match Arguments::parse().command {
+    let Arguments { command, threads } = Arguments::parse();
+    let result = start_threads(threads).and_then(|()| match command {
         Command::Sample(arguments) => sample::run(*arguments),
         Command::Surfaces(arguments) => surfaces::run(&arguments),
         Command::Sweep(arguments) => sweep::run(*arguments),
         Command::Completions { shell } => completions(shell),
         Command::Man { directory } => man(&directory),
-    };
+    });
     match result {
         Ok(code) => code,
         Err(failure) => {
@@ -36,6 +38,13 @@ fn main() -> ExitCode {
             failure.code()
         }
     }
+}
+
+/// Starts so many threads to share the work; none are started yet if no number is given.
+fn start_threads(threads: Option<NonZeroUsize>) -> Result<(), Failure> {
+    let Some(threads) = threads else { return Ok(()) };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get());
+    pool.build_global().map_err(|error| Failure::Usage(format!("cannot start {threads} threads: {error}")))
 }
 
 /// Prints the script with which a shell completes the arguments.

@@ -52,7 +52,7 @@ impl<'a> CombinationEvaluator<'a> {
         self.frame.double.is_some() && !self.field.is_extreme()
     }
 
-    fn pointwise(&self) -> Pointwise<&'a Combination> {
+    fn pointwise(&self) -> Pointwise<'a, Combination> {
         Pointwise { field: self.field, frame: self.frame }
     }
 
@@ -101,6 +101,10 @@ impl<'a> CombinationEvaluator<'a> {
 impl Evaluator for CombinationEvaluator<'_> {
     fn frame(&self) -> Frame {
         self.frame
+    }
+
+    fn another(&self) -> Box<dyn Evaluator + '_> {
+        Box::new(Self::new(self.field, self.frame))
     }
 
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
@@ -234,6 +238,13 @@ impl BranchEvaluator<'_> {
 impl Evaluator for BranchEvaluator<'_> {
     fn frame(&self) -> Frame {
         self.whole.frame
+    }
+
+    fn another(&self) -> Box<dyn Evaluator + '_> {
+        Box::new(BranchEvaluator {
+            whole: CombinationEvaluator::new(self.whole.field, self.whole.frame),
+            branch: self.branch,
+        })
     }
 
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {

@@ -115,6 +115,10 @@ impl Evaluator for FormulaEvaluator<'_> {
         self.frame
     }
 
+    fn another(&self) -> Box<dyn Evaluator + '_> {
+        Box::new(Self::of(self.formula, self.frame, self.instead.clone(), self.is_branch))
+    }
+
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
         let (compiled, frame) = (active(self.formula, &self.instead), self.frame);
         if frame.is_double() {

@@ -139,6 +139,10 @@ impl Evaluator for RbfEvaluator<'_> {
         self.frame
     }
 
+    fn another(&self) -> Box<dyn Evaluator + '_> {
+        Box::new(RbfEvaluator { field: self.field, frame: self.frame, places: Vec::new() })
+    }
+
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
         if self.frame.double.is_some() {
             return Pointwise { field: self.field, frame: self.frame }.values(points, value);

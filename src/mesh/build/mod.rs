@@ -222,7 +222,7 @@ pub(crate) fn expected_slices(points: usize, has_stars: bool) -> u64 {
 /// [`triangulate`] in slices of work. The last few look at all rows and triangles, for some 50 ns
 /// each.
 pub(crate) async fn in_slices(particles: &Particles, bounds: Option<&Bounds>) -> Triangulation {
-    join(particles, &Sheets::new(particles, &mut ByDirection).await, bounds).await
+    join(particles, &Sheets::new(particles, &ByDirection).await, bounds).await
 }
 
 /// Joins particles, whose sheets these are.

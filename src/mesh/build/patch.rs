@@ -310,8 +310,8 @@ pub(super) fn with_plane<T>(
     use crate::{slices, spatial::tree::Tree};
     let tree = Tree::new(points);
     let normal = vec![Vec3::Z; points.len()];
-    let of_tree = StarPoints { tree: &tree, normal: &normal, tips: &[] };
-    let stars = slices::complete(Stars::new(&of_tree, &mut ByDirection));
+    let of_tree = StarPoints { tree: &tree, normal: &normal, tips: &[], patch: None };
+    let stars = slices::complete(Stars::new(&of_tree, &ByDirection));
     let mut patch = slices::complete(Patch::new(&tree.position, &normal, &stars));
     let mut in_tree: Vec<u32> = (0..points.len() as u32).collect();
     in_tree.iter().for_each(|&v| patch.clear(v));

@@ -14,7 +14,7 @@ pub(crate) use sheet::{Sheet, Sheets};
 
 use crate::math::{NONE, sort_few};
 use crate::particles::OrientedPoint;
-use crate::slices::{HEAVY, MEDIUM, MaybeSend, pause, ranges};
+use crate::slices::{self, HEAVY, MEDIUM, MaybeSend, MaybeSync, pause, ranges};
 use crate::spatial::tree::{Leaf, Tree};
 use ball::{Ball, BallPoints, MOST, NEAR};
 use core::ops::Range;
@@ -35,12 +35,14 @@ const POINT: u32 = CORNER - 1;
 /// An edge of a Voronoi cell is a corner if it is shorter than half this share of the distance of
 /// the two points. Rounding in single precision is less.
 const SHORT: f32 = 1e-5;
+/// Leaves of the tree in a slice of work: they have eight to sixteen points each.
+const LEAVES: usize = HEAVY / 8;
 
 /// Tells sheets apart that face the same way and lie nearer to each other than their points do.
 /// Between two such sheets there is a third one that faces the other way.
-pub(crate) trait TellsApart: MaybeSend {
-    /// The patch on which the next points are, if the surface has several.
-    fn turn_to(&mut self, patch: Option<u32>);
+pub(crate) trait TellsApart: MaybeSend + MaybeSync {
+    /// The judge of one patch, or of a surface without creases. Each thread makes its own.
+    fn on(&self, patch: Option<u32>) -> Box<dyn TellsApart + '_>;
 
     /// The distance from a point to the nearest sheet that faces the other way, of which these are
     /// points; infinite where none is near.
@@ -55,7 +57,9 @@ pub(crate) trait TellsApart: MaybeSend {
 pub(crate) struct ByDirection;
 
 impl TellsApart for ByDirection {
-    fn turn_to(&mut self, _: Option<u32>) {}
+    fn on(&self, _: Option<u32>) -> Box<dyn TellsApart + '_> {
+        Box::new(Self)
+    }
 
     fn facing_away(&mut self, _: OrientedPoint, _: &[OrientedPoint]) -> f64 {
         f64::INFINITY
@@ -113,6 +117,8 @@ pub(crate) struct StarPoints<'a> {
     pub(crate) normal: &'a [Vec3],
     /// The points at the apex of a cone, in ascending order.
     pub(crate) tips: &'a [u32],
+    /// The patch, if the surface has several.
+    pub(crate) patch: Option<u32>,
 }
 
 impl StarPoints<'_> {
@@ -141,25 +147,40 @@ impl Stars {
     }
 
     /// The stars of the points, as far as they matter to a mesh.
-    pub(crate) async fn new(points: &StarPoints<'_>, judge: &mut dyn TellsApart) -> Self {
+    pub(crate) async fn new(points: &StarPoints<'_>, judge: &dyn TellsApart) -> Self {
         let n = points.tree.len();
         assert!(n < 1 << 30, "points are numbered with 30 bits");
+        let leaves: Vec<Leaf> = points.tree.leaves().collect();
+        let new_scratch = || (judge.on(points.patch), Box::<StarBuffers>::default());
+        let parts = slices::map(leaves.len(), LEAVES, new_scratch, |(judge, buffers), own| {
+            let leaves = &leaves[own];
+            let mut part = Self::with_capacity(leaves.iter().map(|leaf| leaf.range.len()).sum());
+            for leaf in leaves {
+                let Leaf { range, lo, hi } = leaf;
+                if lo == hi && range.len() > 1 {
+                    part.add_twins(range.clone());
+                    continue;
+                }
+                let reach = leaf.reach();
+                buffers.surroundings.gather(points.tree, points.normal, *lo - reach, *hi + reach);
+                range.clone().for_each(|i| part.add(points, i, reach, &mut **judge, buffers));
+            }
+            part
+        });
+        Self::joined(n, parts.await)
+    }
+
+    /// The stars of consecutive points, part by part.
+    fn joined(n: usize, parts: Vec<Self>) -> Self {
         let mut stars = Self::with_capacity(n);
-        let mut scratch = Box::<StarBuffers>::default();
-        let mut pause_at = HEAVY;
-        for leaf in points.tree.leaves() {
-            let reach = leaf.reach();
-            let Leaf { range, lo, hi } = leaf;
-            if range.start >= pause_at {
-                pause_at = range.start + HEAVY;
-                pause().await;
-            }
-            if lo == hi && range.len() > 1 {
-                stars.add_twins(range);
-                continue;
-            }
-            scratch.surroundings.gather(points.tree, points.normal, lo - reach, hi + reach);
-            range.for_each(|i| stars.add(points, i, reach, judge, &mut scratch));
+        for mut part in parts {
+            let before = stars.entry.len() as u32;
+            stars.start.extend(part.start[1..].iter().map(|start| before + start));
+            stars.entry.append(&mut part.entry);
+            stars.is_open.append(&mut part.is_open);
+            stars.is_certain.append(&mut part.is_certain);
+            stars.nearest.append(&mut part.nearest);
+            stars.twins.append(&mut part.twins);
         }
         stars
     }
@@ -189,7 +210,7 @@ impl Stars {
         judge: &mut dyn TellsApart,
         StarBuffers { surroundings, ball, star }: &mut StarBuffers,
     ) {
-        let &StarPoints { tree, normal, tips } = points;
+        let &StarPoints { tree, normal, tips, .. } = points;
         let is_tip = points.is_tip(i as u32);
         let reach_sq = reach * reach;
         let has_all = ball.take(surroundings, tree.position[i], reach_sq, i as u32);
@@ -232,22 +253,32 @@ impl Stars {
         &self,
         points: &StarPoints<'_>,
         is_at_border: impl Fn(usize) -> bool,
-        judge: &mut dyn TellsApart,
+        judge: &dyn TellsApart,
     ) -> Self {
+        /// Points in a slice of work: each may look at hundreds of others.
+        const FEW: usize = HEAVY / 8;
         let n = self.len();
+        let is_unknown = |i: &usize| !self.is_certain[*i] && !is_at_border(*i);
+        let unknown: Vec<usize> = (0..n).filter(is_unknown).collect();
+        pause().await;
+        let new_scratch = || (judge.on(points.patch), Box::<StarBuffers>::default());
+        let parts = slices::map(unknown.len(), FEW, new_scratch, |(judge, buffers), own| {
+            let mut part = Self::with_capacity(own.len());
+            unknown[own].iter().for_each(|&i| part.add_complete(points, i as u32, &mut **judge, buffers));
+            part
+        });
+        let found = Self::joined(unknown.len(), parts.await);
+        let mut unknown = unknown.into_iter().zip(0..).peekable();
         let mut stars = Self::with_capacity(n);
-        let mut scratch = Box::<StarBuffers>::default();
         for range in ranges(n, MEDIUM) {
             for i in range {
-                if self.is_certain[i] {
-                    stars.entry.extend(self.entry[self.range(i)].iter().map(|entry| entry | WEDGE));
-                    stars.end_star(self.nearest[i], false, true);
-                } else if is_at_border(i) {
-                    stars.entry.extend(&self.entry[self.range(i)]);
-                    stars.end_star(self.nearest[i], true, false);
+                if let Some((_, k)) = unknown.next_if(|&(other, _)| other == i) {
+                    stars.entry.extend(&found.entry[found.range(k)]);
+                    stars.end_star(found.nearest[k], found.is_open[k], found.is_certain[k]);
                 } else {
-                    stars.add_complete(points, i as u32, judge, &mut scratch);
-                    pause().await;
+                    let mark = if self.is_certain[i] { WEDGE } else { 0 };
+                    stars.entry.extend(self.entry[self.range(i)].iter().map(|entry| entry | mark));
+                    stars.end_star(self.nearest[i], !self.is_certain[i], self.is_certain[i]);
                 }
             }
             pause().await;
@@ -288,7 +319,7 @@ impl Stars {
         sheets: &Sheets,
         tree: &Tree,
         on_creases: usize,
-        judge: &mut dyn TellsApart,
+        judge: &dyn TellsApart,
     ) -> Self {
         let count = tree.origin.iter().max().map_or(0, |&row| row as usize + 1);
         let mut place = vec![NONE; count];
@@ -299,7 +330,6 @@ impl Stars {
         for sheet in &sheets.all {
             let number = completed.len();
             (0..).zip(&sheet.tree.origin).for_each(|(k, &row)| at[row as usize] = Some((number, k)));
-            judge.turn_to(sheet.patch);
             let is_at_border = |k: usize| (sheet.tree.origin[k] as usize) < on_creases;
             completed.push(sheet.stars.completed(&sheet.points(), is_at_border, judge).await);
         }

@@ -34,7 +34,7 @@ pub(crate) struct Sheet {
 impl Sheets {
     /// The sheets of these particles. Rows without a finite position or a normal are left out, and
     /// those at the place of an earlier one of the same patch.
-    pub(crate) async fn new(particles: &Particles, judge: &mut dyn TellsApart) -> Self {
+    pub(crate) async fn new(particles: &Particles, judge: &dyn TellsApart) -> Self {
         let mut all = Vec::new();
         if particles.patch.is_empty() {
             let rows = (0..particles.len() as u32).collect();
@@ -86,7 +86,7 @@ impl Sheets {
 impl Sheet {
     /// The points of the sheet.
     pub(crate) fn points(&self) -> StarPoints<'_> {
-        StarPoints { tree: &self.tree, normal: &self.normal, tips: &self.tips }
+        StarPoints { tree: &self.tree, normal: &self.normal, tips: &self.tips, patch: self.patch }
     }
 
     /// The sheet of these rows, which are on one patch.
@@ -94,14 +94,13 @@ impl Sheet {
         particles: &Particles,
         patch: Option<u32>,
         mut rows: Vec<u32>,
-        judge: &mut dyn TellsApart,
+        judge: &dyn TellsApart,
     ) -> Self {
         let Particles { local: position, normal, .. } = particles;
         rows.retain(|&row| {
             position[row as usize].is_finite() && normal[row as usize].try_normalize().is_some()
         });
         let tips = particles.tips();
-        judge.turn_to(patch);
         loop {
             let points = rows.iter().map(|&row| (position[row as usize], row)).collect();
             let tree = Tree::in_slices(points).await;
@@ -109,7 +108,8 @@ impl Sheet {
                 tree.origin.iter().map(|&row| normal[row as usize].normalize_or_zero()).collect();
             let is_tip = |&(_, row): &(u32, &u32)| tips.binary_search(row).is_ok();
             let tips: Vec<u32> = (0..).zip(&tree.origin).filter(is_tip).map(|(k, _)| k).collect();
-            let stars = Stars::new(&StarPoints { tree: &tree, normal: &normal, tips: &tips }, judge).await;
+            let points = StarPoints { tree: &tree, normal: &normal, tips: &tips, patch };
+            let stars = Stars::new(&points, judge).await;
             if stars.twins().is_empty() {
                 let tree = Arc::new(tree);
                 return Self { patch, tree, normal, tips, stars, border: Vec::new() };

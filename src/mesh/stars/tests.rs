@@ -66,9 +66,9 @@ fn stars_are_those_found_by_looking_at_all_points() {
             on_sphere(900).into_iter().map(ellipsoid(semiaxes)).unzip();
         let tree = Tree::new(&position);
         let normal: Vec<Vec3> = tree.origin.iter().map(|&i| normal[i as usize]).collect();
-        let points = StarPoints { tree: &tree, normal: &normal, tips: &[] };
-        let stars = complete(Stars::new(&points, &mut ByDirection));
-        let stars = complete(stars.completed(&points, |_| false, &mut ByDirection));
+        let points = StarPoints { tree: &tree, normal: &normal, tips: &[], patch: None };
+        let stars = complete(Stars::new(&points, &ByDirection));
+        let stars = complete(stars.completed(&points, |_| false, &ByDirection));
         for i in 0..tree.len() {
             let found: Vec<u32> = stars.of(i).map(|j| j as u32).collect();
             assert_eq!(turned(found), turned(naive(&points, i)), "{semiaxes}: point {i}");
@@ -87,8 +87,8 @@ fn across_the_diagonal_of_a_square_no_points_are_neighbours_but_their_triangles_
         (0..11).flat_map(|x| (0..11).map(move |y| Vec3::new(x as f32, y as f32, 0.0))).collect();
     let tree = Tree::new(&points);
     let normal = vec![Vec3::Z; points.len()];
-    let points = StarPoints { tree: &tree, normal: &normal, tips: &[] };
-    let stars = complete(Stars::new(&points, &mut ByDirection));
+    let points = StarPoints { tree: &tree, normal: &normal, tips: &[], patch: None };
+    let stars = complete(Stars::new(&points, &ByDirection));
     for i in 0..tree.len() {
         let p = tree.position[i];
         let is_inner = p.truncate().min_element() > 0.0 && p.truncate().max_element() < 10.0;
