@@ -66,8 +66,8 @@ pub fn ranges(count: usize, size: usize) -> impl Iterator<Item = Range<usize>> +
     (0..count).step_by(size).map(move |first| first..(first + size).min(count))
 }
 
-/// Does `work` on each range of 0..`count` of `size` items and returns the results in order. Each is
-/// a slice of work.
+/// Does `work` on each range of 0..`count` of `size` items, which is a slice of work, and returns
+/// the results in order.
 ///
 /// With the feature `parallel` all threads of the current rayon pool share the ranges, and do some
 /// slices at once. Each thread has its own scratch memory, by `new_scratch`: no result may depend

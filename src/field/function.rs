@@ -124,9 +124,9 @@ where
 /// A field given by a function of a batch of points, with its gradients or without.
 ///
 /// The function writes f at each point, of which there are 512 at most. It may fail: the run ends
-/// then, and gives the error. A function that has failed once is not asked again, by no run; with the feature
-/// `parallel` a few calls may be under way. What
-/// is said of [`FnField`] holds here, too.
+/// then, and gives the error. A function that has failed once is not asked again, by no run; with
+/// the feature `parallel` other threads may be asking it at that moment. What is said of
+/// [`FnField`] holds here, too.
 pub struct BatchField<F, E = FieldError, G = fn(&[DVec3], &mut [DVec3]) -> Result<(), E>> {
     values: F,
     gradients: Option<G>,
