@@ -366,6 +366,11 @@ impl Creases {
         on_curves.chain(corners)
     }
 
+    /// Whether patches of the surface meet within `reach` of a point.
+    pub(super) fn has_corner(&self, p: DVec3, reach: f64) -> bool {
+        self.corners.iter().any(|corner| corner.position.distance(p) <= reach)
+    }
+
     /// Whether patches of the surface meet, along a crease or in a point.
     pub(super) fn are_there(&self) -> bool {
         !(self.curves.is_empty() && self.corners.is_empty())
