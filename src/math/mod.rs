@@ -113,6 +113,12 @@ impl Bounds {
         })
     }
 
+    /// The corners of the box.
+    pub(crate) fn corners(&self) -> [DVec3; 8] {
+        let ends = [self.lo(), self.hi()];
+        core::array::from_fn(|k| DVec3::new(ends[k & 1].x, ends[k >> 1 & 1].y, ends[k >> 2].z))
+    }
+
     /// The box from its smallest to its largest corner.
     #[must_use]
     pub const fn new(lo: DVec3, hi: DVec3) -> Self {

@@ -413,8 +413,10 @@ impl Sampler {
         if self.bare_place().is_none() {
             let probe = &mut Probe::new(field, &mut self.tools.memory);
             let extrema = singular.iter().filter(|point| !point.has_two_signs);
+            let (creases, spacing) = (&self.creases, spacing(&self.bounds));
             let places = extrema.map(|point| point.position);
-            self.survey.bare = bare_among(probe, places, spacing(&self.bounds));
+            let places = places.filter(|&place| !creases.has_corner(place, bare_size(spacing)));
+            self.survey.bare = bare_among(probe, places, spacing);
         }
     }
 
@@ -484,9 +486,12 @@ impl Sampler {
         self.survey.touches
     }
 
-    /// A place where f comes to zero on a curve or at a point alone, if one was seen.
+    /// A place where f comes to zero on a curve or at a point alone, if one was seen. At a corner
+    /// there is a surface, though the solid may be too thin for f to show it.
     pub(crate) fn bare_place(&self) -> Option<DVec3> {
-        self.survey.bare.or(self.creases.bare)
+        let reach = bare_size(spacing(&self.bounds));
+        let is_alone = |place: &DVec3| !self.creases.has_corner(*place, reach);
+        [self.survey.bare, self.creases.bare].into_iter().flatten().find(is_alone)
     }
 
     /// Whether nothing was seen of a surface, and nothing was proven: f may have one that is small

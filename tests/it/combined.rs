@@ -75,6 +75,52 @@ fn a_formula_keeps_its_own_edges() {
 }
 
 #[test]
+fn fields_that_meet_without_an_edge_are_closed_as_their_formula_is() {
+    let capped = || formula("max(hypot(x, y) - 0.5, abs(z) - 1)");
+    // A sheet that rises from the plane without an edge where y < 0, and at an angle elsewhere.
+    let sheet = intersection(formula("z - x*(x + max(y, 0))"), |p: DVec3| -p.x);
+    for (joined, text, half) in [
+        // A rod with one round end.
+        (
+            union(capped(), ball(DVec3::Z, 0.5)),
+            "min(max(hypot(x, y) - 0.5, abs(z) - 1), hypot(x, y, z - 1) - 0.5)",
+            1.8,
+        ),
+        // One with two, of functions.
+        (
+            union(
+                intersection(|p: DVec3| p.truncate().length() - 0.5, |p: DVec3| p.z.abs() - 0.7),
+                union(ball(0.7 * DVec3::Z, 0.5), ball(-0.7 * DVec3::Z, 0.5)),
+            ),
+            "hypot(x, y, max(abs(z) - 0.7, 0)) - 0.5",
+            1.5,
+        ),
+        // A fillet that fades out in one of the operands.
+        (
+            intersection(formula("smin(z, x, max(0, -y))"), ball(DVec3::ZERO, 1.0)),
+            "max(smin(z, x, max(0, -y)), hypot(x, y, z) - 1)",
+            1.3,
+        ),
+        (
+            intersection(union(|p: DVec3| p.z, sheet), ball(DVec3::ZERO, 1.0)),
+            "max(z - max(x, 0)*(x + max(y, 0)), hypot(x, y, z) - 1)",
+            1.3,
+        ),
+    ] {
+        let settings = Settings::with_count(5_000).in_box(Bounds::cube(half));
+        let run = |sample: Sample| {
+            let topology = &sample.mesh().topology;
+            assert!(topology.is_closed(), "{text}: {:?}", sample.report().warnings);
+            assert_eq!((topology.components.len(), topology.euler()), (1, 2), "{text}");
+            sample.volume().expect("a closed mesh")
+        };
+        let known = run(sample(formula(text), &settings).expect("a sample"));
+        let found = run(sample(joined, &settings).expect("a sample"));
+        assert!((found / known - 1.0).abs() < 2e-3, "{text}: volume {found} for {known}");
+    }
+}
+
+#[test]
 fn operations_follow_each_other() {
     let [left, right] = CENTRES.map(|centre| ball(centre, 1.0));
     let both = union(left, right);

@@ -54,6 +54,22 @@ fn a_solid_is_closed_where_an_edge_of_it_fades_out() {
 }
 
 #[test]
+fn a_solid_is_closed_where_a_fillet_begins_on_an_edge() {
+    // There the fillet has two normals.
+    let field = Formula::parse("max(smin(z, hypot(x, y, z) - 0.5, max(0, -y)), hypot(x, y, z) - 1.2)")
+        .expect("a formula");
+    let exact = volume(&field, 1.2);
+    for count in [3_000, 8_000] {
+        let sample = sample(field.clone(), &Settings::with_count(count)).expect("a sample");
+        let topology = &sample.mesh().topology;
+        assert!(topology.is_closed(), "{count}: {} borders", topology.borders.len());
+        assert_eq!((topology.components.len(), topology.euler()), (1, 2), "{count}");
+        let found = sample.volume().expect("a closed mesh");
+        assert!((found / exact - 1.0).abs() < 0.01, "{count}: volume {found} for {exact}");
+    }
+}
+
+#[test]
 fn a_seam_that_runs_to_the_box_ends_on_its_faces() {
     let field = Formula::parse("z = max(x, 0)*max(y, 0)").expect("a formula");
     let bounds = Bounds::cube(2.0);

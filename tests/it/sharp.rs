@@ -208,23 +208,37 @@ fn a_cutter_that_lies_flush_with_a_face_leaves_no_skin() {
 
 #[test]
 fn creases_that_touch_share_a_particle() {
-    // A ball that touches the edges of the cube in their middles.
-    let formula = "max(hypot(x, y, z) - sqrt(2), max(abs(x), abs(y), abs(z)) - 1)";
-    let sample =
-        sample(Formula::parse(formula).expect("a formula"), &Settings::with_count(8_000)).expect("a sample");
-    let mesh = sample.mesh();
-    let topology = &mesh.topology;
-    assert_eq!((topology.components.len(), topology.euler(), topology.borders.len()), (1, 2, 0));
-    assert!(mesh.left_out.is_empty());
-    // The ball without six caps of the height √2 − 1.
+    // A ball that touches the edges of the cube in their middles. Beyond each face it has a cap of
+    // the height √2 − 1.
+    let [ball, cube] = ["hypot(x, y, z) - sqrt(2)", "max(abs(x), abs(y), abs(z)) - 1"];
     let height = 2.0_f64.sqrt() - 1.0;
-    let cap = PI * height * height * (2.0_f64.sqrt() - height / 3.0);
-    let exact = 4.0 / 3.0 * PI * 8.0_f64.sqrt() - 6.0 * cap;
-    let volume = sample.volume().expect("a closed mesh");
-    assert!((volume / exact - 1.0).abs() < 0.002, "volume {volume} for {exact}");
-    for middle in [DVec3::new(1.0, 1.0, 0.0), DVec3::new(-1.0, 0.0, 1.0), DVec3::new(0.0, 1.0, -1.0)] {
-        let is_there = |i: usize| sample.particles().place(i).distance(middle) < 1e-6;
-        assert!((0..sample.particles().twins.len()).any(is_there), "{middle}");
+    let caps = 6.0 * PI * height * height * (2.0_f64.sqrt() - height / 3.0);
+    let whole = 4.0 / 3.0 * PI * 8.0_f64.sqrt();
+    for (formula, euler, creases, exact) in [
+        (format!("max({ball}, {cube})"), 2, [24, 12], whole - caps),
+        (format!("min({ball}, {cube})"), 2, [48, 20], 8.0 + caps),
+        // Eight pieces around the corners of the cube, which touch in twelve points.
+        (format!("max({cube}, -({ball}))"), 8 * 2 - 12, [48, 20], 8.0 + caps - whole),
+    ] {
+        let sample = sample(Formula::parse(&formula).expect("a formula"), &Settings::with_count(8_000))
+            .expect("a sample");
+        let mesh = sample.mesh();
+        let topology = &mesh.topology;
+        assert_eq!(
+            (topology.components.len(), topology.euler(), topology.borders.len()),
+            (1, euler, 0),
+            "{formula}"
+        );
+        assert!(mesh.left_out.is_empty(), "{formula}");
+        assert_eq!(sample.report().warnings, [], "{formula}");
+        let proof = &sample.report().proof;
+        assert_eq!([proof.creases, proof.corners], creases.map(Some), "{formula}");
+        let volume = sample.volume().expect("a closed mesh");
+        assert!((volume - exact).abs() < 0.02, "{formula}: volume {volume} for {exact}");
+        for middle in [DVec3::new(1.0, 1.0, 0.0), DVec3::new(-1.0, 0.0, 1.0), DVec3::new(0.0, 1.0, -1.0)] {
+            let is_there = |i: usize| sample.particles().place(i).distance(middle) < 1e-6;
+            assert!((0..sample.particles().twins.len()).any(is_there), "{formula}: {middle}");
+        }
     }
 }
 

@@ -91,8 +91,21 @@ impl<'a> CombinationEvaluator<'a> {
         f64::from(self.frame.scale) / self.frame.double.unwrap_or(1.0)
     }
 
+    /// The branches of a part in a box.
+    pub(super) fn branches_of(&mut self, part: usize, bounds: &Bounds) -> Option<Vec<u32>> {
+        let part = &mut self.parts[part];
+        if part.patches().is_some() { part.branches_in(bounds) } else { Some(vec![0]) }
+    }
+
+    /// The function of a branch of a part.
+    pub(super) fn function(&mut self, part: usize, branch: u32) -> &mut dyn Evaluator {
+        let part = &mut *self.parts[part];
+        let own = part.patches().is_some().then_some(branch);
+        part.on(own)
+    }
+
     /// The part that gives f at `p`, where this is a minimum or maximum.
-    fn part_at(&mut self, p: DVec3) -> usize {
+    pub(super) fn part_at(&mut self, p: DVec3) -> usize {
         let [a, b] = [0, 1].map(|k: usize| self.parts[k].value_and_gradient(p).0);
         self.field.rule.taken(a, b)
     }
@@ -192,13 +205,20 @@ impl Patches for CombinationEvaluator<'_> {
         let mut found = Vec::new();
         for (k, is_there) in (0..).zip(self.may_give(bounds)) {
             if is_there {
-                let part = &mut self.parts[k as usize];
-                let own = if part.patches().is_some() { part.branches_in(bounds)? } else { vec![0] };
+                let own = self.branches_of(k as usize, bounds)?;
                 found.extend(own.into_iter().map(|branch| 2 * branch + k));
             }
         }
         found.sort_unstable();
         Some(found)
+    }
+
+    fn tangent_pairs(&mut self) -> Vec<[u32; 2]> {
+        let mut found = self.field.seams.clone();
+        for (k, part) in (0..).zip(&mut self.parts) {
+            found.extend(part.tangent_pairs().into_iter().map(|pair| pair.map(|branch| 2 * branch + k)));
+        }
+        found
     }
 
     fn branch(&mut self, branch: u32) -> &mut dyn Evaluator {
@@ -229,9 +249,7 @@ struct BranchEvaluator<'a> {
 
 impl BranchEvaluator<'_> {
     fn function(&mut self) -> &mut dyn Evaluator {
-        let part = &mut *self.whole.parts[self.branch as usize % 2];
-        let own = part.patches().is_some().then_some(self.branch / 2);
-        part.on(own)
+        self.whole.function(self.branch as usize % 2, self.branch / 2)
     }
 }
 

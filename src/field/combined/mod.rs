@@ -133,20 +133,16 @@ fn shared<A: IntoField<K, Field: 'static>, K>(given: A) -> Arc<dyn Field> {
 }
 
 pub(super) fn least(a: Arc<dyn Field>, b: Arc<dyn Field>) -> Arc<dyn Field> {
-    Arc::new(Combination { rule: Rule::Least, parts: vec![a, b] })
+    Arc::new(Combination::new(Rule::Least, vec![a, b]))
 }
 
 pub(super) fn greatest(a: Arc<dyn Field>, b: Arc<dyn Field>) -> Arc<dyn Field> {
-    Arc::new(Combination { rule: Rule::Greatest, parts: vec![a, b] })
+    Arc::new(Combination::new(Rule::Greatest, vec![a, b]))
 }
 
 /// The smooth minimum of this width.
 pub(super) fn blended(a: Arc<dyn Field>, b: Arc<dyn Field>, width: f64) -> Arc<dyn Field> {
-    if width > 0.0 {
-        Arc::new(Combination { rule: Rule::Blend { width }, parts: vec![a, b] })
-    } else {
-        least(a, b)
-    }
+    if width > 0.0 { Arc::new(Combination::new(Rule::Blend { width }, vec![a, b])) } else { least(a, b) }
 }
 
 /// The field f − shift, or −f − shift.
@@ -156,7 +152,7 @@ pub(super) fn turned(field: &Arc<dyn Field>, is_negative: bool, shift: f64) -> A
         Some(creased) => creased.turned(is_negative, shift),
         None => {
             let rule = Rule::Turned { is_negative, shift };
-            Arc::new(Combination { rule, parts: vec![Arc::clone(field)] })
+            Arc::new(Combination::new(rule, vec![Arc::clone(field)]))
         }
     }
 }
@@ -166,9 +162,16 @@ pub(super) fn turned(field: &Arc<dyn Field>, is_negative: bool, shift: f64) -> A
 struct Combination {
     rule: Rule,
     parts: Vec<Arc<dyn Field>>,
+    /// Pairs of a branch of the first part and one of the second that meet without an edge
+    /// somewhere, as far as that has been looked for.
+    seams: Vec<[u32; 2]>,
 }
 
 impl Combination {
+    fn new(rule: Rule, parts: Vec<Arc<dyn Field>>) -> Self {
+        Self { rule, parts, seams: Vec::new() }
+    }
+
     fn is_extreme(&self) -> bool {
         matches!(self.rule, Rule::Least | Rule::Greatest)
     }
@@ -232,12 +235,15 @@ impl Creased for Combination {
                 *part = function;
             }
             let origin = bounds.middle();
-            let mut evaluator = CombinationEvaluator::new(&own, Frame::around(origin));
+            let frame = Frame { length: bounds.diagonal(), ..Frame::around(origin) };
+            let mut evaluator = CombinationEvaluator::new(&own, frame);
             let near = bounds.relative_to(origin);
             evaluator.drop_hidden(&mut found, origin).await;
             let ties = evaluator.tied_cells(&near, width).await;
             found.extend(ties.iter().map(|cell| cell.relative_to(-origin)));
+            let seams = evaluator.seams_in(&ties).await;
             drop(evaluator);
+            own.seams = seams;
             let own: Arc<dyn Creased> = Arc::new(own);
             (found, own)
         })
@@ -254,6 +260,6 @@ impl Creased for Combination {
             rule => rule,
         };
         let parts = self.parts.iter().map(|part| turned(part, is_negative, shift)).collect();
-        Arc::new(Self { rule, parts })
+        Arc::new(Self::new(rule, parts))
     }
 }

@@ -18,6 +18,10 @@ const SIDE: f64 = 32.0;
 const SLACK: f64 = 2.0;
 /// Sine of the largest angle between gradients that count as parallel: only rounding parts them.
 const PARALLEL: f64 = 1e-6;
+/// Sine of the largest angle between gradients in the middle of a cell of two surfaces that meet
+/// without an edge there, where the curvature of one of them is up to a quarter of the inverse
+/// width of the cell. Larger: a search for seams along creases that have none.
+const NEARLY_PARALLEL: f64 = 0.2;
 /// The largest number of cells that are divided further. Two surfaces that share a face have more.
 const MOST_CELLS: usize = 200_000;
 
@@ -52,6 +56,49 @@ impl CombinationEvaluator<'_> {
         let [(_, u), (_, v)] = slopes;
         slopes.iter().all(|(value, gradient)| value.abs() <= reach * gradient.length())
             && u.cross(v).length_squared() > PARALLEL * PARALLEL * u.length_squared() * v.length_squared()
+    }
+
+    /// The pairs of branches, one of each part, that may meet without an edge in cells in which the
+    /// parts are tied.
+    pub(super) async fn seams_in(&mut self, cells: &[Bounds]) -> Vec<[u32; 2]> {
+        let mut found = Vec::new();
+        for cells in cells.chunks(HEAVY) {
+            pause().await;
+            for cell in cells {
+                let middle = cell.middle();
+                let branches = [0, 1].map(|part| self.branches_of(part, cell).unwrap_or_default());
+                let mut slopes = [0, 1].map(|part: usize| {
+                    let of = |&branch: &u32| {
+                        let number = 2 * branch + part as u32;
+                        (number, self.function(part, branch).value_and_gradient(middle))
+                    };
+                    branches[part].iter().map(of).collect::<Vec<_>>()
+                });
+                let reach = 0.5 * SLACK * cell.diagonal();
+                for own in &mut slopes {
+                    own.retain(|(_, (value, gradient))| value.abs() <= reach * gradient.length());
+                }
+                let [first, second] = slopes;
+                for (a, (_, u)) in first {
+                    for &(b, (_, v)) in &second {
+                        let sizes = u.length() * v.length();
+                        let is_tangent = u.dot(v) > 0.0 && u.cross(v).length() <= NEARLY_PARALLEL * sizes;
+                        let pair = [a.min(b), a.max(b)];
+                        if is_tangent && !found.contains(&pair) && self.may_turn(cell) {
+                            found.push(pair);
+                        }
+                    }
+                }
+            }
+        }
+        found.sort_unstable();
+        found
+    }
+
+    /// Whether one part gives f at some corners of a cell, and the other one at others.
+    fn may_turn(&mut self, cell: &Bounds) -> bool {
+        let parts = cell.corners().map(|corner| self.part_at(corner));
+        parts.contains(&0) && parts.contains(&1)
     }
 
     /// Whether each part may give a point of the surface in a cell: where it is zero, and the other

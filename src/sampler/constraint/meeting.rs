@@ -1,8 +1,8 @@
 //! Points where branches of f are zero together.
 
-use super::AT_REST;
-use crate::math::SQRT_3;
+use super::{AT_REST, BESIDE};
 use crate::math::newton::{self, STEPS, StepLimits, step_to_corner, step_to_curve, step_to_surface};
+use crate::math::{Bounds, SQRT_3};
 use crate::sampler::probe::Probe;
 use glam::DVec3;
 
@@ -130,11 +130,18 @@ impl Meeting {
         probe.is_bare_zero(self.position, reach)
     }
 
+    /// The branches that may give f near the point.
+    pub(super) fn branches_near(&self, probe: &mut Probe, step: f64) -> Vec<u32> {
+        let around = Bounds::new(self.position - BESIDE * step, self.position + BESIDE * step);
+        probe.field.branches_in(&around).unwrap_or_default()
+    }
+
     /// The patches that meet along the crease, in ascending order: those of its branches, and of
-    /// the `others` that are zero on it.
-    pub(super) fn patches(&self, probe: &mut Probe, others: &[u32], reach: f64) -> Vec<u32> {
+    /// others that are zero on it.
+    pub(super) fn patches(&self, probe: &mut Probe, reach: f64) -> Vec<u32> {
+        let others = self.branches_near(probe, reach);
         let mut patches = self.branches.to_vec();
-        for &other in others.iter().filter(|other| !self.branches.contains(other)) {
+        for other in others.into_iter().filter(|other| !self.branches.contains(other)) {
             let (value, gradient) = branch(probe, other, self.position);
             let is_zero = value.abs() <= ASIDE * ASIDE * reach * gradient.length()
                 && gradient.dot(self.tangent).abs() <= FADED * gradient.length();

@@ -211,6 +211,9 @@ impl Creases {
             pause().await;
             let branches = probe.field.branches_in(cell).unwrap_or_default();
             for pair in pairs.iter().filter(|pair| pair.iter().all(|patch| branches.contains(patch))) {
+                if self.runs_by(cell.middle(), *pair, 0.5 * cell.diagonal(), step) {
+                    continue;
+                }
                 let start = Meeting::on_seam(probe, *pair, cell).filter(|start| {
                     bounds.holds(start.position) && !self.has_point(start.position, *pair, step)
                 });
@@ -255,8 +258,13 @@ impl Creases {
 
     /// Whether a crease of two branches that is known runs through a point.
     fn has_point(&self, p: DVec3, branches: [u32; 2], step: f64) -> bool {
+        self.runs_by(p, branches, NEAR * step, step)
+    }
+
+    /// Whether a crease of two branches that is known comes within `reach` of a point.
+    fn runs_by(&self, p: DVec3, branches: [u32; 2], reach: f64, step: f64) -> bool {
         let has_both = |curve: &&Crease| branches.iter().all(|branch| curve.patches.contains(branch));
-        self.curves.iter().filter(has_both).any(|curve| curve.is_near(p, NEAR * step, LONGEST * step))
+        self.curves.iter().filter(has_both).any(|curve| curve.is_near(p, reach, LONGEST * step))
     }
 
     /// The first corner that lies on a crease of these branches, on the way from one of its points
@@ -364,6 +372,11 @@ impl Creases {
             .flat_map(|curve| curve.points.iter().map(|point| (point.as_vec3(), &curve.patches[..])));
         let corners = self.corners.iter().map(|corner| (corner.position.as_vec3(), &corner.patches[..]));
         on_curves.chain(corners)
+    }
+
+    /// Whether patches of the surface meet within `reach` of a point.
+    pub(super) fn has_corner(&self, p: DVec3, reach: f64) -> bool {
+        self.corners.iter().any(|corner| corner.position.distance(p) <= reach)
     }
 
     /// Whether patches of the surface meet, along a crease or in a point.

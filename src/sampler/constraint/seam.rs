@@ -73,6 +73,11 @@ impl Meeting {
         let mut ends: [Option<Landed>; 2] = [None; 2];
         // A seam may run along the face of a cell.
         let around = Bounds::new(cell.lo() - 0.3 * cell.size(), cell.hi() + 0.4 * cell.size());
+        // Little is to be asked of a cell through which no branch gives way to another.
+        let [one, others @ ..] = around.corners().map(|corner| probe.field.branch_at(corner));
+        if others.iter().all(|&other| other == one) {
+            return None;
+        }
         for start in around.spread(3) {
             let Some(place) = landed(probe, start, reach) else { continue };
             if let Some(k) = pair.iter().position(|&patch| patch == place.patch) {

@@ -24,6 +24,32 @@ fn counts(creases: &Creases) -> [usize; 2] {
 }
 
 #[test]
+fn creases_that_touch_meet_at_corners_wherever_the_cells_lie() {
+    let cube = "max(abs(x), abs(y), abs(z)) - 1";
+    let block = "max(abs(x) - 1, abs(y) - 0.7, abs(z) - 1.5)";
+    let octahedron = "abs(x) + abs(y) + abs(z) - 1";
+    for (body, ball, union, intersection, difference) in [
+        // A circle on each face, which touches its edges in their middles.
+        (cube, "hypot(x, y, z) - sqrt(2)", [48, 20], [24, 12], [48, 20]),
+        (octahedron, "hypot(x, y, z) - sqrt(1/2)", [48, 18], [24, 12], [48, 18]),
+        // One edge is touched, and four.
+        (cube, "hypot(x - 0.5, y, z - 0.5) - sqrt(1/2)", [15, 9], [2, 1], [15, 9]),
+        (block, "hypot(x, y, z) - hypot(1, 0.7)", [24, 12], [8, 4], [24, 12]),
+    ] {
+        for (operation, expected) in [
+            (format!("min({ball}, {body})"), union),
+            (format!("max({ball}, {body})"), intersection),
+            (format!("max({body}, -({ball}))"), difference),
+        ] {
+            for half in [1.83, 1.9, 2.0] {
+                let (_, creases) = creases(&operation, half);
+                assert_eq!(counts(&creases), expected, "{operation} in a cube of half-width {half}");
+            }
+        }
+    }
+}
+
+#[test]
 fn the_creases_of_solids_are_counted() {
     for (name, text, half, expected) in [
         ("sphere", "x^2+y^2+z^2-1", 1.3, [0, 0]),

@@ -6,7 +6,7 @@
 //! three functions has no single root. The point is where the third branch is extreme along the
 //! crease.
 
-use super::meeting::{FADED, Meeting, is_on};
+use super::meeting::{FADED, Meeting, branch, is_on};
 use super::{Creases, LONGEST, NEAR, ONE_CORNER};
 use crate::sampler::probe::Probe;
 use crate::slices::pause;
@@ -16,6 +16,9 @@ use glam::DVec3;
 /// Larger: creases that pass each other closely share a corner. Smaller: rounding hides that they
 /// touch.
 const TOUCH: f64 = 1e-6;
+/// Share of a chord by which it is prolonged along the crease, since nothing turns at the end of a
+/// chord.
+const OVERLAP: f64 = 0.1;
 /// Times that the way to a touching point is halved.
 const BISECTIONS: u32 = 30;
 
@@ -32,14 +35,22 @@ impl Creases {
                     continue;
                 }
                 let patches = [&curve.patches[..], &beside.patches].concat();
-                for [here, next] in curve.chords() {
+                let count = curve.chords().count();
+                for (k, [here, next]) in curve.chords().enumerate() {
                     let reach = 0.5 * here.distance(next) + NEAR * step;
                     if !self.curves[other].is_near(here.midpoint(next), reach, LONGEST * step) {
                         continue;
                     }
                     pause().await;
+                    let beyond = (next - here) * OVERLAP;
+                    let [is_start, is_end] =
+                        [k == 0, k + 1 == count].map(|is_end| is_end && !curve.is_closed);
+                    let chord = [
+                        if is_start { here } else { here - beyond },
+                        if is_end { next } else { next + beyond },
+                    ];
                     for &third in &thirds {
-                        let place = touching_point(probe, curve.branches, third, [here, next], step);
+                        let place = touching_point(probe, curve.branches, third, chord, step);
                         if let Some(place) = place {
                             self.corner_at(place, &patches, ONE_CORNER * step);
                         }
@@ -50,8 +61,21 @@ impl Creases {
     }
 }
 
+impl Meeting {
+    /// Whether the sheet of another branch touches the crease at a point so near that a place
+    /// beside the crease may lie beyond that sheet.
+    pub(super) fn is_touched(&self, probe: &mut Probe, step: f64) -> bool {
+        let chord = [self.position - self.tangent * step, self.position + self.tangent * step];
+        self.branches_near(probe, step).into_iter().any(|third| {
+            !self.branches.contains(&third)
+                && is_on(probe, third, self.position, FADED * step)
+                && touching_point(probe, self.branches, third, chord, step).is_some()
+        })
+    }
+}
+
 /// The point on the crease of two branches, between two points of it, at which a third branch is
-/// zero and extreme along the crease.
+/// zero and extreme along the crease. A branch that is zero along the crease has none.
 pub(super) fn touching_point(
     probe: &mut Probe,
     branches: [u32; 2],
@@ -63,17 +87,17 @@ pub(super) fn touching_point(
     let rise = |probe: &mut Probe, p: DVec3| {
         let at = Meeting::of_branches(probe, branches, p, way.length(), FADED)?;
         let along = if at.tangent.dot(way) < 0.0 { -at.tangent } else { at.tangent };
-        let (_, gradient) = probe.on(Some(third)).field.value_and_gradient(at.position);
-        probe.count(1);
-        Some((at.position, gradient.dot(along)))
+        let (value, gradient) = branch(probe, third, at.position);
+        let is_off = value.abs() > TOUCH * step * gradient.length();
+        Some((at.position, gradient.dot(along), is_off))
     };
-    let [(_, before), (_, after)] = [rise(probe, here)?, rise(probe, next)?];
-    let is_turning = before * after < 0.0;
+    let [(_, before, is_off), (_, after, is_off_behind)] = [rise(probe, here)?, rise(probe, next)?];
+    let is_turning = before * after < 0.0 && is_off && is_off_behind;
     if !is_turning {
         return None;
     }
     for _ in 0..BISECTIONS {
-        let (middle, slope) = rise(probe, here.midpoint(next))?;
+        let (middle, slope, _) = rise(probe, here.midpoint(next))?;
         if slope * before > 0.0 {
             here = middle;
         } else {

@@ -1,7 +1,7 @@
 //! Follows a crease from one of its points to both ends.
 
 use super::meeting::{FADED, MOST_TURN, Meeting, Third, common_point, touching_point};
-use super::{BESIDE, Crease, Creases, ONE_CORNER, ONE_END, seam, touch};
+use super::{BESIDE, Crease, Creases, NEAR, ONE_CORNER, ONE_END, seam, touch};
 use crate::math::Bounds;
 use crate::sampler::probe::Probe;
 use crate::slices::{Work, pause};
@@ -31,7 +31,8 @@ enum WalkEnd {
     Corner(usize),
 }
 
-/// Traces the crease through `start` and adds it with its corners.
+/// Traces the crease through `start` and adds it with its corners. Beside a point at which another
+/// sheet touches the crease nothing is traced.
 pub(super) fn trace<'a>(
     probe: &'a mut Probe<'_>,
     bounds: &'a Bounds,
@@ -39,10 +40,11 @@ pub(super) fn trace<'a>(
     start: Meeting,
     step: f64,
 ) -> Work<'a, ()> {
-    let around = Bounds::new(start.position - BESIDE * step, start.position + BESIDE * step);
-    let others = probe.field.branches_in(&around).unwrap_or_default();
-    let patches = if start.is_seam() { start.branches.to_vec() } else { start.patches(probe, &others, step) };
     Box::pin(async move {
+        if !start.is_seam() && start.is_touched(probe, step) {
+            return;
+        }
+        let patches = if start.is_seam() { start.branches.to_vec() } else { start.patches(probe, step) };
         let are_left = start.are_left(probe, &patches, step);
         let mut walk = Walk { probe, bounds, start, patches: &patches, are_left: are_left.as_deref(), step };
         let mut points = vec![start.position];
@@ -292,12 +294,20 @@ impl Walk<'_, '_> {
         let behind = next.position + way;
         let behind = Meeting::of_branches(self.probe, branches, behind, way.length(), FADED);
         behind.is_some_and(|behind| {
+            let chord = [here, behind.position];
             self.is_same_crease(&behind, self.step)
-                && self.branches_around(next).into_iter().any(|third| {
-                    let chord = [here, behind.position];
+                && self.others_along(chord).into_iter().any(|third| {
                     touch::touching_point(self.probe, branches, third, chord, self.step).is_some()
                 })
         })
+    }
+
+    /// The branches, other than those of the walk, that may give f along a chord.
+    fn others_along(&mut self, [a, b]: [DVec3; 2]) -> Vec<u32> {
+        let around = Bounds::new(a.min(b) - NEAR * self.step, a.max(b) + NEAR * self.step);
+        let mut found = self.probe.field.branches_in(&around).unwrap_or_default();
+        found.retain(|branch| !self.patches.contains(branch));
+        found
     }
 
     /// The branches, other than those of the walk, that give f at a point and beside it.

@@ -33,6 +33,7 @@ use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::Probe;
 use crate::sampler::projection::{ChildCircle, CircleLanding, Tolerance};
 use crate::sampler::sheet::{PointPair, is_level, level_slack_sq};
+use crate::spatial::Neighbour;
 use core::ops::Range;
 use glam::Vec3;
 
@@ -153,8 +154,15 @@ impl UniformPlacing {
             (near.index as usize) < level.settled
                 && is_level(pair, near.offset.length_squared(), self.match_radius)
         });
+        // Where a crease ends, the normal of a patch may jump, as that of a fillet does whose width
+        // falls to 0, and the field cannot tell one sheet from two.
+        let is_one = |near: &Neighbour| {
+            (near.index as usize) < particles.twins.len()
+                && near.distance_sq <= level_slack_sq(self.match_radius)
+        };
         let spacing = 2.0 * self.radius;
-        level.rule.is_near_own(probe, particles, point, &level.found, |_| spacing)
+        level.found.iter().any(is_one)
+            || level.rule.is_near_own(probe, particles, point, &level.found, |_| spacing)
     }
 
     /// The place of a child on a circle, if the search there has led to its own sheet: the circle
