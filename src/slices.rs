@@ -66,12 +66,12 @@ pub fn ranges(count: usize, size: usize) -> impl Iterator<Item = Range<usize>> +
     (0..count).step_by(size).map(move |first| first..(first + size).min(count))
 }
 
-/// Does `work` on each range of 0..`count` of `size` items, which is a slice of work, and returns
-/// the results in order.
+/// Divides 0..`count` into ranges of `size` items, does `work` on each as a slice of work, and
+/// returns the results in order.
 ///
-/// With the feature `parallel` all threads of the current rayon pool share the ranges, and do some
-/// slices at once. Each thread has its own scratch memory, by `new_scratch`: no result may depend
-/// on what that held before.
+/// With the feature `parallel` all threads of the current rayon pool share the ranges, and do many
+/// between two pauses. `new_scratch` makes the scratch memory of each thread. `work` must give the
+/// same result whatever that memory held before.
 pub(crate) async fn map<S: MaybeSend, T: MaybeSend>(
     count: usize,
     size: usize,
@@ -81,7 +81,7 @@ pub(crate) async fn map<S: MaybeSend, T: MaybeSend>(
     let all: Vec<Range<usize>> = ranges(count, size).collect();
     let mut scratch: Vec<S> = (0..threads().min(all.len()).max(1)).map(|_| new_scratch()).collect();
     let mut results = Vec::with_capacity(all.len());
-    // So many for each thread that it takes far longer to do them than to wake it.
+    // Each thread gets so many that waking it takes little time in comparison.
     let at_once = if scratch.len() > 1 { 64 * scratch.len() } else { 1 };
     for group in all.chunks(at_once) {
         share_out(&mut scratch, group, &work, &mut results);
@@ -123,8 +123,7 @@ fn threads() -> usize {
     1
 }
 
-/// Appends the results of `work` on these ranges, of which each thread takes some that follow each
-/// other.
+/// Appends the results of `work` on these ranges, in order. Each thread does consecutive ones.
 fn share_out<S: MaybeSend, T: MaybeSend>(
     scratch: &mut [S],
     ranges: &[Range<usize>],

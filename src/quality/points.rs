@@ -36,7 +36,8 @@ pub(super) struct MeasuredPoints {
     has_duplicate: Vec<bool>,
 }
 
-/// How far a point and its normal are from the surface.
+/// The field gives a point its residual and its normal. The angle says how far the normal that was
+/// given is off.
 struct Deviation {
     /// Unit normal: ∇f/|∇f|, or the given one where that is undefined.
     normal: Vec3,
