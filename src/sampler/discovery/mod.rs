@@ -9,6 +9,7 @@ pub(crate) mod audit;
 mod cell;
 pub(crate) mod completeness;
 mod dips;
+mod fate;
 pub(crate) mod grid;
 mod interval_newton;
 pub(crate) mod nearness;

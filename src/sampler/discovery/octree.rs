@@ -55,14 +55,13 @@
 //! generalised gradient, for which both arguments are the same. Where f jumps, has a pole or is not
 //! defined the surface may end, and nothing is concluded from slopes.
 
-use crate::field::{Bounded, Enclosure};
-use crate::math::{Bounds, Interval, Sym3, sort_by_key};
-use crate::sampler::discovery::cell::{
-    Axes, CUT, Cell, is_discarded, is_inside, is_left_out, push_boundary, rise,
-};
-use crate::sampler::discovery::interval_newton::narrowed;
+use crate::field::{Bounded, Enclosure, Evaluator};
+use crate::math::{Bounds, sort_by_key};
+use crate::sampler::discovery::cell::{Axes, CUT, Cell, is_inside, is_left_out, push_boundary};
+use crate::sampler::discovery::fate::{Fate, Judge};
 use crate::sampler::discovery::singular::{SAME, Singular, isolating_box, singular_point};
-use crate::slices::HEAVY;
+use crate::slices::{self, HEAVY};
+use core::ops::Range;
 use glam::{DVec3, Vec3};
 use std::collections::VecDeque;
 
@@ -94,17 +93,9 @@ const MOST_TRIED: usize = 512;
 const UNITS: u32 = 8;
 /// The box is enlarged by this share of its longest side: the size of the smallest cell.
 const MARGIN: f64 = 1.0 / (1_u32 << DEPTH) as f64;
-/// A taller cell reaches this many times as far as the slopes of the cell itself require. A choice.
-const RISE_ROOM: f64 = 2.0;
-/// A taller cell reaches at least this share of its height, because it may be flat.
-const LEAST_RISE: f64 = 0.02;
 /// A cell is halved along the sides that are longer than this share of the longest: those nearer to
 /// it than to its half. Where all sides are halved there are more cells.
 const LONG: f64 = 0.7;
-/// Largest height difference between a witness and the surface, as a share of the rise over the
-/// footprint: the longer part of a side.
-const BESIDE: f64 = 1.0 - CUT;
-
 /// The state of the search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum SearchState {
@@ -155,8 +146,7 @@ pub(crate) struct Octree {
     /// The search that is under way.
     search: FactorSearch,
     turns: Turns,
-    bounds: BoxBounds,
-    batch: CellBatch,
+    judge: Judge,
     /// Points where f and its gradient vanish; of curves of them a selection.
     pub(crate) singular: Vec<Singular>,
     /// Witnesses, at least one on every component of the surface.
@@ -199,86 +189,6 @@ struct Turns {
     /// Number of cells visited before this round, and until now.
     before: usize,
     visited: usize,
-}
-
-/// Boxes and the bounds of the field over them.
-#[derive(Clone, Debug, Default)]
-struct BoxBounds {
-    boxes: Vec<Bounds>,
-    known: Vec<Enclosure>,
-    second: Vec<Sym3<Interval>>,
-}
-
-/// The cells of a batch, by what is to be done with them.
-#[derive(Clone, Debug, Default)]
-struct CellBatch {
-    /// Cells that the bounds of the expressions do not decide.
-    open: Vec<Cell>,
-    tall: Vec<Tall>,
-    lines: Vec<Line>,
-}
-
-/// A cell that is made taller.
-#[derive(Clone, Copy, Debug)]
-struct Tall {
-    cell: Cell,
-    /// Length by which the cell is taller at each end.
-    room: f64,
-    /// Largest rise of the surface over the footprint; none where the surface may not be a graph.
-    rise: Option<f64>,
-}
-
-impl Tall {
-    /// The taller cell.
-    fn bounds(&self) -> Bounds {
-        let up = self.cell.axes().up;
-        let Bounds { mut min, mut max } = self.cell.bounds;
-        (min[up], max[up]) = (min[up] - self.room, max[up] + self.room);
-        Bounds { min, max }
-    }
-}
-
-/// A line through a tall cell that meets the surface.
-#[derive(Clone, Copy, Debug)]
-struct Line {
-    /// Index of the cell.
-    tall: usize,
-    /// Lower and upper end of the line.
-    lo: f64,
-    hi: f64,
-    /// Present estimate of the point at which the line meets the surface.
-    root: f64,
-}
-
-impl BoxBounds {
-    /// Bounds f and its gradient over the boxes.
-    fn enclose(&mut self, field: &mut dyn Bounded, factor: usize) {
-        let n = self.boxes.len();
-        self.known.resize(n.max(self.known.len()), Enclosure::UNKNOWN);
-        field.enclose(factor, &self.boxes, &mut self.known[..n]);
-    }
-
-    /// Bounds f and its gradient over the boxes, the mean value forms included; behind these bounds
-    /// stand those in the middles of the boxes.
-    fn refine(&mut self, field: &mut dyn Bounded, factor: usize) {
-        let n = self.boxes.len();
-        if n == 0 {
-            return;
-        }
-        for k in 0..n {
-            self.boxes.push(Bounds::point(self.boxes[k].middle()));
-        }
-        self.enclose(field, factor);
-        self.boxes.truncate(n);
-        self.second.resize(n.max(self.second.len()), Sym3::splat(Interval::EVERYTHING));
-        field.enclose_second(factor, &self.boxes, &mut self.second[..n]);
-        for k in 0..n {
-            let middle = self.known[n + k];
-            if self.known[k].defined && self.known[k].continuous {
-                tighten(&mut self.known[k], &middle, &self.second[k], 0.5 * self.boxes[k].size());
-            }
-        }
-    }
 }
 
 impl Octree {
@@ -358,12 +268,13 @@ impl Octree {
             }
         }
         while budget > 0 && !self.is_done() {
-            let count = HEAVY.min(self.search.level.len() - self.search.next);
-            self.visit(field, self.search.next..self.search.next + count);
-            self.search.next += count;
-            self.search.cells += count;
-            self.turns.visited += count;
-            budget = budget.saturating_sub(UNITS * HEAVY as u32);
+            let batches = self.next_batches(budget);
+            self.visit(field, &batches);
+            let next = batches.last().map_or(self.search.next, |batch| batch.end);
+            self.search.cells += next - self.search.next;
+            self.turns.visited += next - self.search.next;
+            self.search.next = next;
+            budget = budget.saturating_sub(batches.len() as u32 * UNITS * HEAVY as u32);
             if self.search.next == self.search.level.len() {
                 self.search.is_ending =
                     (self.search.halves.len() as f64) < HARDLY_MORE * self.search.level.len() as f64;
@@ -381,58 +292,61 @@ impl Octree {
         budget
     }
 
-    /// Visits the cells of the level in this range: each is discarded, made taller, left out or
+    /// The batches of cells of the level that are visited next: as many as threads share at once,
+    /// as the budget allows and as the search may visit in its turn.
+    fn next_batches(&self, budget: u32) -> Vec<Range<usize>> {
+        let FactorSearch { level, next, cells, .. } = &self.search;
+        let allowed = self.allowed().saturating_sub(*cells).div_ceil(HEAVY);
+        let afforded = budget.div_ceil(UNITS * HEAVY as u32) as usize;
+        let count = slices::at_once().min(afforded).min(allowed);
+        let batches = slices::ranges(level.len() - next, HEAVY).take(count.max(1));
+        batches.map(|batch| next + batch.start..next + batch.end).collect()
+    }
+
+    /// Visits these batches of cells of the level: each cell is discarded, decided, left out or
     /// halved.
-    fn visit(&mut self, field: &mut dyn Bounded, range: core::ops::Range<usize>) {
-        self.batch.open.clear();
-        let searched =
-            self.search.level[range].iter().filter(|cell| !is_left_out(cell, &self.search.isolated));
-        self.batch.open.extend(searched);
-        self.bounds.boxes.clear();
-        self.bounds.boxes.extend(self.batch.open.iter().map(|cell| cell.bounds));
-        self.bounds.enclose(field, self.search.factor);
-        let mut kept = 0;
-        for k in 0..self.batch.open.len() {
-            let (cell, known) = (self.batch.open[k], self.bounds.known[k]);
-            if !known.may_vanish {
-                continue;
-            }
-            if !(known.defined && known.continuous) {
-                self.halve(field, cell, IRREGULAR_DEPTH);
-            } else if !is_discarded(&cell, &known) {
-                self.batch.open[kept] = cell;
-                kept += 1;
-            }
-        }
-        self.batch.open.truncate(kept);
-        self.bounds.boxes.clear();
-        self.bounds.boxes.extend(self.batch.open.iter().map(|cell| cell.bounds));
-        self.bounds.refine(field, self.search.factor);
-        self.batch.tall.clear();
-        for k in 0..self.batch.open.len() {
-            let (mut cell, known, middle) =
-                (self.batch.open[k], self.bounds.known[k], self.bounds.known[self.batch.open.len() + k]);
-            if is_discarded(&cell, &known) {
-                continue;
-            }
-            let left = narrowed(&cell, &known, &middle, &self.bounds.second[k]);
-            let Some(left) = left else { continue };
-            let up = cell.axes().up;
-            // The height is that of the whole cell, because the narrowed one may be flat.
-            let height = cell.bounds.max[up] - cell.bounds.min[up];
-            cell.bounds = left;
-            match rise(&cell.bounds, up, &known) {
-                Some(t) => {
-                    let room = RISE_ROOM * t + LEAST_RISE * height;
-                    self.batch.tall.push(Tall { cell, room, rise: None });
+    fn visit(&mut self, field: &mut dyn Bounded, batches: &[Range<usize>]) {
+        for (batch, fates) in batches.iter().zip(self.fates(field, batches)) {
+            let cells = self.search.level[batch.clone()].iter();
+            let left_out: Vec<bool> = cells.map(|cell| is_left_out(cell, &self.search.isolated)).collect();
+            for (number, fate) in fates {
+                match fate {
+                    _ if left_out[number] => {}
+                    Fate::Halved(cell) => self.halve(field, cell, DEPTH),
+                    Fate::Irregular(cell) => self.halve(field, cell, IRREGULAR_DEPTH),
+                    Fate::Doubtful(cell, known) => {
+                        if !self.is_isolated(field, &cell, &known) {
+                            self.halve(field, cell, DEPTH);
+                        }
+                    }
+                    Fate::Decided(position) => {
+                        self.witnesses.push(Witness { position, factor: self.search.factor });
+                    }
                 }
-                _ if self.is_isolated(field, &cell, &known) => {}
-                _ => self.halve(field, cell, DEPTH),
             }
         }
-        if !self.batch.tall.is_empty() {
-            self.decide(field);
+    }
+
+    /// The fates of the cells of these batches. Threads share the batches, each with an evaluator
+    /// of its own.
+    fn fates(&mut self, field: &mut dyn Bounded, batches: &[Range<usize>]) -> Vec<Vec<(usize, Fate)>> {
+        let FactorSearch { factor, level, .. } = &self.search;
+        let of_batch = |judge: &mut Judge, field: &mut dyn Bounded, batch: &Range<usize>| {
+            judge.fates(field, *factor, &self.region.bounds, &level[batch.clone()])
+        };
+        let mut fates = Vec::with_capacity(batches.len());
+        let threads = slices::threads().min(batches.len());
+        if threads <= 1 {
+            fates.extend(batches.iter().map(|batch| of_batch(&mut self.judge, field, batch)));
+        } else {
+            let mut own: Vec<_> = (0..threads).map(|_| (Judge::default(), field.another())).collect();
+            let on_own = |(judge, field): &mut (Judge, Box<dyn Evaluator + '_>), batch: &Range<usize>| {
+                let field = field.bounded().expect("an evaluator of a field that has bounds");
+                of_batch(judge, field, batch)
+            };
+            slices::share_out(&mut own, batches, &on_own, &mut fates);
         }
+        fates
     }
 
     /// Whether the cell lies in a box that is left out of the search: one there is already, or a
@@ -488,93 +402,6 @@ impl Octree {
         is_inside(cell, &around)
     }
 
-    /// Decides the cells that are to be made taller, or halves them.
-    fn decide(&mut self, field: &mut dyn Bounded) {
-        self.bounds.boxes.clear();
-        self.bounds.boxes.extend(self.batch.tall.iter().map(Tall::bounds));
-        self.bounds.refine(field, self.search.factor);
-        for (tall, known) in self.batch.tall.iter_mut().zip(&self.bounds.known) {
-            tall.rise = rise(&tall.cell.bounds, tall.cell.axes().up, known).filter(|t| *t <= tall.room);
-        }
-        // Both ends of a line through each.
-        self.bounds.boxes.clear();
-        for tall in &self.batch.tall {
-            let up = tall.cell.axes().up;
-            let Bounds { min, max } = tall.bounds();
-            self.bounds.boxes.extend([min, max].map(|end| {
-                let mut p = tall.cell.probe();
-                p[up] = end[up];
-                Bounds::point(p)
-            }));
-        }
-        self.bounds.enclose(field, self.search.factor);
-        self.batch.lines.clear();
-        for k in 0..self.batch.tall.len() {
-            let Tall { cell, rise, .. } = self.batch.tall[k];
-            let [bottom, top] = [2 * k, 2 * k + 1].map(|end| self.bounds.known[end].value);
-            if rise.is_none() || !bottom.excludes_zero() || !top.excludes_zero() {
-                self.halve(field, cell, DEPTH);
-            } else if (bottom.lo > 0.0) != (top.lo > 0.0) {
-                let up = cell.axes().up;
-                let [lo, hi] = [2 * k, 2 * k + 1].map(|end| self.bounds.boxes[end].min[up]);
-                self.batch.lines.push(Line { tall: k, lo, hi, root: 0.5 * (lo + hi) });
-            }
-        }
-        self.find_roots(field);
-        for line in 0..self.batch.lines.len() {
-            let Line { tall, root: height, .. } = self.batch.lines[line];
-            let Tall { cell, rise, .. } = self.batch.tall[tall];
-            let Axes { sides, up } = cell.axes();
-            let beside = BESIDE * rise.unwrap_or(0.0);
-            let [bottom, top] = [self.region.bounds.min[up], self.region.bounds.max[up]];
-            if height + beside < bottom || height > top && height - beside >= bottom {
-                continue;
-            }
-            // Over a footprint of one point the graph cannot leave the box.
-            if height - beside >= bottom || sides == [None; 2] {
-                let mut position = cell.probe();
-                position[up] = height;
-                self.witnesses.push(Witness { position, factor: self.search.factor });
-            } else {
-                self.halve(field, cell, DEPTH);
-            }
-        }
-    }
-
-    /// Finds the zero of f on each of the lines, at whose ends f has different signs, by Newton's
-    /// method safeguarded by bisection.
-    fn find_roots(&mut self, field: &mut dyn Bounded) {
-        let mut settled = self.batch.lines.is_empty();
-        // As many steps as a number has digits: bisection alone gains one in each.
-        for _ in 0..f64::MANTISSA_DIGITS {
-            if settled {
-                break;
-            }
-            self.bounds.boxes.clear();
-            for &Line { tall, root, .. } in &self.batch.lines {
-                let cell = self.batch.tall[tall].cell;
-                let mut p = cell.probe();
-                p[cell.axes().up] = root;
-                self.bounds.boxes.push(Bounds::point(p));
-            }
-            self.bounds.enclose(field, self.search.factor);
-            settled = true;
-            for (line, known) in self.batch.lines.iter_mut().zip(&self.bounds.known) {
-                let Line { tall, lo, hi, root } = *line;
-                if !known.value.excludes_zero() {
-                    continue;
-                }
-                let slope = known.gradient[self.batch.tall[tall].cell.axes().up];
-                let rising = slope.lo > 0.0;
-                let (lo, hi) = if (known.value.lo > 0.0) == rising { (lo, root) } else { (root, hi) };
-                let newton = root - (known.value.lo + known.value.hi) / (slope.lo + slope.hi);
-                let next = if newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
-                settled &= (next - root).abs() <= f64::EPSILON * (lo.abs() + hi.abs());
-                *line = Line { tall, lo, hi, root: next };
-            }
-        }
-    }
-
     /// Halves a cell along its longer sides, unless it has been halved `depth` times.
     fn halve(&mut self, field: &mut dyn Bounded, cell: Cell, depth: u8) {
         if cell.level >= depth {
@@ -603,20 +430,6 @@ impl Octree {
             }
         }
     }
-}
-
-/// Intersects bounds over a box with the mean value forms around its middle; `half` is half its
-/// size.
-fn tighten(known: &mut Enclosure, middle: &Enclosure, second: &Sym3<Interval>, half: DVec3) {
-    let swing = |slope: &dyn Fn(usize) -> Interval| -> f64 {
-        (0..3).filter(|&k| half[k] > 0.0).map(|k| slope(k).magnitude() * half[k]).sum()
-    };
-    for axis in (0..3).filter(|_| known.smooth) {
-        let form = middle.gradient[axis].mean_value(swing(&|k| second.at(axis, k)));
-        known.gradient[axis] = known.gradient[axis].cut_to(form);
-    }
-    let form = middle.value.mean_value(swing(&|k| known.gradient[k]));
-    known.value = known.value.cut_to(form);
 }
 
 /// Whether the field has finite bounds at all, tested on a small box that is not in the middle,
@@ -652,7 +465,7 @@ mod tests {
         let visited = |field: &mut dyn Bounded, cells: &[Cell]| {
             let mut octree = begun();
             octree.search.level = cells.to_vec();
-            octree.visit(field, 0..cells.len());
+            octree.visit(field, &[0..cells.len()]);
             let mut all: Vec<Bounds> = octree.search.halves.iter().map(|cell| cell.bounds).collect();
             all.extend(octree.witnesses.iter().map(|witness| Bounds::point(witness.position)));
             all.extend(octree.undecided);
