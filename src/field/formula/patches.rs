@@ -11,8 +11,7 @@ use super::branches::{Branches, ChoiceCondition, Holds, NodeRole, Patch, Side, t
 use super::compiled::Compiled;
 use super::graph::{Id, Node};
 use super::operations::Unary;
-use crate::field::SHARP;
-use crate::math::Bounds;
+use crate::math::{Bounds, SHARP};
 use crate::math::newton::{self, STEPS, Slope, StepLimits, step_to_surface};
 use crate::slices::pause;
 use glam::DVec3;
