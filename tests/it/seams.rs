@@ -53,19 +53,34 @@ fn a_solid_is_closed_where_an_edge_of_it_fades_out() {
     }
 }
 
+/// Checks that the mesh of a solid is closed, of one part without a hole, and has its volume. The
+/// solid lies in a cube of this half-width.
+fn check_closed(text: &str, half: f64, counts: &[u32]) {
+    let field = Formula::parse(text).expect("a formula");
+    let exact = volume(&field, half);
+    for &count in counts {
+        let sample = sample(field.clone(), &Settings::with_count(count)).expect("a sample");
+        let topology = &sample.mesh().topology;
+        assert!(topology.is_closed(), "{text}, {count}: {} borders", topology.borders.len());
+        assert_eq!((topology.components.len(), topology.euler()), (1, 2), "{text}, {count}");
+        let found = sample.volume().expect("a closed mesh");
+        assert!((found / exact - 1.0).abs() < 0.01, "{text}, {count}: volume {found} for {exact}");
+    }
+}
+
 #[test]
 fn a_solid_is_closed_where_a_fillet_begins_on_an_edge() {
     // There the fillet has two normals.
-    let field = Formula::parse("max(smin(z, hypot(x, y, z) - 0.5, max(0, -y)), hypot(x, y, z) - 1.2)")
-        .expect("a formula");
-    let exact = volume(&field, 1.2);
-    for count in [3_000, 8_000] {
-        let sample = sample(field.clone(), &Settings::with_count(count)).expect("a sample");
-        let topology = &sample.mesh().topology;
-        assert!(topology.is_closed(), "{count}: {} borders", topology.borders.len());
-        assert_eq!((topology.components.len(), topology.euler()), (1, 2), "{count}");
-        let found = sample.volume().expect("a closed mesh");
-        assert!((found / exact - 1.0).abs() < 0.01, "{count}: volume {found} for {exact}");
+    let text = "max(smin(z, hypot(x, y, z) - 0.5, max(0, -y)), hypot(x, y, z) - 1.2)";
+    check_closed(text, 1.2, &[3_000, 8_000]);
+}
+
+#[test]
+fn a_solid_is_closed_where_a_fillet_becomes_narrower_than_a_particle() {
+    // Where it does so, its parts meet at an angle; beside it the same patches meet without one.
+    for width in [0.005, 0.01, 0.02] {
+        let text = format!("max(smin(z, x, max({width}, -y)), hypot(x, y, z) - 1)");
+        check_closed(&text, 1.0, &[3_000, 8_000, 20_000]);
     }
 }
 
