@@ -292,18 +292,19 @@ impl Particles {
         self.segments.iter().zip(&self.sides).map(is_edge).collect()
     }
 
-    /// For each of the first rows, the first row of the same particle that has its normal, up to
-    /// the angle below which there is no edge.
+    /// For each of the first rows, the first row of the same vertex that has its normal, up to the
+    /// angle below which there is no edge.
     pub(crate) fn smooth_rows(&self) -> Vec<u32> {
-        let mut of_particle: Vec<Vec<u32>> = vec![Vec::new(); self.twins.len()];
+        let joints = self.joints();
+        let mut of_vertex: Vec<Vec<u32>> = vec![Vec::new(); joints.len()];
         let smooth = |(row, &first): (u32, &u32)| {
-            let known = &mut of_particle[first as usize];
+            let known = &mut of_vertex[first as usize];
             known.iter().copied().find(|&other| !self.are_sharp(other, row)).unwrap_or_else(|| {
                 known.push(row);
                 row
             })
         };
-        (0..).zip(&self.twins).map(smooth).collect()
+        (0..).zip(&joints).map(smooth).collect()
     }
 
     /// Whether two rows of a particle have the normals of an edge.

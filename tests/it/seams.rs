@@ -133,7 +133,7 @@ fn creases_are_counted_without_the_seams_that_prolong_them() {
     let count = |text: &str, count, bounds: Option<Bounds>| {
         let field = Formula::parse(text).expect("a formula");
         let settings = Settings::with_count(count);
-        let settings = bounds.map_or(settings.clone(), |bounds| settings.in_box(bounds));
+        let settings = bounds.map_or(settings, |bounds| settings.in_box(bounds));
         let report = sample(field, &settings).expect("a sample").report().clone();
         [report.proof.creases, report.proof.corners, report.proof.seams]
     };

@@ -92,8 +92,8 @@ export interface Sample {
   readonly params: Record<string, number>;
   readonly digest: string;
   /**
-   * joins the particles to triangles; with `weld` those at a crease or a seam share a row, and have the
-   * normal of one side
+   * joins the particles to triangles; with `weld` those at a crease or a seam share a row, and have
+   * the normal of one side
    */
   mesh(how?: { weld?: boolean }): Promise<Mesh>;
   /** the mesh as a file */

@@ -17,8 +17,9 @@ use crate::slices::pause;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Cosine of the largest angle between the normals of two branches in a cell where they meet without
-/// an edge: each turns by less than 15° there. Smaller: seams of narrower fillets are found, later.
+/// Cosine of the largest angle between the normals of two branches in a cell where they meet
+/// without an edge: each turns by less than 15° there. Smaller: seams beside narrower
+/// fillets are found, in more time.
 const PARALLEL: f64 = 0.5 * SQRT_3;
 /// Distance between two points at which the normals of two branches are compared, as a share of the
 /// diagonal of the box.
