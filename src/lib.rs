@@ -70,8 +70,8 @@
 //! | residual | \|f\|/\|∇f\|, the distance to the surface to first order. |
 //! | witness | A point of the surface that interval arithmetic found, at least one on each component. |
 //! | crease, corner, patch | A curve along which two smooth parts of the surface meet at an angle; a point where creases meet; such a part. |
-//! | row | An entry of the particle columns. A particle on a crease has one for each patch. |
-//! | seam, gap | Where fronts meet out of step; a hole there that is wide enough for a particle. |
+//! | row | An entry of the particle columns. A particle on a crease or a seam has one for each patch. |
+//! | seam, gap | Where fronts meet out of step, or two patches without an edge; a hole between fronts that is wide enough for a particle. |
 //! | natural neighbours, valence | The particles whose Voronoi cells share an edge in the tangent plane; their number, six in a hexagonal lattice. |
 //! | defect | A particle of a mesh whose valence is not six, or on the border not four. |
 //! | refinement | Ordering a coarse front as a mesh and halving its edges, level by level. |

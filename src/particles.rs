@@ -2,7 +2,7 @@
 //! order in which the front placed the particles, so generation levels are contiguous; particles
 //! that fill gaps come last.
 
-use crate::math::{Bounds, FNV_START, NONE, fnv};
+use crate::math::{Bounds, FNV_START, NONE, SHARP, fnv, sort_by_key};
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 
@@ -20,9 +20,9 @@ impl OrientedPoint {
     }
 }
 
-/// Particle columns. A particle has one row; one on a crease, or at the tip of a cone, has several,
-/// with one position and a normal each: see [`Particles::twins`]. On a surface that is smooth
-/// everywhere row `i` is particle `i`.
+/// Particle columns. A particle has one row; one where patches meet, or at the tip of a cone, has
+/// several, with one position and a normal each: see [`Particles::twins`]. On a surface of a single
+/// patch row `i` is particle `i`.
 ///
 /// The columns up to `slots` have a value for each row. The others say themselves what theirs
 /// belong to.
@@ -46,7 +46,7 @@ pub struct Particles {
     /// Fates of the slots around the particle: see [`SlotFate`].
     pub slots: Vec<Slots>,
     /// For each row, the patch of the surface on which it lies, by the number of its branch: see
-    /// [`Patches::branch_at`]. Empty if the surface has neither creases nor particles at tips.
+    /// [`Patches::branch_at`]. Empty if the surface has a single patch and no particles at tips.
     ///
     /// [`Patches::branch_at`]: crate::field::Patches::branch_at
     pub patch: Vec<u32>,
@@ -55,7 +55,8 @@ pub struct Particles {
     /// patch. One at the tip of a cone has a row for each of the sheets that end there, with the
     /// mean normal of the sheet. These rows come before all others and do not move.
     pub twins: Vec<u32>,
-    /// Pairs of particles that follow each other along a crease, each by its first row.
+    /// Pairs of particles that follow each other along a curve where patches meet, each by its
+    /// first row: along a crease, or a seam without an edge, as [`Particles::edges`] says.
     pub segments: Vec<[u32; 2]>,
     /// For each of the segments, pairs of a patch on its left and one on its right, seen from
     /// outside: one pair, or two where the factors of a product cross.
@@ -261,6 +262,54 @@ impl Particles {
         let mut joints = self.twins.clone();
         self.tips().into_iter().for_each(|tip| joints[tip as usize] = tip);
         joints
+    }
+
+    /// For each of the segments, whether the surface has an edge there: it ends there, or the
+    /// normals of the patches on its left and on its right differ by more than a degree at one end.
+    /// An end where a third patch meets counts only if both are such: at the point where a fillet
+    /// begins its normal is any between those of its neighbours.
+    #[must_use]
+    pub fn edges(&self) -> Vec<bool> {
+        let mut rows: Vec<u32> = (0..self.twins.len() as u32).collect();
+        let key = |first: u32, patch: u32| u64::from(first) << 32 | u64::from(patch);
+        let own_key = |&row: &u32| key(self.twins[row as usize], self.patch[row as usize]);
+        sort_by_key(&mut rows, own_key);
+        let mut patches = vec![0; rows.len()];
+        self.twins.iter().for_each(|&first| patches[first as usize] += 1);
+        let is_sharp = |first: u32, sides: [u32; 2]| {
+            let place = |patch: u32| rows.binary_search_by_key(&key(first, patch), own_key).ok();
+            let [Some(left), Some(right)] = sides.map(place) else { return true };
+            self.are_sharp(rows[left], rows[right])
+        };
+        let is_edge = |(ends, sides): (&[u32; 2], &Vec<[u32; 2]>)| {
+            let has_third = ends.map(|first| patches[first as usize] > 2 * sides.len());
+            let counts = |end: usize| !has_third[end] || has_third[1 - end];
+            [0, 1]
+                .into_iter()
+                .filter(|&end| counts(end))
+                .any(|end| sides.iter().any(|&sides| is_sharp(ends[end], sides)))
+        };
+        self.segments.iter().zip(&self.sides).map(is_edge).collect()
+    }
+
+    /// For each of the first rows, the first row of the same vertex that has its normal, up to the
+    /// angle below which there is no edge.
+    pub(crate) fn smooth_rows(&self) -> Vec<u32> {
+        let joints = self.joints();
+        let mut of_vertex: Vec<Vec<u32>> = vec![Vec::new(); joints.len()];
+        let smooth = |(row, &first): (u32, &u32)| {
+            let known = &mut of_vertex[first as usize];
+            known.iter().copied().find(|&other| !self.are_sharp(other, row)).unwrap_or_else(|| {
+                known.push(row);
+                row
+            })
+        };
+        (0..).zip(&joints).map(smooth).collect()
+    }
+
+    /// Whether two rows of a particle have the normals of an edge.
+    fn are_sharp(&self, a: u32, b: u32) -> bool {
+        f64::from(self.normal[a as usize].distance(self.normal[b as usize])) > SHARP
     }
 
     /// The first rows of the particles on the rim of the surface: on one side of a segment there is

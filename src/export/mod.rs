@@ -117,7 +117,7 @@ pub(crate) enum Presence {
     Always,
     /// Particles that are measured.
     Measured,
-    /// Particles of a surface with creases.
+    /// Particles of a surface of several patches.
     Creased,
     /// Particles of a cell whose opposite faces have the same ones.
     Periodic,
@@ -210,7 +210,7 @@ pub const COLUMNS: &[Column] = &[
     }),
     column("patch", ColumnKind::Uint, |particles, _, i| CellValue::Uint(particles.patch[i]))
         .only(Presence::Creased),
-    // The first row of the particle: a particle on a crease has one for each patch.
+    // The first row of the particle: one where patches meet has a row for each of them.
     column("particle", ColumnKind::Uint, |particles, _, i| CellValue::Uint(particles.first_row(i) as u32))
         .only(Presence::Creased),
     // The particle that it is on the lowest faces of a cell: itself, but for the images on the

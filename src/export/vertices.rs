@@ -19,8 +19,8 @@ pub enum Vertices {
     /// On a sharp edge a vertex for each side, with the normal of that side. In OBJ the points stay
     /// joined, and faces name their normals apart from them.
     Split,
-    /// A vertex for each row of the particles, in their order, with all columns where the format
-    /// takes them: PLY.
+    /// A vertex for each row of the particles, on seams without an edge as well, in their order,
+    /// with all columns where the format takes them: PLY.
     Columns,
 }
 
@@ -57,8 +57,8 @@ pub const VERTICES: &[VerticesChoice] = &[
     VerticesChoice {
         value: Vertices::Columns,
         label: "All columns",
-        help: "A vertex for each row of the particles, split at sharp edges, with all their columns: radius, level, parent and more. Some \
-               programs read no PLY mesh with whole numbers in it.",
+        help: "A vertex for each row of the particles, split wherever patches meet, with all their columns: radius, level, parent and more. \
+               Some programs read no PLY mesh with whole numbers in it.",
         formats: &["ply"],
     },
 ];
@@ -142,7 +142,11 @@ impl Indexed {
                 normals: normals.to_vec(),
                 triangles: by_rows.collect(),
             },
-            Vertices::Split => Self::over(by_rows.collect(), normals),
+            Vertices::Split => {
+                let smooth = particles.smooth_rows();
+                let vertex = |row: u32| smooth.get(row as usize).copied().unwrap_or(row);
+                Self::over(by_rows.map(|corners| corners.map(vertex)).collect(), normals)
+            }
             Vertices::Joined => {
                 let mut joined = Self::over(mesh.triangles.clone(), normals);
                 if mesh.has_corners() {

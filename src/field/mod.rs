@@ -277,7 +277,3 @@ impl<P: Deref<Target: Field> + MaybeSend + MaybeSync> Field for P {
         (**self).creased()
     }
 }
-
-/// Sine of the angle between two branches from which on they make a crease: one degree, less than
-/// light and shadow show.
-pub(crate) const SHARP: f64 = 0.0175;

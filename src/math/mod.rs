@@ -84,6 +84,10 @@ pub(crate) const SQRT_3: f64 = 1.732_050_807_568_877_2;
 /// Area of the cell of a hexagonal lattice, whose spacing is 2r, over r².
 pub(crate) const HEXAGONAL_CELL: f64 = 2.0 * SQRT_3;
 
+/// Sine of the angle between two parts of a surface from which on they meet in an edge: one degree,
+/// less than light and shadow show.
+pub(crate) const SHARP: f64 = 0.0175;
+
 /// The FNV-1a hash of no bytes.
 pub(crate) const FNV_START: u64 = 0xcbf2_9ce4_8422_2325;
 

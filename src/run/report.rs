@@ -142,11 +142,14 @@ pub struct Proof {
     /// Places where f has no gradient on the surface, a curve of them counted as one; none where
     /// they were not looked for.
     pub singular_points: Option<u64>,
-    /// Curves along which particles lie on creases, from corner to corner or closed; none where the
-    /// surface has no creases.
+    /// Curves of particles along which the surface has an edge, from corner to corner or closed;
+    /// none where it has no edges.
     pub creases: Option<usize>,
-    /// Particles at which creases meet or end; none where the surface has no creases.
+    /// Particles at which creases meet or end; none where the surface has no edges.
     pub corners: Option<usize>,
+    /// Curves of particles along which patches of the surface meet without an edge; none where they
+    /// meet nowhere so.
+    pub seams: Option<usize>,
 }
 
 /// Figures of quality of a run.
@@ -169,35 +172,44 @@ fn null_for_zero<S: Serializer>(count: &usize, serializer: S) -> Result<S::Ok, S
     Some(*count).filter(|&count| count > 0).serialize(serializer)
 }
 
-/// What the segments along creases add up to.
-pub(super) struct CreaseCounts {
+/// What segments of one kind add up to: those with an edge, or those without.
+pub(super) struct CurveCounts {
     curves: usize,
     /// Particles at which curves meet or end.
-    corners: usize,
+    ends: usize,
     /// Curves along which sheets cross, and a particle on the first of them.
     pub(super) crossings: usize,
     pub(super) crossing: Option<u32>,
 }
 
-/// Counts the curves of the segments along creases.
-pub(super) fn creases_of(Particles { twins, segments, sides, .. }: &Particles) -> CreaseCounts {
-    // The segments at each particle.
+/// Counts the curves of the segments of a kind.
+fn curves_of(Particles { twins, segments, sides, .. }: &Particles, is_of_kind: &[bool]) -> CurveCounts {
+    let of_kind: Vec<u32> =
+        (0..).zip(is_of_kind).filter(|&(_, &is_of_kind)| is_of_kind).map(|(k, _)| k).collect();
+    // Those at each particle.
     let mut at = vec![Vec::new(); twins.len()];
-    for (k, segment) in (0..).zip(segments) {
-        segment.iter().for_each(|&first| at[first as usize].push(k));
+    for &k in &of_kind {
+        segments[k as usize].iter().for_each(|&first| at[first as usize].push(k));
     }
     let mut curves = Forest::new(segments.len());
     for way in at.iter().filter(|segments| segments.len() == 2) {
         curves.join(way[0], way[1]);
     }
-    let firsts: Vec<u32> = (0..segments.len() as u32).filter(|&k| curves.find(k) == k).collect();
+    let firsts: Vec<u32> = of_kind.into_iter().filter(|&k| curves.find(k) == k).collect();
     let mut crossings = firsts.iter().filter(|&&k| sides[k as usize].len() > 1).copied().peekable();
-    CreaseCounts {
+    CurveCounts {
         curves: firsts.len(),
-        corners: at.iter().filter(|segments| !matches!(segments.len(), 0 | 2)).count(),
+        ends: at.iter().filter(|segments| !matches!(segments.len(), 0 | 2)).count(),
         crossing: crossings.peek().map(|&k| segments[k as usize][0]),
         crossings: crossings.count(),
     }
+}
+
+/// Counts the creases, and the seams without an edge; none where there are none.
+pub(super) fn creases_and_seams(particles: &Particles) -> [Option<CurveCounts>; 2] {
+    let edges = particles.edges();
+    let seams: Vec<bool> = edges.iter().map(|is_edge| !is_edge).collect();
+    [edges, seams].map(|kind| Some(curves_of(particles, &kind)).filter(|counts| counts.curves > 0))
 }
 
 /// A report that is being made, as [`Run::measure`] begins it. Dropping it gives the measurement
@@ -463,8 +475,7 @@ impl<F: Field> Run<F> {
         for witness in &mut sampled.without {
             witness.position = self.place(witness.position);
         }
-        let particles = self.particles();
-        let creases = (!particles.segments.is_empty()).then(|| creases_of(particles));
+        let [creases, seams] = creases_and_seams(self.particles());
         Proof {
             components,
             search: self.sampler.search(),
@@ -472,7 +483,8 @@ impl<F: Field> Run<F> {
             undecided_cells: self.sampler.undecided_cells(),
             singular_points: self.sampler.singular_points(),
             creases: creases.as_ref().map(|creases| creases.curves),
-            corners: creases.map(|creases| creases.corners),
+            corners: creases.map(|creases| creases.ends),
+            seams: seams.map(|seams| seams.curves),
         }
     }
 }

@@ -199,7 +199,7 @@ impl Sample {
     }
 
     /// Positions of the particles in the coordinates of the field, for a buffer of a graphics card.
-    /// A particle on a crease is there once for each patch, with the normal of each.
+    /// A particle where patches meet is there once for each of them, with the normal of each.
     #[must_use]
     pub fn positions(&self) -> Vec<[f32; 3]> {
         (0..self.particles.len()).map(|i| self.particles.place(i).as_vec3().to_array()).collect()

@@ -1,7 +1,7 @@
 //! Warnings about a run: a typed list. The first sentence of each says in one line what happened
 //! and what to do; the others are details, which the page folds away.
 
-use super::report::{CreaseCounts, creases_of};
+use super::report::creases_and_seams;
 use super::{Report, Run, Severity, check};
 use crate::field::Field;
 use crate::field::model::{GivenMesh, GivenTopology, ModelInfo};
@@ -436,9 +436,10 @@ impl<F: Field> Run<F> {
 
     /// The warning that sheets cross in creases, if they do.
     fn crossing(&self) -> Option<Warning> {
-        let CreaseCounts { crossings: curves, crossing, .. } = creases_of(self.particles());
-        let position = self.particles().place(crossing? as usize).to_array();
-        Some(Warning::Crosses { curves, position, length: self.sampler.radius() })
+        let [creases, _] = creases_and_seams(self.particles());
+        let creases = creases?;
+        let position = self.particles().place(creases.crossing? as usize).to_array();
+        Some(Warning::Crosses { curves: creases.crossings, position, length: self.sampler.radius() })
     }
 
     /// The warning that the surface crosses or touches itself where its gradient vanishes, if it

@@ -114,9 +114,9 @@ pub enum FollowError {
         "no particles cover the surface, of a run with these settings that has come to its end: start one"
     )]
     NotCovered,
-    /// The old or the new surface has creases, or the new one may have some in the box.
+    /// The old or the new surface has creases or seams, or the new one may have some in the box.
     #[error(
-        "the surface has creases or tips in the box, on which particles cannot follow: start a run on the new one"
+        "the surface has creases, seams or tips in the box, on which particles cannot follow: start a run on the new one"
     )]
     Creased,
     /// The surface is gone, or it has moved too far: more than a tenth of the particles are farther

@@ -329,6 +329,8 @@ const REPORT: &[ReportRow] = &[
         .help("Curves on which the surface has an edge, from corner to corner or closed. Particles lie on them exactly, with a normal for each side."),
     row("corners", "Corners", "Surface")
         .help("Particles at which creases meet or end."),
+    row("seams", "Seams without an edge", "Surface")
+        .help("Curves along which smooth parts of the surface meet without an edge that meet at one elsewhere, as where a fillet fades out. Particles lie on them."),
 ];
 
 const FATES: &[Fate] = &[
@@ -342,7 +344,7 @@ const FATES: &[Fate] = &[
     Fate {
         name: "outside",
         label: "Outside",
-        help: "The point lies outside the clip box, or beyond a crease, off the patch of its parent.",
+        help: "The point lies outside the clip box, or beyond a crease or a seam, off the patch of its parent.",
     },
     Fate { name: "undefined", label: "Undefined", help: "f has no value or no gradient there." },
     Fate { name: "capped", label: "Capped", help: "The limit on particles was reached." },
@@ -358,7 +360,7 @@ const COLOURS: &[Colour] = &[
     Colour {
         id: ColourMode::Fate,
         label: "Fate of the children",
-        help: "Interior, at the border of the box or beside a crease, or next to a place where a child found no surface.",
+        help: "Interior, at the border of the box or beside a crease or a seam, or next to a place where a child found no surface.",
         unit: "",
     },
     Colour {

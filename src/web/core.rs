@@ -191,7 +191,7 @@ impl Core {
         to_js(&self.session.run.cancel())
     }
 
-    /// Rows of the columns: particles, those on creases once on each side.
+    /// Rows of the columns: particles, those on creases and seams once on each side.
     pub fn count(&self) -> usize {
         self.session.run.rows()
     }
@@ -215,15 +215,21 @@ impl Core {
         (from..self.session.run.rows()).flat_map(|i| particles.place(i).to_array()).collect()
     }
 
-    /// For the rows of particles on creases, which come first, the first row of the same particle;
-    /// nothing without creases.
+    /// For the rows of particles on creases, seams and tips, which come first, the first row of the
+    /// same particle; nothing without any.
     pub fn twins(&self) -> Vec<u32> {
         self.column(&self.session.run.particles().twins, 0)
     }
 
     /// The pairs of rows between which a crease goes on, two each; none without creases.
     pub fn segments(&self) -> Vec<u32> {
-        self.session.run.particles().segments.as_flattened().to_vec()
+        self.pairs_along(true)
+    }
+
+    /// The pairs of rows between which a seam without an edge goes on, two each; none without
+    /// seams.
+    pub fn seams(&self) -> Vec<u32> {
+        self.pairs_along(false)
     }
 
     /// Unit normals from particle `from` on.
@@ -418,6 +424,12 @@ impl Core {
     fn column<T: Copy>(&self, column: &[T], from: usize) -> Vec<T> {
         let count = self.session.run.rows().min(column.len());
         column[from.min(count)..count].to_vec()
+    }
+
+    fn pairs_along(&self, is_edge: bool) -> Vec<u32> {
+        let particles = self.session.run.particles();
+        let segments = particles.segments.iter().zip(particles.edges());
+        segments.filter(|&(_, edge)| edge == is_edge).flat_map(|(rows, _)| *rows).collect()
     }
 
     fn vectors(&self, column: &[Vec3], from: usize) -> Vec<f32> {

@@ -2,7 +2,7 @@
 //! as where a fillet fades out.
 
 use glam::DVec3;
-use marching_particles::{Bounds, Field, Formula, Settings, sample};
+use marching_particles::{Bounds, Field, Formula, Sample, Settings, Vertices, sample};
 
 /// Places on each axis of the grid on which a volume is summed up.
 const SIDE: u32 = 100;
@@ -53,19 +53,34 @@ fn a_solid_is_closed_where_an_edge_of_it_fades_out() {
     }
 }
 
+/// Checks that the mesh of a solid is closed, of one part without a hole, and has its volume. The
+/// solid lies in a cube of this half-width.
+fn check_closed(text: &str, half: f64, counts: &[u32]) {
+    let field = Formula::parse(text).expect("a formula");
+    let exact = volume(&field, half);
+    for &count in counts {
+        let sample = sample(field.clone(), &Settings::with_count(count)).expect("a sample");
+        let topology = &sample.mesh().topology;
+        assert!(topology.is_closed(), "{text}, {count}: {} borders", topology.borders.len());
+        assert_eq!((topology.components.len(), topology.euler()), (1, 2), "{text}, {count}");
+        let found = sample.volume().expect("a closed mesh");
+        assert!((found / exact - 1.0).abs() < 0.01, "{text}, {count}: volume {found} for {exact}");
+    }
+}
+
 #[test]
 fn a_solid_is_closed_where_a_fillet_begins_on_an_edge() {
     // There the fillet has two normals.
-    let field = Formula::parse("max(smin(z, hypot(x, y, z) - 0.5, max(0, -y)), hypot(x, y, z) - 1.2)")
-        .expect("a formula");
-    let exact = volume(&field, 1.2);
-    for count in [3_000, 8_000] {
-        let sample = sample(field.clone(), &Settings::with_count(count)).expect("a sample");
-        let topology = &sample.mesh().topology;
-        assert!(topology.is_closed(), "{count}: {} borders", topology.borders.len());
-        assert_eq!((topology.components.len(), topology.euler()), (1, 2), "{count}");
-        let found = sample.volume().expect("a closed mesh");
-        assert!((found / exact - 1.0).abs() < 0.01, "{count}: volume {found} for {exact}");
+    let text = "max(smin(z, hypot(x, y, z) - 0.5, max(0, -y)), hypot(x, y, z) - 1.2)";
+    check_closed(text, 1.2, &[3_000, 8_000]);
+}
+
+#[test]
+fn a_solid_is_closed_where_a_fillet_becomes_narrower_than_a_particle() {
+    // Where it does so, its parts meet at an angle; beside it the same patches meet without one.
+    for width in [0.005, 0.01, 0.02] {
+        let text = format!("max(smin(z, x, max({width}, -y)), hypot(x, y, z) - 1)");
+        check_closed(&text, 1.0, &[3_000, 8_000, 20_000]);
     }
 }
 
@@ -87,4 +102,72 @@ fn a_seam_that_runs_to_the_box_ends_on_its_faces() {
             assert!(least < 1e-4, "{what}: {least} from {end}");
         }
     }
+}
+
+/// The sample of z = max(x, 0) max(y, 0) in a cube, which has an edge where one coordinate is 0 and
+/// the other positive, and a seam where it is negative: the angle at the edge is that other one's.
+fn half_edged(settings: &Settings) -> Sample {
+    let field = Formula::parse("z = max(x, 0)*max(y, 0)").expect("a formula");
+    sample(field, &settings.in_box(Bounds::cube(2.0))).expect("a sample")
+}
+
+#[test]
+fn a_piece_of_a_curve_has_an_edge_where_the_normals_of_its_patches_differ() {
+    for settings in [Settings::with_count(4_000), Settings::with_count(4_000).refined()] {
+        let what = format!("{:?}", settings.method);
+        let sample = half_edged(&settings);
+        let particles = sample.particles();
+        let edges = particles.edges();
+        assert_eq!(edges.len(), particles.segments.len(), "{what}");
+        for (ends, is_edge) in particles.segments.iter().zip(edges) {
+            let places = ends.map(|row| particles.place(row as usize));
+            assert!(places.iter().all(|p| p.x.abs().min(p.y.abs()) < 1e-6), "{what}: {places:?}");
+            let most = places.map(|p| p.x.max(p.y)).into_iter().fold(f64::MIN, f64::max);
+            assert_eq!(is_edge, most > 1.0_f64.to_radians(), "{what}: {places:?}");
+        }
+    }
+}
+
+#[test]
+fn creases_are_counted_without_the_seams_that_prolong_them() {
+    let count = |text: &str, count, bounds: Option<Bounds>| {
+        let field = Formula::parse(text).expect("a formula");
+        let settings = Settings::with_count(count);
+        let settings = bounds.map_or(settings, |bounds| settings.in_box(bounds));
+        let report = sample(field, &settings).expect("a sample").report().clone();
+        [report.proof.creases, report.proof.corners, report.proof.seams]
+    };
+    // From the box to the middle and to the box again, both of them.
+    let half_edged = count("z = max(x, 0)*max(y, 0)", 3_000, Some(Bounds::cube(2.0)));
+    assert_eq!(half_edged, [Some(1), Some(2), Some(1)]);
+    for number in [3_000, 8_000] {
+        // The edge before the fillet begins, which ends there, and the rim of the solid, closed at
+        // the other end of that edge. The seams on both sides of the fillet meet where it begins.
+        let found = count("max(smin(z, x, max(0, -y)), hypot(x, y, z) - 1)", number, None);
+        assert_eq!(found, [Some(2), Some(2), Some(1)], "{number}");
+        // Two edges that meet where both fade out, and the rim, of which they are chords.
+        let found = count("max(z - max(x, 0)*(x + max(y, 0)), hypot(x, y, z) - 1)", number, None);
+        assert_eq!(found, [Some(3), Some(2), Some(1)], "{number}");
+    }
+    let cube = count("max(abs(x), abs(y), abs(z)) - 1", 3_000, None);
+    assert_eq!(cube, [Some(12), Some(8), None]);
+    // Flat and round parts that meet without an edge anywhere are one patch.
+    let rounded = "hypot(max(abs(x) - 1, 0), max(abs(y) - 1, 0), max(abs(z) - 1, 0)) - 0.4";
+    assert_eq!(count(rounded, 3_000, None), [None; 3]);
+}
+
+#[test]
+fn vertices_are_split_at_edges_and_not_at_seams() {
+    let sample = half_edged(&Settings::with_count(4_000));
+    let particles = sample.particles();
+    let [joined, split] =
+        [Vertices::Joined, Vertices::Split].map(|vertices| sample.buffers(vertices).positions.len());
+    let is_sharp = |&row: &usize| {
+        let p = particles.place(row);
+        p.x.min(p.y).abs() < 1e-6 && p.x.max(p.y) > 1.0_f64.to_radians()
+    };
+    let firsts = (0..particles.twins.len()).filter(|&row| particles.first_row(row) == row);
+    let (sharp, all) = (firsts.clone().filter(is_sharp).count(), firsts.count());
+    assert!(sharp > 30 && all > sharp + 30, "{sharp} of {all}");
+    assert_eq!(split, joined + sharp);
 }

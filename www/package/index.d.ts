@@ -76,7 +76,7 @@ export interface Mesh {
 export type Format = 'glb' | '3mf' | 'stl' | 'obj' | 'ply';
 
 export interface Sample {
-  /** rows of the columns; a particle on a crease has one on each side of it */
+  /** rows of the columns; a particle on a crease or a seam has one on each side of it */
   readonly count: number;
   /** three values for each row; in double precision where the box is far from the origin */
   readonly positions: Float32Array | Float64Array;
@@ -92,8 +92,8 @@ export interface Sample {
   readonly params: Record<string, number>;
   readonly digest: string;
   /**
-   * joins the particles to triangles; with `weld` those at a crease share a row, and have the
-   * normal of one side
+   * joins the particles to triangles; with `weld` those at a crease or a seam share a row, and have
+   * the normal of one side
    */
   mesh(how?: { weld?: boolean }): Promise<Mesh>;
   /** the mesh as a file */

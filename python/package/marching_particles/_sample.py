@@ -51,8 +51,9 @@ class Mesh(NamedTuple):
 class Sample:
     """The particles of a run.
 
-    The arrays have a row for each particle. One on a sharp edge has a row on each side of it, with
-    the normal of that side; :meth:`weld` has it once. They are made when first asked for, and kept.
+    The arrays have a row for each particle. One on a sharp edge, or on a seam that prolongs one, has
+    a row on each side, with the normal of that side; :meth:`weld` has it once. They are made when
+    first asked for, and kept.
     """
 
     def __init__(self, core):

@@ -14,9 +14,8 @@ use super::compiled::Compiled;
 use super::graph::{Id, MIN_BLEND_WIDTH, Node};
 use super::operations::Unary;
 use super::{interval, scalar, steps};
-use crate::field::SHARP;
-use crate::math::Bounds;
 use crate::math::newton::{STEPS, step_to_curve};
+use crate::math::{Bounds, SHARP};
 use crate::slices::pause;
 use glam::DVec3;
 

@@ -11,13 +11,16 @@ use super::branches::{Branches, ChoiceCondition, Holds, NodeRole, Patch, Side, t
 use super::compiled::Compiled;
 use super::graph::{Id, Node};
 use super::operations::Unary;
-use crate::field::SHARP;
-use crate::math::Bounds;
 use crate::math::newton::{self, STEPS, Slope, StepLimits, step_to_surface};
+use crate::math::{Bounds, SHARP, SQRT_3};
 use crate::slices::pause;
 use glam::DVec3;
 use std::sync::Arc;
 
+/// Cosine of the largest angle between the normals of two branches in a cell where they meet
+/// without an edge: each turns by less than 15° there. Smaller: seams beside narrower
+/// fillets are found, in more time.
+const PARALLEL: f64 = 0.5 * SQRT_3;
 /// Distance between two points at which the normals of two branches are compared, as a share of the
 /// diagonal of the box.
 const APART: f64 = 1e-6;
@@ -126,11 +129,12 @@ impl Branches {
         let mut found = Meetings::default();
         for cell in cells {
             pause().await;
-            let is_sharp = |branches: &Vec<u32>| {
+            let branches = self.within(values, cell);
+            let are_settled = |branches: Vec<u32>| {
                 let mut pairs = (1..branches.len()).flat_map(|k| (0..k).map(move |j| [j, k]));
-                pairs.all(|pair| found.sharp.contains(&pair.map(|k| branches[k])))
+                pairs.all(|pair| self.is_settled(values, pair.map(|k| branches[k]), cell.middle(), &found))
             };
-            if !self.within(values, cell).as_ref().is_some_and(is_sharp) {
+            if !branches.is_some_and(are_settled) {
                 self.look_into(values, bounds, cell, &mut found);
             }
         }
@@ -140,6 +144,21 @@ impl Branches {
             pairs.dedup();
         }
         found
+    }
+
+    /// Whether nothing new is to be learned of two branches near a point: they are known to meet at
+    /// an angle, and also without an edge, or are too far from parallel to do so there.
+    fn is_settled(&mut self, values: &[f64], pair: [u32; 2], p: DVec3, found: &Meetings) -> bool {
+        found.sharp.contains(&pair)
+            && (found.tangent.contains(&pair) || {
+                let [u, v] = pair.map(|branch| {
+                    let branch = self.compiled(branch, values);
+                    let slope = branch.map(|branch| branch.first_order([p], &mut self.jets)[0]);
+                    slope.map_or(DVec3::ZERO, |(_, gradient)| gradient.normalize_or_zero())
+                });
+                // A gradient that is none says nothing.
+                u != DVec3::ZERO && v != DVec3::ZERO && u.dot(v) < PARALLEL
+            })
     }
 
     /// Brings points of a cell onto the surface, and looks how the branches that give f there meet.
@@ -164,7 +183,7 @@ impl Branches {
             for j in 0..k {
                 let pair = ascending([landed[j].branch, landed[k].branch]);
                 let [is_limit, other] = pair.map(|branch| self.is_limit(branch, values));
-                if found.sharp.contains(&pair) || is_limit != other {
+                if is_limit != other || self.is_settled(values, pair, landed[k].position, found) {
                     continue;
                 }
                 match self.between(values, [landed[j], landed[k]], APART * bounds.diagonal()) {

@@ -31,8 +31,8 @@ pub(super) mod tips;
 mod touch;
 mod trace;
 
-use crate::field::{SHARP, UnitCell};
-use crate::math::{Bounds, Forest};
+use crate::field::UnitCell;
+use crate::math::{Bounds, Forest, SHARP};
 use crate::sampler::probe::Probe;
 use crate::slices::pause;
 use cell::{FacePair, Image};

@@ -6,10 +6,9 @@
 //! different patches.
 
 use super::meeting::{MOST_TURN, Meeting, branch, limits};
-use crate::field::SHARP;
 use crate::math::newton;
 use crate::math::newton::{step_to_curve, step_to_surface};
-use crate::math::{Bounds, SQRT_3, tangent_frame};
+use crate::math::{Bounds, SHARP, SQRT_3, tangent_frame};
 use crate::sampler::probe::Probe;
 use glam::DVec3;
 

@@ -21,8 +21,8 @@ export const fateOf = (slots, k) => (slots >>> (SLOT_BITS * k)) & (FATES - 1);
 export const NO_LEVEL = 0xffffffff;
 
 /**
- * The columns of a report, one value per particle; `patch` and `particle` are empty without creases, `periodic` unless
- * opposite faces of the box are the same. A core has a method of each name.
+ * The columns of a report, one value per particle; `patch` and `particle` are empty on a surface of one patch,
+ * `periodic` unless opposite faces of the box are the same. A core has a method of each name.
  */
 export const MEASURED = /** @type {const} */ ([
   'valence',
@@ -37,14 +37,18 @@ export const MEASURED = /** @type {const} */ ([
 
 export class Columns {
   constructor() {
-    /** Number of rows: one for each particle, or one on each side for those on creases. */
+    /** Number of rows: one for each particle, or one on each side for those on creases and seams. */
     this.count = 0;
     /** Number of particles. */
     this.particles = 0;
-    /** The first row of the particle of each row on a crease. Those rows come first; empty without creases. */
+    /**
+     * The first row of the particle of each row on a crease, a seam or a tip. Those rows come first; empty without any.
+     */
     this.twins = new Uint32Array(0);
     /** Pairs of rows between which a crease goes on. */
     this.segments = new Uint32Array(0);
+    /** Pairs of rows between which a seam goes on, where patches meet without an edge. */
+    this.seams = new Uint32Array(0);
     /** The last generation level. */
     this.lastLevel = 0;
     this.tally = noTally();
@@ -77,8 +81,8 @@ export class Columns {
     /** Index of the particle's component; 0 is the largest. @type {Uint32Array | null} */
     this.component = null;
     /**
-     * Number of the smooth piece of the surface between creases on which the particle lies, and the index of the first
-     * of its rows: a particle on a crease has one on each side. Null where there are no creases.
+     * Number of the smooth piece of the surface between creases and seams on which the particle lies, and the index of
+     * the first of its rows: a particle on one of these has a row on each side. Null where there are none.
      * @type {Uint32Array | null}
      */
     this.patch = null;
@@ -113,6 +117,7 @@ export class Columns {
     this.particles = 0;
     this.twins = new Uint32Array(0);
     this.segments = new Uint32Array(0);
+    this.seams = new Uint32Array(0);
     this.lastLevel = 0;
     this.tally = noTally();
     this.stale = false;
@@ -124,7 +129,7 @@ export class Columns {
     this.forget();
   }
 
-  /** Returns whether a row is a further one of a particle on a crease. @param {number} i */
+  /** Returns whether a row is a further one of its particle. @param {number} i */
   isFurther(i) {
     return this.firstRow(i) !== i;
   }
@@ -134,9 +139,20 @@ export class Columns {
     return i < this.twins.length ? this.twins[i] : i;
   }
 
-  /** Returns whether the particle of a first row lies on a crease. @param {number} i */
-  isOnCrease(i) {
-    return i < this.twins.length && this.segments.includes(i);
+  /**
+   * Returns the kind of curve on which the particle of a first row lies, of several the crease; null if on none.
+   * @param {number} i
+   * @returns {'crease' | 'seam' | null}
+   */
+  curveAt(i) {
+    if (i >= this.twins.length) return null;
+    if (this.segments.includes(i)) return 'crease';
+    return this.seams.includes(i) ? 'seam' : null;
+  }
+
+  /** The kinds of curves from which the fronts start. */
+  get curves() {
+    return [...(this.segments.length > 0 ? ['creases'] : []), ...(this.seams.length > 0 ? ['seams'] : [])];
   }
 
   /** The positions that are drawn. */
@@ -194,7 +210,7 @@ export class Columns {
     const { fresh, seeds, fates } = tally;
     for (let i = first; i < last; i += 1) {
       const level = levels[i];
-      // A particle on a crease has a row, and children, on either side.
+      // A particle on a crease or a seam has a row, and children, on either side.
       if (!this.isFurther(i)) {
         fresh[level] += 1;
         if (parents[i] === NO_PARENT) seeds[level] += 1;

@@ -1158,11 +1158,14 @@ export type Report = {
   /** Places where f has no gradient on the surface, a curve of them counted as one; none where
   * they were not looked for. */
   singular_points: number | null,
-  /** Curves along which particles lie on creases, from corner to corner or closed; none where the
-  * surface has no creases. */
+  /** Curves of particles along which the surface has an edge, from corner to corner or closed;
+  * none where it has no edges. */
   creases: number | null,
-  /** Particles at which creases meet or end; none where the surface has no creases. */
+  /** Particles at which creases meet or end; none where the surface has no edges. */
   corners: number | null,
+  /** Curves of particles along which patches of the surface meet without an edge; none where they
+  * meet nowhere so. */
+  seams: number | null,
   /** Quality of the present particles; none if there are none, or where they were not measured. */
   quality: Figures | null,
   /** Quality of the particles after the front, before the relaxation; none where nothing was

@@ -151,7 +151,7 @@ function particle(columns, index) {
     index,
     level: columns.levels[index],
     parent: columns.parents[index] === NO_PARENT ? null : columns.parents[index],
-    crease: columns.isOnCrease(index),
+    curve: columns.curveAt(index),
     position: triple(columns.shown, index),
     normal: triple(columns.normals, index),
     radius: columns.radii[index],

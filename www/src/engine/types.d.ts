@@ -89,8 +89,8 @@ export interface ColumnRange {
   radii: Float32Array;
   levels: Uint32Array;
   parents: Uint32Array;
-  /** the rows on creases and the pairs between which a crease goes on, where they have changed */
-  creases?: Pick<Columns, 'twins' | 'segments'> | null;
+  /** the rows where patches meet and the pairs between which a crease or a seam goes on, where they have changed */
+  creases?: Pick<Columns, 'twins' | 'segments' | 'seams'> | null;
   /** null for columns sent after the run, of as many particles */
   progress?: CoreProgress | null;
 }
@@ -201,8 +201,8 @@ export interface Hover {
   level: number;
   /** null for a seed */
   parent: number | null;
-  /** whether it lies on a crease */
-  crease: boolean;
+  /** the kind of curve on which it lies */
+  curve: 'crease' | 'seam' | null;
   position: Vec3;
   normal: Vec3;
   radius: number;

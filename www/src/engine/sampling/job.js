@@ -356,7 +356,8 @@ class Execution {
     const curvature = env.curvature() ? core.curvature(curvatureFrom) : new Float32Array(0);
     sent.curved += curvature.length / 2;
     const twins = core.twins();
-    const creases = first === 0 || twins.length !== sent.onCreases ? { twins, segments: core.segments() } : null;
+    const isNew = first === 0 || twins.length !== sent.onCreases;
+    const creases = isNew ? { twins, segments: core.segments(), seams: core.seams() } : null;
     sent.onCreases = twins.length;
     const columns = {
       positions: core.positions(first),

@@ -141,8 +141,9 @@ function curvatureRange(columns) {
   return [-most, most];
 }
 
-/** The label of the class of particles beside an edge or the box, where the surface has creases. */
+/** The labels of that class where the surface has edges, and where it has seams. */
 const BESIDE_EDGES = 'at an edge or the box';
+const BESIDE_SEAMS = 'at an edge, a seam or the box';
 
 /**
  * A colouring by classes. `classOf` returns the class of a particle, or is null while the classes are not known.
@@ -160,8 +161,8 @@ const classes = (title, labels, coloursOf, classesOf) => ({
   legend({ palette, columns }) {
     const classOf = classesOf(columns);
     const entries = classOf && categories(labels, coloursOf(palette), columns, classOf);
-    if (columns.twins.length > 0)
-      for (const entry of entries ?? []) if (entry.label === AT_BOX) entry.label = BESIDE_EDGES;
+    const beside = columns.seams.length > 0 ? BESIDE_SEAMS : BESIDE_EDGES;
+    if (columns.twins.length > 0) for (const entry of entries ?? []) if (entry.label === AT_BOX) entry.label = beside;
     return byEntries(title, palette, entries);
   },
 });
@@ -203,9 +204,9 @@ const ramp = (legend, span, valuesIn, scale = (value) => value) => ({
   }),
 });
 
-/** Where the rings begin. Pinned particles that no crease joins are at tips. @param {Columns} columns */
-const unitOfLevels = ({ segments, twins }) => {
-  if (segments.length > 0) return 'rings from the creases';
+/** Where the rings begin. Pinned particles that no curve joins are at tips. @param {Columns} columns */
+const unitOfLevels = ({ curves, twins }) => {
+  if (curves.length > 0) return `rings from the ${curves.join(' and ')}`;
   return twins.length > 0 ? 'rings from the tips' : 'rings around the seed';
 };
 

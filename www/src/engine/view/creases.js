@@ -1,6 +1,7 @@
 /**
  * Uploads the creases of a surface to the graphics device: thin lines along them. The particles on them are drawn as
- * dots on the lines, because a disc on either side would stick out beyond the edge.
+ * dots on the lines, because a disc on either side would stick out beyond the edge. Those on a seam without an edge are
+ * discs like others.
  *
  * @module
  */
@@ -15,15 +16,19 @@ import { PALETTES } from './palettes.js';
 export const END = 4;
 
 /**
- * Returns the radii of rows from `first` to `last` as the renderers take them: that of a particle on a crease is
- * negative in its first row, which is drawn as a dot, and 0 in the others, which are not drawn.
+ * Returns the radii of rows from `first` to `last` as the renderers take them. Of the rows of a particle where patches
+ * meet the first is drawn alone, the others are 0; it is a dot, with a negative radius, on a crease and at a tip.
  * @param {Columns} columns @param {number} first @param {number} last
  */
-export function radiiOf({ radii, twins }, first, last) {
+export function radiiOf({ radii, twins, segments, seams }, first, last) {
   if (first >= twins.length) return radii.subarray(first, last);
+  const discs = new Set(seams);
+  for (const row of segments) discs.delete(row);
   return radii.slice(first, last).map((radius, k) => {
     const row = first + k;
-    return row >= twins.length ? radius : twins[row] === row ? -radius : 0;
+    if (row >= twins.length) return radius;
+    if (twins[row] !== row) return 0;
+    return discs.has(row) ? radius : -radius;
   });
 }
 

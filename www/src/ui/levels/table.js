@@ -8,8 +8,8 @@ import { formatCount, plural } from '../format.js';
  * @import { LevelTable } from './types.js'
  */
 
-/** @param {Pick<Columns, 'count' | 'tally' | 'adaptive' | 'lastLevel' | 'segments'>} particles @returns {LevelTable} */
-export function levelTable({ count, tally, adaptive, lastLevel: last, segments }) {
+/** @param {Pick<Columns, 'count' | 'tally' | 'adaptive' | 'lastLevel' | 'curves'>} particles @returns {LevelTable} */
+export function levelTable({ count, tally, adaptive, lastLevel: last, curves }) {
   // Of no particles there are no numbers.
   const fresh = new Uint32Array(last + 1);
   fresh.set(tally.fresh.subarray(0, last + 1));
@@ -17,7 +17,7 @@ export function levelTable({ count, tally, adaptive, lastLevel: last, segments }
   seeds.set(tally.seeds.subarray(0, last + 1));
   const total = new Uint32Array(last + 1);
   for (let k = 0, sum = 0; k <= last; k += 1) total[k] = sum += fresh[k];
-  return { count, last, fresh, total, seeds, fates: tally.fates.slice(), adaptive, creased: segments.length > 0 };
+  return { count, last, fresh, total, seeds, fates: tally.fates.slice(), adaptive, curves };
 }
 
 /** Fates of the children that were not placed, in the order of the description. */
@@ -29,8 +29,8 @@ const REST = /** @type {const} */ ([
   ['capped', 'was over the limit', 'were over the limit'],
 ]);
 
-/** The words for `outside` where the surface has creases: no child is placed beyond the edge of its patch. */
-const BEYOND = 'fell beyond an edge or outside the box';
+/** The words for `outside` where patches meet: no child is placed beyond its own. */
+const BEYOND = 'fell off the patch or outside the box';
 
 /**
  * Returns the number of particles of a level on a plane around one seed; null for adaptive runs or several seeds.
@@ -55,7 +55,7 @@ const levelOf = (level, last) => `Level ${formatCount(level)} of ${formatCount(l
  *   them
  */
 export function describeLevel(table, level, relaxSteps) {
-  const { last, fresh, total, seeds, fates, creased } = table;
+  const { last, fresh, total, seeds, fates, curves } = table;
   const flat = flatCount(table, level);
   const plane = flat === null ? '' : ` (on a flat plane ${formatCount(flat)})`;
   const counts = `${formatCount(fresh[level])} new${plane}, ${formatCount(total[level])} so far`;
@@ -67,18 +67,19 @@ export function describeLevel(table, level, relaxSteps) {
         ? ` Drawn after ${plural(relaxSteps, 'relaxation step')}.`
         : '';
   if (level === 0) {
-    const starts = creased
-      ? `${plural(seeds[0], 'point')} on the creases or between them, a front from each.`
-      : seeds[0] === 1
-        ? 'The front starts at one point of the surface.'
-        : `${plural(seeds[0], 'point')} of the surface, a front from each.`;
+    const starts =
+      curves.length > 0
+        ? `${plural(seeds[0], 'point')} on the ${curves.join(' and ')} or between them, a front from each.`
+        : seeds[0] === 1
+          ? 'The front starts at one point of the surface.'
+          : `${plural(seeds[0], 'point')} of the surface, a front from each.`;
     return { title, text: starts + moved };
   }
   const numberOf = (/** @type {keyof typeof FATE} */ name) => fates[FATES * level + FATE[name]];
   const added = numberOf('added');
   const rest = REST.filter(([name]) => numberOf(name) > 0).map(([name, one, many]) => {
     const words = numberOf(name) === 1 ? one : many;
-    return `${formatCount(numberOf(name))} ${creased && name === 'outside' ? BEYOND : words}`;
+    return `${formatCount(numberOf(name))} ${curves.length > 0 && name === 'outside' ? BEYOND : words}`;
   });
   const proposed = REST.reduce((sum, [name]) => sum + numberOf(name), added);
   const became = [`${formatCount(added)} added`, ...rest].join(', ');

@@ -28,8 +28,8 @@ export interface LevelTable {
   seeds: Uint32Array;
   fates: Uint32Array;
   adaptive: boolean;
-  /** whether the surface has creases, from which the fronts start */
-  creased: boolean;
+  /** the kinds of curves from which the fronts start, where patches meet */
+  curves: string[];
 }
 export type Told = { title: string; text: string };
 export type Timeline = ReturnType<typeof createTimeline>;

@@ -97,7 +97,9 @@ function rowsOf(hover) {
   const rows = [
     ['Particle', formatCount(hover.index)],
     ['Level', formatCount(hover.level)],
-    hover.crease ? ['Lies on', 'a crease'] : ['Parent', hover.parent === null ? 'seed' : formatCount(hover.parent)],
+    hover.curve
+      ? ['Lies on', `a ${hover.curve}`]
+      : ['Parent', hover.parent === null ? 'seed' : formatCount(hover.parent)],
     ['Position', hover.position.map((value) => formatFixed(value, 3)).join('  ')],
   ];
   if (hover.valence !== null) rows.push(['Neighbours', formatCount(hover.valence)]);

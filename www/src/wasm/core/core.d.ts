@@ -40,7 +40,7 @@ export class Core {
      */
     component(): Uint32Array<ArrayBuffer>;
     /**
-     * Rows of the columns: particles, those on creases once on each side.
+     * Rows of the columns: particles, those on creases and seams once on each side.
      */
     count(): number;
     /**
@@ -171,6 +171,11 @@ export class Core {
      */
     residual(): Float32Array<ArrayBuffer>;
     /**
+     * The pairs of rows between which a seam without an edge goes on, two each; none without
+     * seams.
+     */
+    seams(): Uint32Array<ArrayBuffer>;
+    /**
      * The pairs of rows between which a crease goes on, two each; none without creases.
      */
     segments(): Uint32Array<ArrayBuffer>;
@@ -216,8 +221,8 @@ export class Core {
      */
     triangles(): Uint32Array<ArrayBuffer>;
     /**
-     * For the rows of particles on creases, which come first, the first row of the same particle;
-     * nothing without creases.
+     * For the rows of particles on creases, seams and tips, which come first, the first row of the
+     * same particle; nothing without any.
      */
     twins(): Uint32Array<ArrayBuffer>;
     /**

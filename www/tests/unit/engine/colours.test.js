@@ -195,14 +195,16 @@ describe('colours of particles', () => {
     });
   });
 
-  test('by level begin at the creases, at tips alone, or at a seed', () => {
-    const { segments, twins } = columns;
+  test('by level begin at the creases, at seams, at tips alone, or at a seed', () => {
+    const { segments, seams, twins } = columns;
     const unit = () => legendOf('level', 'light', columns).unit;
     columns.twins = Uint32Array.of(0, 0);
     expect(unit()).toBe('rings from the tips');
     columns.segments = Uint32Array.of(0, 1);
     expect(unit()).toBe('rings from the creases');
-    Object.assign(columns, { segments, twins });
+    columns.seams = Uint32Array.of(0, 1);
+    expect(unit()).toBe('rings from the creases and seams');
+    Object.assign(columns, { segments, seams, twins });
     expect(unit()).toBe('rings around the seed');
   });
 

@@ -15,7 +15,7 @@ function creased() {
     radii: Float32Array.of(1, 1, 2, 2, 3, 3),
     levels: new Uint32Array(count),
     parents: new Uint32Array(count),
-    creases: { twins: Uint32Array.of(0, 0, 2, 2), segments: Uint32Array.of(0, 2) },
+    creases: { twins: Uint32Array.of(0, 0, 2, 2), segments: Uint32Array.of(0, 2), seams: new Uint32Array(0) },
     progress: /** @type {any} */ ({ particles: 4 }),
   });
   return columns;
@@ -33,9 +33,19 @@ describe('creases', () => {
 
   it('have particles that are told from the tip of a cone, which has rows but no crease', () => {
     const columns = creased();
-    expect([0, 2, 4].map((i) => columns.isOnCrease(i))).toEqual([true, true, false]);
+    expect([0, 2, 4].map((i) => columns.curveAt(i))).toEqual(['crease', 'crease', null]);
     columns.segments = new Uint32Array(0);
-    expect([0, 2, 4].map((i) => columns.isOnCrease(i))).toEqual([false, false, false]);
+    expect([0, 2, 4].map((i) => columns.curveAt(i))).toEqual([null, null, null]);
+  });
+
+  it('are told from seams, whose particles are discs', () => {
+    const columns = creased();
+    // A crease of one particle more, which a seam prolongs.
+    columns.twins = Uint32Array.of(0, 0, 2, 2, 4, 4);
+    columns.seams = Uint32Array.of(2, 4);
+    expect([0, 2, 4].map((i) => columns.curveAt(i))).toEqual(['crease', 'crease', 'seam']);
+    expect(columns.curves).toEqual(['creases', 'seams']);
+    expect([...radiiOf(columns, 0, 6)]).toEqual([-1, 0, -2, 0, 3, 0]);
   });
 
   it('carry dots: negative radii in the first rows, none in the others', () => {

@@ -204,6 +204,7 @@ export function fakeCore({
     exact_positions: () => new Float64Array(0),
     twins: () => new Uint32Array(0),
     segments: () => new Uint32Array(0),
+    seams: () => new Uint32Array(0),
     normals: (/** @type {number} */ from) => column(from, 3, Float32Array),
     radii: (/** @type {number} */ from) => column(from, 1, Float32Array),
     levels: (/** @type {number} */ from) => column(from, 1, Uint32Array),

@@ -71,7 +71,7 @@ describe('the table of levels', () => {
     /** @param {number} first @param {number} total @param {Uint32Array<ArrayBuffer>} [twins] */
     function write(first, total, twins) {
       const n = total - first;
-      const creases = twins ? { twins, segments: new Uint32Array(0) } : null;
+      const creases = twins ? { twins, segments: new Uint32Array(0), seams: new Uint32Array(0) } : null;
       columns.write({
         first,
         total,
