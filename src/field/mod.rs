@@ -278,6 +278,10 @@ impl<P: Deref<Target: Field> + MaybeSend + MaybeSync> Field for P {
     }
 }
 
+/// Share of its longest side by which a box is enlarged for proofs about the surface in it, so that
+/// a surface that touches the box from inside is inside.
+pub(crate) const MARGIN: f64 = 1.0 / 65_536.0;
+
 /// Sine of the angle between two branches from which on they make a crease: one degree, less than
 /// light and shadow show.
 pub(crate) const SHARP: f64 = 0.0175;
