@@ -243,22 +243,23 @@ pub trait Bounded: Evaluator {
     }
 
     /// Number of functions among whose zeros are those of f: the factors of a product, otherwise 1.
-    /// Where f has creases, those of each of its patches.
+    /// Where f has creases, those of each of its patches; where a choice keeps sheets of a surface
+    /// without creases apart, those of each sheet.
     fn factors(&self) -> usize {
         1
     }
 
     /// Bounds of factor `factor` of f and of its gradient over each box. What an enclosure says
-    /// about being defined and continuous holds for f as a whole. That of a patch is empty where
-    /// the patch gives f nowhere in the box.
+    /// about being defined and continuous holds for f as a whole. That of a patch or of a sheet is
+    /// empty where it gives f nowhere in the box.
     ///
     /// # Panics
     ///
     /// If `factor` is not below [`Bounded::factors`], or `out` is shorter than `boxes`.
     fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]);
 
-    /// Whether f is what factor `factor` is at `p`: where f has creases, whether its patch gives f
-    /// there.
+    /// Whether f is what factor `factor` is at `p`: where f has creases or sheets that are kept
+    /// apart, whether its patch or sheet gives f there.
     fn gives(&mut self, factor: usize, p: DVec3) -> bool {
         let _ = (factor, p);
         true

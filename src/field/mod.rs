@@ -277,3 +277,7 @@ impl<P: Deref<Target: Field> + MaybeSend + MaybeSync> Field for P {
         (**self).creased()
     }
 }
+
+/// Share of its longest side by which a box is enlarged for proofs about the surface in it, so that
+/// a surface that touches the box from inside is inside.
+pub(crate) const MARGIN: f64 = 1.0 / 65_536.0;

@@ -116,7 +116,12 @@ const DISTANCE: &str = "hypot(max(abs(x) - 1, 0), max(abs(y) - 1, 0), max(abs(z)
 
 #[test]
 fn the_distance_to_a_box_has_the_zeros_of_its_faces_alone() {
-    let distance = field(DISTANCE);
+    has_the_zeros_of_its_faces_alone(DISTANCE);
+    has_the_zeros_of_its_faces_alone(&format!("-({DISTANCE})"));
+}
+
+fn has_the_zeros_of_its_faces_alone(text: &str) {
+    let distance = field(text);
     let mut distance = at_work(&distance);
     let [x, y, z] = DVec3::AXES.map(|axis| distance.branch_at(1.1 * axis));
     // The same function inside, outside, and where neither side is taken.

@@ -65,6 +65,58 @@ fn two_spheres_a_thousandth_apart_are_two_components() {
     }
 }
 
+/// Distance from a box of these half-widths, negative inside, with edges rounded by `round`.
+fn rounded_box(half: [f64; 3], round: f64) -> String {
+    let sides: Vec<String> =
+        ["x", "y", "z"].iter().zip(half).map(|(axis, half)| format!("abs({axis}) - {half}")).collect();
+    let beyond: Vec<String> = sides.iter().map(|side| format!("max({side}, 0)")).collect();
+    format!("hypot({}) + min(max({}), 0) - {round}", beyond.join(","), sides.join(","))
+}
+
+#[test]
+fn the_sheets_of_thin_shells_are_proven_to_be_found() {
+    let ball = "hypot(x, y, z)";
+    let torus = "hypot(hypot(x, y) - 1, z) - 0.35";
+    let [side, end] = ["hypot(x, y) - 0.6", "abs(z) - 0.8"];
+    let cylinder = format!("hypot(max({side}, 0), max({end}, 0)) + min(max({side}, {end}), 0) - 0.2");
+    let mut cases: Vec<(String, usize, i64)> = Vec::new();
+    for inner in [0.8, 0.9, 0.95, 0.99] {
+        cases.push((format!("max({ball} - 1, {inner} - {ball})"), 2, 4));
+        cases.push((format!("max(x^2 + y^2 + z^2 - 1, {inner}^2 - (x^2 + y^2 + z^2))"), 2, 4));
+    }
+    let shell_at = |x: f64| format!("max(hypot(x - ({x}), y, z) - 0.6, 0.55 - hypot(x - ({x}), y, z))");
+    cases.extend([
+        (format!("abs({ball} - 1) - 0.02"), 2, 4),
+        (format!("abs({torus}) - 0.03"), 2, 0),
+        (format!("abs({cylinder}) - 0.05"), 2, 4),
+        (format!("abs({}) - 0.05", rounded_box([1.0, 0.7, 0.5], 0.2)), 2, 4),
+        // Differences of two distances.
+        (format!("max({ball} - 1, 0.88 - hypot(x - 0.07, y, z))"), 2, 4),
+        (format!("max({torus}, 0.3 - hypot(x - 1, y, z))"), 2, 2),
+        (format!("max({}, 0.95 - {ball})", rounded_box([0.8; 3], 0.2)), 2, 4),
+        (format!("max({ball} - 1, -({}))", rounded_box([0.45; 3], 0.1)), 2, 4),
+        // Four sheets, and a ball within a shell, through which both sides of the shell pass.
+        (format!("min({}, {})", shell_at(-0.8), shell_at(0.8)), 4, 8),
+        (format!("max(abs({torus}) - 0.1, hypot(x - 1.35, y, z) - 0.08)"), 1, 2),
+    ]);
+    for (formula, components, euler) in cases {
+        let (_, report) = sampled(&formula, 1.5, 0.008);
+        is_proven(&report, &formula);
+        assert_eq!(report.proof.components, components, "{formula}");
+        assert_eq!(report.measures.quality.map(|q| q.connectivity.euler), Some(euler), "{formula}");
+    }
+}
+
+#[test]
+fn a_component_that_goes_past_a_choice_stays_one() {
+    // |x| is tied inside a capsule and a rounded box, where nothing depends on it.
+    for formula in ["hypot(max(abs(x) - 1, 0), y, z) - 0.3".to_owned(), rounded_box([1.0, 0.7, 0.5], 0.2)] {
+        let (_, report) = sampled(&formula, 1.5, 0.008);
+        is_proven(&report, &formula);
+        assert_eq!((report.proof.components, report.growth.components_seeded), (1, 1), "{formula}");
+    }
+}
+
 #[test]
 fn two_spheres_ten_diameters_apart_are_two_components() {
     let formula = balls(&[([-0.9, 0.1, 0.0], 0.09), ([0.9, -0.1, 0.05], 0.09)]);

@@ -249,16 +249,31 @@ fn family_of(
     cases::assert_share(proven, resolved, share, &format!("{name} without a tiny gap, proven"));
 }
 
+/// Spheres, each around the one before it.
+fn nested(random: &mut Random, r: f64, count: impl Fn(&mut Random) -> u32) -> Vec<Piece> {
+    let (centre, mut radius) = (random.near_middle(0.1), random.between(0.2, 0.5));
+    let mut all = vec![Piece::Sphere { centre, radius }];
+    for _ in 1..count(random) {
+        radius += random.gap(r).min(0.1);
+        all.push(Piece::Sphere { centre, radius });
+    }
+    all
+}
+
 #[test]
 fn of_nested_spheres_none_is_missing_without_a_word() {
-    family("nested spheres", 0.99, |random, r| {
-        let (centre, mut radius) = (random.near_middle(0.1), random.between(0.2, 0.5));
-        let mut all = vec![Piece::Sphere { centre, radius }];
-        for _ in 1..random.count(2, 4) {
-            radius += random.gap(r).min(0.1);
-            all.push(Piece::Sphere { centre, radius });
-        }
-        all
+    family("nested spheres", 0.99, |random, r| nested(random, r, |random| random.count(2, 4)));
+}
+
+/// The function of one shell, or of two, by maxima and a minimum of those of their sheets.
+#[test]
+fn of_the_sheets_of_shells_none_is_missing_without_a_word() {
+    let join = |sheets: &[String]| {
+        let shells = sheets.chunks(2).map(|pair| format!("max({}, -{})", pair[1], pair[0]));
+        shells.reduce(|all, shell| format!("min({all}, {shell})")).expect("a shell")
+    };
+    family_of("shells", 0.99, (50, TINY_SHARE), join, |random, r| {
+        nested(random, r, |random| 2 * random.count(1, 2))
     });
 }
 

@@ -70,6 +70,8 @@ fn parts_that_meet_without_an_edge_are_one_patch_beside_edges() {
     let cases = [
         // A rounded box around one with edges.
         (format!("abs({BOX}) - 0.1"), (2, 4), Some(shell), [12, 8]),
+        // A ball without the box within it.
+        (format!("max(hypot(x, y, z) - 1.6, -({BOX}))"), (2, 4), None, [12, 8]),
         (format!("max({BOX} - 0.2, 0.4 - hypot(x, y))"), (1, 0), None, [2, 0]),
         (format!("max({ROD}, 0.2 - hypot(x, z - 0.3))"), (1, 0), None, [3, 0]),
         ("max(hypot(x - clamp(x, -1, 1), y, z) - 0.5, y)".into(), (1, 2), Some(half_capsule), [1, 0]),

@@ -12,7 +12,7 @@
 
 use super::compiled::Compiled;
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
-use super::interval::{self, Range};
+use super::interval::{self, FactorProgram, Range};
 use super::operations::{Binary, Unary};
 use super::products::{by_signs, may_cross};
 use super::scalar;
@@ -74,8 +74,28 @@ pub(super) enum Holds {
     Somewhere,
 }
 
+/// The node that takes the place of a choice whose condition holds or does not. `new` are the nodes
+/// that its operands have become.
+pub(super) fn resolved(graph: &mut Graph, choice: Node, holds: bool, new: impl Fn(Id) -> Id) -> Id {
+    match taken(choice, holds).map(new) {
+        _ if matches!(choice, Node::Unary(Unary::Sign, _)) => graph.constant(if holds { 1.0 } else { -1.0 }),
+        Some(u) if !holds && matches!(choice, Node::Unary(Unary::Abs, _)) => graph.neg(u),
+        Some(operand) => operand,
+        None => graph.constant(0.0),
+    }
+}
+
 impl ChoiceCondition {
-    fn at_point(self, value: impl Fn(Id) -> f64) -> Holds {
+    /// The nodes that are compared.
+    pub(super) fn operands(self) -> impl Iterator<Item = Id> {
+        let (first, second) = match self {
+            Self::AtMost(a, b) => (a, Some(b)),
+            Self::NotNegative(u) => (u, None),
+        };
+        core::iter::once(first).chain(second)
+    }
+
+    pub(super) fn at_point(self, value: impl Fn(Id) -> f64) -> Holds {
         let holds = match self {
             Self::AtMost(a, b) => value(a) <= value(b),
             Self::NotNegative(u) => value(u) >= 0.0,
@@ -291,14 +311,7 @@ impl Base {
                     // The exponent depends on no coordinate and stays.
                     graph.built(node.mapped(|operand| if Some(operand) == size { new_size } else { operand }))
                 }
-                (NodeRole::Choice(_), Node::Unary(Unary::Sign, _)) => {
-                    graph.constant(if holds { 1.0 } else { -1.0 })
-                }
-                (NodeRole::Choice(_), _) => match taken(node, holds).map(new) {
-                    Some(u) if !holds && matches!(node, Node::Unary(..)) => graph.neg(u),
-                    Some(operand) => operand,
-                    None => graph.constant(0.0),
-                },
+                (NodeRole::Choice(_), _) => resolved(graph, node, holds, new),
             };
             // The root of a square whose sign is known, as that of max(u, 0) is.
             map[id as usize] = match graph.node(built) {
@@ -450,6 +463,17 @@ pub(super) struct Patch {
     pub(super) compiled: Arc<Compiled>,
 }
 
+/// The function of a sheet: f, in which some choices take the same side everywhere.
+#[derive(Clone, Debug)]
+pub(super) struct Sheet {
+    /// The conditions of these choices, and whether they hold on the sheet.
+    pub(super) sides: Vec<Side>,
+    /// The nodes that the conditions need, in the order of the graph.
+    pub(super) nodes: Vec<Id>,
+    /// Programs for the factors of the function.
+    pub(super) programs: Vec<FactorProgram>,
+}
+
 /// The branches of f that have been met, with their numbers. There are none of a formula without
 /// choices.
 #[derive(Clone, Debug, Default)]
@@ -466,6 +490,8 @@ pub(super) struct Branches {
     /// The factors of the branches of the surface in a box, each by its branch and its number
     /// there, if it was found that some meet in creases in that box.
     pub(super) factors: Vec<(u32, usize)>,
+    /// The sheets that choices keep apart, of a surface without creases.
+    pub(super) sheets: Vec<Sheet>,
     /// The choices that [stand for products](by_signs).
     pub(super) products: Vec<Id>,
     /// The graph's function, which is evaluated in the place of f where factors of a product cross:
@@ -474,8 +500,8 @@ pub(super) struct Branches {
     walk: BranchWalk,
     /// Roles with the parameters before, kept for their memory.
     before: Vec<NodeRole>,
-    doubles: Vec<f64>,
-    ranges: Vec<interval::Row<1>>,
+    pub(super) doubles: Vec<f64>,
+    pub(super) ranges: Vec<interval::Row<1>>,
     pub(super) jets: scalar::Jets<0>,
 }
 
@@ -736,24 +762,11 @@ impl Branches {
         }
     }
 
-    /// Takes the branches of a surface in a box as those that meet in creases there.
-    pub(super) fn crease(&mut self, values: &[f64], bounds: &Bounds) {
-        self.factors.clear();
-        for number in self.within(values, bounds).unwrap_or_default() {
-            if !self.is_limit(number, values) {
-                let count = self.compiled(number, values).map_or(0, |compiled| compiled.factors().len());
-                self.factors.extend((0..count).map(|own| (number, own)));
-            }
-        }
-        if !self.products.is_empty() {
-            let (graph, root) = self.base.graph.part(self.parts[0].root);
-            self.split = Some(Arc::new(Compiled::from_graph(graph, root, values)));
-        }
-    }
-
     /// Recomputes everything that depends on the parameters alone. The branches begin anew if
     /// another operation is a choice now.
     pub(super) fn set_parameters(&mut self, values: &[f64]) {
+        let of_sheets = self.sheets.iter_mut().flat_map(|sheet| &mut sheet.programs);
+        of_sheets.for_each(|program| program.set_parameters(values));
         if self.parts.is_empty() {
             return;
         }

@@ -118,7 +118,7 @@ impl Compiled {
     pub(super) fn factors(&self) -> &[interval::FactorProgram] {
         self.factors.get_or_init(|| {
             let mut graph = (*self.graph).clone();
-            let mut factors = interval::factors(&mut graph, self.root, self.gradient);
+            let mut factors = interval::factors(&mut graph, self.root, self.gradient, self.root);
             factors.iter_mut().for_each(|factor| factor.set_parameters(&self.values));
             factors
         })

@@ -14,10 +14,12 @@ use super::compiled::Compiled;
 use super::graph::{Id, MIN_BLEND_WIDTH, Node};
 use super::operations::Unary;
 use super::{interval, scalar, steps};
+use crate::field::MARGIN;
 use crate::math::newton::{STEPS, step_to_curve};
 use crate::math::{Bounds, SHARP};
 use crate::slices::pause;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Number of halvings of the box after which a place is looked for: 32 cells on every axis. Fewer
 /// leave more edges open.
@@ -75,7 +77,7 @@ impl Branches {
 
     /// The cells with creases, and those in which patches meet without an edge and are no single
     /// patch.
-    fn with_seams(&mut self, values: &[f64], TieCells { mut creases, seams }: TieCells) -> Vec<Bounds> {
+    fn with_seams(&mut self, values: &[f64], TieCells { mut creases, seams, .. }: TieCells) -> Vec<Bounds> {
         let apart = self.apart.clone();
         if !apart.is_empty() {
             creases.extend(seams.into_iter().filter(|cell| {
@@ -117,12 +119,27 @@ impl Branches {
             return found.creases;
         }
         if found.creases.is_empty() {
-            *self = Self::default();
+            *self = found.tied.map_or_else(Self::default, |tied| self.separated(&tied, values));
             return found.creases;
         }
         let is_smooth = self.join_tangent(values, bounds, &found.seams).await;
         self.crease(values, bounds);
         if is_smooth && !self.has_limits() { Vec::new() } else { self.with_seams(values, found) }
+    }
+
+    /// Takes the branches of a surface in a box as those that meet in creases there.
+    fn crease(&mut self, values: &[f64], bounds: &Bounds) {
+        self.factors.clear();
+        for number in self.within(values, bounds).unwrap_or_default() {
+            if !self.is_limit(number, values) {
+                let count = self.compiled(number, values).map_or(0, |compiled| compiled.factors().len());
+                self.factors.extend((0..count).map(|own| (number, own)));
+            }
+        }
+        if !self.products.is_empty() {
+            let (graph, root) = self.base.graph.part(self.parts[0].root);
+            self.split = Some(Arc::new(Compiled::from_graph(graph, root, values)));
+        }
     }
 
     /// Cells of a box outside of which f has no crease, and no seam if these are asked for. There
@@ -140,8 +157,17 @@ impl Branches {
         let is_choice = |id: &Id| matches!(self.base.roles[*id as usize], NodeRole::Choice(_));
         let choices: Vec<Id> = part.nodes.iter().copied().filter(is_choice).collect();
         let ties = ties_of(&mut self.base, part, &choices, values);
-        let search = TieSearch { base: &self.base, products: &self.products, part, ties, values, bounds };
-        let mut kinds = search.kinds(&choices).await;
+        let around = bounds.enlarged(2.0 * MARGIN * bounds.size().max_element());
+        let search = |bounds| TieSearch {
+            base: &self.base,
+            products: &self.products,
+            part,
+            ties: &ties,
+            values,
+            bounds,
+        };
+        let mut kinds = search(&around).kinds(&choices).await;
+        let search = search(bounds);
         // The choices of products stand and fall together.
         if self.products.iter().any(|&id| kinds[id as usize] == Some(TieKind::Crease)) {
             self.products.iter().for_each(|&id| kinds[id as usize] = Some(TieKind::Crease));
@@ -151,6 +177,7 @@ impl Branches {
         let of = |is_wanted: fn(TieKind) -> bool| -> Vec<Id> {
             (0..).zip(&kinds).filter(|(_, kind)| kind.is_some_and(is_wanted)).map(|(id, _)| id).collect()
         };
+        found.tied = Some(of(|_| true));
         let creasing = of(|kind| kind == TieKind::Crease);
         found.creases = search.cells(&creasing, TieReach::Reached, width).await;
         if let Some(width) = width_of_seams.filter(|_| !creasing.is_empty()) {
@@ -167,6 +194,9 @@ struct TieCells {
     creases: Vec<Bounds>,
     /// Cells with all choices that are tied on the surface somewhere.
     seams: Vec<Bounds>,
+    /// The choices that are tied on the surface somewhere in the box or in the margin of the proofs
+    /// around it; none if that is not known.
+    tied: Option<Vec<Id>>,
 }
 
 /// f where a choice is tied: functions that are f where the choice is taken and its operands are
@@ -255,7 +285,7 @@ struct TieSearch<'a> {
     /// The choices that stand for products.
     products: &'a [Id],
     part: &'a BranchPart,
-    ties: Vec<Tie>,
+    ties: &'a [Tie],
     values: &'a [f64],
     bounds: &'a Bounds,
 }

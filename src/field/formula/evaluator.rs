@@ -35,16 +35,26 @@ pub(super) struct FormulaEvaluator<'a> {
 
 /// Memory of the bounds of a function.
 struct FormulaBounds {
-    /// The factors of f; where the surface has creases those of each of its branches, each with the
-    /// number of the branch.
+    /// The factors of f; where the surface has creases those of each of its branches, and where
+    /// choices keep sheets apart those of each sheet.
     factors: Vec<Factor>,
     /// Boxes in the coordinates of the formula.
     boxes: Vec<Bounds>,
 }
 
+/// The function of which something is a factor.
+#[derive(Clone, Copy)]
+enum FactorOf {
+    /// The function that is evaluated.
+    Whole,
+    /// The branch of this number.
+    Branch(u32),
+    /// The sheet of this index.
+    Sheet(usize),
+}
+
 struct Factor {
-    /// Number of the branch of which it is a factor; none if it is one of the function itself.
-    branch: Option<u32>,
+    of: FactorOf,
     program: FactorProgram,
     first: BoxRows,
     second: BoxRows,
@@ -83,23 +93,26 @@ impl<'a> FormulaEvaluator<'a> {
         bounds.get_or_insert_with(|| {
             let values = &formula.values;
             let mut branches = formula.branches.lock();
-            let of_branches = if *is_branch { Vec::new() } else { branches.factors.clone() };
-            let own = match instead {
-                Some(branch) if *is_branch => branch.factors(),
-                _ if !of_branches.is_empty() => &[],
-                _ => formula.compiled.factors(),
+            let mut programs: Vec<(FactorOf, FactorProgram)> = Vec::new();
+            let mut add = |of: FactorOf, own: &[FactorProgram]| {
+                programs.extend(own.iter().map(|program| (of, program.clone())));
             };
-            let factor = |branch: Option<u32>, program: &FactorProgram| Factor {
-                branch,
-                program: program.clone(),
-                first: BoxRows::default(),
-                second: BoxRows::default(),
-            };
-            let mut factors: Vec<Factor> = own.iter().map(|program| factor(None, program)).collect();
-            for (number, own) in of_branches {
-                let compiled = branches.compiled(number, values).expect("a branch that has factors");
-                factors.push(factor(Some(number), &compiled.factors()[own]));
+            if !*is_branch {
+                for (number, own) in branches.factors.clone() {
+                    let compiled = branches.compiled(number, values).expect("a branch that has factors");
+                    add(FactorOf::Branch(number), &compiled.factors()[own..=own]);
+                }
+                for (k, sheet) in branches.sheets.iter().enumerate() {
+                    add(FactorOf::Sheet(k), &sheet.programs);
+                }
             }
+            if programs.is_empty() {
+                let own = instead.as_ref().filter(|_| *is_branch).map_or(&formula.compiled, |branch| branch);
+                programs.extend(own.factors().iter().map(|program| (FactorOf::Whole, program.clone())));
+            }
+            let factor =
+                |(of, program)| Factor { of, program, first: BoxRows::default(), second: BoxRows::default() };
+            let factors = programs.into_iter().map(factor).collect();
             FormulaBounds { factors, boxes: Vec::new() }
         })
     }
@@ -274,21 +287,27 @@ impl Bounded for FormulaEvaluator<'_> {
     fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]) {
         let (frame, formula, is_branch) = (self.frame, self.formula, self.is_branch);
         let FormulaBounds { factors, boxes: moved } = self.bounds();
-        let Factor { branch, program, first, .. } = &mut factors[factor];
+        let Factor { of, program, first, .. } = &mut factors[factor];
         let boxes = in_formula(frame, boxes, moved);
         program.first.enclose(first, boxes, out);
-        match *branch {
-            Some(branch) => formula.branches.lock().leave_out(branch, &formula.values, boxes, out),
-            None if !is_branch => formula.branches.lock().leave_out_limits(&formula.values, boxes, out),
-            None => {}
+        let (mut branches, values) = (formula.branches.lock(), &formula.values);
+        match *of {
+            FactorOf::Branch(branch) => branches.leave_out(branch, values, boxes, out),
+            FactorOf::Sheet(sheet) => branches.leave_out_sheet(sheet, values, boxes, out),
+            FactorOf::Whole if !is_branch => branches.leave_out_limits(values, boxes, out),
+            FactorOf::Whole => {}
         }
         frame.scale_bounds(&mut out[..boxes.len()]);
     }
 
     fn gives(&mut self, factor: usize, p: DVec3) -> bool {
-        let branch = self.bounds().factors[factor].branch;
+        let of = self.bounds().factors[factor].of;
         let place = self.frame.place(p);
-        branch.is_none_or(|branch| self.on_branches(|branches, values| branches.at(values, place)) == branch)
+        self.on_branches(|branches, values| match of {
+            FactorOf::Whole => true,
+            FactorOf::Branch(branch) => branches.at(values, place) == branch,
+            FactorOf::Sheet(sheet) => branches.is_on_sheet(sheet, values, place),
+        })
     }
 
     fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]) {

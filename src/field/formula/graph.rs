@@ -228,9 +228,12 @@ impl Graph {
         factors
     }
 
-    /// The functions that are zero together where `root` is, a sum of even powers or a root of one;
-    /// none if it is no such sum.
-    pub(super) fn squares(&self, root: Id) -> Vec<Id> {
+    /// The functions that are zero together where `root` is, a sum of even powers or a root of one,
+    /// or the negative of such a sum; none if it is none.
+    pub(super) fn squares(&self, mut root: Id) -> Vec<Id> {
+        if let Node::Unary(Unary::Neg, sum) = self.node(root) {
+            root = sum;
+        }
         let (mut open, mut squares, mut next) = (vec![root], Vec::new(), 0);
         while let Some(&id) = open.get(next) {
             next += 1;

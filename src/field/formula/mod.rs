@@ -73,6 +73,7 @@ mod program;
 mod regular;
 mod repair;
 mod scalar;
+mod separate;
 mod solids;
 mod spelling;
 mod statements;

@@ -7,10 +7,9 @@
 //! found by halving, and the normals on both sides of it are compared. Branches that meet at an
 //! angle anywhere stay apart.
 
-use super::branches::{Branches, ChoiceCondition, Holds, NodeRole, Patch, Side, taken};
+use super::branches::{Branches, ChoiceCondition, Holds, NodeRole, Patch, Side, resolved};
 use super::compiled::Compiled;
-use super::graph::{Id, Node};
-use super::operations::Unary;
+use super::graph::Id;
 use crate::math::newton::{self, STEPS, Slope, StepLimits, step_to_surface};
 use crate::math::{Bounds, SHARP, SQRT_3};
 use crate::slices::pause;
@@ -273,14 +272,7 @@ impl Branches {
                 map[id as usize] = graph.built(node.mapped(new));
                 continue;
             };
-            let mut operand = |holds: bool| match taken(node, holds).map(new) {
-                Some(u) if !holds && matches!(node, Node::Unary(Unary::Abs, _)) => graph.neg(u),
-                _ if matches!(node, Node::Unary(Unary::Sign, _)) => {
-                    graph.constant(if holds { 1.0 } else { -1.0 })
-                }
-                Some(operand) => operand,
-                None => zero,
-            };
+            let mut operand = |holds: bool| resolved(graph, node, holds, new);
             map[id as usize] = match only(condition) {
                 Holds::Always => operand(true),
                 Holds::Never => operand(false),

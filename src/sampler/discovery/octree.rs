@@ -36,7 +36,8 @@
 //! derivatives (with bounds of the second derivatives) and for f itself. Their excess falls with
 //! the square of the width (Moore 1966). A product is searched factor by factor: near the zeros of
 //! one factor the others do not matter, and where two vanish together the product has no gradient
-//! but each factor has.
+//! but each factor has. So are the sheets that a minimum, a maximum or an absolute value keeps
+//! apart: each component is one of the zeros of the operand that gives f there.
 //!
 //! Around a point where f has no gradient no cell can be decided. A [box](super::singular) around
 //! it through whose boundary every component in it passes is left out of the search, as if it did
@@ -55,7 +56,7 @@
 //! generalised gradient, for which both arguments are the same. Where f jumps, has a pole or is not
 //! defined the surface may end, and nothing is concluded from slopes.
 
-use crate::field::{Bounded, Enclosure, Evaluator};
+use crate::field::{Bounded, Enclosure, Evaluator, MARGIN};
 use crate::math::{Bounds, sort_by_key};
 use crate::sampler::discovery::cell::{Axes, CUT, Cell, is_inside, is_left_out, push_boundary};
 use crate::sampler::discovery::fate::{Fate, Judge};
@@ -91,11 +92,10 @@ const MOST_TRIED: usize = 512;
 /// Units of work that a cell counts for. One takes 8,000 to 30,000 instructions, and a unit of the
 /// front 2,400 to 5,100.
 const UNITS: u32 = 8;
-/// The box is enlarged by this share of its longest side: the size of the smallest cell.
-const MARGIN: f64 = 1.0 / (1_u32 << DEPTH) as f64;
 /// A cell is halved along the sides that are longer than this share of the longest: those nearer to
 /// it than to its half. Where all sides are halved there are more cells.
 const LONG: f64 = 0.7;
+
 /// The state of the search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum SearchState {

@@ -236,18 +236,19 @@ impl FactorProgram {
 /// whole product too, for its domain, so that all of them grow with the square of the number.
 const MAX_FACTORS: usize = 16;
 
-/// Programs for the [factors](Graph::factors) of `root`, or for `root` alone. A factor is simpler
-/// than the product, and it has a gradient where two factors vanish together.
-pub(super) fn factors(graph: &mut Graph, root: Id, gradient: [Id; 3]) -> Vec<FactorProgram> {
-    let mut factors = graph.factors(root);
+/// Programs for the [factors](Graph::factors) of a function with this gradient, or for the function
+/// alone. A factor is simpler than the product, and it has a gradient where two factors vanish
+/// together. The zeros of the function are among those of the field, which is node `whole`.
+pub(super) fn factors(graph: &mut Graph, function: Id, gradient: [Id; 3], whole: Id) -> Vec<FactorProgram> {
+    let mut factors = graph.factors(function);
     if factors.is_empty() || factors.len() > MAX_FACTORS {
-        factors = vec![root];
+        factors = vec![function];
     }
     factors
         .into_iter()
         .map(|f| {
-            let [x, y, z] = if f == root { gradient } else { derivative::gradient(graph, f) };
-            let first = BoxProgram::compile(graph, &[f, x, y, z, root]);
+            let [x, y, z] = if f == function { gradient } else { derivative::gradient(graph, f) };
+            let first = BoxProgram::compile(graph, &[f, x, y, z, whole]);
             let second = (first.operations() <= MAX_OPERATIONS)
                 .then(|| derivative::hessian(graph, [x, y, z]))
                 .map(|second| BoxProgram::compile(graph, &second))
