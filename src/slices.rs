@@ -82,7 +82,7 @@ pub(crate) async fn map<S: MaybeSend, T: MaybeSend>(
     let mut scratch: Vec<S> = (0..threads().min(all.len()).max(1)).map(|_| new_scratch()).collect();
     let mut results = Vec::with_capacity(all.len());
     for group in all.chunks(at_once()) {
-        share_out(&mut scratch, group, &|scratch, range| work(scratch, range.clone()), &mut results);
+        share_out(&mut scratch, group, &work, &mut results);
         for _ in group {
             pause().await;
         }
@@ -121,30 +121,40 @@ pub(crate) fn threads() -> usize {
     1
 }
 
-/// Number of items that are shared out at once: so many for each thread that waking it takes little
-/// time in comparison.
+/// Number of ranges that are shared out at once: so many for each thread that waking it takes
+/// little time in comparison.
 pub(crate) fn at_once() -> usize {
     if threads() > 1 { 64 * threads() } else { 1 }
 }
 
-/// Appends the results of `work` on these items, in order. Each entry of `scratch` is for a thread,
-/// which does consecutive items.
-pub(crate) fn share_out<S: MaybeSend, I: MaybeSync, T: MaybeSend>(
+/// Does `work` on each of so many parts and returns the results in order. The threads share the
+/// parts as in [`map`].
+pub(crate) fn share<T: MaybeSend>(parts: usize, work: impl Fn(usize) -> T + MaybeSend + MaybeSync) -> Vec<T> {
+    let ranges: Vec<Range<usize>> = ranges(parts, 1).collect();
+    let mut results = Vec::with_capacity(parts);
+    let on_part = |(): &mut (), range: Range<usize>| work(range.start);
+    share_out(&mut vec![(); threads().min(parts).max(1)], &ranges, &on_part, &mut results);
+    results
+}
+
+/// Appends the results of `work` on these ranges, in order. Each thread does consecutive ones, with
+/// one entry of `scratch`.
+pub(crate) fn share_out<S: MaybeSend, T: MaybeSend>(
     scratch: &mut [S],
-    items: &[I],
-    work: &(impl Fn(&mut S, &I) -> T + MaybeSync),
+    ranges: &[Range<usize>],
+    work: &(impl Fn(&mut S, Range<usize>) -> T + MaybeSync),
     results: &mut Vec<T>,
 ) {
     #[cfg(all(feature = "parallel", not(target_arch = "wasm32")))]
     if scratch.len() > 1 {
-        let shares = items.par_chunks(items.len().div_ceil(scratch.len()));
+        let shares = ranges.par_chunks(ranges.len().div_ceil(scratch.len()));
         let shares = scratch.par_iter_mut().zip(shares);
         results.par_extend(
-            shares.flat_map_iter(|(scratch, items)| items.iter().map(|item| work(scratch, item))),
+            shares.flat_map_iter(|(scratch, ranges)| ranges.iter().map(|range| work(scratch, range.clone()))),
         );
         return;
     }
-    results.extend(items.iter().map(|item| work(&mut scratch[0], item)));
+    results.extend(ranges.iter().map(|range| work(&mut scratch[0], range.clone())));
 }
 
 /// Does up to `budget` slices and returns the result, if the last one is done. The computation must

@@ -225,8 +225,8 @@ impl<'a> Probe<'a> {
         let field = &*self.field;
         let mut own: Vec<_> = (0..threads).map(|_| (field.another(), ProbeMemory::default())).collect();
         let mut results = Vec::with_capacity(ranges.len());
-        let on_own = |(field, memory): &mut (Box<dyn Evaluator + '_>, ProbeMemory), range: &Range<usize>| {
-            work(&mut Probe::new(&mut **field, memory), range.clone())
+        let on_own = |(field, memory): &mut (Box<dyn Evaluator + '_>, ProbeMemory), range| {
+            work(&mut Probe::new(&mut **field, memory), range)
         };
         slices::share_out(&mut own, ranges, &on_own, &mut results);
         self.memory.evaluations += own.iter().map(|(_, memory)| memory.evaluations).sum::<u64>();

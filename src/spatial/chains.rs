@@ -72,7 +72,7 @@ impl Chains {
         reach: impl IntoIterator<Item = f32>,
         mut visit: impl FnMut(u32),
     ) {
-        let mut wanted = Vec::with_capacity(64);
+        let mut wanted = Vec::new();
         for (layer, (&inverse_side, reach)) in self.inverse_side.iter().zip(reach).enumerate() {
             let lo = (lo - reach).to_array().map(|c| coordinate(c * inverse_side));
             let hi = (hi + reach).to_array().map(|c| coordinate(c * inverse_side));

@@ -64,9 +64,8 @@ pub(crate) struct GroupNeighbours {
     weighted: Vec<u32>,
 }
 
-/// All particles around a group, in memory that serves one group after the other.
-#[derive(Clone, Default)]
-pub(crate) struct Around {
+/// All particles around a group.
+struct Around {
     /// Their indices, up to a multiple of [`CHUNK`].
     found: Vec<u32>,
     /// Their positions x, y, z, normals x, y, z and radii, by chunks.
@@ -165,22 +164,16 @@ impl NeighbourLists {
     }
 
     /// Finds the neighbours of the particles of a group: those of the same sheet within the reach.
-    pub(crate) fn neighbours(
-        &self,
-        particles: &Particles,
-        group: &[u32],
-        around: &mut Around,
-    ) -> GroupNeighbours {
-        self.gather(particles, group, around);
-        let mut neighbours =
-            GroupNeighbours { ends: Vec::with_capacity(group.len()), ..GroupNeighbours::default() };
+    pub(crate) fn neighbours(&self, particles: &Particles, group: &[u32]) -> GroupNeighbours {
+        let around = self.around(particles, group);
+        let mut neighbours = GroupNeighbours::default();
         let mut is_weighted = false;
         for &i in group {
-            is_weighted |= self.find(particles, around, i as usize, &mut neighbours.near);
+            is_weighted |= self.find(particles, &around, i as usize, &mut neighbours.near);
             neighbours.ends.push(neighbours.near.len());
         }
         if is_weighted {
-            neighbours.weighted.clone_from(&around.found);
+            neighbours.weighted = around.found;
         }
         neighbours
     }
@@ -213,7 +206,7 @@ impl NeighbourLists {
     }
 
     /// Collects all particles within the reach of a group.
-    fn gather(&self, particles: &Particles, group: &[u32], Around { found, chunks }: &mut Around) {
+    fn around(&self, particles: &Particles, group: &[u32]) -> Around {
         let positions = &particles.local;
         let first = positions[group[0] as usize];
         let (mut lo, mut hi, mut largest) = (first, first, 0.0_f32);
@@ -223,6 +216,7 @@ impl NeighbourLists {
         }
         let (share, travelled) = (self.share, self.grid_travel);
         let (low, high) = (lo.extend(0.0), hi.extend(0.0));
+        let mut found = Vec::new();
         let mut count = 0;
         self.grid.visit(
             [lo, hi],
@@ -241,7 +235,7 @@ impl NeighbourLists {
             },
         );
         found.truncate(count);
-        chunks.clear();
+        let mut chunks = Vec::with_capacity(found.len().div_ceil(CHUNK));
         for chunk in found.chunks(CHUNK) {
             // Lanes without a particle are infinitely far away and have no normal and no radius.
             let (far, none) = ([f32::INFINITY; CHUNK], [0.0; CHUNK]);
@@ -256,6 +250,7 @@ impl NeighbourLists {
             chunks.push(columns);
         }
         found.resize(chunks.len() * CHUNK, 0);
+        Around { found, chunks }
     }
 
     /// Appends the neighbours of a particle of a group, itself among them, to `near`. Says whether

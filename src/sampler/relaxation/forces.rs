@@ -102,9 +102,10 @@ impl Forces {
             shares.push(Share { first, force, from });
             (first, rest) = (end, others);
         }
-        let (ends, mut energies) = (vec![range.end; shares.len()], Vec::new());
-        let add = |share: &mut Share, &end: &usize| share.add_near(law, pairs, particles, end);
-        slices::share_out(&mut shares, &ends, &add, &mut energies);
+        let each: Vec<Range<usize>> = slices::ranges(shares.len(), 1).collect();
+        let mut energies = Vec::with_capacity(each.len());
+        let add = |share: &mut Share, _| share.add_near(law, pairs, particles, range.end);
+        slices::share_out(&mut shares, &each, &add, &mut energies);
         for of_particle in energies.into_iter().flatten() {
             *energy += f64::from(of_particle);
         }

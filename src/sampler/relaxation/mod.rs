@@ -25,7 +25,7 @@ mod stepper;
 
 use crate::math::Bounds;
 use crate::particles::Particles;
-use crate::sampler::neighbours::lists::{Around, NeighbourLists};
+use crate::sampler::neighbours::lists::NeighbourLists;
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::{Probe, batches};
 use crate::sampler::projection::{ResidualLimits, TRUSTED_CORRECTION, Tolerance};
@@ -428,13 +428,10 @@ impl Relaxation {
             self.lists.begin_renewal(pairs);
         }
         let groups = self.lists.groups(particles, range);
-        let lists = &self.lists;
-        let (mut around, mut found) = (vec![Around::default(); slices::threads()], Vec::new());
-        let find = |around: &mut Around, group: &Vec<u32>| lists.neighbours(particles, group, around);
         for few in groups.chunks(slices::at_once()) {
-            slices::share_out(&mut around, few, &find, &mut found);
-            for (group, neighbours) in few.iter().zip(found.drain(..)) {
-                lists.write(pairs, group, &neighbours);
+            let neighbours = slices::share(few.len(), |k| self.lists.neighbours(particles, &few[k]));
+            for (group, neighbours) in few.iter().zip(&neighbours) {
+                self.lists.write(pairs, group, neighbours);
             }
         }
     }
