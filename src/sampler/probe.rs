@@ -285,7 +285,7 @@ impl<'a> Probe<'a> {
     }
 }
 
-/// Divides a range of particles into batches of the projection, each of which is on one `patch`.
+/// Divides a range of particles where a batch of the projection ends, and where the `patch` changes.
 pub(super) fn batches(range: Range<usize>, patch: &[u32]) -> impl Iterator<Item = Range<usize>> {
     let mut first = range.start;
     core::iter::from_fn(move || {
