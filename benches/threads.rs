@@ -38,14 +38,13 @@ fn main() {
         _ => (std::iter::successors(Some(1), |n| Some(2 * n)).take_while(|&n| n <= processors).collect(), 3),
     };
     let cloud = points();
-    let jobs: [Job<'_>; 5] = [
+    let jobs: [Job<'_>; 4] = [
         ("ellipsoid, 50,000 particles of a front", Box::new(|| whole("ellipsoid", Method::Front, 50_000))),
         ("gyroid, 50,000 refined particles", Box::new(|| whole("gyroid", Method::Refined, 50_000))),
         (
             "ellipsoid, 1,000,000 particles of a front",
             Box::new(|| whole("ellipsoid", Method::Front, 1_000_000)),
         ),
-        ("bunny, 50,000 particles of a front", Box::new(|| whole("bunny", Method::Front, 50_000))),
         (
             "5,000 points, a fit of 800 centres",
             Box::new(|| drop(black_box(fit_points("tanglecube.xyz", cloud.clone(), 800)))),

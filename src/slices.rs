@@ -81,7 +81,9 @@ pub(crate) async fn map<S: MaybeSend, T: MaybeSend>(
     let all: Vec<Range<usize>> = ranges(count, size).collect();
     let mut scratch: Vec<S> = (0..threads().min(all.len()).max(1)).map(|_| new_scratch()).collect();
     let mut results = Vec::with_capacity(all.len());
-    for group in all.chunks(at_once()) {
+    // Each thread gets so many that waking it takes little time in comparison.
+    let at_once = if scratch.len() > 1 { 64 * scratch.len() } else { 1 };
+    for group in all.chunks(at_once) {
         share_out(&mut scratch, group, &work, &mut results);
         for _ in group {
             pause().await;
@@ -114,32 +116,15 @@ pub(crate) async fn change<T: MaybeSend>(
 }
 
 /// Number of threads that share the work.
-pub(crate) fn threads() -> usize {
+fn threads() -> usize {
     #[cfg(all(feature = "parallel", not(target_arch = "wasm32")))]
     return rayon::current_num_threads();
     #[cfg(not(all(feature = "parallel", not(target_arch = "wasm32"))))]
     1
 }
 
-/// Number of ranges that are shared out at once: so many for each thread that waking it takes
-/// little time in comparison.
-pub(crate) fn at_once() -> usize {
-    if threads() > 1 { 64 * threads() } else { 1 }
-}
-
-/// Does `work` on each of so many parts and returns the results in order. The threads share the
-/// parts as in [`map`].
-pub(crate) fn share<T: MaybeSend>(parts: usize, work: impl Fn(usize) -> T + MaybeSend + MaybeSync) -> Vec<T> {
-    let ranges: Vec<Range<usize>> = ranges(parts, 1).collect();
-    let mut results = Vec::with_capacity(parts);
-    let on_part = |(): &mut (), range: Range<usize>| work(range.start);
-    share_out(&mut vec![(); threads().min(parts).max(1)], &ranges, &on_part, &mut results);
-    results
-}
-
-/// Appends the results of `work` on these ranges, in order. Each thread does consecutive ones, with
-/// one entry of `scratch`.
-pub(crate) fn share_out<S: MaybeSend, T: MaybeSend>(
+/// Appends the results of `work` on these ranges, in order. Each thread does consecutive ones.
+fn share_out<S: MaybeSend, T: MaybeSend>(
     scratch: &mut [S],
     ranges: &[Range<usize>],
     work: &(impl Fn(&mut S, Range<usize>) -> T + MaybeSync),

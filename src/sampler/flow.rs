@@ -207,6 +207,7 @@ pub(crate) struct Flow {
     grids: RadiusGrids,
     found: Vec<Neighbour>,
     around: Vec<Bearing>,
+    landing: Vec<CircleLanding>,
 }
 
 /// What a balance keeps of every particle.
@@ -611,8 +612,8 @@ impl Flow {
         let FlowSurface { survey, rule, .. } = *surface;
         let (own, radius) = (OrientedPoint::of(particles, parent), particles.radius[parent]);
         let limits = tolerance(radius, survey.residual_limits(), survey.gradient_scale);
-        let landings = probe.land_on_circles(&[*circle], limits);
-        let CircleLanding::On { position, normal } = landings[0] else { return };
+        probe.land_on_circles(&[*circle], limits, &mut self.landing);
+        let CircleLanding::On { position, normal } = self.landing[0] else { return };
         let pair = own.pair(position - own.position, normal);
         let is_own = rule.is_own(probe, own.position, pair, circle.radius);
         if !is_own || !surface.bounds.contains(position) || particles.len() >= surface.max_particles {

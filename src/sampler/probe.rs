@@ -6,8 +6,6 @@ use crate::field::Evaluator;
 use crate::field::descent::Descent;
 use crate::math::newton::step_to_surface;
 use crate::math::{Bounds, Sym3};
-use crate::slices::{self, MaybeSend, MaybeSync};
-use core::ops::Range;
 use glam::{DVec3, Vec3};
 
 /// State that outlasts a [`Probe`]: the buffers of a batch, and the count of all evaluations.
@@ -211,28 +209,6 @@ impl<'a> Probe<'a> {
         })
     }
 
-    /// Does `work` on each of these ranges and returns the results in order. Threads share the
-    /// ranges, each with a probe of its own.
-    pub(crate) fn share_out<T: MaybeSend>(
-        &mut self,
-        ranges: &[Range<usize>],
-        work: impl Fn(&mut Probe, Range<usize>) -> T + MaybeSync,
-    ) -> Vec<T> {
-        let threads = slices::threads().min(ranges.len());
-        if threads <= 1 {
-            return ranges.iter().map(|range| work(self, range.clone())).collect();
-        }
-        let field = &*self.field;
-        let mut own: Vec<_> = (0..threads).map(|_| (field.another(), ProbeMemory::default())).collect();
-        let mut results = Vec::with_capacity(ranges.len());
-        let on_own = |(field, memory): &mut (Box<dyn Evaluator + '_>, ProbeMemory), range| {
-            work(&mut Probe::new(&mut **field, memory), range)
-        };
-        slices::share_out(&mut own, ranges, &on_own, &mut results);
-        self.memory.evaluations += own.iter().map(|(_, memory)| memory.evaluations).sum::<u64>();
-        results
-    }
-
     /// Counts evaluations that were made of the field directly.
     pub(crate) fn count(&mut self, evaluations: u64) {
         self.memory.evaluations += evaluations;
@@ -283,18 +259,6 @@ impl<'a> Probe<'a> {
         self.count(points.len() as u64);
         self.field.hessians(points, value, gradient, hessian);
     }
-}
-
-/// Divides a range of particles where a batch of the projection ends, and where the `patch` changes.
-pub(super) fn batches(range: Range<usize>, patch: &[u32]) -> impl Iterator<Item = Range<usize>> {
-    let mut first = range.start;
-    core::iter::from_fn(move || {
-        let last = range.end.min((first / BATCH + 1) * BATCH);
-        let is_other = |&i: &usize| patch.get(i) != patch.get(first);
-        let batch = first..(first..last).find(is_other).unwrap_or(last);
-        first = batch.end;
-        (!batch.is_empty()).then_some(batch)
-    })
 }
 
 /// The least of some values of a function between −`most` and `most`, near its minimum if it has

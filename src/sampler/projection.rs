@@ -122,7 +122,7 @@ struct Bracket {
 
 impl Probe<'_> {
     /// Finds the point of the surface nearest to the guess on each of at most [`BATCH`] circles.
-    /// Entry `i` of the result belongs to `circles[i]`.
+    /// `landing[i]` belongs to `circles[i]`.
     ///
     /// Newton's method in θ takes two evaluations where the guess is good. Where it does not
     /// converge, a bracketed search follows. Both together take at most 50 steps, so the search
@@ -131,9 +131,11 @@ impl Probe<'_> {
         &mut self,
         circles: &[ChildCircle],
         tolerance: Tolerance,
-    ) -> Vec<CircleLanding> {
+        landing: &mut Vec<CircleLanding>,
+    ) {
         debug_assert!(circles.len() <= BATCH);
-        let mut landing = vec![CircleLanding::NotConverged; circles.len()];
+        landing.clear();
+        landing.resize(circles.len(), CircleLanding::NotConverged);
         let mut active = [Active { circle: 0, steps: 0, turn: [1.0, 0.0], last: f32::INFINITY }; BATCH];
         for (i, circle) in circles.iter().enumerate() {
             active[i].circle = i as u32;
@@ -182,7 +184,6 @@ impl Probe<'_> {
         for &i in &unsettled[..unsettled_count] {
             landing[i as usize] = self.search_arc(&circles[i as usize], tolerance);
         }
-        landing
     }
 
     /// Goes along the surface from the centre of a circle to the circle, in small steps, so that it
@@ -217,8 +218,10 @@ impl Probe<'_> {
         let offset = p - centre;
         let [cos, sin] = [offset.dot(direction), offset.dot(normal)];
         let length = (cos * cos + sin * sin).sqrt();
+        let mut landing = Vec::new();
         let circle = ChildCircle { guess: [cos / length, sin / length], ..*circle };
-        self.land_on_circles(&[circle], tolerance)[0]
+        self.land_on_circles(&[circle], tolerance, &mut landing);
+        landing[0]
     }
 
     /// Finds the root on the arc that is nearest to the guess, by bracketing and the Illinois

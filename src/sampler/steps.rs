@@ -17,14 +17,13 @@ use crate::sampler::progress::RefineProgress;
 use crate::sampler::refine::{Coarse, Components, MovingMesh, Next, Refinement, Refusal, SurfaceFacts, Turn};
 use crate::sampler::relaxation::{MoveLimits, Relaxation, RepulsionLaw, Sweep, Swept};
 use crate::sampler::settings::{GapPolicy, Method, Sampling, SizeMode};
-use crate::slices;
 use core::ops::Range;
 use glam::{DVec3, Vec3};
 use rand_core::SeedableRng;
 
-/// Largest number of units of the search, of the audit or, for each thread, of the relaxation in
-/// one step, whatever the budget: a caller that derives its budget from the pace of the front must
-/// not wait. A unit takes 0.04 to 0.5 µs natively, so many 0.3 to 4 ms. It changes no particle.
+/// Largest number of units of the search, of the audit or of the relaxation in one step, whatever
+/// the budget: a caller that derives its budget from the pace of the front must not wait. A unit
+/// takes 0.04 to 0.5 µs natively, so many 0.3 to 4 ms. It changes no particle.
 const SLICE: u32 = 8_192;
 /// Seeds that may be undone in an attempt, and one more for every particle.
 const MOST_LONE_SEEDS: usize = 256;
@@ -669,7 +668,7 @@ impl Sampler {
     pub(super) fn sweep(&mut self, sweep: Sweep, probe: &mut Probe, left: &mut u32) -> Option<()> {
         let start = probe.evaluations();
         let sizing = self.attempt.sizing.as_ref();
-        *left = (*left).min(SLICE * slices::threads() as u32);
+        *left = (*left).min(SLICE);
         let Output { particles, moved, .. } = &mut self.output;
         let Tools { relaxation, neighbours, .. } = &mut self.tools;
         let Swept { has_moved, is_done } =

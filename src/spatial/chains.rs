@@ -23,6 +23,8 @@ pub(crate) struct Chains {
     head: Vec<u32>,
     /// For each point the one after it in its list.
     next: Vec<u32>,
+    /// Buffer for the heads of a visit.
+    wanted: Vec<u64>,
 }
 
 impl Chains {
@@ -67,19 +69,20 @@ impl Chains {
     /// Visits every point that was added to layer k within `reach[k]` of the box from `lo` to `hi`,
     /// and some points beyond. No point is visited twice.
     pub(crate) fn visit(
-        &self,
+        &mut self,
         [lo, hi]: [Vec3; 2],
         reach: impl IntoIterator<Item = f32>,
         mut visit: impl FnMut(u32),
     ) {
-        let mut wanted = Vec::new();
+        let mut wanted = core::mem::take(&mut self.wanted);
+        wanted.clear();
         for (layer, (&inverse_side, reach)) in self.inverse_side.iter().zip(reach).enumerate() {
             let lo = (lo - reach).to_array().map(|c| coordinate(c * inverse_side));
             let hi = (hi + reach).to_array().map(|c| coordinate(c * inverse_side));
             for z in lo[2]..=hi[2] {
                 for y in lo[1]..=hi[1] {
                     for x in lo[0]..=hi[0] {
-                        wanted.push(self.head_of(layer, x, y, z));
+                        wanted.push(u64::from(self.head_of(layer, x, y, z)));
                     }
                 }
             }
@@ -87,7 +90,8 @@ impl Chains {
         // Several cells may share a list.
         wanted.sort_unstable();
         wanted.dedup();
-        wanted.iter().for_each(|&head| self.list(head).for_each(&mut visit));
+        wanted.iter().for_each(|&head| self.list(head as u32).for_each(&mut visit));
+        self.wanted = wanted;
     }
 
     /// Returns the points of a list.

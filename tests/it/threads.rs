@@ -23,9 +23,6 @@ fn any_number_of_threads_gives_the_same_sample_report_and_mesh() {
     for arguments in [
         &["--surface", "gyroid", "--count", "4000", "--report", "full"][..],
         &["--surface", "ellipsoid", "--adaptive", "--count", "3000"],
-        &["--surface", "gyroid", "--method", "front", "--count", "4000"],
-        &["--surface", "ellipsoid", "--method", "front", "--adaptive", "--count", "3000"],
-        &["--formula", "max(hypot(x,y,z)-1, abs(z)-0.4)", "--method", "front", "--count", "3000"],
         &["--formula", "max(hypot(x,y,z)-1, abs(z)-0.4)", "--count", "3000"],
         &["--points", points, "--centres", "150", "--count", "2000"],
     ] {

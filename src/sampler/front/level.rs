@@ -12,7 +12,6 @@ use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::Probe;
 use crate::sampler::sheet::{PointPair, SheetRule};
 use crate::sampler::sizing::Sizing;
-use crate::slices::MaybeSync;
 use crate::spatial::Neighbour;
 use core::ops::Range;
 use glam::Vec3;
@@ -29,7 +28,7 @@ pub(crate) struct FrontContext<'a, 'f> {
 impl<'a> FrontContext<'a, '_> {
     /// The radius field of an adaptive run.
     pub(crate) fn sizing(&self) -> &'a Sizing {
-        of_adaptive(self.sizing)
+        self.sizing.expect("an adaptive run begins with a radius field")
     }
 
     /// Calls a function with the context in which f is the smooth function of a patch, if there is
@@ -38,11 +37,6 @@ impl<'a> FrontContext<'a, '_> {
         let Self { probe, sizing, neighbours, particles } = self;
         call(&mut FrontContext { probe: &mut probe.on(patch), sizing: *sizing, neighbours, particles })
     }
-}
-
-/// The radius field of an adaptive run.
-pub(super) fn of_adaptive(sizing: Option<&Sizing>) -> &Sizing {
-    sizing.expect("an adaptive run begins with a radius field")
 }
 
 /// A point of the surface, with the radius and the curvature there.
@@ -170,15 +164,13 @@ impl FrontLevel {
         self.children.list.push(Child { slot: slot as u32, handle, clearance });
     }
 
-    /// Notes to where the next child of the level was projected.
-    pub(super) fn note_landing(&mut self, particles: &Particles, landing: ChildLanding) {
-        let ProvisionalChildren { landings, drift, growth, .. } = &mut self.children;
-        let provisional = self.first_child + landings.len();
+    /// Notes to where child `k` of the level was projected.
+    pub(super) fn note_landing(&mut self, particles: &Particles, k: usize, landing: ChildLanding) {
         if let ChildLanding::On(spot) = landing {
-            *drift = drift.max((spot.position - particles.local[provisional]).length());
-            *growth = growth.max(spot.radius - particles.radius[provisional]);
+            let moved = (spot.position - particles.local[self.first_child + k]).length();
+            self.children.drift = self.children.drift.max(moved);
         }
-        landings.push(landing);
+        self.children.landings.push(landing);
     }
 }
 
@@ -203,21 +195,19 @@ pub(super) struct ProvisionalChildren {
     pub(super) landings: Vec<ChildLanding>,
     /// Largest distance between a provisional and a final place in this level.
     pub(super) drift: f32,
-    /// Largest increase of a radius in this level when its child was projected.
-    pub(super) growth: f32,
 }
 
 impl ProvisionalChildren {
     pub(super) fn clear(&mut self) {
         self.list.clear();
         self.landings.clear();
-        (self.drift, self.growth) = (0.0, 0.0);
+        self.drift = 0.0;
     }
 }
 
 /// The steps of a level in which uniform and adaptive fronts differ. [`Front`](super::Front) does
 /// the steps that are the same for both.
-pub(super) trait Placing: MaybeSync {
+pub(super) trait Placing {
     /// Forgets an earlier run, and prepares the grids for so many particles.
     fn reset(&mut self, level: &mut FrontLevel, plan: &FrontPlan, survey: &Survey, room: usize);
 
@@ -231,15 +221,13 @@ pub(super) trait Placing: MaybeSync {
     /// Finds the free slots of a parent of the level and enters a provisional child in each.
     fn place_children(&mut self, level: &mut FrontLevel, context: &mut FrontContext, parent: usize);
 
-    /// Projects at most [`BATCH`](crate::sampler::probe::BATCH) children of the level, which lie on
-    /// one patch, onto the surface. `probe` has the function of that patch.
-    fn land(
-        &self,
-        level: &FrontLevel,
-        probe: &mut Probe,
-        sizing: Option<&Sizing>,
+    /// Projects a batch of children onto the surface.
+    fn project_children(
+        &mut self,
+        level: &mut FrontLevel,
+        context: &mut FrontContext,
         children: Range<usize>,
-    ) -> Vec<ChildLanding>;
+    );
 
     /// Whether a child has room at its final place; if so, it is about to become the next settled
     /// particle.

@@ -24,12 +24,10 @@ use crate::sampler::front::adaptive::AdaptivePlacing;
 use crate::sampler::front::level::{ChildLanding, FrontLevel, Placing};
 use crate::sampler::front::uniform::UniformPlacing;
 use crate::sampler::neighbours::grids::GridHandle;
-use crate::sampler::probe::{Probe, batches};
+use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::settings::Sampling;
 use crate::sampler::sheet::{UNCOVERED, is_cover};
-use crate::slices;
 use crate::spatial::Neighbour;
-use core::ops::Range;
 use glam::Vec3;
 
 /// Largest sine of the angle by which the way to a child is predicted to dip below the tangent
@@ -120,21 +118,16 @@ impl Front {
     /// budget allows. Says whether all are projected.
     pub(crate) fn project_children(&mut self, context: &mut FrontContext, left: &mut u32) -> bool {
         let children = self.level.children.list.len();
-        let (level, placing) = self.parts();
-        let FrontContext { probe, sizing, particles, .. } = context;
-        let patch = particles.patch.get(level.first_child..).unwrap_or_default();
-        let last = children.min(level.next + *left as usize);
-        *left -= (last - level.next) as u32;
-        let batches: Vec<Range<usize>> = batches(level.next..last, patch).collect();
-        for group in batches.chunks(slices::at_once()) {
-            let landings = probe.share_out(group, |probe, batch| {
-                let probe = &mut probe.on(patch.get(batch.start).copied());
-                placing.land(level, probe, *sizing, batch)
-            });
-            landings.into_iter().flatten().for_each(|landing| level.note_landing(particles, landing));
+        while self.level.next < children && *left > 0 {
+            let next = self.level.next;
+            let most = (children - next).min(BATCH).min(*left as usize);
+            let count = self.on_one_patch(context.particles, next, most);
+            let (level, placing) = self.parts();
+            placing.project_children(level, context, next..next + count);
+            level.next += count;
+            *left -= count as u32;
         }
-        level.next = last;
-        level.has_reached(children)
+        self.level.has_reached(children)
     }
 
     /// Decides the fates of the children of the level (paper §4.4), as far as `left` of a budget
@@ -158,6 +151,14 @@ impl Front {
             level.begin();
         }
         is_done
+    }
+
+    /// Number of children from child `first` on, `most` at most, that lie on one patch.
+    fn on_one_patch(&self, particles: &Particles, first: usize, most: usize) -> usize {
+        let first = self.level.first_child + first;
+        let patch = particles.patch_of(first);
+        let is_on = |&k: &usize| particles.is_on(first + k, patch);
+        if patch.is_none() { most } else { (0..most).take_while(is_on).count() }
     }
 
     /// Ends the front where it is: what is not final is dropped.

@@ -191,7 +191,7 @@ impl RadiusChains {
 
     /// Visits the particles near a box: in each layer all within `reach` of its largest radius, and
     /// some beyond.
-    pub(crate) fn visit(&self, bounds: [Vec3; 2], reach: impl Fn(f32) -> f32, visit: impl FnMut(u32)) {
+    pub(crate) fn visit(&mut self, bounds: [Vec3; 2], reach: impl Fn(f32) -> f32, visit: impl FnMut(u32)) {
         self.chains.visit(bounds, self.layers.largest.iter().map(|&largest| reach(largest)), visit);
     }
 }

@@ -9,7 +9,6 @@ use crate::particles::Particles;
 use crate::sampler::neighbours::constants::{CHUNK, FULL_COSINE, LISTED_COSINE};
 use crate::sampler::neighbours::grids::{RadiusChains, RadiusRange};
 use crate::sampler::neighbours::packed::PackedNeighbours;
-use core::ops::Range;
 use glam::{BVec4A, Vec4};
 
 /// Largest number of particles whose lists are renewed together. It limits the candidates of a
@@ -50,26 +49,16 @@ pub(crate) struct NeighbourLists {
     grid_travel: f32,
     /// Largest distance that a particle has travelled in the move under way.
     farthest: f32,
-}
-
-/// The neighbours of a group of particles.
-#[derive(Default)]
-pub(crate) struct GroupNeighbours {
-    /// The neighbours of one particle of the group after the other, each of which is among its own.
-    near: Vec<u32>,
-    /// For each particle of the group the end of its neighbours.
-    ends: Vec<usize>,
-    /// All particles around the group, if one of them may repel one of the group with a weight
-    /// below 1.
-    weighted: Vec<u32>,
-}
-
-/// All particles around a group.
-struct Around {
-    /// Their indices, up to a multiple of [`CHUNK`].
+    /// Particles whose lists are made together.
+    group: Vec<u32>,
+    /// All particles around the group.
     found: Vec<u32>,
-    /// Their positions x, y, z, normals x, y, z and radii, by chunks.
+    /// Positions x, y, z, normals x, y, z and radii of the particles in `found`, by chunks.
     chunks: Vec<[[f32; CHUNK]; 7]>,
+    /// Neighbours of one particle of the group.
+    near: Vec<u32>,
+    /// Whether a particle within its reach may repel it with a weight below 1.
+    is_weighted: bool,
 }
 
 impl NeighbourLists {
@@ -145,56 +134,30 @@ impl NeighbourLists {
         pairs.drop_far(|i| self.is_stale(i));
     }
 
-    /// Divides the particles of stale lists into groups, each in one cell: those of `range` and
-    /// others in their cells. Their lists count as renewed.
-    pub(crate) fn groups(&mut self, particles: &Particles, range: Range<usize>) -> Vec<Vec<u32>> {
-        let mut groups = Vec::new();
-        for i in range {
-            if self.is_stale(i) {
-                self.travel[i] = Travel::RENEWED;
-                let (travel, p) = (&self.travel, particles.local[i]);
-                let is_stale = |j: u32| travel[j as usize] == Travel::STALE;
-                let others = self.grid.beside(&particles.local, p, particles.radius[i], is_stale);
-                let group: Vec<u32> = core::iter::once(i as u32).chain(others.take(GROUP - 1)).collect();
-                group.iter().for_each(|&j| self.travel[j as usize] = Travel::RENEWED);
-                groups.push(group);
+    /// Renews the list of particle `i` and other stale lists in its cell. Returns the particles
+    /// whose lists were renewed.
+    ///
+    /// A list holds the particles of the same sheet and of a smaller index within the reach.
+    /// Particles of a larger index get `i` into their own lists.
+    pub(crate) fn renew(&mut self, pairs: &mut PackedNeighbours, particles: &Particles, i: usize) -> &[u32] {
+        self.gather(particles, i);
+        for k in 0..self.group.len() {
+            let i = self.group[k];
+            self.find(particles, i as usize);
+            pairs.fill(i as usize, self.near.iter().map(|&j| (j, j < i)));
+            if self.is_weighted {
+                // The other lists may hold this particle from a time when the weight was 1.
+                self.found.iter().for_each(|&j| pairs.note_weighted(j as usize));
             }
-        }
-        groups
-    }
-
-    /// Finds the neighbours of the particles of a group: those of the same sheet within the reach.
-    pub(crate) fn neighbours(&self, particles: &Particles, group: &[u32]) -> GroupNeighbours {
-        let around = self.around(particles, group);
-        let mut neighbours = GroupNeighbours::default();
-        let mut is_weighted = false;
-        for &i in group {
-            is_weighted |= self.find(particles, &around, i as usize, &mut neighbours.near);
-            neighbours.ends.push(neighbours.near.len());
-        }
-        if is_weighted {
-            neighbours.weighted = around.found;
-        }
-        neighbours
-    }
-
-    /// Makes the lists of a group anew. A list holds neighbours of a smaller index; those of a
-    /// larger one get the particle into their own lists.
-    pub(crate) fn write(&self, pairs: &mut PackedNeighbours, group: &[u32], neighbours: &GroupNeighbours) {
-        let mut first = 0;
-        for (&i, &end) in group.iter().zip(&neighbours.ends) {
-            let near = &neighbours.near[first..end];
-            pairs.fill(i as usize, near.iter().map(|&j| (j, j < i)));
-            for &j in near.iter().filter(|&&j| j > i) {
+            for &j in self.near.iter().filter(|&&j| j > i) {
                 // A list that is renewed too finds the particle itself.
                 if self.travel[j as usize].is_kept() {
                     pairs.insert(j as usize, i);
                 }
             }
-            first = end;
+            self.travel[i as usize] = Travel::RENEWED;
         }
-        // Other lists may hold the group from a time when the weight was 1.
-        neighbours.weighted.iter().for_each(|&j| pairs.note_weighted(j as usize));
+        &self.group
     }
 
     /// Ends a renewal: no list is stale.
@@ -205,18 +168,24 @@ impl NeighbourLists {
         }
     }
 
-    /// Collects all particles within the reach of a group.
-    fn around(&self, particles: &Particles, group: &[u32]) -> Around {
+    /// Forms the group around particle `i`, and collects all particles near it.
+    fn gather(&mut self, particles: &Particles, i: usize) {
         let positions = &particles.local;
-        let first = positions[group[0] as usize];
-        let (mut lo, mut hi, mut largest) = (first, first, 0.0_f32);
-        for &i in group {
-            let (p, radius) = (positions[i as usize], particles.radius[i as usize]);
-            (lo, hi, largest) = (lo.min(p), hi.max(p), largest.max(radius));
+        let p = positions[i];
+        let (mut lo, mut hi, mut largest) = (p, p, particles.radius[i]);
+        self.group.clear();
+        self.group.push(i as u32);
+        let travel = &self.travel;
+        let is_other = |j: u32| j as usize != i && travel[j as usize] == Travel::STALE;
+        let others = self.grid.beside(positions, p, largest, is_other);
+        for index in others.take(GROUP - 1) {
+            let j = index as usize;
+            self.group.push(index);
+            (lo, hi) = (lo.min(positions[j]), hi.max(positions[j]));
+            largest = largest.max(particles.radius[j]);
         }
-        let (share, travelled) = (self.share, self.grid_travel);
+        let (share, travelled, found) = (self.share, self.grid_travel, &mut self.found);
         let (low, high) = (lo.extend(0.0), hi.extend(0.0));
-        let mut found = Vec::new();
         let mut count = 0;
         self.grid.visit(
             [lo, hi],
@@ -234,9 +203,9 @@ impl NeighbourLists {
                 count += usize::from(beyond.length_squared() <= reach * reach);
             },
         );
-        found.truncate(count);
-        let mut chunks = Vec::with_capacity(found.len().div_ceil(CHUNK));
-        for chunk in found.chunks(CHUNK) {
+        self.found.truncate(count);
+        self.chunks.clear();
+        for chunk in self.found.chunks(CHUNK) {
             // Lanes without a particle are infinitely far away and have no normal and no radius.
             let (far, none) = ([f32::INFINITY; CHUNK], [0.0; CHUNK]);
             let mut columns = [far, far, far, none, none, none, none];
@@ -247,22 +216,20 @@ impl NeighbourLists {
                     column[lane] = value;
                 }
             }
-            chunks.push(columns);
+            self.chunks.push(columns);
         }
-        found.resize(chunks.len() * CHUNK, 0);
-        Around { found, chunks }
+        self.found.resize(self.chunks.len() * CHUNK, 0);
     }
 
-    /// Appends the neighbours of a particle of a group, itself among them, to `near`. Says whether
-    /// a particle within its reach may repel it with a weight below 1.
+    /// Finds the neighbours of particle `i` of the group, itself among them, in what
+    /// [`Self::gather`] has collected.
     #[inline]
-    fn find(&self, particles: &Particles, around: &Around, i: usize, near: &mut Vec<u32>) -> bool {
+    fn find(&mut self, particles: &Particles, i: usize) {
         let (p, n, radius) = (particles.local[i], particles.normal[i], particles.radius[i]);
-        let mut len = near.len();
-        near.resize(len + around.found.len(), 0);
-        let own = len;
+        self.near.resize(self.found.len(), 0);
+        let mut len = 0;
         let mut weighted = BVec4A::FALSE;
-        for (chunk, others) in around.chunks.iter().zip(around.found.chunks_exact(CHUNK)) {
+        for (chunk, others) in self.chunks.iter().zip(self.found.chunks_exact(CHUNK)) {
             let [x, y, z, mx, my, mz, other] = chunk.map(Vec4::from_array);
             let (dx, dy, dz) = (x - p.x, y - p.y, z - p.z);
             let along = mx * n.x + my * n.y + mz * n.z;
@@ -272,19 +239,15 @@ impl NeighbourLists {
             let mask = (is_near & along.cmpgt(Vec4::splat(LISTED_COSINE))).bitmask();
             // All four are written: a branch is mispredicted for every other particle.
             for (lane, &j) in others.iter().enumerate() {
-                near[len] = j;
+                self.near[len] = j;
                 len += (mask >> lane & 1) as usize;
             }
         }
-        near.truncate(len);
-        if let Some(sheet) = self.sheets.get(i) {
-            let mut kept = own;
-            for k in own..len {
-                near[kept] = near[k];
-                kept += usize::from(self.sheets[near[k] as usize] == *sheet);
-            }
-            near.truncate(kept);
+        self.near.truncate(len);
+        if let Some(&own) = self.sheets.get(i) {
+            let sheets = &self.sheets;
+            self.near.retain(|&j| sheets[j as usize] == own);
         }
-        weighted.any()
+        self.is_weighted = weighted.any();
     }
 }

@@ -1,22 +1,16 @@
 //! Sums of the pair forces over the neighbour lists.
-//!
-//! A list holds the neighbours of a smaller index, so a pair is met once and its force goes to both
-//! particles. Each thread sums the forces on particles of its own; a pair of two threads is
-//! evaluated by both. Every force is summed in the order of the lists, whatever the number of
-//! threads.
 
 use crate::math::refill;
 use crate::particles::Particles;
 use crate::sampler::neighbours::packed::{PackedNeighbours, ROOM};
 use crate::sampler::relaxation::repulsion::Repulsion;
 use crate::sampler::sheet::repulsion_weight;
-use crate::slices;
 use core::ops::Range;
 use glam::{Mat4, Vec3, Vec4};
 
 /// Particles whose pairs are evaluated in one batch: the pairs take 8 kB, a quarter of a small
 /// first-level cache.
-const BATCH_PARTICLES: usize = 32;
+pub(super) const BATCH_PARTICLES: usize = 32;
 /// Largest number of pairs in a batch.
 const MOST_PAIRS: usize = BATCH_PARTICLES * ROOM;
 
@@ -37,33 +31,26 @@ struct PairBatch {
     other: [u32; MOST_PAIRS],
 }
 
-impl Default for PairBatch {
+/// The force on every particle.
+#[derive(Clone)]
+pub(super) struct Forces {
+    /// Sum of `offset * weight` over the pairs of a particle, in x, y and z; w is 0. Four lanes are
+    /// added in one instruction.
+    force: Vec<Vec4>,
+    batch: Box<PairBatch>,
+}
+
+impl Default for Forces {
     fn default() -> Self {
-        Self {
+        let batch = PairBatch {
             offset: [Vec4::ZERO; MOST_PAIRS],
             mean: [1.0; MOST_PAIRS],
             weight: [0.0; MOST_PAIRS],
             energy: [0.0; MOST_PAIRS],
             other: [0; MOST_PAIRS],
-        }
+        };
+        Self { force: Vec::new(), batch: Box::new(batch) }
     }
-}
-
-/// The force on every particle.
-#[derive(Clone, Default)]
-pub(super) struct Forces {
-    /// Sum of `offset * weight` over the pairs of a particle, in x, y and z; w is 0. Four lanes are
-    /// added in one instruction.
-    force: Vec<Vec4>,
-}
-
-/// The particles of a thread and the forces on them.
-struct Share<'a> {
-    /// The first particle.
-    first: usize,
-    force: &'a mut [Vec4],
-    /// The first particle whose pairs may act on them.
-    from: usize,
 }
 
 impl Forces {
@@ -72,18 +59,13 @@ impl Forces {
         refill(&mut self.force, particles, Vec4::ZERO);
     }
 
-    /// The force on particle `i`.
-    pub(super) fn of(&self, i: usize) -> Vec3 {
-        self.force[i].truncate()
+    /// Returns the force on particle `i` and sets it to zero.
+    pub(super) fn take(&mut self, i: usize) -> Vec3 {
+        core::mem::take(&mut self.force[i]).truncate()
     }
 
-    /// Sets the forces on the particles of `range` to zero.
-    pub(super) fn clear(&mut self, range: Range<usize>) {
-        self.force[range].fill(Vec4::ZERO);
-    }
-
-    /// Adds the forces between the particles of `range` and their near neighbours to the forces on
-    /// both, and the energies of these pairs to `energy`.
+    /// Adds the forces between the particles of `range`, at most [`BATCH_PARTICLES`], and their
+    /// near neighbours to the forces on both, and the energies of these pairs to `energy`.
     pub(super) fn add_near<L: Repulsion>(
         &mut self,
         law: &L,
@@ -92,22 +74,26 @@ impl Forces {
         range: Range<usize>,
         energy: &mut f64,
     ) {
-        let mut shares = Vec::new();
-        let (mut first, mut rest) = (0, &mut self.force[..range.end]);
-        let batches = range.len().div_ceil(BATCH_PARTICLES);
-        let size = batches.div_ceil(slices::threads()) * BATCH_PARTICLES;
-        for from in range.clone().step_by(size.max(1)) {
-            let end = range.end.min(from + size);
-            let (force, others) = rest.split_at_mut(end - first);
-            shares.push(Share { first, force, from });
-            (first, rest) = (end, others);
+        let batch = &mut *self.batch;
+        let ends = batch.collect::<L>(pairs, particles, range.clone());
+        batch.evaluate(law, ends[range.len() - 1]);
+        if pairs.any_weighted(&range) {
+            batch.weigh(particles, range.clone(), &ends);
         }
-        let each: Vec<Range<usize>> = slices::ranges(shares.len(), 1).collect();
-        let mut energies = Vec::with_capacity(each.len());
-        let add = |share: &mut Share, _| share.add_near(law, pairs, particles, range.end);
-        slices::share_out(&mut shares, &each, &add, &mut energies);
-        for of_particle in energies.into_iter().flatten() {
-            *energy += f64::from(of_particle);
+        let mut first = 0;
+        for (&end, i) in ends.iter().zip(range) {
+            let mut force = Vec4::ZERO;
+            let mut sum = 0.0;
+            for k in first..end {
+                let k = k % MOST_PAIRS;
+                let push = batch.offset[k] * batch.weight[k];
+                force += push;
+                self.force[batch.other[k] as usize] -= push;
+                sum += batch.energy[k];
+            }
+            self.force[i] += force;
+            *energy += f64::from(sum);
+            first = end;
         }
     }
 
@@ -130,55 +116,6 @@ impl Forces {
             self.force[j] -= push;
             *energy += f64::from(of_pair.x * share);
         }
-    }
-}
-
-impl Share<'_> {
-    /// Adds the forces of all near pairs whose later particle is before `end`. Returns the energies
-    /// of the pairs of each of its particles, in order.
-    fn add_near<L: Repulsion>(
-        &mut self,
-        law: &L,
-        pairs: &PackedNeighbours,
-        particles: &Particles,
-        end: usize,
-    ) -> Vec<f32> {
-        let own = self.first..self.first + self.force.len();
-        let mut batch = PairBatch::default();
-        let mut energies = Vec::with_capacity(own.end - self.from);
-        for first in (self.from..end).step_by(BATCH_PARTICLES) {
-            let range = first..end.min(first + BATCH_PARTICLES);
-            let acts = |i: usize| pairs.near(i).any(|j| j < own.end);
-            if first >= own.end && !range.clone().any(acts) {
-                continue;
-            }
-            let ends = batch.collect::<L>(pairs, particles, range.clone());
-            batch.evaluate(law, ends[range.len() - 1]);
-            if pairs.any_weighted(&range) {
-                batch.weigh(particles, range.clone(), &ends);
-            }
-            let mut first = 0;
-            for (&end, i) in ends.iter().zip(range) {
-                let mut force = Vec4::ZERO;
-                let mut energy = 0.0;
-                for k in first..end {
-                    let k = k % MOST_PAIRS;
-                    let push = batch.offset[k] * batch.weight[k];
-                    force += push;
-                    energy += batch.energy[k];
-                    let other = (batch.other[k] as usize).wrapping_sub(own.start);
-                    if let Some(other) = self.force.get_mut(other) {
-                        *other -= push;
-                    }
-                }
-                if i < own.end {
-                    self.force[i - own.start] += force;
-                    energies.push(energy);
-                }
-                first = end;
-            }
-        }
-        energies
     }
 }
 

@@ -27,13 +27,13 @@ use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::sampler::neighbours::lists::NeighbourLists;
 use crate::sampler::neighbours::packed::PackedNeighbours;
-use crate::sampler::probe::{Probe, batches};
+use crate::sampler::probe::Probe;
 use crate::sampler::projection::{ResidualLimits, TRUSTED_CORRECTION, Tolerance};
-use crate::sampler::relaxation::repulsion::{Gaussian, LandingBatch, MAX_MOVE, Overlap, Repulsion};
-use crate::sampler::relaxation::stepper::Stepper;
+use crate::sampler::relaxation::forces::BATCH_PARTICLES;
+use crate::sampler::relaxation::repulsion::{Gaussian, LandingBatch, Overlap, Repulsion};
+use crate::sampler::relaxation::stepper::{Stepper, batch};
 use crate::sampler::sheet;
 use crate::sampler::sizing::Sizing;
-use crate::slices;
 use core::ops::Range;
 
 /// Units of work that the renewal of a list counts for: it takes ten times as long as the forces on
@@ -358,7 +358,11 @@ impl Relaxation {
                 self.has_lowered |= grading::grade_near(law.slope(), pairs, particles, range);
             }
             Sweep::SumForces => {
-                self.stepper.forces.add_near(law, pairs, particles, range, &mut self.sum);
+                let last = range.end;
+                for first in range.step_by(BATCH_PARTICLES) {
+                    let few = first..last.min(first + BATCH_PARTICLES);
+                    self.stepper.forces.add_near(law, pairs, particles, few, &mut self.sum);
+                }
             }
             Sweep::Transport | Sweep::Move | Sweep::TakeBack | Sweep::Polish => {
                 has_moved |= !range.is_empty();
@@ -427,11 +431,9 @@ impl Relaxation {
         if range.start == 0 {
             self.lists.begin_renewal(pairs);
         }
-        let groups = self.lists.groups(particles, range);
-        for few in groups.chunks(slices::at_once()) {
-            let neighbours = slices::share(few.len(), |k| self.lists.neighbours(particles, &few[k]));
-            for (group, neighbours) in few.iter().zip(&neighbours) {
-                self.lists.write(pairs, group, neighbours);
+        for i in range {
+            if self.lists.is_stale(i) {
+                self.lists.renew(pairs, particles, i);
             }
         }
     }
@@ -447,38 +449,34 @@ impl Relaxation {
         range: Range<usize>,
     ) {
         let Self { lists, stepper, lost, .. } = self;
-        if sweep == Sweep::TakeBack {
-            stepper.take_back(law, lists, particles, range.clone());
-        }
-        let batches: Vec<Range<usize>> = batches(range, &particles.patch).collect();
-        for group in batches.chunks(slices::at_once()) {
-            let landings = probe.share_out(group, |probe, range| {
-                let mut landing = LandingBatch::new();
-                match sweep {
-                    Sweep::Move => stepper.advance(law, particles, range.clone(), &mut landing),
-                    _ => landing.position[..range.len()].copy_from_slice(&particles.local[range.clone()]),
+        let is_transport = sweep == Sweep::Transport;
+        let mut landing = LandingBatch::new();
+        let mut next = range.start;
+        while next < range.end {
+            let range = batch(next..range.end, &particles.patch);
+            next = range.end;
+            let probe = &mut probe.on(particles.patch_of(range.start));
+            let is_checked = pairs.any_weighted(&range) || stepper.may_stray();
+            // Near a bend the energy depends on the normal, which is therefore evaluated at the
+            // final position; and near another sheet a short correction may lead far away.
+            landing.trust = if is_checked { 0.0 } else { TRUSTED_CORRECTION };
+            match sweep {
+                Sweep::Move => stepper.advance(law, particles, range.clone(), &mut landing),
+                Sweep::TakeBack => {
+                    stepper.take_back(law, lists, particles, range.clone(), &mut landing);
                 }
-                // Near a bend the energy depends on the normal, which is therefore evaluated at the
-                // final position; and near another sheet a short correction may lead far away.
-                let is_checked = pairs.any_weighted(&range) || stepper.may_stray();
-                (landing.trust, landing.reach, landing.renews_radii) = match sweep {
-                    Sweep::Transport => (TRANSPORT_TRUST, TRANSPORT_REACH, true),
-                    Sweep::Polish => (0.0, MAX_MOVE, true),
-                    _ if is_checked => (0.0, MAX_MOVE, false),
-                    _ => (TRUSTED_CORRECTION, MAX_MOVE, false),
-                };
-                let probe = &mut probe.on(particles.patch_of(range.start));
-                stepper.land(law, probe, particles, range, &mut landing);
-                landing
-            });
-            for (range, landing) in group.iter().zip(&landings) {
-                if sweep == Sweep::Move {
-                    stepper.remember(particles, range.clone());
+                _ => {
+                    landing.trust = 0.0;
+                    if is_transport {
+                        (landing.trust, landing.reach) = (TRANSPORT_TRUST, TRANSPORT_REACH);
+                    }
+                    landing.renews_radii = true;
+                    landing.position[..range.len()].copy_from_slice(&particles.local[range.clone()]);
                 }
-                stepper.settle(law, lists, particles, range.clone(), landing);
-                if sweep == Sweep::Transport {
-                    lost.extend(range.clone().filter(|i| !landing.ok[i - range.start]).map(|i| i as u32));
-                }
+            }
+            stepper.land(law, probe, lists, particles, range.clone(), &mut landing);
+            if is_transport {
+                lost.extend(range.clone().filter(|i| !landing.ok[i - range.start]).map(|i| i as u32));
             }
         }
     }

@@ -11,7 +11,6 @@ use crate::sampler::neighbours::grids::RadiusRange;
 use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::projection::{ResidualLimits, Tolerance};
 use crate::sampler::sizing::Sizing;
-use crate::slices::MaybeSync;
 use glam::{Vec3, Vec4};
 
 /// Largest number of evaluations to bring a particle back onto the surface. Three are enough on
@@ -60,7 +59,7 @@ impl LandingBatch {
 
 /// A law of repulsion between two particles. Lengths are in mean radii of the pair unless stated
 /// otherwise.
-pub(crate) trait Repulsion: MaybeSync {
+pub(crate) trait Repulsion {
     /// Distance beyond which two particles do not repel each other.
     const RANGE: f32;
     /// Verlet skin: how much farther than the range the neighbour lists reach, so that they serve

@@ -127,49 +127,47 @@ impl Stepper {
     /// Writes where the forces move the particles of `range`, in their tangent planes, to
     /// `landing`.
     pub(super) fn advance<L: Repulsion>(
-        &self,
+        &mut self,
         law: &L,
         particles: &Particles,
         range: Range<usize>,
         landing: &mut LandingBatch,
     ) {
         for (point, i) in landing.position.iter_mut().zip(range) {
+            let p = particles.local[i];
             let normal = particles.normal[i];
             let radius = law.radius(particles, i);
-            let force = self.forces.of(i);
+            let force = self.forces.take(i);
             let force = force - normal * normal.dot(force);
-            *point = particles.local[i] + (force * self.step_size).clamp_length_max(MAX_MOVE * radius);
+            self.previous[i] = p;
+            if L::RESIZES {
+                self.previous_radius[i] = radius;
+            }
+            *point = p + (force * self.step_size).clamp_length_max(MAX_MOVE * radius);
         }
     }
 
-    /// Notes where the particles of `range` are before a step, and sets the forces on them to zero.
-    pub(super) fn remember(&mut self, particles: &Particles, range: Range<usize>) {
-        self.forces.clear(range.clone());
-        self.previous[range.clone()].copy_from_slice(&particles.local[range.clone()]);
-        if !self.previous_radius.is_empty() {
-            self.previous_radius[range.clone()].copy_from_slice(&particles.radius[range]);
-        }
-    }
-
-    /// Puts the particles of `range` back where they were before the step, and sets the forces on
-    /// them to zero. The particles are not yet landed: their normals are still those of the
-    /// positions that they have left.
+    /// Puts the particles of `range` back where they were before the step, and writes their
+    /// positions to `landing`. The particles are not yet landed: their normals are still those of
+    /// the positions that they have left.
     pub(super) fn take_back<L: Repulsion>(
         &mut self,
         law: &L,
         lists: &mut NeighbourLists,
         particles: &mut Particles,
         range: Range<usize>,
+        landing: &mut LandingBatch,
     ) {
-        self.forces.clear(range.clone());
-        for i in range {
+        for (point, i) in landing.position.iter_mut().zip(range) {
             let distance = (particles.local[i] - self.previous[i]).length();
             let radius = particles.radius[i];
             self.restore(particles, i);
+            self.forces.take(i);
             if L::RESIZES {
                 self.radius_travel[i] = (self.radius_travel[i] - distance).max(0.0);
             }
             add_travel(law, lists, particles, i, distance, particles.radius[i] - radius);
+            *point = particles.local[i];
         }
     }
 
@@ -181,18 +179,19 @@ impl Stepper {
         }
     }
 
-    /// Brings the positions in `landing`, to which the particles of `range` are to go, onto the
-    /// surface, and writes the normals and radii there. Those particles that can go there are the
-    /// ones that are `ok` then.
+    /// Moves the particles of `range` to where the positions in `landing` come to the surface, and
+    /// gives them the normals and radii there. Those that have come there are the ones that are
+    /// `ok` in `landing` then.
     ///
-    /// A particle cannot go if it lies on a crease, beyond the border of the box or of its patch,
-    /// where the field ends, across a fold, where its normal would turn by more than 90°, and where
-    /// only another sheet is near.
+    /// A particle stays where it is if it lies on a crease, or cannot go: beyond the border of the
+    /// box or of its patch, where the field ends, at a fold, across which its normal would turn by
+    /// more than 90°, and where only another sheet is near.
     pub(super) fn land<L: Repulsion>(
-        &self,
+        &mut self,
         law: &L,
         probe: &mut Probe,
-        particles: &Particles,
+        lists: &mut NeighbourLists,
+        particles: &mut Particles,
         range: Range<usize>,
         landing: &mut LandingBatch,
     ) {
@@ -211,29 +210,14 @@ impl Stepper {
         }
         for (k, i) in range.enumerate() {
             let (position, normal) = (landing.position[k], landing.normal[k]);
+            let cosine = normal.dot(particles.normal[i]);
             let is_free = i >= particles.twins.len();
             landing.ok[k] = landing.ok[k]
                 && is_free
                 && self.limits.bounds.contains(position)
-                && normal.dot(particles.normal[i]) > 0.0
+                && cosine > 0.0
                 && probe.is_on_patch(position, normal, law.radius(particles, i), particles.patch_of(i));
-        }
-    }
-
-    /// Moves those particles of `range` that can go where they have [landed](Self::land), and gives
-    /// them the normals and radii there. The others stay.
-    pub(super) fn settle<L: Repulsion>(
-        &mut self,
-        law: &L,
-        lists: &mut NeighbourLists,
-        particles: &mut Particles,
-        range: Range<usize>,
-        landing: &LandingBatch,
-    ) {
-        for (k, i) in range.enumerate() {
             if landing.ok[k] {
-                let (position, normal) = (landing.position[k], landing.normal[k]);
-                let cosine = normal.dot(particles.normal[i]);
                 // A turn of the normal counts as a move: the turn that makes a list stale as the
                 // distance that does.
                 let turn_sq = 2.0 - 2.0 * cosine;
@@ -319,4 +303,12 @@ fn add_travel<L: Repulsion>(
 ) {
     let more = if L::RESIZES { 0.5 * L::RANGE * grown.max(0.0) } else { 0.0 };
     lists.add_travel(i, distance, more, 0.5 * L::SKIN * law.radius(particles, i));
+}
+
+/// The first part of a range of particles, up to where a batch of the projection ends or the
+/// `patch` changes.
+pub(super) fn batch(range: Range<usize>, patch: &[u32]) -> Range<usize> {
+    let last = range.end.min((range.start / BATCH + 1) * BATCH);
+    let is_other = |&i: &usize| patch.get(i) != patch.get(range.start);
+    range.start..(range.start..last).find(is_other).unwrap_or(last)
 }

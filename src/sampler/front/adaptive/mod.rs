@@ -26,14 +26,13 @@ use crate::sampler::front::adaptive::parents::{LocalShape, Parent, Parents, shap
 use crate::sampler::front::adaptive::placement::{DirectPlacement, Proposal};
 use crate::sampler::front::adaptive::vicinity::Vicinity;
 use crate::sampler::front::level::{
-    ChildLanding, FrontContext, FrontLevel, Placing, SlotFrame, SurfacePoint, is_on_sheet, of_adaptive,
+    ChildLanding, FrontContext, FrontLevel, Placing, SlotFrame, SurfacePoint, is_on_sheet,
 };
 use crate::sampler::front::plan::FrontPlan;
 use crate::sampler::neighbours::constants::{OVERLAP_RANGE, OVERLAP_SKIN};
 use crate::sampler::probe::Probe;
 use crate::sampler::projection::{ResidualLimits, Tolerance, tolerance};
 use crate::sampler::sheet::{PointPair, is_level};
-use crate::sampler::sizing::Sizing;
 use core::ops::Range;
 use glam::{Vec2, Vec3};
 
@@ -92,7 +91,12 @@ pub(super) struct AdaptivePlacing {
     parents: Parents,
     /// The problems that the children of the level pose.
     proposals: Vec<Proposal>,
+    /// Landings of a batch of children.
+    landings: Vec<ChildLanding>,
+    /// Largest increase of a radius in this level when its child was projected.
+    growth: f32,
     around: Vicinity,
+    solver: DirectPlacement,
     /// Rounds of filling so far.
     fills: u32,
 }
@@ -152,7 +156,7 @@ impl Placing for AdaptivePlacing {
     }
 
     fn add_parent(&mut self, context: &mut FrontContext, place: Vec3, particle: usize) -> f32 {
-        let spot = DirectPlacement::default().look(context.probe, context.sizing(), place);
+        let spot = self.solver.look(context.probe, context.sizing(), place);
         self.parents.add(particle as u32, LocalShape { curvature: spot.curvature, slope: Vec3::ZERO });
         spot.radius
     }
@@ -188,28 +192,34 @@ impl Placing for AdaptivePlacing {
         self.fill_slots(level, context.particles, which, has_placed);
     }
 
-    fn land(
-        &self,
-        level: &FrontLevel,
-        probe: &mut Probe,
-        sizing: Option<&Sizing>,
+    fn project_children(
+        &mut self,
+        level: &mut FrontLevel,
+        context: &mut FrontContext,
         children: Range<usize>,
-    ) -> Vec<ChildLanding> {
-        let proposals = &self.proposals[children];
-        let tolerance = |radius| self.rules.tolerance(radius);
-        let mut landings = DirectPlacement::default().land(probe, of_adaptive(sizing), proposals, &tolerance);
-        for (Proposal { circle, .. }, landing) in proposals.iter().zip(&mut landings) {
-            if level.rule.is_fine()
-                && let ChildLanding::On(spot) = landing
-            {
+    ) {
+        let (rules, sizing) = (&self.rules, context.sizing());
+        let FrontContext { probe, particles, .. } = context;
+        let probe = &mut probe.on(particles.patch_of(level.first_child + children.start));
+        let tolerance = |radius| rules.tolerance(radius);
+        let proposals = &self.proposals[children.clone()];
+        self.solver.land(probe, sizing, proposals, &tolerance, &mut self.landings);
+        for ((k, proposal), &landing) in children.zip(proposals).zip(&self.landings) {
+            let mut landing = landing;
+            if let ChildLanding::On(spot) = landing {
+                let circle = &proposal.circle;
                 let offset = spot.position - circle.centre;
                 let pair = PointPair { offset, normal: circle.normal, other: spot.normal };
-                if !is_on_sheet(level.rule, probe, circle.centre, pair, circle.radius) {
-                    *landing = ChildLanding::NotConverged;
+                if level.rule.is_fine() && !is_on_sheet(level.rule, probe, circle.centre, pair, circle.radius)
+                {
+                    landing = ChildLanding::NotConverged;
+                } else {
+                    let predicted = particles.radius[level.first_child + k];
+                    self.growth = self.growth.max(spot.radius - predicted);
                 }
             }
+            level.note_landing(particles, k, landing);
         }
-        landings
     }
 
     fn has_room(
@@ -224,7 +234,7 @@ impl Placing for AdaptivePlacing {
         let provisional = level.first_child + child;
         let moved = (spot.position - particles.local[provisional]).length();
         let surprise = spot.radius - particles.radius[provisional];
-        let grown = surprise.max(0.0) + level.children.growth;
+        let grown = surprise.max(0.0) + self.growth;
         let clearance = level.children.list[child].clearance;
         let is_clear = clearance - moved - level.children.drift - self.rules.match_tolerance * grown > 0.0;
         if !is_clear && self.collides(level, probe, particles, spot, particles.patch_of(provisional)) {
@@ -244,11 +254,13 @@ impl Placing for AdaptivePlacing {
     fn end_level(&mut self, level: &FrontLevel) {
         self.parents.next_level(level.first_child);
         self.proposals.clear();
+        self.growth = 0.0;
     }
 
     fn clear_level(&mut self) {
         self.parents.stop();
         self.proposals.clear();
+        self.growth = 0.0;
     }
 
     fn truncate(&mut self, len: usize) {

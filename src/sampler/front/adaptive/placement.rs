@@ -84,6 +84,7 @@ pub(crate) struct DirectPlacement {
     gradient: Vec<Vec3>,
     hessian: Vec<Sym3<f32>>,
     curvature: Vec<Curvature>,
+    landing: Vec<CircleLanding>,
 }
 
 impl DirectPlacement {
@@ -109,16 +110,18 @@ impl DirectPlacement {
 
     /// Solves at most [`BATCH`] proposals: Newton's method in the angle and a secant in the
     /// distance, together; a bracketed search on the circle, by turns with the distance, where
-    /// those do not settle. Entry `i` of the result belongs to `proposals[i]`.
+    /// those do not settle. `landed[i]` belongs to `proposals[i]`.
     pub(crate) fn land(
         &mut self,
         probe: &mut Probe,
         sizing: &Sizing,
         proposals: &[Proposal],
         tolerance: &dyn Fn(f32) -> Tolerance,
-    ) -> Vec<ChildLanding> {
+        landed: &mut Vec<ChildLanding>,
+    ) {
         debug_assert!(proposals.len() <= BATCH);
-        let mut landed = vec![ChildLanding::NotConverged; proposals.len()];
+        landed.clear();
+        landed.resize(proposals.len(), ChildLanding::NotConverged);
         let idle = ActiveProposal {
             proposal: 0,
             steps: 0,
@@ -168,7 +171,6 @@ impl DirectPlacement {
         for &i in &unsettled[..unsettled_count] {
             landed[i as usize] = self.search(probe, sizing, &proposals[i as usize], tolerance);
         }
-        landed
     }
 
     /// Makes one step in the two unknowns, from the evaluation at place `k` of the batch.
@@ -260,7 +262,11 @@ impl DirectPlacement {
         let mut best: Option<(f32, SurfacePoint)> = None;
         for _ in 0..MAX_ROUNDS {
             let allowed = tolerance(circle.radius - proposal.parent_radius);
-            let position = match probe.land_on_circles(&[circle], allowed)[0] {
+            let mut landing = core::mem::take(&mut self.landing);
+            probe.land_on_circles(&[circle], allowed, &mut landing);
+            let result = landing[0];
+            self.landing = landing;
+            let position = match result {
                 CircleLanding::On { position, .. } => position,
                 CircleLanding::Undefined if best.is_none() => return ChildLanding::Undefined,
                 _ => break,

@@ -78,8 +78,8 @@ impl UniformPlacing {
         let direction = (u * centre.x + w * centre.y) / width;
         let circle =
             ChildCircle { centre: p, normal: n, direction, radius: width * spacing, guess: [1.0, 0.0] };
-        let landings = probe.land_on_circles(&[circle], self.tolerance);
-        let CircleLanding::On { position, normal } = landings[0] else { return };
+        probe.land_on_circles(&[circle], self.tolerance, &mut self.landings);
+        let CircleLanding::On { position, normal } = self.landings[0] else { return };
         let is_inside =
             level.bounds.contains(position) && probe.is_on_patch(position, normal, self.radius, patch);
         if !is_inside || !face_one_way(normal, n) {

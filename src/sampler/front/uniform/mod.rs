@@ -33,7 +33,6 @@ use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::Probe;
 use crate::sampler::projection::{ChildCircle, CircleLanding, Tolerance};
 use crate::sampler::sheet::{PointPair, is_level, level_slack_sq};
-use crate::sampler::sizing::Sizing;
 use crate::spatial::Neighbour;
 use core::ops::Range;
 use glam::Vec3;
@@ -66,6 +65,8 @@ pub(super) struct UniformPlacing {
     parents: Range<usize>,
     /// The circles on which the children of the level have their places.
     circles: Vec<ChildCircle>,
+    /// Landings of a batch of children.
+    landings: Vec<CircleLanding>,
     around: Surroundings,
     /// Particles on a seam, in the order of the front; those before `next_seam` have been visited.
     seams: Vec<u32>,
@@ -272,26 +273,28 @@ impl Placing for UniformPlacing {
         particles.slots[parent] = slots;
     }
 
-    fn land(
-        &self,
-        level: &FrontLevel,
-        probe: &mut Probe,
-        _: Option<&Sizing>,
+    fn project_children(
+        &mut self,
+        level: &mut FrontLevel,
+        context: &mut FrontContext,
         children: Range<usize>,
-    ) -> Vec<ChildLanding> {
-        let circles = &self.circles[children];
-        let landings = probe.land_on_circles(circles, self.tolerance);
-        let own = circles.iter().zip(landings).map(|(circle, on_circle)| {
-            let landing = self.on_own_sheet(level, probe, circle, on_circle);
+    ) {
+        let FrontContext { probe, particles, .. } = context;
+        let probe = &mut probe.on(particles.patch_of(level.first_child + children.start));
+        let mut landings = core::mem::take(&mut self.landings);
+        probe.land_on_circles(&self.circles[children.clone()], self.tolerance, &mut landings);
+        for (k, &on_circle) in children.zip(&landings) {
+            let circle = &self.circles[k];
+            let mut landing = self.on_own_sheet(level, probe, circle, on_circle);
             let is_lost = matches!(on_circle, CircleLanding::On { .. })
                 && matches!(landing, ChildLanding::NotConverged);
             if is_lost && level.rule.is_fine() {
                 let walked = probe.walk(circle, self.tolerance);
-                return self.on_own_sheet(level, probe, circle, walked);
+                landing = self.on_own_sheet(level, probe, circle, walked);
             }
-            landing
-        });
-        own.collect()
+            level.note_landing(particles, k, landing);
+        }
+        self.landings = landings;
     }
 
     fn has_room(
