@@ -41,10 +41,9 @@
 //! # Features
 //!
 //! `points`, which is on by default, fits surfaces to points. With `parallel` all threads of the
-//! current [rayon](https://docs.rs/rayon) pool share relaxation, the search for components,
-//! measuring, fits to points and parts of the mesh, natively; the results are the same. Functions
-//! of the program are then called from several threads at once. `cli` is the command-line tool,
-//! with both of them.
+//! current [rayon](https://docs.rs/rayon) pool share measuring, fits to points and parts of the
+//! mesh, natively; the results are the same. Functions of the program are then called from several
+//! threads at once. `cli` is the command-line tool, with both of them.
 //!
 //! # Glossary
 //!

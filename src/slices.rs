@@ -115,6 +115,15 @@ pub(crate) async fn change<T: MaybeSend>(
     }
 }
 
+/// Does `work` in a thread of the rayon pool, natively with the feature `parallel`. Another thread
+/// would have to wait, and to be woken, each time the pool shares work.
+pub(crate) fn in_pool<R: MaybeSend>(work: impl FnOnce() -> R + MaybeSend) -> R {
+    #[cfg(all(feature = "parallel", not(target_arch = "wasm32")))]
+    return rayon::scope(|_| work());
+    #[cfg(not(all(feature = "parallel", not(target_arch = "wasm32"))))]
+    work()
+}
+
 /// Number of threads that share the work.
 fn threads() -> usize {
     #[cfg(all(feature = "parallel", not(target_arch = "wasm32")))]

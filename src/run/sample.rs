@@ -46,8 +46,10 @@ use std::sync::{Arc, OnceLock};
 /// ```
 pub fn sample<Kind>(field: impl IntoField<Kind>, settings: &Settings) -> Result<Sample, Error> {
     let mut run = Run::start(field, settings)?;
-    while run.step(u32::MAX).stop_reason.is_none() {}
-    run.finish()
+    slices::in_pool(|| {
+        while run.step(u32::MAX).stop_reason.is_none() {}
+        run.finish()
+    })
 }
 
 /// The particles of a finished run, with the report on them; their mesh is made when it is first

@@ -40,11 +40,12 @@ fn main() -> ExitCode {
     }
 }
 
-/// Starts so many threads to share the work; none are started yet if no number is given.
+/// Starts threads, this one and others, to share the work: so many, or one for each processor.
 fn start_threads(threads: Option<NonZeroUsize>) -> Result<(), Failure> {
-    let Some(threads) = threads else { return Ok(()) };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get());
-    pool.build_global().map_err(|error| Failure::Usage(format!("cannot start {threads} threads: {error}")))
+    // Another thread would have to be woken, and this one to wait, each time work is shared.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, NonZeroUsize::get));
+    let started = pool.use_current_thread().build_global();
+    started.map_err(|error| Failure::Usage(format!("cannot start threads: {error}")))
 }
 
 /// Prints the script with which a shell completes the arguments.

@@ -32,19 +32,16 @@ pub(super) enum Fate {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Judge {
     bounds: BoxBounds,
-    /// Cells that the bounds of the expressions do not decide, with their numbers in the batch.
-    open: Vec<(usize, Cell)>,
+    /// Cells that the bounds of the expressions do not decide.
+    open: Vec<Cell>,
     tall: Vec<Tall>,
     lines: Vec<Line>,
-    /// The fates, each with the number of its cell.
-    fates: Vec<(usize, Fate)>,
+    fates: Vec<Fate>,
 }
 
 /// A cell that is made taller.
 #[derive(Clone, Copy, Debug)]
 struct Tall {
-    /// Number of the cell in the batch.
-    number: usize,
     cell: Cell,
     /// Length by which the cell is taller at each end.
     room: f64,
@@ -114,34 +111,35 @@ impl BoxBounds {
 }
 
 impl Judge {
-    /// The fates of the cells of a batch, each with the number of its cell, in the search of a
-    /// factor in a region. A fate does not depend on the other cells.
+    /// The fates of the cells of a batch in the search of a factor in a region, without those that
+    /// are discarded. A fate does not depend on the other cells.
     pub(super) fn fates(
         &mut self,
         field: &mut dyn Bounded,
         factor: usize,
         region: &Bounds,
         cells: &[Cell],
-    ) -> Vec<(usize, Fate)> {
+    ) -> Vec<Fate> {
         self.bounds.boxes.clear();
         self.bounds.boxes.extend(cells.iter().map(|cell| cell.bounds));
         self.bounds.enclose(field, factor);
         self.open.clear();
-        for (number, (&cell, known)) in cells.iter().zip(&self.bounds.known).enumerate() {
+        for (&cell, known) in cells.iter().zip(&self.bounds.known) {
             if !known.may_vanish {
                 continue;
             }
             if !(known.defined && known.continuous) {
-                self.fates.push((number, Fate::Irregular(cell)));
+                self.fates.push(Fate::Irregular(cell));
             } else if !is_discarded(&cell, known) {
-                self.open.push((number, cell));
+                self.open.push(cell);
             }
         }
         self.bounds.boxes.clear();
-        self.bounds.boxes.extend(self.open.iter().map(|(_, cell)| cell.bounds));
+        self.bounds.boxes.extend(self.open.iter().map(|cell| cell.bounds));
         self.bounds.refine(field, factor);
         self.tall.clear();
-        for (k, &(number, mut cell)) in self.open.iter().enumerate() {
+        for (k, &open) in self.open.iter().enumerate() {
+            let mut cell = open;
             let (known, middle) = (self.bounds.known[k], self.bounds.known[self.open.len() + k]);
             if is_discarded(&cell, &known) {
                 continue;
@@ -155,9 +153,9 @@ impl Judge {
             match rise(&cell.bounds, up, &known) {
                 Some(t) => {
                     let room = RISE_ROOM * t + LEAST_RISE * height;
-                    self.tall.push(Tall { number, cell, room, rise: None });
+                    self.tall.push(Tall { cell, room, rise: None });
                 }
-                None => self.fates.push((number, Fate::Doubtful(cell, known))),
+                None => self.fates.push(Fate::Doubtful(cell, known)),
             }
         }
         if !self.tall.is_empty() {
@@ -188,10 +186,10 @@ impl Judge {
         self.bounds.enclose(field, factor);
         self.lines.clear();
         for k in 0..self.tall.len() {
-            let Tall { number, cell, rise, .. } = self.tall[k];
+            let Tall { cell, rise, .. } = self.tall[k];
             let [bottom, top] = [2 * k, 2 * k + 1].map(|end| self.bounds.known[end].value);
             if rise.is_none() || !bottom.excludes_zero() || !top.excludes_zero() {
-                self.fates.push((number, Fate::Halved(cell)));
+                self.fates.push(Fate::Halved(cell));
             } else if (bottom.lo > 0.0) != (top.lo > 0.0) {
                 let up = cell.axes().up;
                 let [lo, hi] = [2 * k, 2 * k + 1].map(|end| self.bounds.boxes[end].min[up]);
@@ -201,7 +199,7 @@ impl Judge {
         self.find_roots(field, factor);
         for line in 0..self.lines.len() {
             let Line { tall, root: height, .. } = self.lines[line];
-            let Tall { number, cell, rise, .. } = self.tall[tall];
+            let Tall { cell, rise, .. } = self.tall[tall];
             let Axes { sides, up } = cell.axes();
             let beside = BESIDE * rise.unwrap_or(0.0);
             let [bottom, top] = [region.min[up], region.max[up]];
@@ -212,9 +210,9 @@ impl Judge {
             if height - beside >= bottom || sides == [None; 2] {
                 let mut position = cell.probe();
                 position[up] = height;
-                self.fates.push((number, Fate::Decided(position)));
+                self.fates.push(Fate::Decided(position));
             } else {
-                self.fates.push((number, Fate::Halved(cell)));
+                self.fates.push(Fate::Halved(cell));
             }
         }
     }

@@ -56,12 +56,12 @@
 //! generalised gradient, for which both arguments are the same. Where f jumps, has a pole or is not
 //! defined the surface may end, and nothing is concluded from slopes.
 
-use crate::field::{Bounded, Enclosure, Evaluator, MARGIN};
+use crate::field::{Bounded, Enclosure, MARGIN};
 use crate::math::{Bounds, sort_by_key};
 use crate::sampler::discovery::cell::{Axes, CUT, Cell, is_inside, is_left_out, push_boundary};
 use crate::sampler::discovery::fate::{Fate, Judge};
 use crate::sampler::discovery::singular::{SAME, Singular, isolating_box, singular_point};
-use crate::slices::{self, HEAVY};
+use crate::slices::HEAVY;
 use core::ops::Range;
 use glam::{DVec3, Vec3};
 use std::collections::VecDeque;
@@ -268,13 +268,12 @@ impl Octree {
             }
         }
         while budget > 0 && !self.is_done() {
-            let batches = self.next_batches(budget);
-            self.visit(field, &batches);
-            let next = batches.last().map_or(self.search.next, |batch| batch.end);
-            self.search.cells += next - self.search.next;
-            self.turns.visited += next - self.search.next;
-            self.search.next = next;
-            budget = budget.saturating_sub(batches.len() as u32 * UNITS * HEAVY as u32);
+            let count = HEAVY.min(self.search.level.len() - self.search.next);
+            self.visit(field, self.search.next..self.search.next + count);
+            self.search.next += count;
+            self.search.cells += count;
+            self.turns.visited += count;
+            budget = budget.saturating_sub(UNITS * HEAVY as u32);
             if self.search.next == self.search.level.len() {
                 self.search.is_ending =
                     (self.search.halves.len() as f64) < HARDLY_MORE * self.search.level.len() as f64;
@@ -292,61 +291,24 @@ impl Octree {
         budget
     }
 
-    /// The batches of cells of the level that are visited next: as many as threads share at once,
-    /// as the budget allows and as the search may visit in its turn.
-    fn next_batches(&self, budget: u32) -> Vec<Range<usize>> {
-        let FactorSearch { level, next, cells, .. } = &self.search;
-        let allowed = self.allowed().saturating_sub(*cells).div_ceil(HEAVY);
-        let afforded = budget.div_ceil(UNITS * HEAVY as u32) as usize;
-        let count = slices::at_once().min(afforded).min(allowed);
-        let batches = slices::ranges(level.len() - next, HEAVY).take(count.max(1));
-        batches.map(|batch| next + batch.start..next + batch.end).collect()
-    }
-
-    /// Visits these batches of cells of the level: each cell is discarded, decided, left out or
-    /// halved.
-    fn visit(&mut self, field: &mut dyn Bounded, batches: &[Range<usize>]) {
-        for (batch, fates) in batches.iter().zip(self.fates(field, batches)) {
-            let cells = self.search.level[batch.clone()].iter();
-            let left_out: Vec<bool> = cells.map(|cell| is_left_out(cell, &self.search.isolated)).collect();
-            for (number, fate) in fates {
-                match fate {
-                    _ if left_out[number] => {}
-                    Fate::Halved(cell) => self.halve(field, cell, DEPTH),
-                    Fate::Irregular(cell) => self.halve(field, cell, IRREGULAR_DEPTH),
-                    Fate::Doubtful(cell, known) => {
-                        if !self.is_isolated(field, &cell, &known) {
-                            self.halve(field, cell, DEPTH);
-                        }
-                    }
-                    Fate::Decided(position) => {
-                        self.witnesses.push(Witness { position, factor: self.search.factor });
+    /// Visits the cells of the level in this range: each is discarded, decided, left out or halved.
+    fn visit(&mut self, field: &mut dyn Bounded, range: Range<usize>) {
+        let FactorSearch { factor, level, isolated, .. } = &self.search;
+        let factor = *factor;
+        let searched: Vec<Cell> =
+            level[range].iter().filter(|cell| !is_left_out(cell, isolated)).copied().collect();
+        for fate in self.judge.fates(field, factor, &self.region.bounds, &searched) {
+            match fate {
+                Fate::Halved(cell) => self.halve(field, cell, DEPTH),
+                Fate::Irregular(cell) => self.halve(field, cell, IRREGULAR_DEPTH),
+                Fate::Doubtful(cell, known) => {
+                    if !self.is_isolated(field, &cell, &known) {
+                        self.halve(field, cell, DEPTH);
                     }
                 }
+                Fate::Decided(position) => self.witnesses.push(Witness { position, factor }),
             }
         }
-    }
-
-    /// The fates of the cells of these batches. Threads share the batches, each with an evaluator
-    /// of its own.
-    fn fates(&mut self, field: &mut dyn Bounded, batches: &[Range<usize>]) -> Vec<Vec<(usize, Fate)>> {
-        let FactorSearch { factor, level, .. } = &self.search;
-        let of_batch = |judge: &mut Judge, field: &mut dyn Bounded, batch: &Range<usize>| {
-            judge.fates(field, *factor, &self.region.bounds, &level[batch.clone()])
-        };
-        let mut fates = Vec::with_capacity(batches.len());
-        let threads = slices::threads().min(batches.len());
-        if threads <= 1 {
-            fates.extend(batches.iter().map(|batch| of_batch(&mut self.judge, field, batch)));
-        } else {
-            let mut own: Vec<_> = (0..threads).map(|_| (Judge::default(), field.another())).collect();
-            let on_own = |(judge, field): &mut (Judge, Box<dyn Evaluator + '_>), batch: &Range<usize>| {
-                let field = field.bounded().expect("an evaluator of a field that has bounds");
-                of_batch(judge, field, batch)
-            };
-            slices::share_out(&mut own, batches, &on_own, &mut fates);
-        }
-        fates
     }
 
     /// Whether the cell lies in a box that is left out of the search: one there is already, or a
@@ -465,7 +427,7 @@ mod tests {
         let visited = |field: &mut dyn Bounded, cells: &[Cell]| {
             let mut octree = begun();
             octree.search.level = cells.to_vec();
-            octree.visit(field, &[0..cells.len()]);
+            octree.visit(field, 0..cells.len());
             let mut all: Vec<Bounds> = octree.search.halves.iter().map(|cell| cell.bounds).collect();
             all.extend(octree.witnesses.iter().map(|witness| Bounds::point(witness.position)));
             all.extend(octree.undecided);
