@@ -172,7 +172,8 @@ fn null_for_zero<S: Serializer>(count: &usize, serializer: S) -> Result<S::Ok, S
     Some(*count).filter(|&count| count > 0).serialize(serializer)
 }
 
-/// What segments of one kind add up to: those with an edge, or those without.
+/// These counts describe the curves of particles along which the surface has an edge, or those
+/// along which it has none.
 pub(super) struct CurveCounts {
     curves: usize,
     /// Particles at which curves meet or end.

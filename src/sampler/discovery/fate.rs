@@ -1,5 +1,6 @@
-//! What becomes of the cells of the [octree](super::octree), by the bounds of the field over them.
-//! The module of the octree has the argument.
+//! A [`Judge`] decides for each cell of the [octree](super::octree) whether it is discarded, halved
+//! or replaced by a witness. It evaluates bounds of f and its derivatives over the cell; the module
+//! of the octree explains why they suffice.
 
 use crate::field::{Bounded, Enclosure};
 use crate::math::{Bounds, Interval, Sym3};
@@ -15,7 +16,7 @@ const LEAST_RISE: f64 = 0.02;
 /// footprint: the longer part of a side.
 const BESIDE: f64 = 1.0 - CUT;
 
-/// What becomes of a cell that is not discarded.
+/// The search goes on with a cell in one of these ways, unless the cell is discarded.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Fate {
     /// It is halved, or the part of it that can hold a highest point is.
