@@ -43,7 +43,9 @@
 //! `points`, which is on by default, fits surfaces to points. With `parallel` all threads of the
 //! current [rayon](https://docs.rs/rayon) pool share measuring, fits to points and parts of the
 //! mesh, natively; the results are the same. Functions of the program are then called from several
-//! threads at once. `cli` is the command-line tool, with both of them.
+//! threads at once. A program that does such work in [steps](Reporting::step) takes them in a
+//! thread of the pool, as within `rayon::scope`: another thread would wait for each share. `cli` is
+//! the command-line tool, with both of them.
 //!
 //! # Glossary
 //!
@@ -70,7 +72,8 @@
 //! | witness | A point of the surface that interval arithmetic found, at least one on each component. |
 //! | crease, corner, patch | A curve along which two smooth parts of the surface meet at an angle; a point where creases meet; such a part. |
 //! | row | An entry of the particle columns. A particle on a crease or a seam has one for each patch. |
-//! | seam, gap | Where fronts meet out of step, or two patches without an edge; a hole between fronts that is wide enough for a particle. |
+//! | seam | Of patches: a curve along which two meet without an edge. Of fronts: a line along which they meet out of step. |
+//! | gap | A hole between fronts that is wide enough for a particle. |
 //! | natural neighbours, valence | The particles whose Voronoi cells share an edge in the tangent plane; their number, six in a hexagonal lattice. |
 //! | defect | A particle of a mesh whose valence is not six, or on the border not four. |
 //! | refinement | Ordering a coarse front as a mesh and halving its edges, level by level. |

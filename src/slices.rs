@@ -115,8 +115,11 @@ pub(crate) async fn change<T: MaybeSend>(
     }
 }
 
-/// Does `work` in a thread of the rayon pool, natively with the feature `parallel`. Another thread
-/// would have to wait, and to be woken, each time the pool shares work.
+/// Does `work`, which threads share, in one of them: natively with the feature `parallel` in a
+/// thread of the rayon pool. Another thread would have to wait, and to be woken, for each share.
+///
+/// No lock must be held meanwhile: a thread that waits for a share of another one may do any job of
+/// the pool.
 pub(crate) fn in_pool<R: MaybeSend>(work: impl FnOnce() -> R + MaybeSend) -> R {
     #[cfg(all(feature = "parallel", not(target_arch = "wasm32")))]
     return rayon::scope(|_| work());

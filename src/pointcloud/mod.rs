@@ -17,6 +17,7 @@ pub mod thin;
 pub use crate::field::model::{ModelInfo, NormalSource};
 
 use crate::field::model::{DEFAULT_CENTRES, Model};
+use crate::slices;
 use fit::Fit;
 use glam::DVec3;
 use job::{Job, JobError};
@@ -32,7 +33,7 @@ use job::{Job, JobError};
 /// If the file cannot be read or its points lead to no surface: what is wrong, where, and what to
 /// do.
 pub fn fit_points(name: &str, bytes: Vec<u8>, centres: u32) -> Result<Fit, JobError> {
-    Job::file(name, bytes, centres)?.complete()
+    slices::in_pool(|| Job::file(name, bytes, centres)?.complete())
 }
 
 /// Fit of a built-in model, all of whose points are centres.

@@ -153,9 +153,11 @@ pub fn measure(
     options: &MeasureOptions,
 ) -> Measurements {
     let frame = Frame::default().scaled_to(&field, position.iter().copied());
-    let field = &mut *field.evaluator(frame);
     let surroundings = Surroundings { bounds, sheets: None };
-    slices::complete(in_slices(position, normal, field, surroundings, options, &mut None))
+    slices::in_pool(|| {
+        let field = &mut *field.evaluator(frame);
+        slices::complete(in_slices(position, normal, field, surroundings, options, &mut None))
+    })
 }
 
 /// Where the points of a measurement lie, as far as it is known.

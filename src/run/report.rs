@@ -271,7 +271,7 @@ impl<F: Field> Run<F> {
 
     /// [`Run::report`], with other particles measured, or none.
     pub fn report_with(&mut self, measured: Measured) -> Report {
-        self.measure(measured).work.complete()
+        slices::in_pool(|| self.measure(measured).work.complete())
     }
 
     /// [`Run::report_with`] in slices, with [`Reporting::step`].

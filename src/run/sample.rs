@@ -46,10 +46,8 @@ use std::sync::{Arc, OnceLock};
 /// ```
 pub fn sample<Kind>(field: impl IntoField<Kind>, settings: &Settings) -> Result<Sample, Error> {
     let mut run = Run::start(field, settings)?;
-    slices::in_pool(|| {
-        while run.step(u32::MAX).stop_reason.is_none() {}
-        run.finish()
-    })
+    while run.step(u32::MAX).stop_reason.is_none() {}
+    run.finish()
 }
 
 /// The particles of a finished run, with the report on them; their mesh is made when it is first
@@ -109,9 +107,16 @@ impl Sample {
     /// joins the particles, in below a microsecond each.
     #[must_use]
     pub fn mesh(&self) -> &Triangulation {
-        let bounds = || self.bounds.relative_to(self.particles.origin);
+        if let Some(mesh) = self.mesh.get() {
+            return mesh;
+        }
+        let bounds = self.bounds.relative_to(self.particles.origin);
         let sheets = self.sheets.as_deref();
-        self.mesh.get_or_init(|| slices::complete(joined(&self.particles, &self.known, &bounds(), sheets)))
+        // A thread that waits for others may do another job of the pool, which may ask for the
+        // mesh: nothing must be locked now.
+        let mesh =
+            slices::in_pool(|| slices::complete(joined(&self.particles, &self.known, &bounds, sheets)));
+        self.mesh.get_or_init(|| mesh)
     }
 
     /// The warnings about the [mesh](Sample::mesh): another topology than that of the particles as

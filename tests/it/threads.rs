@@ -1,7 +1,11 @@
 //! The number of threads changes nothing but the time.
 
 use crate::cli::{file, sample};
+use marching_particles::{Formula, Run, Sample, Settings};
 use serde_json::Value;
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
 
 /// All that is said of a sample but the seconds, the memory and the files' names, and its mesh.
 fn told(threads: &str, arguments: &[&str]) -> (Value, Vec<u8>) {
@@ -31,4 +35,35 @@ fn any_number_of_threads_gives_the_same_sample_report_and_mesh() {
             assert!(told(threads, arguments) == one, "{threads} threads: {arguments:?}");
         }
     }
+}
+
+/// A sample that was not measured, so that its mesh finds the natural neighbours.
+fn unmeasured() -> Sample {
+    let sphere = Formula::parse("x^2 + y^2 + z^2 = 1").expect("a formula");
+    let mut run = Run::start(sphere, &Settings::with_count(20_000)).expect("a run");
+    while run.step(u32::MAX).stop_reason.is_none() {}
+    run.finish_with(marching_particles::Measured::Nothing).expect("particles")
+}
+
+#[test]
+fn jobs_of_one_pool_may_all_ask_for_one_mesh() {
+    let (told, heard) = mpsc::channel();
+    // In a thread of its own: a job that waits for itself would never end.
+    thread::spawn(move || {
+        let unmeasured = unmeasured();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("threads");
+        for _ in 0..10 {
+            let sample = unmeasured.clone();
+            // Whichever of the two threads that make the mesh is the first to have nothing to do
+            // takes the second job.
+            pool.in_place_scope(|scope| {
+                for _ in 0..2 {
+                    scope.spawn(|_| assert!(sample.mesh().topology.is_closed()));
+                    thread::sleep(Duration::from_millis(3));
+                }
+            });
+        }
+        let _ = told.send(());
+    });
+    heard.recv_timeout(Duration::from_secs(120)).expect("no job waits for itself");
 }

@@ -207,7 +207,7 @@ impl Joined {
 /// If the columns differ in length, or there are 2³¹ rows or more.
 #[must_use]
 pub fn triangulate(particles: &Particles, bounds: Option<&Bounds>) -> Triangulation {
-    slices::complete(in_slices(particles, bounds))
+    slices::in_pool(|| slices::complete(in_slices(particles, bounds)))
 }
 
 /// Number of slices that joining so many points is expected to take, with their stars or without.
