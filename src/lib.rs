@@ -90,10 +90,10 @@
 //! | solids of two fields | [`union`], [`intersection`], [`difference`], [`smooth_union`], [`offset`], [`Combined`] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
 //! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
-//! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measures`], [`Cut`] |
+//! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measured`], [`Measures`], [`Cut`] |
 //! | its figures | [`Figures`] with the groups in [figures], [`Histogram`], [`Places`], [`Pair`], [`Hole`], [`Measurements`] |
 //! | what may be wrong | [`Warning`], [`Severity`], [`Doubt`], [`Refusal`], [`Spot`] |
-//! | why there is no result | [`Error`], [`SettingsError`], [`BoxError`]; of points [`JobError`], [`ReadError`], [`InputFormat`], [`CloudError`], [`FitError`] |
+//! | why there is no result | [`Error`], [`SettingsError`], [`BoxError`], [`FollowError`]; of points [`JobError`], [`ReadError`], [`InputFormat`], [`CloudError`], [`FitError`] |
 //! | files | [`Format`], [`ParticleFile`], [`MeshFormat`], [`MeshFile`], [`Vertices`], [`Placement`], [`Unit`], [`UpAxis`], [`RecordText`] |
 //!
 //! The modules behind the root are public for the project's own tests, benchmarks and page and may

@@ -270,6 +270,9 @@ impl Bounds {
     /// Diagonals of a box with which the squares of radii are normal numbers in single precision.
     pub const DIAGONALS: RangeInclusive<f64> = 1e-12..=1e12;
 
+    /// Smallest side of a box, over its diagonal: in single precision it is a normal number.
+    pub const THINNEST: f64 = 1e-12;
+
     /// Largest coordinate of a corner relative to the diagonal. There, the single precision in
     /// which a picture is drawn moves a particle of the default radius by a hundredth of it.
     pub const FARTHEST_CORNER: f64 = 1e3;
@@ -280,9 +283,9 @@ impl Bounds {
         self.check().is_ok()
     }
 
-    /// Checks that particles can be put in the box and drawn there: every side has positive length,
-    /// the diagonal is one of [`Bounds::DIAGONALS`], and no coordinate is larger than
-    /// [`Bounds::FARTHEST_CORNER`] diagonals.
+    /// Checks that particles can be put in the box and drawn there: the diagonal is one of
+    /// [`Bounds::DIAGONALS`], no side is shorter than [`Bounds::THINNEST`] of it, and no coordinate
+    /// is larger than [`Bounds::FARTHEST_CORNER`] diagonals.
     ///
     /// # Errors
     ///
@@ -293,6 +296,7 @@ impl Bounds {
             (!(lo.is_finite() && hi.is_finite()), BoxError::NotFinite),
             (lo.cmpge(hi).any(), BoxError::Empty),
             (!Self::DIAGONALS.contains(&diagonal), BoxError::Size),
+            ((hi - lo).min_element() < Self::THINNEST * diagonal, BoxError::Thin),
             (self.farthest() > Self::FARTHEST_CORNER * diagonal, BoxError::Far),
         ];
         faults.into_iter().find(|&(is_there, _)| is_there).map_or(Ok(()), |(_, fault)| Err(fault))
@@ -312,6 +316,9 @@ pub enum BoxError {
     /// The diagonal is not one of [`Bounds::DIAGONALS`].
     #[error("the box must have a diagonal between {:e} and {:e}", Bounds::DIAGONALS.start(), Bounds::DIAGONALS.end())]
     Size,
+    /// A side is shorter than [`Bounds::THINNEST`] of the diagonal.
+    #[error("the box must be no thinner than {:e} of its diagonal", Bounds::THINNEST)]
+    Thin,
     /// A corner is farther from the origin than [`Bounds::FARTHEST_CORNER`] diagonals.
     #[error("the box must lie within {} diagonals of the origin", Bounds::FARTHEST_CORNER)]
     Far,

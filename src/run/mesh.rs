@@ -190,6 +190,9 @@ impl<F: Field> Run<F> {
     ///
     /// An error if the 32-bit counters of the format are too small.
     pub fn mesh_file(&mut self, wish: &MeshFile, budget: u32) -> io::Result<Option<Vec<u8>>> {
+        if budget == 0 {
+            return Ok(None);
+        }
         let begun = self.meshing.file.take().filter(|begun| begun.wish == *wish);
         let (particles, measured) = (self.particles(), self.measured());
         let mut begun = begun.unwrap_or_else(|| {

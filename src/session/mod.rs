@@ -508,14 +508,17 @@ impl Session {
         Ok(())
     }
 
-    /// [`Run::report`] in slices, with what the session knows of the surface. Of one of the gallery
-    /// or a model, whose box was chosen for it, no cause is told why particles lie at the border.
+    /// [`Run::report`] in slices, with what the session knows of the surface. No cause is told why
+    /// particles lie at the border of a model, or of an open surface of the gallery, whose box was
+    /// chosen for it. A closed one fills its box for the values that its sliders offer.
     pub fn measure(&mut self, measured: Measured, budget: u32) -> Option<Report> {
         self.run.measure_copy(measured, budget).map(|report| self.completed(report))
     }
 
     fn completed(&self, mut report: Report) -> Report {
-        let has_own_box = self.run.reach().is_none() && self.surface.is_some() && !self.fitting.is_given;
+        let has_own_box = self.run.reach().is_none()
+            && self.surface.is_some_and(|surface| !surface.closed)
+            && !self.fitting.is_given;
         let has_no_cause = match self.source() {
             Source::Formula(field) => field.is_constant(),
             Source::Points { .. } => true,

@@ -16,7 +16,7 @@ pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).expect("text on standard output")
 }
 
-fn stderr(output: &Output) -> String {
+pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).expect("text on standard error")
 }
 
@@ -202,6 +202,19 @@ fn a_file_says_how_to_make_it_again() {
     assert_ne!(other["digest"], made["digest"]);
     let settings = &sample(&["--like", &files[0], "--surface", "torus"]);
     assert_eq!((&settings["surface"], &settings["settings"]["seed"]), (&"torus".into(), &4.into()));
+
+    // Who asks for a radius asks for one size, and for no number.
+    let [law, counted] = ["law.ply", "counted.ply"].map(path);
+    let egg = ["--formula", "x^2 + 2y^2 + z^2 = 1", "--adaptive"];
+    let made = sample(&[&egg[..], &["--chord-error", "0.1%", "--out", &law]].concat());
+    sample(&[&egg[..], &["--count", "900", "--out", &counted]].concat());
+    for path in [&law, &counted] {
+        let one_size = sample(&["--like", path, "--radius", "4%"]);
+        assert_eq!(one_size["radius_min"], one_size["radius_max"]);
+        assert_eq!(one_size["settings"]["size_mode"], "radius");
+    }
+    let finer = sample(&["--like", &law, "--chord-error", "0.05%"]);
+    assert!(finer["count"].as_u64() > made["count"].as_u64(), "{finer}");
 
     // A fitted box and a surface of the gallery with its own box and values.
     for (arguments, name) in [
@@ -434,10 +447,21 @@ fn each_invalid_argument_has_its_message() {
     assert!(fails(2, &["sample", "--radius", "1e-9"]).contains("between 0.01% and 20%"));
     assert!(fails(2, &["sample", "--radius", "1%", "--count", "10"]).contains("cannot be used with"));
     assert!(fails(2, &["sample", "--box", "1,2"]).contains("one, three or six"));
+    assert!(fails(2, &["sample", "--box", "1;2;3"]).contains("separated by commas"));
+    assert!(fails(2, &["sample", "--scale", "1e300"]).contains("1e300 is not between 1e-12 and 1e12"));
+    for (given, needed) in [
+        (&["--law", "max-curvature"][..], "--law has no effect without --adaptive"),
+        (&["--adaptive", "--curvature-scale", "0.1"], "without --law max-curvature or"),
+        (&["--adaptive", "--law", "max-curvature", "--chord-error", "1%"], "without --law chord-error"),
+    ] {
+        let message = fails(2, &[&["sample"], given].concat());
+        assert!(message.contains(needed), "{message}");
+    }
     for (bad, fault) in [
         ("1,1,0", "have a positive size on every axis"),
         ("1e39", "have a diagonal between 1e-12 and 1e12"),
         ("1e-310", "have a diagonal between 1e-12 and 1e12"),
+        ("1,1,1e-100", "be no thinner than 1e-12 of its diagonal"),
         ("1e9,0,0,1000000001,1,1", "lie within 1000 diagonals of the origin"),
     ] {
         let message = fails(2, &["sample", "--formula", "x + y + z", "--box", bad]);
@@ -452,7 +476,8 @@ fn each_invalid_argument_has_its_message() {
     // A name that no parameter can have is reported without a span of the formula.
     let message = fails(2, &["sample", "--formula", "x = a", "--param", "a b=2"]);
     assert!(
-        message.contains("`a b` cannot be the name of a parameter") && !message.contains('^'),
+        message.contains("`a b` cannot be the name of a parameter: a name is a letter, then")
+            && !message.contains('^'),
         "{message}"
     );
     let out = file("mesh.obj");
@@ -580,9 +605,10 @@ fn models_from_points_are_sampled_by_name() {
         (Some("bunny-joined"), Some(200))
     );
     assert_eq!(json["quality"]["euler"], 0);
-    for (more, says) in
-        [(["--formula", "x = 0"], "takes the model as an operand"), (["--param", "a=1"], "has no parameters")]
-    {
+    for (more, says) in [
+        (["--formula", "x = 0"], "takes the model as an operand"),
+        (["--param", "a=1"], "a model from points has none"),
+    ] {
         let message = fails(2, &["sample", "--surface", "bunny", more[0], more[1]]);
         assert!(message.contains(says), "{message}");
     }
@@ -655,7 +681,7 @@ fn points_of_a_file_become_a_surface_that_is_sampled() {
     let message = fails(1, &["sample", "--points", "no such file"]);
     assert!(message.starts_with("error: no such file could not be read: "), "{message}");
     for (more, says) in
-        [(["--surface", "torus"], "cannot be used with"), (["--param", "a=2"], "--param is for formulas")]
+        [(["--surface", "torus"], "cannot be used with"), (["--param", "a=2"], "parameters are for formulas")]
     {
         let message = fails(2, &["sample", "--points", "a.ply", more[0], more[1]]);
         assert!(message.contains(says), "{message}");
@@ -703,77 +729,12 @@ fn a_formula_has_a_box_that_fits_and_a_surface_that_is_cut_is_told_with_what_to_
     let endless = text(&["sample", "--formula", "z = 0"]);
     assert!(endless.contains("continues outside the box from -4,-4,-4 to 4,4,4"), "{endless}");
     assert!(fails(3, &["sample", "--formula", "x^2 = -1"]).contains("±10,000"));
+    // A closed surface of the gallery that is larger than its box, and an endless one.
+    let large = text(&["sample", "--surface", "torus", "--param", "R=1.4"]);
+    assert!(large.contains("cuts the surface") && large.contains("enlarge it with --box"), "{large}");
+    let gyroid = text(&["sample", "--surface", "gyroid"]);
+    assert!(!gyroid.contains("cuts") && !gyroid.contains("continues"), "{gyroid}");
+    let small = text(&["sample", "--formula", "x^2+y^2+z^2=1e-12"]);
+    assert!(small.contains("e-8 in 1"), "{small}");
     assert!(fails(2, &["sample", "--formula", "x2 + y2 = 1"]).contains("in all 2 places: x^2 + y^2 = 1"));
-}
-
-/// The lines of a CSV file without its head, each with the values of two columns.
-fn columns_of(text: &str, names: [&str; 2]) -> Vec<[String; 2]> {
-    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
-    let head: Vec<&str> = lines.next().expect("a head").split(',').collect();
-    let at = names.map(|name| head.iter().position(|column| *column == name).expect(name));
-    lines
-        .map(|line| {
-            let values: Vec<&str> = line.split(',').collect();
-            at.map(|k| values[k].to_owned())
-        })
-        .collect()
-}
-
-#[test]
-fn a_sweep_writes_a_file_for_each_frame_with_particles_that_are_known_by_their_numbers() {
-    let directory = file("frames");
-    let _ = std::fs::remove_dir_all(&directory);
-    let formula = "x^2/q^2 + y^2/0.49 + z^2/0.25 = 1";
-    let path = directory.to_str().expect("a path");
-    let output = run(&[
-        "sweep",
-        "--formula",
-        formula,
-        "--sweep",
-        "q=1..1.2",
-        "--frames",
-        "10",
-        "--count",
-        "800",
-        "--format",
-        "csv",
-        "--out",
-        path,
-    ]);
-    assert!(output.status.success(), "{}", stderr(&output));
-    assert!(stdout(&output).starts_with("11 files in "), "{}", stdout(&output));
-    let frame = |k: usize| {
-        let text = std::fs::read_to_string(directory.join(format!("{k:02}.csv"))).expect("a file");
-        columns_of(&text, ["identity", "level"])
-    };
-    let (first, last) = (frame(0), frame(10));
-    assert!(first.iter().enumerate().all(|(i, [identity, _])| *identity == i.to_string()));
-    let kept = last.iter().filter(|&row| first.contains(row)).count();
-    assert!(kept > 700, "{kept} of {} particles are those of the first frame, with their levels", last.len());
-    // Where no particle can follow another run begins, with other numbers.
-    let output = run(&[
-        "sweep",
-        "--formula",
-        "(x-q)^2 + y^2 + z^2 = 0.25",
-        "--sweep",
-        "q=-3..3",
-        "--frames",
-        "2",
-        "--count",
-        "300",
-        "--format",
-        "csv",
-        "--out",
-        path,
-    ]);
-    let said = "of 3 runs; in frame 1 the second begins: 100 % of the particles, first near (";
-    assert!(stdout(&output).contains(said), "{}{}", stdout(&output), stderr(&output));
-    let identity = |name: &str| {
-        let text = std::fs::read_to_string(directory.join(name)).expect("a file");
-        columns_of(&text, ["identity", "level"])[0][0].clone()
-    };
-    assert_ne!(identity("0.csv"), identity("1.csv"));
-    let message = fails(2, &["sweep", "--formula", "x^2+y^2+z^2=q", "--sweep", "a=1..2", "--out", path]);
-    assert!(message.contains('a'), "{message}");
-    fails(2, &["sweep", "--formula", "x^2+y^2+z^2=q", "--sweep", "q=1", "--out", path]);
 }

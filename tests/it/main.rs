@@ -78,6 +78,8 @@ mod sizing;
 mod smooth;
 mod solid_table;
 mod solids;
+#[cfg(feature = "cli")]
+mod sweeps;
 mod systems;
 mod thickness;
 #[cfg(feature = "cli")]

@@ -208,7 +208,8 @@ fn obj_is_read_with_every_form_of_index() {
         |i: u32| format!("{}/{}", i as i32 - 4, 1),
         |i: u32| format!("{}//", i as i32 - 4),
     ] {
-        let mut text = format!("# by hand\nmtllib a.mtl\no tetrahedron\n{vertices}vt 0 0\ns off\n");
+        let mut text =
+            format!("# by hand, C:\\models\\\nmtllib a.mtl\no tetrahedron\n{vertices}vt 0 0\ns off\n");
         for corners in FACES {
             let [a, b, c] = corners.map(face);
             let _ = writeln!(text, "f {a} {b} \\\n {c}");
@@ -259,6 +260,7 @@ fn xyz_is_read_with_any_separator_comments_and_names() {
         "1;2;3;0;0;1\n4;5;6;0;1;0\n",
         "\u{feff}x,y,z,nx,ny,nz\n1,2,3,0,0,1\n4,5,6,0,1,0\n",
         "nz NX ny label z x y\n1 0 0 7 3 1 2\n0 0 1 8 6 4 5\n",
+        "X [m],Y [m],Z (m),nx,ny,nz\n1,2,3,0,0,1\n4,5,6,0,1,0\n",
     ] {
         let (cloud, warnings) = cloud("a.xyz", text);
         assert_eq!(cloud.position, [DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.0)], "{text}");

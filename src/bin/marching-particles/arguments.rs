@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use marching_particles::export::VERTICES;
 use marching_particles::field::{model, rbf::Pull};
-use marching_particles::math::Bounds;
+use marching_particles::math::{Bounds, shortest_text};
 use marching_particles::pointcloud::job::CENTRES;
 use marching_particles::session::{BoxCell, BoxFaces, BoxMode, FileRecord, Language, SolidSettings};
 use marching_particles::{
@@ -212,8 +212,8 @@ pub(crate) struct SampleArguments {
 
     /// File for the triangle mesh over the particles; its extension is its format: glb (with
     /// normals, generation levels as colours), 3mf (with its unit), stl, obj or ply (with normals).
-    /// Closed surfaces face outward. May be given again; replaces what is there. Unless --method or
-    /// --relax is given, the method is refined, whose triangles are better
+    /// Closed surfaces face outward. May be given again; replaces what is there. The method is
+    /// refined, whose triangles are better, unless --method, --relax or a file of --like chooses
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) mesh: Vec<PathBuf>,
 
@@ -461,11 +461,11 @@ fn porosity(text: &str) -> Result<f64, String> {
     Err("a porosity is a share between 0 and 1, such as 70% or 0.7".to_owned())
 }
 
-/// A positive factor.
+/// A positive factor, with which every box stays within single precision.
 fn scale(text: &str) -> Result<f64, String> {
     match number(text)? {
-        scale if scale > 0.0 => Ok(scale),
-        _ => Err("it must be positive".to_owned()),
+        scale if (1e-12..=1e12).contains(&scale) => Ok(scale),
+        scale => Err(format!("{} is not between 1e-12 and 1e12", shortest_text(scale))),
     }
 }
 
@@ -498,7 +498,9 @@ fn choice_of_box(text: &str) -> Result<BoxChoice, String> {
 }
 
 fn bounds(text: &str) -> Result<Bounds, String> {
-    let numbers = list(text).into_iter().map(number).collect::<Result<Vec<f64>, String>>()?;
+    let numbers = list(text).into_iter().map(number).collect::<Result<Vec<f64>, String>>();
+    let numbers = numbers
+        .map_err(|error| format!("a box takes one, three or six numbers, separated by commas: {error}"))?;
     let bounds = match numbers[..] {
         [half] => Bounds::cube(half),
         [x, y, z] => Bounds::symmetric([x, y, z]),

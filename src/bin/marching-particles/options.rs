@@ -1,5 +1,6 @@
 //! The options that say how a surface is sampled: one for each entry of the table of settings.
 
+use crate::failure::Failure;
 use clap::builder::PossibleValuesParser;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
@@ -15,7 +16,11 @@ use std::ops::RangeInclusive;
 /// The option that asks for sizes that follow the curvature, and the setting that it chooses a
 /// value of.
 const ADAPTIVE: &str = "adaptive";
+const UNIFORM: &str = "uniform";
 const SAMPLING: &str = "sampling";
+/// How the sizes follow the curvature.
+const LAW: &str = "radius_law";
+const BY_CHORD: &str = "chord_error";
 /// The option that asks for a number of particles, by which the measure of the size is chosen too.
 const COUNT: &str = "count";
 const SIZE_MODE: &str = "size_mode";
@@ -113,6 +118,8 @@ fn length(text: &str) -> Result<Length, String> {
 pub(crate) struct SamplingOptions {
     values: Map<String, Json>,
     lengths: Vec<(&'static str, Length)>,
+    /// The settings that were given on the command line.
+    given: Vec<Setting>,
 }
 
 impl SamplingOptions {
@@ -138,10 +145,10 @@ impl SamplingOptions {
 
     /// Takes from settings what was not asked for.
     pub(crate) fn complete(&mut self, settings: &Settings) {
-        // Who asks for a radius does not ask for a number of particles.
-        let has_radius = self.lengths.iter().any(|(given, _)| *given == RADIUS);
-        if has_radius && !self.values.contains_key(SIZE_MODE) {
-            self.values.insert(SIZE_MODE.to_owned(), "radius".into());
+        // Who asks for a radius asks neither for a number of particles nor for many sizes.
+        if self.lengths.iter().any(|(given, _)| *given == RADIUS) {
+            self.values.entry(SIZE_MODE).or_insert("radius".into());
+            self.values.entry(SAMPLING).or_insert(UNIFORM.into());
         }
         // There is room for what is asked for.
         let is_counted = self.values.contains_key(COUNT);
@@ -152,6 +159,28 @@ impl SamplingOptions {
                 self.values.entry(name).or_insert(value);
             }
         }
+    }
+
+    /// Checks that every setting that was given has an effect beside the others.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        let chosen =
+            |name, default: &'static str| self.values.get(name).and_then(Json::as_str).unwrap_or(default);
+        let is_adaptive = chosen(SAMPLING, UNIFORM) == ADAPTIVE;
+        let law = chosen(LAW, BY_CHORD);
+        for setting in &self.given {
+            let (option, by_chord) = (setting.option(), setting.needs(LAW, BY_CHORD));
+            let needed = if setting.needs(SAMPLING, ADAPTIVE) && !is_adaptive {
+                "--adaptive"
+            } else if by_chord && law != BY_CHORD {
+                "--law chord-error"
+            } else if setting.when.iter().any(|other| other.name == LAW) && !by_chord && law == BY_CHORD {
+                "--law max-curvature or --law sum-of-curvatures"
+            } else {
+                continue;
+            };
+            return Err(Failure::Usage(format!("--{option} has no effect without {needed}")));
+        }
+        Ok(())
     }
 
     /// Takes the refined method, unless the options say which method places the particles.
@@ -202,6 +231,7 @@ impl FromArgMatches for SamplingOptions {
             if !is_of_run(&setting) || matches.value_source(name) != Some(ValueSource::CommandLine) {
                 continue;
             }
+            self.given.push(setting);
             let value: Json = match setting.kind {
                 SettingKind::Choice if name == SAMPLING => ADAPTIVE.into(),
                 SettingKind::Choice => {
@@ -238,10 +268,7 @@ fn option(setting: &Setting) -> Arg {
     let needs_adaptive = setting.needs(SAMPLING, ADAPTIVE);
     let heading = if needs_adaptive || setting.name == SAMPLING { "Adaptive sampling" } else { "Sampling" };
     let mut arg = Arg::new(setting.name).long(setting.option()).help(help(setting)).help_heading(heading);
-    if needs_adaptive {
-        arg = arg.requires(SAMPLING);
-    }
-    if setting.needs(SAMPLING, "uniform") {
+    if setting.needs(SAMPLING, UNIFORM) {
         arg = arg.conflicts_with(SAMPLING);
     }
     if setting.needs(SIZE_MODE, "radius") {

@@ -10,12 +10,10 @@ use tempfile::{Builder, NamedTempFile};
 pub(crate) const STANDARD: &str = "-";
 
 /// A file that is written beside its path and takes the place of what is there when it is complete.
-/// One that is dropped before is removed, and what is there stays. Standard output has nothing
-/// beside it.
+/// Until then what is there stays. Standard output has nothing beside it.
 #[derive(Debug)]
 pub(crate) struct OutputFile {
     path: PathBuf,
-    beside: Option<NamedTempFile>,
 }
 
 impl OutputFile {
@@ -42,33 +40,41 @@ impl OutputFile {
 
     fn open(path: &Path) -> io::Result<Self> {
         if path == Path::new(STANDARD) {
-            return Ok(Self { path: path.to_owned(), beside: None });
+            return Ok(Self { path: path.to_owned() });
         }
-        let path = resolved(path)?;
-        let mut builder = Builder::new();
-        builder.prefix(".marching-particles-");
-        let there = fs::metadata(&path).ok();
-        if there.as_ref().is_some_and(fs::Metadata::is_dir) {
+        let output = Self { path: resolved(path)? };
+        if output.path.is_dir() {
             return Err(io::ErrorKind::IsADirectory.into());
         }
+        // Whether the directory takes files is known before a long run. The file itself is made
+        // after it: a run that is interrupted leaves nothing there.
+        output.file_beside()?;
+        Ok(output)
+    }
+
+    /// An empty file in the directory of the path.
+    fn file_beside(&self) -> io::Result<NamedTempFile> {
+        let mut builder = Builder::new();
+        builder.prefix(".marching-particles-");
         #[cfg(unix)]
-        builder.permissions(there.map_or_else(new_file, |there| there.permissions()));
-        let directory = path.parent().unwrap_or(Path::new("."));
-        Ok(Self { beside: Some(builder.tempfile_in(directory)?), path })
+        builder
+            .permissions(fs::metadata(&self.path).map_or_else(|_| new_file(), |there| there.permissions()));
+        builder.tempfile_in(self.path.parent().unwrap_or(Path::new(".")))
     }
 
     /// Writes the file and puts it in its place.
     pub(crate) fn write(self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
-        let Self { path, beside } = self;
-        let Some(beside) = beside else {
+        if self.path == Path::new(STANDARD) {
             let mut out = BufWriter::new(io::stdout().lock());
             return Ok(write(&mut out).and_then(|()| out.flush())?);
+        }
+        let written = || {
+            let mut out = BufWriter::new(self.file_beside()?);
+            write(&mut out)?;
+            let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+            file.persist(&self.path).map(drop).map_err(|error| error.error)
         };
-        let mut out = BufWriter::new(beside);
-        let written = write(&mut out)
-            .and_then(|()| out.into_inner().map_err(io::IntoInnerError::into_error))
-            .and_then(|beside| beside.persist(&path).map_err(|error| error.error));
-        written.map(drop).map_err(|error| Failure::File { path, error })
+        written().map_err(|error| Failure::File { path: self.path.clone(), error })
     }
 }
 

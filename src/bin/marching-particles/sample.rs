@@ -62,6 +62,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         let record = read_record(path, &arguments.surface)?;
         arguments.complete(record);
     }
+    arguments.sampling.check()?;
     if !arguments.mesh.is_empty() || arguments.porosity.is_some() {
         arguments.sampling.prefer_refined();
     }
@@ -288,7 +289,7 @@ fn fit_points(arguments: &SurfaceArguments, quiet: bool) -> Result<Option<Fit>, 
             && !arguments.parameters.is_empty() =>
         {
             return Err(Failure::Usage(
-                "--param is for formulas: a model from points has no parameters, but as an operand of one \
+                "parameters are for formulas: a model from points has none, but as an operand of one \
                  (--formula \"max(model, z - h)\")"
                     .into(),
             ));

@@ -36,10 +36,10 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     }
     writeln!(
         out,
-        "{} particles of radius {:.6} in {} levels",
-        grouped(report.count),
-        report.sizes.radius,
-        report.growth.levels
+        "{} of radius {} in {}",
+        counted(report.count, "particle", "particles"),
+        significant(report.sizes.radius),
+        counted(report.growth.levels as usize, "level", "levels")
     )?;
     let s = &outcome.seconds;
     if outcome.model.is_some() {
@@ -83,7 +83,8 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
             }
             Cut::Fixed | Cut::Outgrown => writeln!(
                 out,
-                "the box from {min} to {max} cuts the surface, at {of}: enlarge it, or fit it with --box fit"
+                "the box from {min} to {max} cuts the surface, at {of}: enlarge it{}",
+                if outcome.surface.is_some() { " with --box" } else { ", or fit it with --box fit" }
             )?,
         }
     }
@@ -175,6 +176,8 @@ fn figure(row: &ReportRow, value: Option<&Value>) -> String {
     let (value, unit) = match row.unit {
         "%" => (value * 100.0, " %"),
         "°" => (value, "°"),
+        // In the units of the formula, which may be of any size.
+        "units²" | "units³" => return significant(value),
         _ => (value, ""),
     };
     format!("{value:.*}{unit}", usize::from(row.digits))

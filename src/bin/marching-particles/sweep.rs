@@ -1,12 +1,12 @@
 //! Subcommand `sweep`: a surface that moves, as numbered files of the particles that follow it.
 
 use crate::arguments::{Sweep, SweepArguments};
-use crate::failure::Failure;
+use crate::failure::{Failure, LIMIT};
 use crate::output::OutputFile;
 use crate::sample::{bar, choose, fit};
 use marching_particles::quality::Measurements;
 use marching_particles::session::{FieldRequest, Session};
-use marching_particles::{Bounds, FollowError, export};
+use marching_particles::{Bounds, FollowError, Particles, StopReason, export};
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -20,6 +20,7 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
     let (extension, format) = arguments.format;
     let in_directory = |error| Failure::File { path: arguments.out.clone(), error };
     std::fs::create_dir_all(&arguments.out).map_err(in_directory)?;
+    arguments.sampling.check()?;
     let settings_in = |bounds: &Bounds| arguments.sampling.settings(bounds);
     let mut session = Session::without_surface();
     // The parameter has to be there.
@@ -48,31 +49,55 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
             counted.begin_anew(frame, error);
         }
         let run = &mut session.run;
-        while run.step(u32::MAX).stop_reason.is_none() {}
+        let stop_reason = loop {
+            if let Some(reason) = run.step(u32::MAX).stop_reason {
+                break reason;
+            }
+        };
         let mut particles = run.particles().clone();
-        let count = particles.len();
-        counted.number(&mut particles.identity, count);
+        counted.number(&mut particles);
         let path = arguments.out.join(format!("{frame:0digits$}.{extension}"));
         for output in OutputFile::beside(&[&path])? {
             output.write(|out| export::write(&format.into(), &particles, &Measurements::default(), out))?;
         }
-        counted.note(run.count());
+        counted.note(run.count(), stop_reason);
         bar.set_position(u64::from(frame) + 1);
     }
     bar.finish_and_clear();
-    let Counted { least, most, next, anew, .. } = counted;
+    let Counted { least, most, next, anew, empty, capped, .. } = counted;
+    if most == 0 {
+        return Err(Failure::Nothing("there is no surface in any frame".to_owned()));
+    }
     let again = match anew.as_slice() {
+        // The reason says what a program has to do.
+        [_, (frame, FollowError::NotCovered), ..] => {
+            let why = "the frame before has too few particles, or was stopped";
+            format!(", of {} runs; in frame {frame} the second begins: {why}", anew.len())
+        }
         [_, (frame, error), ..] => {
             format!(", of {} runs; in frame {frame} the second begins: {error}", anew.len())
         }
         _ => String::new(),
     };
-    if arguments.quiet {
-        return Ok(ExitCode::SUCCESS);
+    if !arguments.quiet {
+        let mut out = std::io::stdout().lock();
+        let directory = arguments.out.display();
+        writeln!(
+            out,
+            "{} files in {directory}: {least} to {most} particles, {next} in all{again}",
+            frames + 1
+        )?;
     }
-    let mut out = std::io::stdout().lock();
-    let directory = arguments.out.display();
-    writeln!(out, "{} files in {directory}: {least} to {most} particles, {next} in all{again}", frames + 1)?;
+    if empty > 0 {
+        eprintln!("warning: there is no surface in {empty} of {} frames", frames + 1);
+    }
+    if capped > 0 {
+        eprintln!(
+            "warning: {capped} of {} frames stopped at the limit of particles: choose larger ones, or raise --max-particles",
+            frames + 1
+        );
+        return Ok(ExitCode::from(LIMIT));
+    }
     Ok(ExitCode::SUCCESS)
 }
 
@@ -87,6 +112,10 @@ struct Counted {
     next: u32,
     /// The frames in which runs begin, and why the particles before could not follow.
     anew: Vec<(u32, FollowError)>,
+    /// Frames without particles.
+    empty: u32,
+    /// Frames that stopped at the limit of particles.
+    capped: u32,
 }
 
 impl Counted {
@@ -97,18 +126,29 @@ impl Counted {
     }
 
     /// Numbers the particles of a frame, so that no two of all runs have the same.
-    fn number(&mut self, identity: &mut Vec<u32>, particles: usize) {
-        if identity.is_empty() {
-            identity.extend(0..particles as u32);
+    fn number(&mut self, particles: &mut Particles) {
+        if particles.identity.is_empty() {
+            let mut numbers: Vec<u32> = Vec::with_capacity(particles.len());
+            let mut next = 0;
+            for row in 0..particles.len() {
+                // One on an edge has a row for each patch.
+                let first = particles.first_row(row);
+                let number = if first == row { next } else { numbers[first] };
+                next = next.max(number + 1);
+                numbers.push(number);
+            }
+            particles.identity = numbers;
         }
-        for number in identity {
+        for number in &mut particles.identity {
             *number += self.before;
             self.next = self.next.max(*number + 1);
         }
     }
 
-    fn note(&mut self, count: usize) {
+    fn note(&mut self, count: usize, stop_reason: StopReason) {
         (self.least, self.most) = (self.least.min(count), self.most.max(count));
+        self.empty += u32::from(count == 0);
+        self.capped += u32::from(stop_reason == StopReason::Cap);
     }
 }
 

@@ -597,7 +597,9 @@ fn check_declared(declared: &[Parameter]) -> Result<(), FormulaError> {
     let bad = |message: String| Err(FormulaError::new(FormulaErrorKind::BadParameter, 0..0, message));
     for (index, Parameter { name, value, min, max, step, .. }) in declared.iter().enumerate() {
         if !lex::is_name(name) {
-            return bad(format!("`{name}` cannot be the name of a parameter: a letter comes first"));
+            return bad(format!(
+                "`{name}` cannot be the name of a parameter: a name is a letter, then letters, digits and _"
+            ));
         }
         if spelling::is_known(name) || matches!(&**name, "and" | "or" | "not") {
             return bad(format!("`{name}` has a meaning of its own and cannot be a parameter"));

@@ -14,8 +14,8 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
     let mut has_faces = false;
     while let Some(line) = input.line() {
         let mut line = Cow::Borrowed(line);
-        // A backslash continues the statement on the next line.
-        while line.ends_with(b"\\") {
+        // A backslash continues the statement on the next line, but no comment.
+        while line.ends_with(b"\\") && !line.contains(&b'#') {
             let line = line.to_mut();
             line.pop();
             line.push(b' ');

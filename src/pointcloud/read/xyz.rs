@@ -30,10 +30,16 @@ const LOOKED_AT: usize = 11;
 /// because a line may have as many columns as half a file has bytes.
 type XyzColumns = Vec<Option<u8>>;
 
+/// The name of a column, which its unit may follow, as in `X [m]`.
+fn without_unit(word: &[u8]) -> &[u8] {
+    let end = word.iter().position(|byte| matches!(byte, b'[' | b'(')).unwrap_or(word.len());
+    word[..end].trim_ascii()
+}
+
 /// Columns by the words of a header; `None` if they do not name x, y and z.
 fn named(words: &[&[u8]]) -> Option<XyzColumns> {
     let found: [Option<usize>; 6] =
-        core::array::from_fn(|k| words.iter().position(|word| component(word) == Some(k)));
+        core::array::from_fn(|k| words.iter().position(|word| component(without_unit(word)) == Some(k)));
     let used = if found.contains(&None) { 3 } else { 6 };
     let mut columns = vec![None; words.len()];
     for (component, column) in (0..).zip(found).take(used) {
