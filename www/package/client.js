@@ -179,7 +179,7 @@ class Sample {
 
   /**
    * The particles on the surface of other parameters. They leave this sample, which keeps its
-   * columns.
+   * columns, and are freed where they cannot move.
    * @param {Record<string, number>} params @param {Pick<Options, 'signal' | 'onProgress'>} [options]
    */
   async moved(params, options = {}) {
@@ -187,7 +187,7 @@ class Sample {
     const { formula, cloud } = this.#how.request;
     if (formula === undefined || cloud)
       throw new InputError('moved(): it is for a formula by itself, not for a function or points. Sample again.');
-    const parameters = { ...this.params, ...paramsOf(params) };
+    const parameters = { ...this.params, ...paramsOf(params, Object.keys(this.params)) };
     const how = { ...this.#how, ...checkedCalls(options) };
     if (how.signal?.aborted) throw how.signal.reason;
     this.#isThere = false;
@@ -198,7 +198,7 @@ class Sample {
     return new Sample(this.#client, await this.#client.ask(question, how), this.#how);
   }
 
-  /** Frees the memory of the worker. The columns stay. */
+  /** Frees the memory of the worker once what was asked before is done. The columns stay. */
   dispose() {
     if (this.#isThere && this.#line === this.#client.line) this.#line?.post({ type: 'free', id: this.#id });
     this.#isThere = false;

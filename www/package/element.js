@@ -3,6 +3,7 @@
  *
  * @module
  */
+import { homeView } from '../src/engine/share/view.js';
 import { InputError } from './errors.js';
 import { createView } from './view.js';
 
@@ -19,7 +20,7 @@ const SETTINGS = {
   seed: (value) => ({ seed: numberOf('seed', value) }),
   adaptive: () => ({ sampling: 'adaptive' }),
 };
-const VIEW = ['colour', 'draw', 'theme'];
+const VIEW = /** @type {const} */ (['colour', 'draw', 'theme']);
 const TEXTS = ['formula', 'surface', 'params', ...VIEW, ...Object.keys(SETTINGS).filter((name) => name !== 'adaptive')];
 const FLAGS = ['adaptive', 'controls'];
 /** Time without a change of `params` after which a motion is over. */
@@ -66,10 +67,14 @@ export class MarchingParticles extends Base {
   #host;
   /** @type {View | null} */
   #view = null;
+  /** Whether it has come into sight since it is in the page. */
+  #isSeen = false;
   #isDue = false;
-  /** The attributes that the element has set itself. @type {Record<string, string>} */
+  /** The attributes that the element has set itself. @type {Record<string, string | null>} */
   #given = {};
   #visible;
+  /** The parameters that the picture was given last. @type {Record<string, number>} */
+  #params = {};
   /** The timer that ends a motion. @type {ReturnType<typeof setTimeout> | undefined} */
   #still;
 
@@ -82,7 +87,10 @@ export class MarchingParticles extends Base {
     root.adoptedStyleSheets = [sheet];
     this.#host = root.appendChild(document.createElement('div'));
     this.#visible = new IntersectionObserver((entries) => {
-      if (entries.some(({ isIntersecting }) => isIntersecting)) this.#open();
+      if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
+      this.#visible.disconnect();
+      this.#isSeen = true;
+      this.#show();
     });
   }
 
@@ -109,6 +117,7 @@ export class MarchingParticles extends Base {
 
   disconnectedCallback() {
     this.#visible.disconnect();
+    this.#isSeen = false;
     clearTimeout(this.#still);
     this.#view?.destroy();
     this.#view = null;
@@ -118,8 +127,8 @@ export class MarchingParticles extends Base {
   /** @param {string} name @param {string | null} _before @param {string | null} value */
   attributeChangedCallback(name, _before, value) {
     this.#describe();
-    if (name === 'controls' || !this.#view || this.#isDue) return;
-    if (name === 'params' && value !== null) {
+    if (name === 'controls' || !this.#isSeen || this.#isDue) return;
+    if (name === 'params' && value !== null && this.#view) {
       this.#try(() => this.#move(paramsOf(value)));
       return;
     }
@@ -127,7 +136,7 @@ export class MarchingParticles extends Base {
     this.#isDue = true;
     queueMicrotask(() => {
       this.#isDue = false;
-      this.#try(() => this.#view?.set(this.#state()));
+      this.#show();
     });
   }
 
@@ -140,7 +149,7 @@ export class MarchingParticles extends Base {
     const text = this.getAttribute('formula') ?? this.getAttribute('surface');
     const controls = this.hasAttribute('controls');
     this.#give('role', controls ? 'group' : 'img');
-    if (text && !this.hasAttribute('aria-labelledby')) this.#give('aria-label', text);
+    this.#give('aria-label', this.hasAttribute('aria-labelledby') ? null : text || null);
     if (!controls) {
       for (const name of ['role', 'tabindex', 'aria-label']) this.#host.removeAttribute(name);
       return;
@@ -151,15 +160,16 @@ export class MarchingParticles extends Base {
   }
 
   /**
-   * Sets an attribute that the page has left to the element.
+   * Sets an attribute that the page has left to the element, or takes it back.
    * @param {string} name
-   * @param {string} value
+   * @param {string | null} value
    */
   #give(name, value) {
     const present = this.getAttribute(name);
     if (present !== null && present !== this.#given[name]) return;
     this.#given[name] = value;
-    if (present !== value) this.setAttribute(name, value);
+    if (value === null) this.removeAttribute(name);
+    else if (present !== value) this.setAttribute(name, value);
   }
 
   /**
@@ -167,6 +177,9 @@ export class MarchingParticles extends Base {
    * @param {Record<string, number>} params
    */
   #move(params) {
+    // A slider can take no parameter back.
+    if (Object.keys(this.#params).some((name) => !Object.hasOwn(params, name))) return this.#show();
+    this.#params = params;
     const give = (/** @type {boolean} */ live) => {
       for (const [name, value] of Object.entries(params)) this.#view?.setParameter(name, value, { live });
     };
@@ -176,10 +189,18 @@ export class MarchingParticles extends Base {
     return undefined;
   }
 
-  #open() {
-    this.#visible.disconnect();
-    this.#try(() => {
-      this.#view = createView(this.#host, this.#state());
+  /** Draws what the attributes say. After what was wrong with one, the next change tries again. */
+  #show() {
+    if (!this.#isSeen) return undefined;
+    return this.#try(() => {
+      const state = this.#state();
+      this.#params = state.parameters;
+      // The end of a motion would bring back the parameters before.
+      clearTimeout(this.#still);
+      if (this.#view) return this.#view.set(state);
+      this.#view = createView(this.#host, state);
+      // A picture takes the focus, which it is to have only with `controls`.
+      this.#describe();
       for (const name of /** @type {const} */ (['progress', 'report', 'error']))
         this.#view.on(name, (/** @type {unknown} */ detail) => this.#tell(name, detail));
       return undefined;
@@ -204,25 +225,22 @@ export class MarchingParticles extends Base {
     }
   }
 
-  /** What the attributes say. @returns {ViewState} */
+  /** What the attributes say. What none speaks of is as if none ever had. */
   #state() {
-    /** @type {ViewState & {settings: object, view: Record<string, string>}} */
-    const state = { settings: {}, view: {} };
-    const params = this.getAttribute('params');
-    if (params !== null) state.parameters = paramsOf(params);
-    for (const name of /** @type {const} */ (['surface', 'formula'])) {
-      const value = this.getAttribute(name);
-      if (value !== null) state[name] = value;
-    }
+    /** @type {ViewState & {parameters: Record<string, number>, settings: object}} */
+    const state = {
+      surface: this.getAttribute('surface'),
+      formula: this.getAttribute('formula') ?? undefined,
+      parameters: paramsOf(this.getAttribute('params') ?? ''),
+      settings: {},
+    };
     for (const [name, settingsOf] of Object.entries(SETTINGS)) {
       const value = this.getAttribute(name);
       if (value !== null) Object.assign(state.settings, settingsOf(value));
     }
-    for (const name of VIEW) {
-      const value = this.getAttribute(name);
-      if (value !== null) state.view[name] = value;
-    }
-    return state;
+    const home = homeView();
+    const view = Object.fromEntries(VIEW.map((name) => [name, this.getAttribute(name) ?? home[name]]));
+    return { ...state, view };
   }
 }
 

@@ -99,10 +99,14 @@ export interface Sample {
   /** the mesh as a file */
   toFile(format: Format): Promise<Uint8Array<ArrayBuffer>>;
   /**
-   * the particles on the surface of other parameters; they leave this sample, whose columns stay
+   * the particles on the surface of other parameters; they leave this sample, whose columns stay,
+   * and are gone where there is no such surface or the signal ends it
    */
   moved(params: Record<string, number>, options?: Pick<Options, 'signal' | 'onProgress'>): Promise<Sample>;
-  /** frees the memory of the worker; the columns stay */
+  /**
+   * frees the memory of the worker, once the meshes and files that were asked for are made; the
+   * columns stay
+   */
   dispose(): void;
   [Symbol.dispose](): void;
 }

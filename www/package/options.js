@@ -25,11 +25,17 @@ function choice(name, value, choices) {
   throw new InputError(`${name}: one of ${choices.join(', ')}, not ${shown(value)}.`);
 }
 
-/** Values of parameters by name. @param {unknown} params */
-export function paramsOf(params) {
+/**
+ * Values of parameters by name.
+ * @param {unknown} params @param {string[]} [known]  the names in the formula, where it has been read
+ */
+export function paramsOf(params, known) {
   if (typeof params !== 'object' || params === null || Array.isArray(params))
     throw new InputError(`params: an object with a number for each name, not ${shown(params)}.`);
   for (const [name, value] of Object.entries(params)) number(`params.${name}`, value, () => true, 'a number');
+  const unknown = known && Object.keys(params).find((name) => !known.includes(name));
+  if (known && unknown !== undefined)
+    throw new InputError(`params.${unknown}: there is no such parameter. There are ${known.join(', ') || 'none'}.`);
   return /** @type {Record<string, number>} */ (params);
 }
 

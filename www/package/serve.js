@@ -55,6 +55,8 @@ export function serve({ post, load }) {
   const cores = new Map();
   /** The functions of the program that cores sample. @type {Map<Core, Program>} */
   const programs = new Map();
+  /** The end of what each core was asked last. @type {WeakMap<Core, Promise<void>>} */
+  const turns = new WeakMap();
   /** Requests under way, and whether each is to stop. @type {Map<number, boolean>} */
   const asked = new Map();
 
@@ -75,6 +77,19 @@ export function serve({ post, load }) {
   function free(core) {
     programs.delete(core);
     core.free();
+  }
+
+  /**
+   * Does work once the core has done what it was asked before, whose slices find nothing changed or
+   * freed between them.
+   * @template T
+   * @param {Core} core @param {() => T | Promise<T>} work @returns {Promise<T>}
+   */
+  function inTurn(core, work) {
+    const done = (turns.get(core) ?? Promise.resolve()).then(work);
+    const end = () => {};
+    turns.set(core, done.then(end, end));
+    return done;
   }
 
   /**
@@ -165,28 +180,28 @@ export function serve({ post, load }) {
     return columnsOf(core, { report, bounds: box.bounds, parameters: box.parameters });
   }
 
-  /** @param {Asked} message @returns {Promise<[object, ArrayBufferLike[]]>} */
-  async function answer(message) {
-    if (message.type === 'sample') {
-      const core = Core.without_surface();
-      core.limit_memory(MEMORY_MB);
-      try {
-        const result = await made(message, core);
-        cores.set(message.id, core);
-        return result;
-      } catch (error) {
-        if (error instanceof Refusal) free(core);
-        throw error;
-      }
-    }
-    const core = cores.get(message.of);
-    if (!core) throw new Refusal('DisposedError', 'The particles of this sample are gone.');
-    if (message.type === 'moved') {
-      // The core goes on with the sample that is made of this one.
-      cores.delete(message.of);
+  /**
+   * Makes a sample, and keeps its core for it.
+   * @param {Extract<Asked, {type: 'sample' | 'moved'}>} message @param {Core} core
+   */
+  async function kept(message, core) {
+    try {
+      const result = await made(message, core);
       cores.set(message.id, core);
-      return made(message, core);
+      return result;
+    } catch (error) {
+      // No sample has this core, and after any other error it cannot be trusted to free itself.
+      if (error instanceof Refusal) free(core);
+      throw error;
     }
+  }
+
+  /**
+   * Joins the particles to a mesh, for the program or for a file.
+   * @param {Extract<Asked, {type: 'mesh' | 'file'}>} message @param {Core} core
+   * @returns {Promise<[object, ArrayBufferLike[]]>}
+   */
+  async function joined(message, core) {
     const of = { id: message.id, core };
     const about = await inSlices(of, (budget) => core.join(budget));
     if (message.type === 'mesh') {
@@ -200,6 +215,26 @@ export function serve({ post, load }) {
     return [{ bytes }, [bytes.buffer]];
   }
 
+  /**
+   * Finds the core of a sample before it waits for anything, so that a message that comes later
+   * does not overtake this one.
+   * @param {Asked} message @returns {Promise<[object, ArrayBufferLike[]]>}
+   */
+  async function answer(message) {
+    if (message.type === 'sample') {
+      await loaded('core', loadCore);
+      const core = Core.without_surface();
+      core.limit_memory(MEMORY_MB);
+      return kept(message, core);
+    }
+    const core = cores.get(message.of);
+    if (!core) throw new Refusal('DisposedError', 'The particles of this sample are gone.');
+    if (message.type !== 'moved') return inTurn(core, () => joined(message, core));
+    // The core goes on with the sample that is made of this one.
+    cores.delete(message.of);
+    return inTurn(core, () => kept(message, core));
+  }
+
   return async (message) => {
     if (message.type === 'stop') {
       if (asked.has(message.id)) asked.set(message.id, true);
@@ -207,14 +242,13 @@ export function serve({ post, load }) {
     }
     if (message.type === 'free') {
       const core = cores.get(message.id);
-      if (core) free(core);
       cores.delete(message.id);
+      if (core) await inTurn(core, () => free(core));
       return;
     }
     const { id } = message;
     asked.set(id, false);
     try {
-      await loaded('core', loadCore);
       const [value, transfer] = await answer(message);
       post({ id, value }, transfer);
     } catch (error) {

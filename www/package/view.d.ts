@@ -1,11 +1,11 @@
 import type { Bounds, Format, Progress, Report } from './index.js';
 
-export { FormulaError, InputError, NoSurfaceError, WorkerError } from './index.js';
+export { DisposedError, FormulaError, InputError, NoSurfaceError, WorkerError } from './index.js';
 
 /** What is sampled and how it is drawn; what is left out stays as it is. */
 export interface ViewState {
-  /** a surface of the gallery, such as `gyroid`, or a model from points */
-  surface?: string;
+  /** a surface of the gallery, such as `gyroid`, or a model from points; null: the one without a choice */
+  surface?: string | null;
   formula?: string;
   parameters?: Record<string, number>;
   /** null: a box that fits the surface */
@@ -34,13 +34,19 @@ export interface Particles {
   levels: Uint32Array;
 }
 export interface View {
-  /** the report on the first surface, once its picture is complete; rejected as `set` is */
+  /**
+   * the report on the first surface, once its picture is complete; rejected as `set` is, but what is not valid has
+   * its default
+   */
   readonly ready: Promise<Report | null>;
   /** a copy of the whole state */
   readonly state: ViewState;
   /** the last report; null while particles are placed */
   readonly report: Report | null;
-  /** changes a part of the state; rejected with the error of a formula, or if there is no surface */
+  /**
+   * changes a part of the state; rejected with the error of a formula, if there is no surface, and, with nothing
+   * changed, by an `InputError` that names what is not valid
+   */
   set(patch: ViewState): Promise<Report | null>;
   /** moves a slider: particles follow the surface while it is `live`; call once more without it at the end */
   setParameter(name: string, value: number, how?: { live?: boolean }): void;
@@ -59,7 +65,7 @@ export interface View {
   toFile(format: Format): Promise<Uint8Array<ArrayBuffer>>;
   /** the state as the fragment of a link to the page of Marching Particles */
   link(): Promise<string>;
-  /** frees the workers, the graphics device and the canvas */
+  /** frees the workers, the graphics device and the canvas; what is waited for is rejected by a `DisposedError` */
   destroy(): void;
 }
 

@@ -3,15 +3,17 @@
  *
  * @module
  */
-import { effect } from '@preact/signals-core';
+import { effect, signal } from '@preact/signals-core';
 import { createEngine } from '../src/engine/index.js';
 import { atRest, once, settled } from '../src/engine/rest.js';
-import { FormulaError, InputError, NoSurfaceError, WorkerError } from './errors.js';
+import { defaultState, mergeState } from '../src/engine/share/state.js';
+import { description } from '../src/engine/store.js';
+import { DisposedError, FormulaError, InputError, NoSurfaceError, WorkerError } from './errors.js';
 
-export { FormulaError, InputError, NoSurfaceError, WorkerError } from './errors.js';
+export { DisposedError, FormulaError, InputError, NoSurfaceError, WorkerError } from './errors.js';
 
 /**
- * @import { Engine } from '../src/engine/types.js'
+ * @import { Engine, ReadonlySignal, Signal, State } from '../src/engine/types.js'
  * @import { Listeners, View, ViewState } from './view.js'
  */
 
@@ -30,7 +32,9 @@ function faultOf(engine) {
 
 /**
  * What the events tell, whenever a signal that they read has another value; null tells nothing.
- * @type {{[name in keyof Listeners]: (engine: Engine) => Parameters<Listeners[name]>[0] | null}}
+ * `unread`: the error of the first state.
+ * @type {{[name in keyof Listeners]:
+ *   (engine: Engine, unread: ReadonlySignal<Error | null>) => Parameters<Listeners[name]>[0] | null}}
  */
 const EVENTS = {
   progress(engine) {
@@ -38,8 +42,29 @@ const EVENTS = {
     return engine.busy.value ? { phase, particles, fraction } : null;
   },
   report: (engine) => (engine.busy.value ? null : engine.report.value),
-  error: (engine) => (engine.busy.value ? null : faultOf(engine)),
+  error: (engine, unread) => unread.value ?? (engine.busy.value ? null : faultOf(engine)),
 };
+
+/** Returns what has a promise rejected at the end of a view, which else would never settle, and what ends it. */
+function lifetime() {
+  /** Each is forgotten with its promise, of which a view may have many. @type {Set<(error: Error) => void>} */
+  const waiting = new Set();
+  let isOver = false;
+  const gone = () => new DisposedError('The view was destroyed.');
+  return {
+    /** @template T @param {Promise<T>} promise @returns {Promise<T>} */
+    alive: (promise) =>
+      new Promise((resolve, reject) => {
+        if (isOver) reject(gone());
+        waiting.add(reject);
+        promise.then(resolve, reject).finally(() => waiting.delete(reject));
+      }),
+    end() {
+      isOver = true;
+      for (const reject of waiting) reject(gone());
+    },
+  };
+}
 
 /**
  * Draws a surface in an element, which it fills, and samples it.
@@ -49,17 +74,33 @@ const EVENTS = {
 export function createView(host, state = {}) {
   if (!(host instanceof HTMLElement)) throw new InputError('createView(host): an element of the page.');
   if (getComputedStyle(host).position === 'static') host.style.position = 'relative';
-  const engine = createEngine({ host, state: { ...state } });
+  const first = { ...state };
+  const engine = createEngine({ host, state: first });
+  const { alive, end } = lifetime();
+  /** The error of a first state that is not valid, until another one is set. @type {Signal<Error | null>} */
+  const unread = signal(null);
+  // What is asked for before the engine has the first state would be overwritten by it.
+  const begun = once(engine, () => engine.state.value.surface !== '');
+
+  /** What is not valid of a change of a state. @param {State} now @param {ViewState} change */
+  const refused = (now, change) => mergeState(now, { ...change }, description(engine), false).reset.join(', ');
 
   /** @param {() => void} act */
   async function after(act) {
-    act();
-    const report = await settled(engine);
+    await alive(begun);
+    // It begins without a core, too, if no sampler comes; then there is nothing to act on.
+    if (engine.description.value) act();
+    const report = await alive(settled(engine));
     const fault = faultOf(engine);
     if (fault) throw fault;
     return report;
   }
-  const ready = after(() => {});
+  const ready = after(() => {
+    const names = refused(defaultState(description(engine)), first);
+    if (names === '') return;
+    unread.value = new InputError(`Not valid, and replaced by defaults: ${names}.`);
+    throw unread.value;
+  });
   // Who does not wait for it hears of a fault by the event.
   ready.catch(() => {});
 
@@ -71,18 +112,23 @@ export function createView(host, state = {}) {
     get report() {
       return structuredClone(engine.report.value);
     },
-    async set(patch) {
-      await once(engine, () => engine.description.value !== null);
+    set(patch) {
+      const change = { ...patch };
       return after(() => {
-        const refused = engine.set({ ...patch });
-        if (refused.length > 0) throw new InputError(`Not valid, and left as it was: ${refused.join(', ')}.`);
+        const names = refused(engine.state.value, change);
+        if (names !== '') throw new InputError(`Not valid, and left as it was: ${names}.`);
+        engine.set(change);
+        unread.value = null;
       });
     },
-    setParameter: (name, value, { live = false } = {}) => engine.setParameter(name, value, { live }),
+    setParameter(name, value, { live = false } = {}) {
+      const act = () => engine.setParameter(name, value, { live });
+      alive(begun).then(act, () => {});
+    },
     run: () => after(() => engine.run()),
     stop() {
       engine.stop();
-      return once(engine, () => atRest(engine));
+      return alive(once(engine, () => atRest(engine)));
     },
     particles() {
       const { columns } = engine;
@@ -99,17 +145,20 @@ export function createView(host, state = {}) {
       const tell = EVENTS[name];
       if (!tell) throw new InputError(`on(): one of ${Object.keys(EVENTS).join(', ')}, not ${name}.`);
       return effect(() => {
-        const told = tell(engine);
+        const told = tell(engine, unread);
         if (told) queueMicrotask(() => /** @type {(told: object) => void} */ (listener)(told));
       });
     },
     fit: () => engine.fit(),
     lookFrom: (side) => engine.lookFrom(side),
-    picture: (size) => engine.savePng(size),
+    picture: (size) => alive(engine.savePng(size)),
     async toFile(format) {
-      return new Uint8Array(await (await engine.exportMesh(format)).arrayBuffer());
+      return new Uint8Array(await (await alive(engine.exportMesh(format))).arrayBuffer());
     },
     link: () => engine.link(),
-    destroy: () => engine.destroy(),
+    destroy() {
+      end();
+      engine.destroy();
+    },
   };
 }

@@ -63,30 +63,46 @@ const { present } = mountStops({
   },
 });
 
+/** What is said when a part of the page did not come: browsers may not ask for it again. */
+const LOST = 'A part of this page could not be loaded. Load the page again.';
+
 /** The dialog for teachers, once it is asked for. @type {{ open: () => void } | null} */
 let maker = null;
 async function makeAssignment() {
-  const [{ createMaker }, { setup }] = await Promise.all([teach(), bench]);
-  maker ??= createMaker({ setup, linkOf });
+  try {
+    const [{ createMaker }, { setup }] = await Promise.all([teach(), bench]);
+    maker ??= createMaker({ setup, linkOf });
+  } catch {
+    return say(LOST);
+  }
   maker.open();
 }
 
-/** The hand-out, once it is asked for. @type {Promise<{ print: () => Promise<void> }> | null} */
+/** The hand-out, once it is asked for. @type {{ print: () => Promise<void> } | null} */
 let handout = null;
+/** Whether the page has printed without a hand-out that was asked for. */
+let isLost = false;
 async function print() {
-  handout ??= teach().then(({ createHandout }) =>
-    createHandout(byId('answers'), {
+  say('The answers are being asked for.');
+  try {
+    const { createHandout } = await teach();
+    handout ??= createHandout(byId('answers'), {
       figures,
       lab,
       async compare() {
         const { show, setup } = await bench;
         await show(setup());
       },
-    }),
-  );
-  say('The answers are being asked for.');
-  await (await handout).print();
-  say('');
+    });
+    await handout.print();
+    say('');
+  } catch {
+    isLost = true;
+    // The article is complete without the answers. What is said would be on the paper, too.
+    say('');
+    window.print();
+    say(LOST);
+  }
 }
 addEventListener('keydown', (event) => {
   const isPrint = (event.ctrlKey || event.metaKey) && !event.altKey && !event.shiftKey && event.key === 'p';
@@ -95,7 +111,8 @@ addEventListener('keydown', (event) => {
   void print();
 });
 addEventListener('afterprint', () => {
-  if (!handout) say('This was printed without the answers. “Print”, under “For teachers”, asks the runs for them.');
+  if (!handout && !isLost)
+    say('This was printed without the answers. “Print”, under “For teachers”, asks the runs for them.');
 });
 
 const tool = (/** @type {string} */ label, /** @type {() => unknown} */ press) =>
@@ -131,8 +148,12 @@ function linkOf(task) {
 storeSite('../service-worker.js');
 
 if (parts.task) {
-  const [{ unpackTask, mountAssignment }, ready] = await Promise.all([teach(), lab]);
-  const task = unpackTask(parts.task);
-  if (task) mountAssignment(byId('assignment'), task, { lab: ready, surface: surfaceWords(ready.surface), stops });
-  else say('The link holds no assignment that can be read. The lesson is complete without it.');
+  try {
+    const [{ unpackTask, mountAssignment }, ready] = await Promise.all([teach(), lab]);
+    const task = unpackTask(parts.task);
+    if (task) mountAssignment(byId('assignment'), task, { lab: ready, surface: surfaceWords(ready.surface), stops });
+    else say('The link holds no assignment that can be read. The lesson is complete without it.');
+  } catch {
+    say(LOST);
+  }
 }

@@ -42,7 +42,11 @@ export function mountStops({ stops, others, questions, onBench, teach, say }) {
     const { stop, parts } = readAddress(location.hash);
     const isPresenting = parts.mode === PRESENT;
     const found = nearestStop(stop || (isPresenting ? stops[0] : ''), all);
-    if (!isPresenting) void loaded?.then(({ end }) => end());
+    if (!isPresenting)
+      void loaded?.then(
+        ({ end }) => end(),
+        () => {},
+      );
     if (!found) return;
     if (!found.isExact) {
       const nearest = document.getElementById(found.stop) ?? document.getElementById(BENCH);
@@ -52,7 +56,11 @@ export function mountStops({ stops, others, questions, onBench, teach, say }) {
     const isBench = others.includes(found.stop);
     if (isBench) showBench(found.stop.slice(BENCH.length + 1), parts);
     else if (isPresenting && found.stop === BENCH) showBench('');
-    if (found.stop === COLLECT) void teach().then(({ mountCollect }) => mountCollect(byId(COLLECT)));
+    if (found.stop === COLLECT)
+      teach().then(
+        ({ mountCollect }) => mountCollect(byId(COLLECT)),
+        () => say('The part that collects answers could not be loaded. Load the page again.'),
+      );
     const target = isBench ? BENCH : found.stop;
     if (isPresenting)
       presenter().then(

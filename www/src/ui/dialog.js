@@ -21,9 +21,18 @@ export function createDialog(title, ...content) {
     ),
     content,
   );
-  // A press on the backdrop closes the dialog.
+  // A press on the backdrop closes the dialog. Its padding has the same target, and so does a click
+  // that begins in the dialog and ends beyond it, as when text is selected.
+  const isBeyond = (/** @type {MouseEvent} */ { target, clientX: x, clientY: y }) => {
+    const { left, right, top, bottom } = element.getBoundingClientRect();
+    return target === element && (x < left || x > right || y < top || y > bottom);
+  };
+  let wasBeyond = false;
+  element.addEventListener('pointerdown', (event) => {
+    wasBeyond = isBeyond(event);
+  });
   element.addEventListener('click', (event) => {
-    if (event.target === element) element.close();
+    if (wasBeyond && isBeyond(event)) element.close();
   });
   document.body.append(element);
   return {

@@ -1,5 +1,5 @@
 /** The packed package in a browser: served as it is, in one file, and built by three bundlers. */
-import { readFileSync } from 'node:fs';
+import { readdirSync, readFileSync } from 'node:fs';
 import { extname, join } from 'node:path';
 import { expect, test } from '@playwright/test';
 import esbuild from 'esbuild';
@@ -226,15 +226,21 @@ test('a page that webpack builds samples the same', async ({ page }) => {
   expect(await digestIn(page, 'by-webpack')).toBe(golden.digest);
 });
 
-test('a page that esbuild builds samples the same', async ({ page }) => {
+test('a page that esbuild builds samples the same, beside an element', async ({ page }) => {
   writeProgram();
   // esbuild leaves addresses as they are: what lies beside the script is named.
   await esbuild.build({
     absWorkingDir: there.project,
     entryPoints: {
       program: './program.js',
+      element: 'marching-particles/element',
       worker: 'marching-particles/worker',
+      'sampling-worker': 'marching-particles/sampling-worker',
+      'points-worker': 'marching-particles/points-worker',
       core_bg: 'marching-particles/core.wasm',
+      points_bg: 'marching-particles/points.wasm',
+      'render-webgpu_bg': 'marching-particles/render-webgpu.wasm',
+      'render-webgl_bg': 'marching-particles/render-webgl.wasm',
     },
     outdir: 'by-esbuild',
     bundle: true,
@@ -242,8 +248,26 @@ test('a page that esbuild builds samples the same', async ({ page }) => {
     format: 'esm',
     loader: { '.wasm': 'copy' },
   });
-  there.write('by-esbuild/index.html', '<script type="module" src="./program.js"></script>');
+  const files = readdirSync(join(there.project, 'by-esbuild'));
+  const named = files
+    .filter((name) => name.endsWith('.js'))
+    .flatMap((name) => [
+      ...readFileSync(join(there.project, 'by-esbuild', name), 'utf8').matchAll(
+        /new URL\("\.\/([^"]+)", import\.meta\.url\)/g,
+      ),
+    ]);
+  expect(named.length).toBeGreaterThan(6);
+  expect(files).toEqual(expect.arrayContaining(named.map(([, name]) => name)));
+  there.write(
+    'by-esbuild/index.html',
+    `<marching-particles formula="x^2 + y^2 + z^2 = 1" count="300" style="width: 320px"></marching-particles>
+<script type="module" src="./element.js"></script>
+<script type="module" src="./program.js"></script>`,
+  );
   expect(await digestIn(page, 'by-esbuild')).toBe(golden.digest);
+  await expect
+    .poll(() => page.evaluate(() => document.querySelector('marching-particles')?.report?.components))
+    .toBe(1);
 });
 
 test('a page that Vite builds samples the same', async ({ page }) => {

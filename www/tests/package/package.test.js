@@ -3,7 +3,7 @@ import { execFileSync } from 'node:child_process';
 import { cpSync, readFileSync, renameSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import { afterAll, beforeAll, describe, expect, test, vi } from 'vitest';
 import { GYROID, install, programOf } from './packed.js';
 
 const { runs } = JSON.parse(readFileSync(new URL('../../../tests/golden/digests.json', import.meta.url), 'utf8'));
@@ -97,6 +97,56 @@ describe('a sample', () => {
     await expect(ball.mesh()).rejects.toMatchObject({ name: 'DisposedError' });
   });
 
+  test('that is disposed of while it is joined is joined first, and others stay', async () => {
+    const options = { count: 20_000, params: { a: 1 }, measure: false };
+    const [ball, other] = [await made.sample(SPHERE, options), await made.sample(SPHERE, options)];
+    const jobs = [ball.mesh(), ball.toFile('stl')];
+    ball.dispose();
+    const [mesh, bytes] = await Promise.all(jobs);
+    expect(mesh).toMatchObject({ components: [{ euler: 2 }] });
+    expect(/** @type {Uint8Array} */ (bytes).length).toBeGreaterThan(84);
+    expect((await other.mesh()).indices).toEqual(/** @type {import('../../package/index.js').Mesh} */ (mesh).indices);
+  });
+
+  test('that moves while it is joined is joined first', async () => {
+    const ball = await made.sample(SPHERE, { count: 20_000, params: { a: 1 }, measure: false });
+    const [mesh, bytes, wider] = await Promise.all([ball.mesh(), ball.toFile('stl'), ball.moved({ a: 1.2 })]);
+    expect(mesh.volume).toBeCloseTo((4 / 3) * Math.PI, 2);
+    expect(new DataView(bytes.buffer).getUint32(80, true)).toBe(mesh.indices.length / 3);
+    expect((await wider.mesh()).volume).toBeCloseTo((4 / 3) * Math.PI * 1.2 ** 1.5, 2);
+  });
+
+  test('stays when it is to move by a wrong name', async () => {
+    const ball = await made.sample(SPHERE, { count: 300, params: { a: 1 }, measure: false });
+    await expect(ball.moved({ toString: 1 })).rejects.toMatchObject({
+      name: 'InputError',
+      message: 'params.toString: there is no such parameter. There are a.',
+    });
+    expect((await ball.moved({ a: 1.02 })).params).toEqual({ a: 1.02 });
+  });
+
+  test('whose particles cannot move, or are no longer to, is freed', async () => {
+    // The sampler in this thread, to see what it frees.
+    const { createSampler } = await import('../../package/client.js');
+    const { openHere } = await import('../../package/here.js');
+    const { load } = await import('../../package/load-node.js');
+    const { Core } = await import('../../src/wasm/core/core.js');
+    const free = vi.spyOn(Core.prototype, 'free');
+    const sample = createSampler(openHere(load), openHere(load));
+    const options = { count: 300, params: { a: 1 }, measure: false };
+
+    await expect((await sample(SPHERE, options)).moved({ a: -1 })).rejects.toMatchObject({ name: 'NoSurfaceError' });
+    expect(free).toHaveBeenCalledTimes(1);
+    const controller = new AbortController();
+    const moving = (await sample(SPHERE, options)).moved({ a: 2 }, { signal: controller.signal });
+    controller.abort();
+    await expect(moving).rejects.toBe(controller.signal.reason);
+    await expect.poll(() => free.mock.calls.length).toBe(2);
+    (await (await sample(SPHERE, options)).moved({ a: 1.02 })).dispose();
+    await expect.poll(() => free.mock.calls.length).toBe(3);
+    free.mockRestore();
+  });
+
   test('tells of its progress, and beside another one is the same', async () => {
     /** @type {number[]} */
     const fractions = [];
@@ -151,6 +201,14 @@ describe('a function of the program', () => {
     await expect(one.moved({ a: 1 })).rejects.toMatchObject({ name: 'InputError' });
     one.dispose();
     await expect(one.mesh()).rejects.toMatchObject({ name: 'DisposedError' });
+  });
+
+  test('whose sample is disposed of while it is joined leaves the thread its core', async () => {
+    const one = await made.sample(ball, { count: 20_000, measure: false });
+    const joining = one.mesh();
+    one.dispose();
+    expect((await joining).components).toMatchObject([{ euler: 2 }]);
+    expect((await made.sample(ball, { count: 100 })).count).toBeGreaterThan(50);
   });
 
   test('leaves its thread time for others, and a signal ends it', async () => {

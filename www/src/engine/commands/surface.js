@@ -9,6 +9,7 @@ import { FILE_SURFACE } from '../constants.js';
 import {
   freshShape,
   fromPoints,
+  isName,
   modelOf,
   namesModel,
   newParameter,
@@ -166,7 +167,8 @@ export function inputCommands({ store, scheduler, framing }) {
   };
   return {
     setParameter(name, value, { live = false } = {}) {
-      if (!Number.isFinite(value)) return;
+      const about = store.description.value;
+      if (!about || !isName(about, name) || !Number.isFinite(value)) return;
       resample(live, { parameters: { ...state.value.parameters, [name]: value } });
     },
     resetParameter(name) {

@@ -212,7 +212,7 @@ export function validCentres(v, description, id) {
 export const newParameter = ({ new_parameter }, name) => ({ ...new_parameter, name, label: name });
 
 /** Whether a parameter may have this name. @param {Description} description @param {string} name */
-const isName = ({ limits }, name) => new RegExp(limits.name_pattern).test(name);
+export const isName = ({ limits }, name) => new RegExp(limits.name_pattern).test(name);
 
 /** @param {unknown} v @param {Description} description @returns {Parameter | undefined} */
 function validParameter(v, description) {
@@ -323,14 +323,15 @@ export function sanitize(raw, description, hasFile = false) {
 
 /**
  * Applies a patch to a state. Another surface, or a formula in the place of a model that it does
- * not name, brings its own parameters and box.
+ * not name, brings its own parameters and box. The surface null is the one that a state begins with.
  * @param {State} now
- * @param {Record<string, unknown>} patch
+ * @param {Record<string, unknown>} given
  * @param {Description} description
  * @param {boolean} hasFile
  * @returns {{state: State, reset: string[]}}
  */
-export function mergeState(now, patch, description, hasFile) {
+export function mergeState(now, given, description, hasFile) {
+  const patch = given.surface === null ? { ...given, surface: defaultState(description).surface } : given;
   const another =
     typeof patch.surface === 'string'
       ? patch.surface !== now.surface

@@ -178,6 +178,33 @@ test('what the browser prints by itself has no answers, and the page says where 
   await expect(page.locator('#notice')).toContainText('“Print”, under “For teachers”');
 });
 
+test('where the part for teachers does not load, the article is printed and the page says so', async ({ page }) => {
+  /** @type {string[]} */
+  const faults = [];
+  page.on('pageerror', (error) => faults.push(String(error)));
+  await page.route(/\/teach-[^/]*\.js$/, (route) => route.abort());
+  await openLesson(page, { hash: '#task=AAAA' });
+  const lost = 'A part of this page could not be loaded. Load the page again.';
+  await expect(page.locator('#notice')).toHaveText(lost);
+  await page.evaluate(() => {
+    document.documentElement.dataset.printed = '0';
+    window.print = () => {
+      const { dataset } = document.documentElement;
+      dataset.printed = String(Number(dataset.printed) + 1);
+      dispatchEvent(new Event('afterprint'));
+    };
+  });
+  for (const times of ['1', '2']) {
+    await page.keyboard.press('ControlOrMeta+p');
+    await expect(page.locator('html')).toHaveAttribute('data-printed', times);
+    await expect(page.locator('#notice')).toHaveText(lost);
+  }
+  await page.evaluate(() => document.getElementById('notice')?.replaceChildren());
+  await teachers(page, 'Assignment');
+  await expect(page.locator('#notice')).toHaveText(lost);
+  expect(faults).toEqual([]);
+});
+
 test('a reader loads nothing of what is for a class', async ({ page }) => {
   /** @type {string[]} */
   const loaded = [];
