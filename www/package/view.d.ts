@@ -12,7 +12,7 @@ export interface ViewState {
   bounds?: Bounds | null;
   /** hides what lies at normal · p > offset */
   plane?: { normal: [number, number, number]; offset: number } | null;
-  /** settings by their names, such as `{size_mode: 'count', count: 5000, method: 'refined'}` */
+  /** all settings that are not the default, by their names: `{size_mode: 'count', count: 5000, method: 'refined'}` */
   settings?: Record<string, number | string>;
   view?: {
     colour?: string;
