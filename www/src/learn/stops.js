@@ -11,6 +11,15 @@ const COLLECT = 'collect';
 /** Height of what stays at the top of the window, in pixels. */
 export const HEAD_PX = 60;
 
+/** Shows what collects the answers to an assignment. @param {Pick<StopsOptions, 'teach' | 'say'>} about */
+async function collect({ teach, say }) {
+  try {
+    (await teach()).mountCollect(byId(COLLECT));
+  } catch {
+    say('The part that collects answers could not be loaded. Load the page again.');
+  }
+}
+
 /** @param {StopsOptions} about */
 export function mountStops({ stops, others, questions, onBench, teach, say }) {
   const all = [...stops, ...others, COLLECT];
@@ -42,11 +51,7 @@ export function mountStops({ stops, others, questions, onBench, teach, say }) {
     const { stop, parts } = readAddress(location.hash);
     const isPresenting = parts.mode === PRESENT;
     const found = nearestStop(stop || (isPresenting ? stops[0] : ''), all);
-    if (!isPresenting)
-      void loaded?.then(
-        ({ end }) => end(),
-        () => {},
-      );
+    if (!isPresenting) loaded?.then(({ end }) => end()).catch(() => {});
     if (!found) return;
     if (!found.isExact) {
       const nearest = document.getElementById(found.stop) ?? document.getElementById(BENCH);
@@ -56,11 +61,7 @@ export function mountStops({ stops, others, questions, onBench, teach, say }) {
     const isBench = others.includes(found.stop);
     if (isBench) showBench(found.stop.slice(BENCH.length + 1), parts);
     else if (isPresenting && found.stop === BENCH) showBench('');
-    if (found.stop === COLLECT)
-      teach().then(
-        ({ mountCollect }) => mountCollect(byId(COLLECT)),
-        () => say('The part that collects answers could not be loaded. Load the page again.'),
-      );
+    if (found.stop === COLLECT) void collect({ teach, say });
     const target = isBench ? BENCH : found.stop;
     if (isPresenting)
       presenter().then(
