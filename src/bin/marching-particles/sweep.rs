@@ -69,7 +69,7 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
         return Err(Failure::Nothing("there is no surface in any frame".to_owned()));
     }
     let again = match anew.as_slice() {
-        // The reason says what a program has to do.
+        // What this error says is for programs that use the library.
         [_, (frame, FollowError::NotCovered), ..] => {
             let why = "the frame before has too few particles, or was stopped";
             format!(", of {} runs; in frame {frame} the second begins: {why}", anew.len())
