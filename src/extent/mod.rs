@@ -5,15 +5,18 @@
 //! ±10⁴. Where the surface stays inside, its box is that of the extremes. Where it goes on for
 //! ever, smaller cubes follow, until it stays inside one (a sphere and a far plane), shows where
 //! its bends are, or is known to pass near the origin. What no interval decides is looked at on a
-//! grid.
+//! grid, and parts that are thinner than its cells are followed to their ends on the surface.
 //!
 //! The work is counted in cells and can be left and gone on with; the result is the same to the
 //! last bit everywhere.
 
+mod grid;
 mod sampled;
 mod scan;
+mod walk;
 
-pub(crate) use sampled::{CELLS, defined_share};
+pub(crate) use grid::CELLS;
+pub(crate) use sampled::defined_share;
 
 use crate::field::{Bounded, Field, Frame};
 use crate::math::Bounds;
@@ -49,6 +52,9 @@ const MARGIN_RADII: f64 = 3.0;
 /// The room in radii is not more than this share of the longest side: the surface fills at least
 /// half of it.
 const MOST_MARGIN: f64 = 0.5;
+/// A box that bounds leave too large gives way to one that grids show, if that is smaller than this
+/// share of it. Particles of a usual size would be as large as the surface in it.
+const WASTED: f64 = 0.1;
 /// Cells visited at most for a short formula: 20 to 50 milliseconds. Fewer make the box wider.
 const MOST_CELLS: usize = 32_768;
 /// Largest number of operations of a formula that may have [`MOST_CELLS`]. A longer one may have
@@ -61,7 +67,7 @@ const SHORT: usize = 64;
 #[serde(rename_all = "snake_case")]
 pub enum Reach {
     /// The surface within ±10⁴ lies in the box: by proof, or by what grids show of it where no
-    /// bounds decide.
+    /// bounds decide, and by walks to the ends of its thin parts.
     Bounded,
     /// The surface continues outside the box.
     Endless,
@@ -148,7 +154,15 @@ async fn scanned(field: &dyn Field, bounded: &mut dyn Bounded) -> Extent {
                 min: core::array::from_fn(|axis| hull.min[axis].max(other.min[axis])),
                 max: core::array::from_fn(|axis| hull.max[axis].min(other.max[axis])),
             };
-            found = Scan::Inside(if let Scan::Inside(other) = closer { common(other) } else { hull });
+            let hull = if let Scan::Inside(other) = closer { common(other) } else { hull };
+            if is_first
+                && let seen = sampled::find(field).await
+                && seen.reach == Reach::Bounded
+                && seen.bounds.size().max_element() < WASTED * hull.size().max_element()
+            {
+                return seen;
+            }
+            found = Scan::Inside(hull);
         }
         match found {
             Scan::Inside(hull) => {

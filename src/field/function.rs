@@ -19,8 +19,9 @@ use glam::DVec3;
 /// Give the box of the surface where it is known ([`Settings::in_box`](crate::Settings::in_box)).
 /// Without one, grids of 32 cells a side look for changes of sign over cubes around the origin,
 /// from ±4 to ±10,000, each four or five times as wide as the one before. The box is fitted to what
-/// lies in the smallest cube through whose faces the surface does not pass. What is smaller than
-/// the cells of its grid is not seen, and a small part far away is missed without a word. Where a
+/// lies in the smallest cube through whose faces the surface does not pass. Spikes and arms that
+/// grow thinner than the cells of its grid are followed to their ends. What is smaller than a cell
+/// by itself is not seen, and a small part far away is missed without a word. Where a
 /// larger grid shows more, a warning says so ([`Warning::Beyond`](crate::Warning::Beyond)); where
 /// none shows anything, [`Error::NoBox`](crate::Error::NoBox) does.
 ///

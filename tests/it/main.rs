@@ -27,6 +27,7 @@ mod docs;
 mod door;
 mod far;
 mod faults;
+mod fitted;
 mod flow;
 mod formula;
 mod formula_forms;
