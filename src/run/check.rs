@@ -1,7 +1,9 @@
-//! Whether the gradient that a field gives is that of its values.
+//! Whether what is known of a field and its box is so: the gradient is that of the values, and the
+//! surface stays in the box.
 
 use crate::field::{Evaluator, difference_step};
-use crate::math::Bounds;
+use crate::math::newton::{self, StepLimits, step_to_curve};
+use crate::math::{Bounds, SINGLE_ROUNDING};
 use glam::DVec3;
 
 /// Points along each axis of the box that are looked at: 27 in all, of which half must differ.
@@ -34,4 +36,23 @@ pub(super) fn wrong_gradient(field: &mut dyn Evaluator, bounds: &Bounds) -> Opti
         }
     }
     wrong.first().copied().filter(|_| 2 * wrong.len() > looked_at)
+}
+
+/// Whether the surface passes through a face of the box, in the plane across `axis` at this
+/// coordinate, within `reach` of its point `p`.
+pub(super) fn passes_plane(
+    field: &mut dyn Evaluator,
+    bounds: &Bounds,
+    p: DVec3,
+    reach: f64,
+    axis: usize,
+    at: f64,
+) -> bool {
+    let slack = SINGLE_ROUNDING * reach;
+    let limits = StepLimits { reach, at_rest: slack, ..StepLimits::steps(newton::STEPS) };
+    let step_at = |p: DVec3| {
+        let slope = field.value_and_gradient(p);
+        Some((step_to_curve([slope, (p[axis] - at, DVec3::AXES[axis])]).0, ()))
+    };
+    newton::land(p, limits, step_at).is_some_and(|(place, ())| bounds.enlarged(slack).holds(place))
 }

@@ -4,7 +4,7 @@
 use super::measuring::{
     Measured, Measuring, MeasuringInput, MeasuringResult, expected_slices, measure, measured_columns,
 };
-use super::{Run, Warning};
+use super::{Run, Warning, check};
 use crate::extent::Reach;
 use crate::field::{Creased, Field};
 use crate::math::Forest;
@@ -69,7 +69,8 @@ pub struct Report {
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Cut {
-    /// The surface goes on beyond any box.
+    /// The surface goes on beyond the fitted box: it has no end, or the search for the box missed
+    /// a part of it.
     Endless,
     /// The box was given, and the surface reaches beyond it.
     Fixed,
@@ -388,7 +389,7 @@ impl<F: Field> Run<F> {
             smallest_angle: self.meshing.joined().and_then(|mesh| mesh.smallest_angle(particles)),
             pairs: particles.pairs(),
             border,
-            cut: self.cut().filter(|_| border > 0),
+            cut: if border > 0 { self.cut() } else { None },
             stop_reason: self.last.as_ref().and_then(|progress| progress.stop_reason),
             digest: format!("{:016x}", particles.digest()),
         }
@@ -425,10 +426,24 @@ impl<F: Field> Run<F> {
             Some(Reach::Bounded) if self.has_moved() => Some(Cut::Outgrown),
             // Particles that are large against the surface may have a child outside of a box that
             // holds it.
-            Some(Reach::Bounded) => None,
+            Some(Reach::Bounded) => self.passes_faces().then_some(Cut::Endless),
             Some(Reach::Endless | Reach::Nowhere | Reach::Unknown) => Some(Cut::Endless),
             None => Some(Cut::Fixed),
         }
+    }
+
+    /// Whether the surface passes through the faces of the box beside a particle.
+    fn passes_faces(&self) -> bool {
+        let (particles, bounds, field) = (self.particles(), self.local_bounds(), &mut *self.evaluator());
+        (0..particles.len()).any(|i| {
+            let (p, reach) = (particles.local[i].as_dvec3(), 2.0 * f64::from(particles.radius[i]));
+            (0..3).any(|axis| {
+                let is_passed = |at: f64| {
+                    (p[axis] - at).abs() <= reach && check::passes_plane(field, &bounds, p, reach, axis, at)
+                };
+                [bounds.min[axis], bounds.max[axis]].into_iter().any(is_passed)
+            })
+        })
     }
 
     /// Whether the particles have followed the surface while it moved.
@@ -486,6 +501,29 @@ impl<F: Field> Run<F> {
             creases: creases.as_ref().map(|creases| creases.curves),
             corners: creases.map(|creases| creases.ends),
             seams: seams.map(|seams| seams.curves),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::formula::Formula;
+    use crate::math::Bounds;
+    use crate::sampler::Settings;
+
+    #[test]
+    fn a_surface_that_passes_through_the_faces_of_its_fitted_box_is_said_to() {
+        // Particles of the second one are so large that children fall outside of the box.
+        for (half, radius_share, is_cut) in [(0.9, 0.02, true), (1.05, 0.2, false), (1.3, 0.02, false)] {
+            let field = Formula::parse("x^2 + y^2 + z^2 = 1").expect("a formula");
+            let mut run = Run::idle(field, Bounds::cube(half));
+            run.set_bounds(Bounds::cube(half), Some(Reach::Bounded));
+            run.begin(&Settings { radius_share, ..Settings::DEFAULT }).expect("a good box");
+            while run.step(u32::MAX).stop_reason.is_none() {}
+            let report = run.report();
+            assert!(report.count > 0 && (report.border > 0 || !is_cut), "{half}");
+            assert_eq!(report.cut.is_some(), is_cut, "{half}: {:?}", report.cut);
         }
     }
 }
