@@ -27,6 +27,19 @@ const FINE_SIDE: usize = 16;
 /// Share of the distance between neighbours by which rounding may move a particle: a five-hundredth
 /// of the scatter of such distances on a relaxed surface.
 const MOST_MOVED: f64 = 1e-4;
+/// Lengths of the rays on which rounding is measured, as shares of the distance between neighbours.
+/// On the first one the curvature of a surface, of which the radius is that distance, moves it by
+/// half of [`MOST_MOVED`]. Those that follow measure more.
+const REACHES: [f64; 4] = [0.01, 0.04, 0.16, 0.64];
+/// A scatter below this share of the length of a ray is resolved on it.
+const RESOLVED: f64 = 0.2;
+/// Points of a ray.
+const ON_RAY: u32 = 4;
+/// Least slope along a ray, as a share of that of f: on one along the surface f is constant, rounded
+/// or not.
+const LEAST_SLOPE: f64 = 0.3;
+/// Largest error over the scatter of a few points.
+const WORST: f64 = 4.0;
 
 /// Rounding of f at a particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,12 +52,15 @@ pub(crate) struct Blur {
 
 /// Finds the particle, among a selection, at which rounding in double precision moves the level set
 /// farthest for the particle's size. There is none if it moves by less than [`MOST_MOVED`], or if f
-/// has no bounds. The bounds of f at a single point are as wide as the rounding error of f there.
+/// has no bounds. The bounds of f at a single point are at least as wide as the rounding error of f
+/// there. They are far wider where f jumps at the point, or repeats an operation many times, so
+/// that the error is [measured](scatter) before it counts.
 pub(crate) fn blur(field: &mut dyn Evaluator, particles: &Particles) -> Option<Blur> {
     let field = field.bounded()?;
     let mut most = (MOST_MOVED, None);
     for particle in (0..particles.len()).step_by(particles.len().div_ceil(SAMPLES).max(1)) {
-        let at = [Bounds::point(particles.local[particle].as_dvec3())];
+        let place = particles.local[particle].as_dvec3();
+        let at = [Bounds::point(place)];
         // The particle lies on the nearest of the factors.
         let of_factors = (0..field.factors()).map(|factor| {
             let mut known = [Enclosure::UNKNOWN];
@@ -58,13 +74,46 @@ pub(crate) fn blur(field: &mut dyn Evaluator, particles: &Particles) -> Option<B
             [value.abs(), half_width]
                 .map(|difference| (difference / gradient.length()).min((2.0 * difference / bend).sqrt()))
         });
-        let [_, distance] = of_factors.min_by(|a, b| a[0].total_cmp(&b[0]))?;
-        let share = distance / (2.0 * f64::from(particles.radius[particle]));
-        if share.is_finite() && share > most.0 {
-            most = (share, Some(Blur { particle, distance }));
+        let [_, bound] = of_factors.min_by(|a, b| a[0].total_cmp(&b[0]))?;
+        let spacing = 2.0 * f64::from(particles.radius[particle]);
+        if bound.is_finite() && bound > most.0 * spacing {
+            let distance = bound.min(WORST * scatter(field, place, spacing));
+            if distance > most.0 * spacing {
+                most = (distance / spacing, Some(Blur { particle, distance }));
+            }
         }
     }
     most.1
+}
+
+/// Measures the distance by which rounding in double precision moves the level set at a point of
+/// the surface: the difference of f from its linear part on rays that start there. A jump or a kink
+/// at the point shows on some of the rays, rounding on all.
+fn scatter(field: &mut dyn Evaluator, p: DVec3, spacing: f64) -> f64 {
+    let (value, gradient) = field.value_and_gradient(p);
+    let slope = gradient.length();
+    let rays: Vec<DVec3> = Bounds::cube(1.0)
+        .corners()
+        .map(DVec3::normalize)
+        .into_iter()
+        .filter(|ray| ray.dot(gradient).abs() > LEAST_SLOPE * slope)
+        .collect();
+    let mut least = f64::INFINITY;
+    for reach in REACHES.map(|share| share * spacing) {
+        let difference = |field: &mut dyn Evaluator, way: DVec3| {
+            (field.value_and_gradient(p + way).0 - value - gradient.dot(way)).abs() / slope
+        };
+        let mut largest = |ray: DVec3| {
+            let ways = (1..=ON_RAY).map(|k| ray * (reach * f64::from(k) / f64::from(ON_RAY)));
+            ways.map(|way| difference(field, way)).fold(0.0, f64::max)
+        };
+        least = rays.iter().map(|&ray| largest(ray)).fold(f64::INFINITY, f64::min);
+        // What is constant between roundings differs by the reach itself.
+        if least < RESOLVED * reach {
+            break;
+        }
+    }
+    least
 }
 
 /// The scale at which the field is to be compressed in double precision; none if single precision
@@ -148,4 +197,44 @@ fn scale(field: &mut dyn Evaluator, bounds: &Bounds) -> f64 {
     };
     let of_slopes = usual(slopes).map(|slope| slope * cell);
     of_slopes.or_else(|| usual(value.iter().map(|v| v.abs()).collect())).unwrap_or(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::formula::Formula;
+    use crate::field::{Field, Frame};
+    use crate::particles::Slots;
+
+    /// The rounding that is said of a formula at some points.
+    fn blur_at(text: &str, points: impl Iterator<Item = Vec3>) -> Option<Blur> {
+        let mut particles = Particles::default();
+        points.for_each(|p| particles.push(p, Vec3::Z, 0.01, Particles::NO_PARENT, 0, Slots::default()));
+        let field = Formula::as_written(text, &[]).expect("a formula");
+        blur(&mut *field.evaluator(Frame::default()), &particles)
+    }
+
+    #[test]
+    fn a_jump_at_a_particle_is_no_rounding() {
+        let mut state = 7_u32;
+        let mut random = move || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / 16_777_216.0
+        };
+        for case in 0..60 {
+            let size = 0.05 + random();
+            let jump =
+                ["round(x)", "floor(x+0.5)", "fract(x+0.5)", "round(x)*round(y)", "mod(x+0.5,1)"][case % 5];
+            let text = [
+                format!("hypot(x-{size}*{jump},y,z)-0.7"),
+                format!("hypot(x,y,z)-1-{size}*{jump}"),
+                format!("z-{size}*fract(sin(floor(x+0.5)*12.9898+floor(y)*78.233)*43758.5453)"),
+            ];
+            // x is where the numbers jump.
+            let points: Vec<Vec3> =
+                (0..8).map(|k| Vec3::new(k as f32 - 3.5, 0.1 + 0.8 * random(), random())).collect();
+            let said = blur_at(&text[case % 3], points.into_iter());
+            assert_eq!(said, None, "{}", text[case % 3]);
+        }
+    }
 }
