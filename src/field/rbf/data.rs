@@ -149,6 +149,25 @@ impl RbfData {
         Jet { value, gradient, hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
     }
 
+    /// f and ∇f at `p`, the same as those of [`RbfData::jet`].
+    pub(super) fn slope(&self, p: DVec3) -> (f64, DVec3) {
+        let mut value = 0.0;
+        let mut gradient = DVec3::ZERO;
+        let coefficients = self.alpha.iter().zip(&self.beta);
+        for (&centre, (&alpha, &beta)) in self.centres.iter().zip(coefficients) {
+            let d = p - DVec3::from_array(centre);
+            let r = d.length();
+            if r == 0.0 {
+                continue;
+            }
+            let beta = DVec3::from_array(beta);
+            let along = beta.dot(d);
+            value += r * (alpha * r * r + 3.0 * along);
+            gradient += 3.0 * (alpha * r + along / r) * d + 3.0 * r * beta;
+        }
+        (value, gradient)
+    }
+
     /// f and ∇f at each of `points`, counted from `origin`, four at a time, equal to those of
     /// [`RbfData::jet`] up to rounding.
     pub(super) fn gradients(

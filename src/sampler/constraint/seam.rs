@@ -69,6 +69,11 @@ impl Meeting {
     /// A point in or near a cell where these patches meet without an edge.
     pub(super) fn on_seam(probe: &mut Probe, pair: [u32; 2], cell: &Bounds) -> Option<Self> {
         let reach = cell.diagonal();
+        // Patches that meet at an angle have a crease there. A gradient that is none says nothing.
+        let [u, v] = pair.map(|patch| normal(probe, patch, cell.middle()));
+        if u != DVec3::ZERO && v != DVec3::ZERO && u.dot(v) < MOST_TURN {
+            return None;
+        }
         let mut ends: [Option<Landed>; 2] = [None; 2];
         // A seam may run along the face of a cell.
         let around = Bounds::new(cell.lo() - 0.3 * cell.size(), cell.hi() + 0.4 * cell.size());
@@ -78,6 +83,9 @@ impl Meeting {
             return None;
         }
         for start in around.spread(3) {
+            if ends.iter().all(Option::is_some) {
+                break;
+            }
             let Some(place) = landed(probe, start, reach) else { continue };
             if let Some(k) = pair.iter().position(|&patch| patch == place.patch) {
                 ends[k].get_or_insert(place);
