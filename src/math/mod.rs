@@ -320,7 +320,11 @@ pub enum BoxError {
     #[error("the box must be no thinner than {:e} of its diagonal", Bounds::THINNEST)]
     Thin,
     /// A corner is farther from the origin than [`Bounds::FARTHEST_CORNER`] diagonals.
-    #[error("the box must lie within {} diagonals of the origin", Bounds::FARTHEST_CORNER)]
+    #[error(
+        "the box lies more than {} diagonals from the origin, where pictures in single precision show no particle in its \
+             place: shift it and the formula to the origin, as x to x + 5e6",
+        Bounds::FARTHEST_CORNER
+    )]
     Far,
 }
 

@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use marching_particles::export::VERTICES;
 use marching_particles::field::{model, rbf::Pull};
-use marching_particles::math::{Bounds, shortest_text};
+use marching_particles::math::{Bounds, BoxError, shortest_text};
 use marching_particles::pointcloud::job::CENTRES;
 use marching_particles::session::{BoxCell, BoxFaces, BoxMode, FileRecord, Language, SolidSettings};
 use marching_particles::{
@@ -508,7 +508,10 @@ fn bounds(text: &str) -> Result<Bounds, String> {
         _ => return Err(format!("a box takes one, three or six numbers, not {}", numbers.len())),
     };
     let how = "give half-widths, or the smallest corner and then the largest, as x0,y0,z0,x1,y1,z1";
-    bounds.check().map_err(|error| format!("{error}: {how}"))?;
+    bounds.check().map_err(|error| match error {
+        BoxError::Far => error.to_string(),
+        _ => format!("{error}: {how}"),
+    })?;
     Ok(bounds)
 }
 

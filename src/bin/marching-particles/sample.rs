@@ -106,6 +106,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     let measured = arguments.report.measured();
     let is_mesh = !mesh_formats.is_empty() || wish.is_some();
     let (settings, predicted_count, is_joined, peak_sampling_mb) = loop {
+        bar.set_message("looking for the box and the edges");
         let (settings, start) = timed(&mut seconds.seeding, || {
             let settings = fit(&mut session, &settings_in, false)?;
             Ok::<_, Failure>((settings, session.start(&settings)?))
