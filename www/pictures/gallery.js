@@ -25,7 +25,7 @@ await mkdir(`${folder}gallery`, { recursive: true });
 
 const browser = await launch();
 const page = await browser.newPage({ viewport: { width: 480, height: 480 }, colorScheme: 'light' });
-await page.goto(base);
+await page.goto(`${base}?backend=webgl2`);
 await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
 
 const initial = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.state.view.camera);

@@ -66,8 +66,12 @@ export async function afresh(page, { width = 1280, height = 800, hash = '' } = {
   await settled(page);
 }
 
-/** Waits until nothing runs and the figures are there. @param {Page} page */
-export async function settled(page) {
+/**
+ * Waits until nothing runs and the figures are there, and expects that the picture is drawn as the address asks.
+ * @param {Page} page
+ * @param {string | null} [drawnBy]  back end, where the address asks for none
+ */
+export async function settled(page, drawnBy = new URL(page.url()).searchParams.get('backend')) {
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
   await page.waitForFunction(() => {
     const { engine } = /** @type {any} */ (window).marchingParticles;
@@ -80,6 +84,13 @@ export async function settled(page) {
       (engine.report.value !== null || engine.empty.value)
     );
   });
+  await expectDrawn(page, drawnBy);
+}
+
+/** Expects that a back end draws the picture. @param {Page} page @param {string | null} kind */
+export async function expectDrawn(page, kind) {
+  const drawnBy = () => page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().backend);
+  await expect.poll(drawnBy).toBe(kind);
 }
 
 /**

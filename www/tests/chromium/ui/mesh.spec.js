@@ -93,7 +93,7 @@ test('the mesh', async ({ page }) => {
 test('the legend says what the dots on the mesh mean, while there are some', async ({ page }) => {
   const { clean } = await open(page);
   // The dots are drawn by the graphics device.
-  await page.goto('./');
+  await page.goto('./?backend=webgl2');
   await settled(page);
   const dots = page.getByText('Dots: not six neighbours, but');
   await expect(dots).toBeHidden();

@@ -13,6 +13,8 @@ import { settled, state } from './helpers.js';
 
 test.use({ serviceWorkers: 'allow' });
 
+/** Back end of the pages. */
+const ASKS = '?backend=canvas2d';
 /** What tells the second version from the first. */
 const MARK = '<meta name="version" content="2">';
 
@@ -51,7 +53,7 @@ async function host() {
 
 /** Opens the page and waits until all of it is stored. @param {Page} page @param {string} address */
 async function openStored(page, address) {
-  await page.goto(address);
+  await page.goto(address + ASKS);
   await settled(page);
   await page.waitForFunction(() => navigator.serviceWorker.controller?.state === 'activated');
 }
@@ -78,7 +80,7 @@ for (const place of ['', 'sub/path/']) {
     expect((await state(page)).surface).toBe('bunny');
     expect(await count()).toBeGreaterThan(1000);
     // Other ways of drawing, the editor, exports and pictures of the gallery were never asked for before.
-    await page.goto(`${address}${place}?backend=webgpu`);
+    await page.goto(`${address}${place}?backend=webgl2`);
     await settled(page);
     await page.getByRole('textbox', { name: 'Formula' }).click();
     await expect(page.locator('.code-host')).toBeVisible();
@@ -114,7 +116,7 @@ test('a new version waits until it is asked for, and never mixes with the old on
   const { address, asked, change, close } = await host();
   await openStored(page, address);
   const other = await context.newPage();
-  await other.goto(address);
+  await other.goto(address + ASKS);
   await settled(other);
   await expect(page.locator('.toast')).toHaveCount(0);
 
