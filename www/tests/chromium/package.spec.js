@@ -240,6 +240,7 @@ test('a page that esbuild builds samples the same, beside an element', async ({ 
       worker: 'marching-particles/worker',
       'sampling-worker': 'marching-particles/sampling-worker',
       'points-worker': 'marching-particles/points-worker',
+      'probe-worker': 'marching-particles/probe-worker',
       core_bg: 'marching-particles/core.wasm',
       points_bg: 'marching-particles/points.wasm',
       'render-webgpu_bg': 'marching-particles/render-webgpu.wasm',

@@ -33,6 +33,11 @@ test('WebGPU draws the surface and the points of a model; a lost device is rebui
   await expect(page.locator('#canvas-host canvas')).toHaveCount(1);
 });
 
+test('a WebGPU of the processor alone is no graphics card: who asks for nothing gets the painter', async ({ page }) => {
+  await open(page, undefined, { asks: null, drawnBy: 'canvas2d' });
+  await expectSurface(page);
+});
+
 test('without navigator.gpu WebGL2 draws', async ({ page }) => {
   await page.addInitScript(() => {
     Object.defineProperty(Navigator.prototype, 'gpu', { value: undefined });

@@ -48,7 +48,7 @@ test('the mesh', async ({ page }) => {
     await page.keyboard.press('Escape');
   });
 
-  await test.step('the way of drawing is chosen in the view options, and in words where there can be no mesh', async () => {
+  await test.step('the way of drawing is chosen in the view options, and the mesh is judged in words', async () => {
     await afresh(page);
     await page.getByRole('button', { name: 'View options' }).click();
     await expect(page.getByRole('group', { name: 'Faces', exact: true })).toBeHidden();
@@ -59,8 +59,7 @@ test('the mesh', async ({ page }) => {
     await expect(page.getByRole('button', { name: 'Edges' })).toHaveAttribute('aria-pressed', 'false');
     expect((await state(page)).view).toMatchObject({ draw: 'mesh', faces: 'flat', edges: false, marks: true });
     await page.keyboard.press('Escape');
-    // The tests of the panels draw without a graphics device.
-    await expect(page.locator('.caption .joined')).toHaveText(/by WebGPU or WebGL2/);
+    await expect(page.locator('.caption .joined')).toHaveText(/^Watertight · Euler number 2/);
     await page.locator('#stage').click({ position: { x: 5, y: 5 } });
     await page.keyboard.press('m');
     await expect(page.locator('.caption .joined')).toBeEmpty();

@@ -4,7 +4,7 @@
  */
 import { expect, test } from '@playwright/test';
 import { createSite } from '../../server.js';
-import { settled, state } from './helpers.js';
+import { settled as settledBy, state } from './helpers.js';
 
 /**
  * @import { Page } from '@playwright/test'
@@ -13,8 +13,9 @@ import { settled, state } from './helpers.js';
 
 test.use({ serviceWorkers: 'allow' });
 
-/** Back end of the pages. */
-const ASKS = '?backend=canvas2d';
+/** As a visitor without a graphics card has the page. @param {Page} page */
+const settled = (page) => settledBy(page, new URL(page.url()).searchParams.get('backend') ?? 'canvas2d');
+
 /** What tells the second version from the first. */
 const MARK = '<meta name="version" content="2">';
 
@@ -53,7 +54,7 @@ async function host() {
 
 /** Opens the page and waits until all of it is stored. @param {Page} page @param {string} address */
 async function openStored(page, address) {
-  await page.goto(address + ASKS);
+  await page.goto(address);
   await settled(page);
   await page.waitForFunction(() => navigator.serviceWorker.controller?.state === 'activated');
 }
@@ -116,7 +117,7 @@ test('a new version waits until it is asked for, and never mixes with the old on
   const { address, asked, change, close } = await host();
   await openStored(page, address);
   const other = await context.newPage();
-  await other.goto(address + ASKS);
+  await other.goto(address);
   await settled(other);
   await expect(page.locator('.toast')).toHaveCount(0);
 
