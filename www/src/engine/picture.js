@@ -44,8 +44,7 @@ export function createPicture({ host, store, columns, first }) {
       onCamera() {
         cameraTimer ??= setTimeout(() => {
           cameraTimer = undefined;
-          // The opening is not a view that anyone chose; the state gets the one in which it ends.
-          if (!viewer.camera.turn) changeView(store, { camera: viewer.camera.state });
+          changeView(store, { camera: viewer.camera.state });
         }, CAMERA_MS);
       },
     },

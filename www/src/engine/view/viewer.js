@@ -94,7 +94,7 @@ export class Viewer {
     this.reveal = new Reveal();
     this.#lagS = 0;
     this.#lastS = 0;
-    /** Whether the next surface that grows is first seen from the side of its seed. */
+    /** Whether the next surface that grows is the first one of a visit. */
     this.opening = false;
     /** The camera of the link that was opened last, until the surface is fitted by hand. @type {CameraState | null} */
     this.linked = null;
@@ -174,11 +174,7 @@ export class Viewer {
 
   /** @param {number} first @param {number} last @param {() => void} onDrawn */
   changed(first, last, onDrawn) {
-    if (this.opening && last > 0) {
-      this.opening = false;
-      const [x, y, z] = this.columns.normals;
-      if (this.reveal.active) this.camera.openOn([x, y, z]);
-    }
+    if (last > 0) this.opening = false;
     this.upload.changed(first, last);
     this.due.legend = true;
     // The last level may have changed.
@@ -298,8 +294,6 @@ export class Viewer {
   turnTo(normal) {
     const to = facing(this.camera.state, normal);
     if (to) this.camera.turnTo(to);
-    // The turn of the opening would lead away from it.
-    else this.camera.turn = null;
     this.moved();
   }
 
@@ -447,7 +441,7 @@ export class Viewer {
   /** @param {number} clockS @param {number} dtS @returns {FrameResult} */
   #frame(clockS, dtS) {
     const { device } = this.keeper;
-    if (!device) return 'none';
+    if (!device || this.#holds(clockS)) return 'none';
     const passedS = clockS - this.#lastS;
     this.#lagS += this.reveal.wait(passedS);
     this.#lastS = clockS;
@@ -487,6 +481,27 @@ export class Viewer {
       return 'drawn';
     }
     return outcome === 'skipped' && this.screen.width > 0 && this.screen.height > 0 ? 'skipped' : 'none';
+  }
+
+  /** @param {boolean} isGrowing  whether the front is still placing particles */
+  grow(isGrowing) {
+    this.growing = isGrowing;
+    if (this.reveal.isHeld) this.frames.ask();
+  }
+
+  /**
+   * Returns whether the first surface is still waited for. Once it is there, it is framed for good.
+   * @param {number} clockS
+   */
+  #holds(clockS) {
+    const { reveal, columns, camera } = this;
+    if (!reveal.isHeld) return false;
+    if (this.growing || columns.count === 0) return true;
+    const { ball, distance } = this.#fit();
+    if (camera.state.fit) camera.fit(ball, { distance, jump: true });
+    this.#lastS = clockS;
+    reveal.release(clockS - this.#lagS, columns.levels.subarray(0, columns.count));
+    return false;
   }
 
   /**
@@ -554,7 +569,9 @@ export class Viewer {
       count,
       ratio: this.screen.ratio * this.#quality.share,
     });
-    renderer.set_count(count + points, count);
+    const { reveal } = this;
+    if (reveal.isOpening) renderer.set_count(Math.min(count, reveal.appeared(this.#now())), count);
+    else renderer.set_count(count + points, count);
   }
 
   #tellLegend() {
@@ -569,7 +586,7 @@ export class Viewer {
   #tellReveal(nowS) {
     const { reveal, columns } = this;
     if (!reveal.active) return false;
-    if (nowS > reveal.endS() + FADE_S && !this.growing) {
+    if (nowS > reveal.endS() + FADE_S && !this.growing && !reveal.isHeld) {
       this.#endReveal();
       return false;
     }
@@ -589,7 +606,7 @@ export class Viewer {
     return styleOf(look, {
       lastLevel: columns.lastLevel,
       // What has not closed yet can be looked into.
-      isOpen: columns.isOpen || reveal.active,
+      isOpen: columns.isOpen || (reveal.active && !reveal.isOpening),
       bounds: this.#scene.shown,
       dim: this.dimmer.at(nowS, calm),
       calm,

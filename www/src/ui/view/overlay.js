@@ -65,7 +65,9 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   );
 
   // The poster is shown until the first particles are drawn.
-  const drawn = computed(() => engine.frame.value > 0 && engine.progress.value.particles > 0);
+  const drawn = computed(
+    () => engine.frame.value > 0 && engine.progress.value.particles > 0 && engine.reveal.value?.particles !== 0,
+  );
   const settled = computed(() => drawn.value || engine.empty.value);
   live(poster, () => poster.classList.toggle('gone', poster.matches('.gone') || settled.value));
   live(start, () => {
