@@ -1,6 +1,6 @@
 /** The first picture: the surface grows from its seed before the eye. */
 import { expect, test } from '@playwright/test';
-import { atRest, open, state } from './helpers.js';
+import { atRest, open, settled, state } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -121,5 +121,105 @@ test('stays as it is where motion is reduced', async ({ page }) => {
   const { clean } = await open(page);
   const { yaw, pitch } = (await state(page)).view.camera;
   expect([yaw, pitch]).toEqual([0.62, 0.42]);
+  await clean();
+});
+
+/** What can be pressed, typed into or dragged, as far as it is seen. */
+const seenControls = () =>
+  [...document.querySelectorAll('a[href], button, input, select, textarea, summary, [contenteditable]')]
+    .filter((element) => {
+      const { left, top, right, bottom } = element.getBoundingClientRect();
+      return right > 0 && bottom > 0 && left < innerWidth && top < innerHeight && right - left > 0;
+    })
+    .filter((element) => {
+      // What stands for an input that is not seen itself is.
+      const shown = element.closest('label') ?? element;
+      return shown.checkVisibility({ opacityProperty: true, visibilityProperty: true });
+    })
+    .map((element) => element.getAttribute('aria-label') ?? element.textContent?.trim());
+
+test('at rest there are few controls in view; the others come with the pointer or the focus', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900, folded: true });
+  await atRest(page);
+  const atFirst = await page.evaluate(seenControls);
+  expect(atFirst.length, atFirst.join(' · ')).toBeLessThanOrEqual(35);
+  // The invitation: formula, sliders, gallery, timeline, a mesh.
+  for (const name of ['Formula', 'Semi-axis along x a', 'Sphere', 'Timeline, by levels', 'Play', 'Make a mesh'])
+    expect(atFirst).toContain(name);
+  for (const name of ['Run', 'Stop', 'Generate only', 'Relax one step', 'Uniform', 'Zoom in', 'First level'])
+    expect(atFirst).not.toContain(name);
+
+  const seen = async () => {
+    await page.waitForFunction(() => document.getAnimations().every(({ playState }) => playState !== 'running'));
+    return page.evaluate(seenControls);
+  };
+  await page.mouse.move(720, 400);
+  expect(await seen()).toEqual(expect.arrayContaining(['Zoom in', 'Save picture', 'Export']));
+  await page.locator('#panel-levels').hover();
+  expect(await seen()).toEqual(expect.arrayContaining(['First level', 'Speed of the timeline']));
+  await page.locator('.gallery-find').hover();
+  expect(await seen()).toEqual(expect.arrayContaining(['Singular', 'Points']));
+  await page.getByRole('slider', { name: 'Semi-axis along x a' }).focus();
+  expect(await seen()).toContain('Play a');
+
+  await test.step('Run is there while something waits to be run', async () => {
+    const run = page.locator('#panel-sampling').getByRole('button', { name: 'Run', exact: true });
+    await expect(run).toBeHidden();
+    // A run that was stopped is not whole.
+    await page.evaluate(() => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      engine.setSetting('radius_share', 0.001);
+      return new Promise((resolve) => {
+        const end = engine.progress.subscribe((/** @type {{particles: number}} */ { particles }) => {
+          if (!engine.busy.value || particles < 100) return;
+          queueMicrotask(() => resolve(end()));
+          engine.stop();
+        });
+      });
+    });
+    await expect(run).toBeVisible();
+  });
+
+  await test.step('the sampling part has the rest', async () => {
+    await page.getByRole('button', { name: 'Unfold sampling' }).click();
+    for (const name of ['Run', 'Stop', 'Generate only', 'Relax one step'])
+      await expect(page.locator('#panel-sampling').getByRole('button', { name, exact: true })).toBeVisible();
+    await expect(page.getByRole('radio', { name: 'Adaptive' })).toBeVisible();
+  });
+  await clean();
+});
+
+test('after the first surface has grown, the first slider moves by itself, once', async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: 'no-preference' });
+  await page.addInitScript(() => {
+    const values = /** @type {number[]} */ ([]);
+    Object.assign(window, { values });
+    const look = () => {
+      const { engine } = /** @type {any} */ (window).marchingParticles ?? {};
+      const { a } = engine?.state.value.parameters ?? {};
+      if (a !== undefined) values.push(a);
+      requestAnimationFrame(look);
+    };
+    look();
+  });
+  const { clean } = await open(page, { invites: true });
+  await expect(page.locator('.invite')).toHaveText('Drag a');
+  const { parameters } = await state(page);
+  await expect.poll(() => page.evaluate(() => /** @type {any} */ (window).values.length)).toBeGreaterThan(2);
+  await expect.poll(async () => (await state(page)).parameters).toEqual({});
+  await settled(page);
+  expect(parameters.a ?? 1).toBeGreaterThan(0);
+  // Nothing of it is left behind: no entry to undo, and no link.
+  await expect(page.locator('#panel-field').getByRole('button', { name: 'Undo' })).toBeHidden();
+  await page.waitForTimeout(700);
+  expect(new URL(page.url()).hash).toBe('');
+  await page.locator('#stage').click({ position: { x: 640, y: 20 } });
+  await expect(page.locator('.invite')).toBeHidden();
+  // The next visit is not invited.
+  await page.reload();
+  await settled(page);
+  await page.waitForTimeout(300);
+  await expect(page.locator('.invite')).toBeHidden();
+  expect(await page.evaluate(() => /** @type {any} */ (window).values)).toEqual([]);
   await clean();
 });
