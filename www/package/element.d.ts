@@ -23,6 +23,8 @@ export class MarchingParticles extends HTMLElement {
   draw: string | null;
   /** `auto`, `light` or `dark` */
   theme: string | null;
+  /** `webgpu`, `webgl2` or `canvas2d`: what is to draw the picture; read when it comes into sight */
+  backend: string | null;
   /** whether pointer and keys turn the picture and zoom in it; it can then have the focus */
   controls: boolean;
   readonly view: View | null;

@@ -7,7 +7,7 @@ import { homeView } from '../src/engine/share/view.js';
 import { InputError } from './errors.js';
 import { createView } from './view.js';
 
-/** @import { View, ViewState } from './view.js' */
+/** @import { BackendKind, View, ViewState } from './view.js' */
 
 /**
  * What the attributes that are settings are in the state.
@@ -21,7 +21,10 @@ const SETTINGS = {
   adaptive: () => ({ sampling: 'adaptive' }),
 };
 const VIEW = /** @type {const} */ (['colour', 'draw', 'theme']);
-const TEXTS = ['formula', 'surface', 'params', ...VIEW, ...Object.keys(SETTINGS).filter((name) => name !== 'adaptive')];
+const TEXTS = [
+  ...['formula', 'surface', 'params', 'backend', ...VIEW],
+  ...Object.keys(SETTINGS).filter((name) => name !== 'adaptive'),
+];
 const FLAGS = ['adaptive', 'controls'];
 /** Time without a change of `params` after which a motion is over. */
 const STILL_MS = 250;
@@ -127,7 +130,8 @@ export class MarchingParticles extends Base {
   /** @param {string} name @param {string | null} _before @param {string | null} value */
   attributeChangedCallback(name, _before, value) {
     this.#describe();
-    if (name === 'controls' || !this.#isSeen || this.#isDue) return;
+    // A picture stays with what draws it.
+    if (name === 'controls' || (name === 'backend' && this.#view) || !this.#isSeen || this.#isDue) return;
     if (name === 'params' && value !== null && this.#view) {
       this.#try(() => this.#move(paramsOf(value)));
       return;
@@ -198,7 +202,8 @@ export class MarchingParticles extends Base {
       // The end of a motion would bring back the parameters before.
       clearTimeout(this.#still);
       if (this.#view) return this.#view.set(state);
-      this.#view = createView(this.#host, state);
+      const backend = /** @type {BackendKind | null} */ (this.getAttribute('backend')) ?? undefined;
+      this.#view = createView(this.#host, state, { backend });
       // A picture takes the focus, which it is to have only with `controls`.
       this.#describe();
       for (const name of /** @type {const} */ (['progress', 'report', 'error']))

@@ -21,6 +21,12 @@ export interface ViewState {
     [option: string]: unknown;
   };
 }
+/** What draws a picture. */
+export type BackendKind = 'webgpu' | 'webgl2' | 'canvas2d';
+export interface ViewOptions {
+  /** the back end to try first; without it the best that the machine draws quickly */
+  backend?: BackendKind;
+}
 export interface Listeners {
   progress: (progress: Progress) => void;
   report: (report: Report) => void;
@@ -43,6 +49,8 @@ export interface View {
   readonly state: ViewState;
   /** the last report; null while particles are placed */
   readonly report: Report | null;
+  /** what draws the picture; null before it is there */
+  readonly backend: BackendKind | null;
   /**
    * changes a part of the state; rejected with the error of a formula, if there is no surface, and, with nothing
    * changed, by an `InputError` that names what is not valid
@@ -70,4 +78,4 @@ export interface View {
 }
 
 /** Draws a surface in an element, which it fills, and samples it in a worker. */
-export function createView(host: HTMLElement, state?: ViewState): View;
+export function createView(host: HTMLElement, state?: ViewState, options?: ViewOptions): View;

@@ -8,13 +8,14 @@ import { createEngine } from '../src/engine/index.js';
 import { atRest, once, settled } from '../src/engine/rest.js';
 import { defaultState, mergeState } from '../src/engine/share/state.js';
 import { description } from '../src/engine/store.js';
+import { BACKENDS } from '../src/engine/view/backends.js';
 import { DisposedError, FormulaError, InputError, NoSurfaceError, WorkerError } from './errors.js';
 
 export { DisposedError, FormulaError, InputError, NoSurfaceError, WorkerError } from './errors.js';
 
 /**
  * @import { Engine, ReadonlySignal, Signal, State } from '../src/engine/types.js'
- * @import { Listeners, View, ViewState } from './view.js'
+ * @import { Listeners, View, ViewOptions, ViewState } from './view.js'
  */
 
 /**
@@ -68,14 +69,16 @@ function lifetime() {
 
 /**
  * Draws a surface in an element, which it fills, and samples it.
- * @param {HTMLElement} host @param {ViewState} [state]
+ * @param {HTMLElement} host @param {ViewState} [state] @param {ViewOptions} [options]
  * @returns {View}
  */
-export function createView(host, state = {}) {
+export function createView(host, state = {}, { backend } = {}) {
   if (!(host instanceof HTMLElement)) throw new InputError('createView(host): an element of the page.');
+  if (backend !== undefined && !BACKENDS.includes(backend))
+    throw new InputError(`createView(): backend is one of ${BACKENDS.join(', ')}, not ${backend}.`);
   if (getComputedStyle(host).position === 'static') host.style.position = 'relative';
   const first = { ...state };
-  const engine = createEngine({ host, state: first });
+  const engine = createEngine({ host, state: first, backend });
   const { alive, end } = lifetime();
   /** The error of a first state that is not valid, until another one is set. @type {Signal<Error | null>} */
   const unread = signal(null);
@@ -111,6 +114,10 @@ export function createView(host, state = {}) {
     },
     get report() {
       return structuredClone(engine.report.value);
+    },
+    get backend() {
+      const kind = engine.backend.value;
+      return kind === 'starting' ? null : kind;
     },
     set(patch) {
       const change = { ...patch };

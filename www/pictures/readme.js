@@ -142,7 +142,7 @@ async function webp(pngs, quality, columns = pngs.length) {
 
 for (const theme of /** @type {const} */ (['light', 'dark'])) {
   const page = await browser.newPage({ viewport: PAGE_PX, deviceScaleFactor: PAGE_SCALE, colorScheme: theme });
-  await page.goto(base);
+  await page.goto(`${base}?backend=webgl2`);
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
   await page.evaluate((surface) => /** @type {any} */ (window).marchingParticles.set({ surface }), PAGE_SURFACE);
   await page.waitForTimeout(500);
@@ -174,7 +174,7 @@ const onlyThePicture = (page) =>
 async function strip(name, states, columns) {
   for (const theme of /** @type {const} */ (['light', 'dark'])) {
     const page = await browser.newPage({ viewport: LEVEL_PX, deviceScaleFactor: LEVEL_SCALE, colorScheme: theme });
-    await page.goto(base);
+    await page.goto(`${base}?backend=webgl2`);
     await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
     await onlyThePicture(page);
     const frames = [];
@@ -278,7 +278,7 @@ async function film(name, scenes) {
     const taken = [];
     for (const scene of scenes) {
       const page = await browser.newPage({ viewport: LEVEL_PX, colorScheme: theme });
-      await page.goto(base);
+      await page.goto(`${base}?backend=webgl2`);
       await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
       await onlyThePicture(page);
       const moveTo = await scene(page);

@@ -19,7 +19,7 @@ use crate::project::Project;
 ///
 /// A budget is an alarm against accidents, not a goal. A change that needs more raises it in a
 /// commit of its own, which says why; no code is contorted to stay under one.
-const FIRST_PAINT_BUDGET_KB: f64 = 90.0;
+const FIRST_PAINT_BUDGET_KB: f64 = 92.0;
 
 /// The largest gzip size, in kB, of what the lesson's page shows before any WebAssembly; its
 /// figures come to life after that.

@@ -12,6 +12,9 @@
 /** Delay between a motion of the camera and its entry in the state. */
 export const CAMERA_MS = 120;
 
+/** Returns the painter, if it draws. @param {Parts['picture']['viewer']} viewer */
+const painterOf = ({ keeper: { device } }) => (device && 'work' in device.renderer ? device.renderer : null);
+
 /** @param {Parts} parts @returns {EngineDebug} */
 export function createDebug({ store, picture: { viewer }, scheduler: { sampling } }) {
   return {
@@ -27,7 +30,8 @@ export function createDebug({ store, picture: { viewer }, scheduler: { sampling 
     still: () =>
       new Promise((resolve) => {
         const look = () => {
-          if ((viewer.frames.asked !== 0 || viewer.reveal.active) && !document.hidden) requestAnimationFrame(look);
+          if ((viewer.frames.asked !== 0 || viewer.reveal.active || viewer.isWaiting) && !viewer.frames.isHidden)
+            requestAnimationFrame(look);
           else setTimeout(resolve, CAMERA_MS + 10);
         };
         // The check is deferred, because a signal can change during a frame, before that frame requests the next one.
@@ -41,6 +45,7 @@ export function createDebug({ store, picture: { viewer }, scheduler: { sampling 
       restarts: sampling.client.supervisor.restarts.length,
       stale: sampling.stale,
       dimmed: viewer.dimmer.on,
+      work: painterOf(viewer)?.work ?? 0,
     }),
   };
 }

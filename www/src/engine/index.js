@@ -13,7 +13,6 @@ import { createDebug } from './debug.js';
 import { Framing } from './framing.js';
 import { keepLook } from './look.js';
 import { createPicture } from './picture.js';
-import { fetchCore } from './sampling/spawn.js';
 import { Scheduler } from './scheduler.js';
 import { surfaceOf } from './share/state.js';
 import { createStore } from './store.js';
@@ -32,7 +31,7 @@ import { createStore } from './store.js';
 export function createEngine({ host, link = '', state = {}, backend = null }) {
   const store = createStore();
   const columns = new Columns();
-  const picture = createPicture({ host, store, columns, first: backend, after: fetchCore() });
+  const picture = createPicture({ host, store, columns, first: backend });
   const { viewer } = picture;
   const scheduler = new Scheduler({
     store,

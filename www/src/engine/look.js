@@ -60,7 +60,7 @@ export function keepLook({ store, viewer, scheduler: { loader, sampling } }) {
       if (field) viewer.setBounds(field.bounds);
     }),
     effect(() => {
-      viewer.growing = store.busy.value;
+      viewer.grow(store.busy.value);
     }),
     effect(() => {
       const now = look();

@@ -34,8 +34,6 @@ export interface PictureOptions {
   columns: Columns;
   /** the back end to try first */
   first: BackendKind | null;
-  /** what the bundles of the renderer are fetched after */
-  after: Promise<unknown>;
 }
 export interface SchedulerOptions {
   store: Store;

@@ -23,13 +23,13 @@ import { Viewer } from './view/viewer.js';
  * @param {PictureOptions} parts
  * @returns {Picture}
  */
-export function createPicture({ host, store, columns, first, after }) {
+export function createPicture({ host, store, columns, first }) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let cameraTimer;
   host.tabIndex = Math.max(host.tabIndex, 0);
 
   const viewer = new Viewer(
-    { host, columns, look: store.state.value.view, first, after },
+    { host, columns, look: store.state.value.view, first },
     {
       ...deviceEvents(store, () => void viewer.keeper.retry()),
       onLegend(legend) {
@@ -44,8 +44,7 @@ export function createPicture({ host, store, columns, first, after }) {
       onCamera() {
         cameraTimer ??= setTimeout(() => {
           cameraTimer = undefined;
-          // The opening is not a view that anyone chose; the state gets the one in which it ends.
-          if (!viewer.camera.turn) changeView(store, { camera: viewer.camera.state });
+          changeView(store, { camera: viewer.camera.state });
         }, CAMERA_MS);
       },
     },

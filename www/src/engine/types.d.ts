@@ -457,7 +457,16 @@ export interface EngineDebug {
   still: () => Promise<void>;
   /** whether no sampler is there or coming */
   isOff: () => boolean;
-  counts: () => { frames: number; uploads: number; opened: number; restarts: number; stale: number; dimmed: boolean };
+  /** `work`: pixels that the painter has looked at */
+  counts: () => {
+    frames: number;
+    uploads: number;
+    opened: number;
+    restarts: number;
+    stale: number;
+    dimmed: boolean;
+    work: number;
+  };
 }
 export type Engine = EngineSignals & EngineCommands & { debug: EngineDebug };
 /** The arguments of an engine's creation. */

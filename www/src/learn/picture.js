@@ -246,7 +246,7 @@ export class Picture {
     const view = this.#view();
     painter.set_view(view.packed);
     // The ground is left out, so that the picture stands on that of the page or of the paper.
-    painter.draw(0, true);
+    painter.draw(0, true, Infinity);
     const { places = [], normal = [], radius = 0 } = this.ringed.peek() ?? {};
     // The largest hole has the circle that is empty; of a pair both particles are ringed.
     const isHole = places.length === 1;

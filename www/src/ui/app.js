@@ -308,8 +308,8 @@ function goButton(engine) {
 
 /** @param {ReturnType<typeof createHistory>} history */
 const historyButtons = ({ canUndo, undo, canRedo, redo }) => [
-  historyButton('undo', 'Undo', `${COMMAND_KEY} Z`, canUndo, undo),
-  historyButton('redo', 'Redo', `${COMMAND_KEY} Shift Z`, canRedo, redo),
+  historyButton('undo', 'Undo', `${COMMAND_KEY} Z`, canUndo, undo, [canUndo, canRedo]),
+  historyButton('redo', 'Redo', `${COMMAND_KEY} Shift Z`, canRedo, redo, [canUndo, canRedo]),
 ];
 
 /**
@@ -318,9 +318,11 @@ const historyButtons = ({ canUndo, undo, canRedo, redo }) => [
  * @param {string} keys
  * @param {ReadonlySignal<boolean>} can
  * @param {() => void} act
+ * @param {ReadonlySignal<boolean>[]} either  without any of them neither button is shown
  */
-function historyButton(name, label, keys, can, act) {
-  return explain(button({ icon: name, 'aria-label': label, off: () => !can.value, press: act }), () => ({
+function historyButton(name, label, keys, can, act, either) {
+  const look = () => (either.some(({ value }) => value) ? 'plain square' : 'plain square invisible');
+  return explain(button({ icon: name, class: look, 'aria-label': label, off: () => !can.value, press: act }), () => ({
     title: label,
     text: `Surface, formula, clip box, settings and camera. Keys ${keys}.`,
   }));

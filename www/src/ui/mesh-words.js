@@ -42,6 +42,3 @@ export function verdictOf({ components, unfilled, left_out, volume, inside, smal
     .filter(Boolean)
     .join(' · ');
 }
-
-/** The message where no mesh can be drawn. */
-export const NO_MESH = 'A mesh is drawn by WebGPU or WebGL2; the picture shows discs';

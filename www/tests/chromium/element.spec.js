@@ -23,7 +23,7 @@ test.afterAll(() => there.remove());
 async function open(page, attributes, coreMs = 0) {
   const modules = { imports: { 'marching-particles/element': './element.js' } };
   const html = `<script type="importmap">${JSON.stringify(modules)}</script>
-<marching-particles ${attributes} style="width: 320px"></marching-particles>
+<marching-particles ${attributes} backend="canvas2d" style="width: 320px"></marching-particles>
 <script>
 globalThis.told = [];
 globalThis.shown = document.querySelector('marching-particles');
@@ -46,7 +46,10 @@ const on = (page, expression) =>
     return new Function('shown', 'told', `return (${body})`)(shown, told);
   }, expression);
 /** @param {Page} page */
-const sampled = (page) => expect.poll(() => on(page, 'shown.report?.components')).toBe(1);
+async function sampled(page) {
+  await expect.poll(() => on(page, 'shown.report?.components')).toBe(1);
+  await expect.poll(() => on(page, 'shown.view.backend')).toBe('canvas2d');
+}
 
 test('an attribute that was wrong when the element came into sight opens the picture once it is right', async ({
   page,

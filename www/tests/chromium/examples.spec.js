@@ -47,6 +47,12 @@ test('the examples run, under the policy of the page, with their code beside the
     .poll(() => knot.evaluate((/** @type {any} */ { view, report }) => report && view.state.parameters.a))
     .toBe(0.5);
 
+  // Those in sight are painted without a graphics card.
+  expect(
+    await page.evaluate(() =>
+      [...document.querySelectorAll('marching-particles')].flatMap(({ view }) => view?.backend ?? []),
+    ),
+  ).toEqual(['canvas2d', 'canvas2d']);
   const [file] = await Promise.all([page.waitForEvent('download'), page.locator('#download').click()]);
   expect(file.suggestedFilename()).toBe('cushion.glb');
   const bytes = readFileSync(await file.path());

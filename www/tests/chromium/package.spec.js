@@ -83,9 +83,9 @@ test('an element of a page samples and draws once it is in sight, by its attribu
   there.write(
     'index.html',
     `<script type="importmap">${JSON.stringify(modules)}</script>
-<marching-particles id="a" formula="x^2 + y^2 + z^2 = a" params="a=2" count="500" style="width: 320px"></marching-particles>
+<marching-particles id="a" backend="webgl2" formula="x^2 + y^2 + z^2 = a" params="a=2" count="500" style="width: 320px"></marching-particles>
 <div style="height: 4000px"></div>
-<marching-particles id="b" surface="torus" count="600" draw="mesh" controls style="width: 320px"></marching-particles>
+<marching-particles id="b" backend="webgl2" surface="torus" count="600" draw="mesh" controls style="width: 320px"></marching-particles>
 <script>
 globalThis.told = { a: [], b: [] };
 for (const id of ['a', 'b']) for (const name of ['progress', 'report', 'error'])
@@ -118,6 +118,9 @@ for (const id of ['a', 'b']) for (const name of ['progress', 'report', 'error'])
     .toBe('FormulaError');
   await page.locator('#b').scrollIntoViewIfNeeded();
   await expect.poll(async () => (await last('b', 'report'))?.components).toBe(1);
+  const kinds = () =>
+    page.evaluate(() => [...document.querySelectorAll('marching-particles')].map(({ view }) => view?.backend));
+  await expect.poll(kinds).toEqual(['webgl2', 'webgl2']);
   const head = await page.evaluate(async () =>
     String.fromCharCode(...(await document.querySelectorAll('marching-particles')[1].toFile('glb')).subarray(0, 4)),
   );
@@ -143,7 +146,7 @@ test('a second version of the element leaves the pictures to the first, and says
   const modules = './node_modules/marching-particles/element.js';
   there.write(
     'index.html',
-    `<marching-particles formula="x^2 + y^2 + z^2 = 1" count="300" style="width: 320px"></marching-particles>
+    `<marching-particles backend="canvas2d" formula="x^2 + y^2 + z^2 = 1" count="300" style="width: 320px"></marching-particles>
 <script type="module">
 const first = await import('${modules}');
 const second = await import('${modules}?another');
@@ -183,7 +186,7 @@ test('a view in an element of a page has a state, and rejects what is wrong', as
     `<script type="importmap">${JSON.stringify(modules)}</script>
 <div id="host" style="width: 320px; height: 240px"></div>
 <script type="module">import { createView } from 'marching-particles/view';
-const view = createView(host, { formula: 'x^2 + y^2 + z^2 = a', settings: { size_mode: 'count', count: 400 } });
+const view = createView(host, { formula: 'x^2 + y^2 + z^2 = a', settings: { size_mode: 'count', count: 400 } }, { backend: 'canvas2d' });
 const told = [];
 const end = view.on('report', ({ count }) => told.push(count));
 const { components } = await view.ready;
@@ -195,12 +198,12 @@ const { size, type } = await view.picture({ width: 64, height: 48 });
 const { count, positions } = view.particles();
 end();
 view.destroy();
-const facts = [components, moved.components, wrong, none, size > 100, type, positions.length / count, told.length > 1];
+const facts = [view.backend, components, moved.components, wrong, none, size > 100, type, positions.length / count, told.length > 1];
 document.title = facts.join(' ');
 </script>`,
   );
   await serve(page, '.');
-  await expect(page).toHaveTitle('1 1 FormulaError NoSurfaceError true image/png 3 true');
+  await expect(page).toHaveTitle('canvas2d 1 1 FormulaError NoSurfaceError true image/png 3 true');
 });
 
 /** Writes a page with the program as a script of its own. */
@@ -237,6 +240,7 @@ test('a page that esbuild builds samples the same, beside an element', async ({ 
       worker: 'marching-particles/worker',
       'sampling-worker': 'marching-particles/sampling-worker',
       'points-worker': 'marching-particles/points-worker',
+      'probe-worker': 'marching-particles/probe-worker',
       core_bg: 'marching-particles/core.wasm',
       points_bg: 'marching-particles/points.wasm',
       'render-webgpu_bg': 'marching-particles/render-webgpu.wasm',
@@ -260,14 +264,19 @@ test('a page that esbuild builds samples the same, beside an element', async ({ 
   expect(files).toEqual(expect.arrayContaining(named.map(([, name]) => name)));
   there.write(
     'by-esbuild/index.html',
-    `<marching-particles formula="x^2 + y^2 + z^2 = 1" count="300" style="width: 320px"></marching-particles>
+    `<marching-particles backend="canvas2d" formula="x^2 + y^2 + z^2 = 1" count="300" style="width: 320px"></marching-particles>
 <script type="module" src="./element.js"></script>
 <script type="module" src="./program.js"></script>`,
   );
   expect(await digestIn(page, 'by-esbuild')).toBe(golden.digest);
   await expect
-    .poll(() => page.evaluate(() => document.querySelector('marching-particles')?.report?.components))
-    .toBe(1);
+    .poll(() =>
+      page.evaluate(() => {
+        const { view, report } = document.querySelector('marching-particles') ?? {};
+        return [view?.backend, report?.components];
+      }),
+    )
+    .toEqual(['canvas2d', 1]);
 });
 
 test('a page that Vite builds samples the same', async ({ page }) => {

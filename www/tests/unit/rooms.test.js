@@ -41,7 +41,10 @@ const MAY_USE = {
     'engine/core-numbers',
     'engine/vector',
     'engine/bundle',
+    'engine/probe',
   ],
+  // What the machine draws with.
+  'engine/probe': ['engine/types'],
   // The state holds the camera's.
   'engine/share': [
     'engine/types',

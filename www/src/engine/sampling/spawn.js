@@ -26,12 +26,3 @@ export function spawnSampler() {
   );
   return worker;
 }
-
-/**
- * Asks for the core, and resolves once it has loaded or could not be loaded. The renderer comes after it: the first
- * picture needs the core alone.
- */
-export async function fetchCore() {
-  core ??= loadModule(coreUrl);
-  await core.catch(() => {});
-}

@@ -5,6 +5,8 @@
  * @module
  */
 
+import { askAdapter, askDrawer } from '../probe/index.js';
+
 /**
  * @import { Renderer } from '../../wasm/render-webgpu/render.js'
  * @import { BackendKind } from '../types.js'
@@ -15,41 +17,13 @@
 /** @type {readonly BackendKind[]} */
 export const BACKENDS = ['webgpu', 'webgl2', 'canvas2d'];
 
-/** Time after which a request for an adapter counts as failed. */
-const ADAPTER_MS = 5000;
-
 /** A device was lost while it opened: a browser takes the context of one picture for another at any time. */
 export class DeviceLost extends Error {}
 
-/** @template T @param {Promise<T>} promise @param {number} ms @returns {Promise<T | null>} */
-const within = (promise, ms) => Promise.race([promise, new Promise((resolve) => setTimeout(() => resolve(null), ms))]);
-
 /** Returns whether the browser supports a back end, so that its bundle is worth fetching. @param {BackendKind} kind */
 async function available(kind) {
-  if (kind === 'canvas2d') return true;
-  if (kind === 'webgpu') {
-    // The development server has one renderer, unless it is asked for both.
-    if (import.meta.env.VITE_WITHOUT_WEBGPU) return false;
-    const gpu = /** @type {any} */ (navigator).gpu;
-    if (!gpu) return false;
-    try {
-      return (await within(gpu.requestAdapter(), ADAPTER_MS)) !== null;
-    } catch {
-      return false;
-    }
-  }
-  hasWebgl ??= probed();
-  return hasWebgl;
-}
-
-/** Whether there is WebGL2; null before it was tried. @type {boolean | null} */
-let hasWebgl = null;
-
-/** Returns whether there is WebGL2. Each try costs a context, which a browser may take from another picture. */
-function probed() {
-  const probe = document.createElement('canvas').getContext('webgl2');
-  probe?.getExtension('WEBGL_lose_context')?.loseContext();
-  return probe !== null;
+  if (kind === 'webgpu') return (await askAdapter()) !== null;
+  return kind === 'canvas2d' || (await askDrawer()) !== 'none';
 }
 
 /** @param {'webgpu' | 'webgl2'} kind */
@@ -62,12 +36,11 @@ const bundle = (kind) =>
  * @param {HTMLElement} host
  * @param {{onLost: (reason: string, message: string) => void, onError: (message: string) => void}} events  callbacks of
  *   this device only
- * @param {Promise<unknown>} [after]  what the bundle is fetched after; the adapter is asked for at once
  * @returns {Promise<Device>}
  * @throws {DeviceLost} if the device was lost meanwhile
  * @throws if the browser lacks the back end or its bundle fails to start
  */
-export async function openDevice(kind, host, events, after) {
+export async function openDevice(kind, host, events) {
   if (!(await available(kind))) throw new Error(`${kind} is not available`);
   const canvas = document.createElement('canvas');
   Object.assign(canvas.style, {
@@ -97,7 +70,6 @@ export async function openDevice(kind, host, events, after) {
       const { Painter } = await import('./painter.js');
       renderer = await Painter.create(canvas);
     } else {
-      await after;
       const { default: init, Renderer: Made } = await bundle(kind);
       await init();
       isAsked = kind === 'webgl2';

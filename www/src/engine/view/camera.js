@@ -36,15 +36,6 @@ const EASE_S = 0.11;
 /** Speed below which the rotation stops: 0.02 pixels per frame at 1,000 px. */
 const REST_RAD_PER_S = 0.002;
 
-/**
- * The opening, which begins on the side of the seed: its largest pitch, the cosine with the normal from which a side is
- * seen well, and the times before and during the turn.
- */
-const OPENING_PITCH_RAD = 0.9;
-const OPENING_COSINE = 0.5;
-const OPENING_PAUSE_S = 0.5;
-const OPENING_TURN_S = 1.5;
-
 /** @returns {CameraState} */
 export const homeCamera = () => ({ target: [0, 0, 0], distance: 5, yaw: 0.62, pitch: 0.42, fit: true });
 
@@ -269,11 +260,6 @@ export class Camera {
     this.#yawPerS = 0;
     this.#pitchPerS = 0;
     this.#glide = null;
-    /**
-     * A slow turn under way: its angles, and the time since its pause began.
-     * @type {{from: Angles, to: Angles, sinceS: number} | null}
-     */
-    this.turn = null;
     /** Whether motion is reduced: no easing and no animation. */
     this.calm = false;
     this.#nearLimit = 1e-3;
@@ -290,23 +276,6 @@ export class Camera {
     this.#yawPerS = 0;
     this.#pitchPerS = 0;
     this.#glide = null;
-    this.turn = null;
-  }
-
-  /**
-   * Looks at a side first and turns from there to the present angles, after a pause. Any input ends it where it is.
-   * @param {Vec3} normal  of that side
-   */
-  openOn([x, y, z]) {
-    const to = { yaw: this.state.yaw, pitch: this.state.pitch };
-    const pitch = clamp(Math.asin(clamp(z, -1, 1)), -OPENING_PITCH_RAD, OPENING_PITCH_RAD);
-    const { forward } = axes({ yaw: to.yaw, pitch });
-    // A tilt alone is calmer than a turn, where it shows the side.
-    const yaw = -dot(forward, [x, y, z]) > OPENING_COSINE ? to.yaw : Math.atan2(y, x);
-    const way = Math.atan2(Math.sin(yaw - to.yaw), Math.cos(yaw - to.yaw));
-    const from = { yaw: to.yaw + way, pitch };
-    this.turn = { from, to, sinceS: 0 };
-    this.state = { ...this.state, ...from };
   }
 
   /** @param {number} radius  of the scene */
@@ -356,7 +325,6 @@ export class Camera {
     }
     this.state = { ...this.state, distance: next, target: moved, fit: false };
     this.#glide = null;
-    this.turn = null;
   }
 
   /** Moves the target by a drag in pixels. @param {number} dxPx @param {number} dyPx @param {View} view */
@@ -368,18 +336,17 @@ export class Camera {
       fit: false,
     };
     this.#glide = null;
-    this.turn = null;
   }
 
   /** The angles at which a motion under way ends, else the present ones. @returns {Angles} */
   get end() {
-    const { yaw = this.state.yaw, pitch = this.state.pitch } = this.turn?.to ?? this.#glide ?? {};
+    const { yaw = this.state.yaw, pitch = this.state.pitch } = this.#glide ?? {};
     return { yaw, pitch };
   }
 
   /**
    * Moves the camera so that the whole ball is visible, or from a distance, with an animation
-   * unless `jump` is set, and goes on with a turn under way.
+   * unless `jump` is set.
    * @param {Ball} ball
    * @param {{jump?: boolean, distance?: number}} [how]
    */
@@ -396,7 +363,7 @@ export class Camera {
   }
 
   /**
-   * Eases to a distance from the centre of a ball, and goes on with a turn under way.
+   * Eases to a distance from the centre of a ball.
    * @param {Ball} ball @param {number} distance
    */
   glideTo({ centre }, distance) {
@@ -412,7 +379,6 @@ export class Camera {
     const goal = { yaw: state.yaw + way, pitch: clamp(pitch, -PITCH_LIMIT_RAD, PITCH_LIMIT_RAD) };
     this.#yawPerS = 0;
     this.#pitchPerS = 0;
-    this.turn = null;
     if (this.calm) this.state = { ...state, ...goal, yaw: goal.yaw % (2 * Math.PI) };
     else this.#glide = { target: state.target, distance: state.distance, ...this.#glide, ...goal };
   }
@@ -457,21 +423,7 @@ export class Camera {
         this.#pitchPerS = 0;
       } else moving = true;
     }
-    const turning = this.#turnOn(dtS);
-    return this.#follow(keep) || turning || moving;
-  }
-
-  /** Advances a turn by `dtS`. @param {number} dtS @returns whether it continues */
-  #turnOn(dtS) {
-    if (!this.turn) return false;
-    const { from, to } = this.turn;
-    this.turn.sinceS += dtS;
-    const t = clamp((this.turn.sinceS - OPENING_PAUSE_S) / OPENING_TURN_S, 0, 1);
-    const share = t * t * (3 - 2 * t);
-    const between = (/** @type {'yaw' | 'pitch'} */ key) => from[key] + (to[key] - from[key]) * share;
-    this.state = { ...this.state, ...(t < 1 ? { yaw: between('yaw'), pitch: between('pitch') } : to) };
-    if (t === 1) this.turn = null;
-    return t < 1;
+    return this.#follow(keep) || moving;
   }
 
   /**

@@ -10,6 +10,7 @@ import { PALETTES } from './palettes.js';
 
 /**
  * @import { Renderer } from '../../wasm/render-webgpu/render.js'
+ * @import { Painter } from './painter.js'
  * @import { Columns, Mesh } from '../types.js'
  * @import { Look, Theme } from './types.js'
  */
@@ -92,7 +93,7 @@ export class FaceUpload {
 
   /**
    * Uploads what has changed.
-   * @param {Renderer} renderer
+   * @param {Renderer | Painter} renderer
    * @param {Look} look
    * @param {{drawn: boolean, range: [number, number] | null}} present  whether faces are drawn now, and the ends of the
    *   present colour ramp
@@ -128,7 +129,7 @@ export class FaceUpload {
 
 /**
  * Returns whether a device can draw a mesh over all particles.
- * @param {Renderer} renderer
+ * @param {Renderer | Painter} renderer
  * @param {Mesh} mesh
  * @param {Columns} columns
  */

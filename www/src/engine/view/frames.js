@@ -1,5 +1,5 @@
 /**
- * Schedules frames: on demand, and at most one per frame of the browser.
+ * Schedules frames: on demand, at most one per frame of the browser, and none while the picture is out of sight.
  *
  * @module
  */
@@ -26,6 +26,9 @@ export class FrameLoop {
   #retry;
   #onVisible;
 
+  /** Whether the picture is in sight, as far as is known. */
+  #isSeen = true;
+
   /** Whether the last frame was a part of one, and whether another was asked for since the first part. */
   #isPart = false;
   #isLate = false;
@@ -44,7 +47,7 @@ export class FrameLoop {
     this.waiting = [];
     // On some systems a tab loses its picture while it is hidden.
     this.#onVisible = () => {
-      if (document.hidden) this.#flush();
+      if (this.isHidden) this.#flush();
       else this.ask();
     };
     document.addEventListener('visibilitychange', this.#onVisible);
@@ -56,8 +59,21 @@ export class FrameLoop {
     this.#request();
   }
 
+  /** Whether nobody sees the picture: its tab is hidden, or it is in another part of the page. */
+  get isHidden() {
+    return document.hidden || !this.#isSeen;
+  }
+
+  /** @param {boolean} isSeen  whether the picture is in sight */
+  see(isSeen) {
+    this.#isSeen = isSeen;
+    if (!isSeen) cancelAnimationFrame(this.asked);
+    if (!isSeen) this.asked = 0;
+    this.#onVisible();
+  }
+
   #request() {
-    if (this.asked === 0 && !document.hidden) this.asked = requestAnimationFrame(() => this.#frame());
+    if (this.asked === 0 && !this.isHidden) this.asked = requestAnimationFrame(() => this.#frame());
   }
 
   /** @param {() => void} onDrawn  called after the next frame */

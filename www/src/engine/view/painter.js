@@ -1,38 +1,40 @@
 /**
- * Draws discs and the body beneath them on a 2-D canvas without a graphics API, as the last
- * fallback. Each disc is an ellipse on the screen, filled pixel by pixel with the depth of its
- * plane. Creases and the clip box are lines one pixel wide. The picture is like that of a graphics
- * card, but without antialiasing, domes, fading in, spheres, a mesh, shade of a surface on itself,
- * and an edge of the body at the box.
+ * Draws the surface on a 2-D canvas without a graphics API, where there is no graphics card or none that is ready. Each
+ * disc is an ellipse on the screen, filled pixel by pixel with the depth of its plane; spheres and the faces of a mesh
+ * are filled likewise. Creases and the clip box are lines one pixel wide. A picture of several samples is painted as
+ * often, each time moved by a part of a pixel, and shows their mean, which smooths all edges. The picture is like that
+ * of a graphics card, but without domes, fading in, shade of a surface on itself, and an edge of the body at the box.
  *
  * The class has the methods of the WebAssembly renderers, so that the viewer treats them alike.
  *
  * @module
  */
 import { grown, NO_LEVEL } from '../columns.js';
-import { clamp, dot } from '../vector.js';
+import { dot } from '../vector.js';
 import { END } from './creases.js';
-import { encoded, linear } from './oklab.js';
+import { linear } from './oklab.js';
+import { PaintedMesh } from './painted-mesh.js';
 import { isBeyond } from './picking.js';
+import { BALL_SIDE, fillBall, fillDisc, isHidden, overBall, POINT_PX, paintLine } from './raster.js';
+import { PLACES, Samples } from './samples.js';
+import { COLOUR, LIGHT, LINEAR, lightOn, lit, packed, rimOn, smoothstep, takeColour } from './shade.js';
 
 /**
  * @import { Renderer } from '../../wasm/render-webgpu/render.js'
  * @import { PaintedDisc, PaintedScene, Pass, Style, Target } from './types.js'
  */
 
-/** Tables from a byte to linear light, and from linear light in steps of 1/1023 to a byte. */
-const LINEAR = Float32Array.from({ length: 256 }, (_, v) => linear(v / 255));
-const ENCODED = Uint8Array.from({ length: 1024 }, (_, v) => Math.round(255 * encoded(v / 1023)));
-
 /** Radius of the dot of a particle on a crease, as a share of that of a disc. */
 const DOT = 0.5;
 /** Distance in radii by which a crease is drawn nearer to the eye, as in shaders/lines.wgsl. */
 const CREASE_LIFT = 0.3;
-/** Radius on the screen below which a disc is drawn as one pixel. */
-const POINT_PX = 0.7;
 
-/** Most discs that one call of {@link Painter.draw} paints: some 20 ms, so that a press is answered between two. */
-export const MOST_PAINTED = 2 ** 17;
+/**
+ * Work of one call of {@link Painter.draw}, in pixels that are looked at: some 20 ms, so that a press is answered
+ * between two. What is done once for a disc or a face takes as long as so many pixels.
+ */
+export const MOST_WORK = 2.5e6;
+const WORK_OF_ONE = 20;
 
 /** Radius on the screen above which a disc has a darker rim. */
 const RIM_FROM_PX = 4;
@@ -40,21 +42,6 @@ const RIM_FROM_PX = 4;
 const RIM_SHADE = 0.14;
 /** Share by which discs of earlier levels fade towards the background, as in src/render/style.rs. */
 const MUTE = 0.35;
-/** Luminance of a ground above which it is light, and the light along the outline on a dark one, as there. */
-const LIGHT_GROUND = 0.179;
-const RIM_LIGHT = 0.1;
-
-// As in shaders/common.wgsl.
-/** Shares of its light and of its chroma that the inside of a surface keeps. */
-const INSIDE_LIGHT = 0.6;
-const INSIDE_CHROMA = 0.75;
-const GROUND_LIGHT = 0.32;
-const SKY_LIGHT = 0.6;
-const KEY_LIGHT = 0.74;
-const WRAP = 0.3;
-const OUTLINE_SHADE = 0.14;
-const COOL_TO_WARM = /** @type {const} */ ([0.35, 1.15]);
-
 // As in shaders/discs.wgsl.
 const BED_RADIUS = 1.75;
 const BED_SUNK = 0.22;
@@ -72,18 +59,6 @@ const LEAST_BED_PX = 0.8;
 const LEAST_FACING = 0.5;
 /** SWELL_PX there. */
 const GAPS_PX = /** @type {const} */ ([0.8, 2.4]);
-
-/** @param {readonly number[]} edges @param {number} x */
-function smoothstep([from, to], x) {
-  const t = clamp((x - from) / (to - from), 0, 1);
-  return t * t * (3 - 2 * t);
-}
-/** @param {number[]} linear */
-const luminanceOf = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
-
-/** Packs three linear components into a pixel. @param {number} r @param {number} g @param {number} b */
-const packed = (r, g, b) =>
-  (255 << 24) | (ENCODED[(b * 1023) | 0] << 16) | (ENCODED[(g * 1023) | 0] << 8) | ENCODED[(r * 1023) | 0];
 
 /**
  * Returns the unit axes of the eye and the screen displacement of a unit step to the right. The rows of clip_from_world
@@ -121,107 +96,21 @@ function seenFromFar(m) {
   return far;
 }
 
-// A frame draws up to some million discs, so that what is found of one is written to the same places every time: arrays
-// of its own would take most of the frame.
+// As in shade.js, what is found of a disc is written to the same places every time.
 const PLACE = new Float64Array(3);
 const NORMAL = new Float64Array(3);
-const LIGHT = new Float64Array(3);
-const COLOUR = new Float64Array(3);
 
 /**
- * Writes the light on a surface for each component of its colour to LIGHT, as `light_on` in shaders/common.wgsl does.
- * @param {{keyward: number, skyward: number, edgeOn: number}} cosines  of its normal with the
- *   directions to the key light and to the sky; `edgeOn`: 1 at the outline
- * @param {{rim: number, warmth: number}} how
+ * Returns a view that shows a picture of this size moved by a part of a pixel.
+ * @param {Float32Array} view @param {readonly [number, number]} by @param {number} width @param {number} height
  */
-function lightOn({ keyward, skyward, edgeOn }, { rim, warmth }) {
-  const sky = 0.5 + 0.5 * skyward;
-  const key = Math.max(0, (keyward + WRAP) / (1 + WRAP));
-  const direct =
-    (GROUND_LIGHT + (SKY_LIGHT - GROUND_LIGHT) * sky + KEY_LIGHT * key * key) * (1 - OUTLINE_SHADE * edgeOn ** 3);
-  const light = direct + rim * edgeOn ** 4 * sky;
-  const warm = warmth * (smoothstep(COOL_TO_WARM, light) - 0.5);
-  LIGHT[0] = light * (1 + 0.6 * warm);
-  LIGHT[1] = light * (1 + 0.1 * warm);
-  LIGHT[2] = light * (1 - warm);
-}
-
-/**
- * Returns COLOUR, in linear light, under a share of LIGHT, as an inside by the share `behind`, faded to the ground by
- * the share `away`.
- * @param {number} share @param {number} behind @param {number} away @param {number[]} ground
- */
-function lit(share, behind, away, ground) {
-  const r = COLOUR[0] * (LIGHT[0] * share);
-  const g = COLOUR[1] * (LIGHT[1] * share);
-  const b = COLOUR[2] * (LIGHT[2] * share);
-  const luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
-  const component = (/** @type {number} */ value, /** @type {number} */ k) => {
-    const inside = INSIDE_LIGHT * (luminance + (value - luminance) * INSIDE_CHROMA);
-    return Math.min(1, value + (inside - value) * behind) * (1 - away) + ground[k] * away;
-  };
-  return packed(component(r, 0), component(g, 1), component(b, 2));
-}
-
-/**
- * Whether nothing of a disc would be seen: it is beside the picture, or a pixel behind what is there.
- * @param {Target} target @param {{sx: number, sy: number}} at @param {number} px  its radius @param {number} near
- */
-function isHidden({ depth, width, height }, { sx, sy }, px, near) {
-  if (sx + px < 0 || sy + px < 0 || sx - px > width || sy - px > height) return true;
-  if (px >= POINT_PX) return false;
-  return sx < 0 || sx >= width || sy < 0 || sy >= height || near <= depth[(sy | 0) * width + (sx | 0)];
-}
-
-/**
- * Fills the projected ellipse of a disc: dx² + dy² + dz² ≤ px² with dz = −(ka·dx + kb·dy), in pixels around its centre.
- * @param {Target} target @param {PaintedDisc} disc
- */
-function fillDisc({ out, depth, width, height }, { sx, sy, px, ka, kb, near, depthPerPx, value, rim, coreSq }) {
-  const y0 = Math.max(0, Math.ceil(sy - px - 0.5));
-  const y1 = Math.min(height - 1, Math.floor(sy + px - 0.5));
-  const qa = 1 + ka * ka;
-  for (let iy = y0; iy <= y1; iy += 1) {
-    const dy = iy + 0.5 - sy;
-    // (1 + ka²) dx² + 2 ka kb dy dx + (1 + kb²) dy² − px² ≤ 0
-    const half = ka * kb * dy;
-    const root = half * half - qa * ((1 + kb * kb) * dy * dy - px * px);
-    if (root < 0) continue;
-    const s = Math.sqrt(root);
-    const x0 = Math.max(0, Math.ceil(sx + (-half - s) / qa - 0.5));
-    const x1 = Math.min(width - 1, Math.floor(sx + (-half + s) / qa - 0.5));
-    for (let ix = x0, at = iy * width + x0; ix <= x1; ix += 1, at += 1) {
-      const dx = ix + 0.5 - sx;
-      const dz = -(ka * dx + kb * dy);
-      const depthHere = near + dz * depthPerPx;
-      if (depthHere > depth[at]) {
-        depth[at] = depthHere;
-        out[at] = dx * dx + dy * dy + dz * dz > coreSq ? rim : value;
-      }
-    }
+function moved(view, [x, y], width, height) {
+  const out = view.slice();
+  for (let k = 0; k < 4; k += 1) {
+    out[4 * k] += ((2 * x) / width) * view[4 * k + 3];
+    out[4 * k + 1] += ((2 * y) / height) * view[4 * k + 3];
   }
-}
-
-/**
- * Draws a line, one pixel wide, where nothing hides it.
- * @param {Target} target
- * @param {{ ends: number[][], steps: number, value: number }} line  `ends`: horizontal and vertical clip coordinates
- *   and w of each; `steps`: number of equal parts between them, with a pixel at each end of a part
- */
-function paintLine({ out, depth, width, height }, { ends: [p, q], steps, value }) {
-  for (let i = 0; i <= steps; i += 1) {
-    const t = i / steps;
-    const w = p[2] + (q[2] - p[2]) * t;
-    if (!(w > 1e-9)) continue;
-    const x = Math.floor((0.5 + (0.5 * (p[0] + (q[0] - p[0]) * t)) / w) * width);
-    const y = Math.floor((0.5 - (0.5 * (p[1] + (q[1] - p[1]) * t)) / w) * height);
-    if (x < 0 || y < 0 || x >= width || y >= height) continue;
-    const at = y * width + x;
-    if (1 / w > depth[at]) {
-      depth[at] = 1 / w;
-      out[at] = value;
-    }
-  }
+  return out;
 }
 
 export class Painter {
@@ -248,6 +137,12 @@ export class Painter {
 
   /** The picture that is painted over several calls, null between two. @type {Pass | null} */
   #pass;
+
+  #mesh;
+  #samples;
+
+  /** The view of the sample that is being painted. */
+  #seen;
 
   /** @param {HTMLCanvasElement} canvas */
   static async create(canvas) {
@@ -286,6 +181,14 @@ export class Painter {
     this.#image = new ImageData(1, 1);
     this.#depth = new Float32Array(1);
     this.#pass = null;
+    this.#mesh = new PaintedMesh();
+    this.#samples = new Samples();
+    this.#seen = this.view;
+    /** Work of all pictures so far, in pixels. */
+    this.work = 0;
+    /** Number of samples of a picture, 1 or all; one of so many particles is drawn, larger, in place of all. */
+    this.samples = 1;
+    this.stride = 1;
     this.width = 0;
     this.height = 0;
   }
@@ -302,12 +205,14 @@ export class Painter {
     return Infinity;
   }
 
+  max_faces() {
+    return Infinity;
+  }
+
   /** @type {Renderer['resize']} */
   resize(widthPx, heightPx) {
     this.width = Math.max(0, Math.floor(widthPx));
     this.height = Math.max(0, Math.floor(heightPx));
-    this.#canvas.width = this.width;
-    this.#canvas.height = this.height;
   }
 
   /** @type {Renderer['write']} */
@@ -341,6 +246,21 @@ export class Painter {
     this.lineColours = colours.slice();
   }
 
+  /** @type {Renderer['write_faces']} */
+  write_faces(first, positions, normals, radii, levels, colours, marks) {
+    this.#mesh.write(first, { positions, normals, radii, levels }, colours, marks);
+  }
+
+  /** @type {Renderer['tint_faces']} */
+  tint_faces(first, colours, marks) {
+    this.#mesh.tint(first, colours, marks);
+  }
+
+  /** @type {Renderer['set_faces']} */
+  set_faces(count, particles) {
+    this.#mesh.show(count, particles);
+  }
+
   /** @type {Renderer['set_count']} */
   set_count(n, body) {
     this.#count = Math.min(n, this.radii.length);
@@ -360,19 +280,33 @@ export class Painter {
   /**
    * Paints a picture, or a part of it: then it returns 'part', and the next calls go on with it. What is painted must
    * not change before the last one.
-   * @param {number} timeS @param {boolean} [transparent]  leaves the ground out
+   * @param {number} timeS @param {boolean} [transparent]  leaves the ground out @param {number} [most]  work
    */
-  draw(timeS, transparent = false) {
-    if (this.width === 0 || this.height === 0) return 'skipped';
-    if (this.#image.width !== this.width || this.#image.height !== this.height) {
-      this.#image = new ImageData(this.width, this.height);
-      this.#depth = new Float32Array(this.width * this.height);
+  draw(timeS, transparent = false, most = MOST_WORK) {
+    const { width, height } = this;
+    if (width === 0 || height === 0) return 'skipped';
+    if (this.#image.width !== width || this.#image.height !== height) {
+      this.#image = new ImageData(width, height);
+      this.#depth = new Float32Array(width * height);
     }
-    this.#pass ??= this.#begin(this.#image, this.#depth, transparent, timeS);
-    if (!this.#advance(this.#pass, MOST_PAINTED)) return 'part';
+    this.#pass ??= this.#begin(this.#image, this.#depth, { transparent, timeS, samples: this.samples });
+    if (!this.#advance(this.#pass, most)) return 'part';
     this.#pass = null;
+    // A canvas that changes its size loses its picture, so it does only with the next one.
+    if (this.#canvas.width !== width || this.#canvas.height !== height) Object.assign(this.#canvas, { width, height });
     this.context.putImageData(this.#image, 0, 0);
     return 'drawn';
+  }
+
+  /**
+   * Chooses how the next picture is painted: one that stands still with smooth edges, of one that moves maybe fewer
+   * particles. A picture of which a part is painted is given up.
+   * @param {{ isMoving: boolean, stride: number }} how
+   */
+  choose({ isMoving, stride }) {
+    this.#pass = null;
+    this.samples = isMoving ? 1 : PLACES.length;
+    this.stride = stride;
   }
 
   /** @type {Renderer['picture_size']} */
@@ -383,7 +317,8 @@ export class Painter {
   /** @type {Renderer['read_pixels']} */
   async read_pixels(widthPx, heightPx, transparent) {
     const image = new ImageData(widthPx, heightPx);
-    const onScreen = this.view.slice();
+    const [onScreen, { stride }] = [this.view.slice(), this];
+    this.stride = 1;
     // A picture of another aspect ratio keeps everything that the canvas shows, without distortion.
     const wider = widthPx / heightPx / (Math.max(1, this.width) / Math.max(1, this.height));
     for (let k = 0; k < 4; k += 1) {
@@ -392,8 +327,10 @@ export class Painter {
     }
     // One that is being painted for the screen begins anew: its view and style have changed.
     this.#pass = null;
-    this.#advance(this.#begin(image, new Float32Array(widthPx * heightPx), transparent, Infinity), Infinity);
+    const how = { transparent, timeS: Infinity, samples: PLACES.length };
+    this.#advance(this.#begin(image, new Float32Array(widthPx * heightPx), how), Infinity);
     this.view = onScreen;
+    this.stride = stride;
     return new Uint8Array(image.data.buffer);
   }
 
@@ -402,6 +339,8 @@ export class Painter {
     this.#body = 0;
     this.#image = new ImageData(1, 1);
     this.#depth = new Float32Array(1);
+    this.#mesh.show(0, 0);
+    this.#samples.free();
     this.#pass = null;
   }
 
@@ -409,56 +348,117 @@ export class Painter {
 
   /**
    * Begins a picture.
-   * @param {ImageData} image @param {Float32Array} depth @param {boolean} transparent @param {number} timeS
+   * @param {ImageData} image @param {Float32Array} depth
+   * @param {{ transparent: boolean, timeS: number, samples: number }} how
    * @returns {Pass}
    */
-  #begin(image, depth, transparent, timeS) {
+  #begin(image, depth, { transparent, timeS, samples }) {
     const { width, height } = image;
-    const out = new Uint32Array(image.data.buffer);
-    const { background, key_light_view: toward } = this.#style;
+    const { background, body } = this.#style;
     const ground = background.slice(0, 3).map((v) => linear(v));
-    out.fill(transparent ? 0 : packed(ground[0], ground[1], ground[2]));
+    const target = { out: new Uint32Array(image.data.buffer), depth, width, height };
+    const faces = this.#style.faces && this.stride === 1 ? this.#mesh.count : 0;
+    const first = faces > 0 ? this.#mesh.particles : 0;
+    const every = (/** @type {number} */ count) => Math.max(0, Math.ceil((count - first) / this.stride));
+    const pass = {
+      target,
+      timeS,
+      ground,
+      value: transparent ? 0 : packed(ground[0], ground[1], ground[2]),
+      samples,
+      sample: 0,
+      faces,
+      first,
+      beds: body ? every(this.#body) : 0,
+      discs: every(this.#count),
+      next: 0,
+    };
+    if (samples > 1) this.#samples.begin(width * height);
+    return { ...pass, scene: this.#sampled(pass) };
+  }
+
+  /** Begins a sample of a picture. @param {Omit<Pass, 'scene'>} pass @returns {PaintedScene} */
+  #sampled({ target, ground, value, sample, samples }) {
+    const { width, height } = target;
+    target.out.fill(value);
     // The depth buffer holds 1/w, which is linear in screen coordinates on a plane. Larger values are nearer.
-    depth.fill(0);
-    const axes = eyeAxes(this.view);
+    target.depth.fill(0);
+    this.#seen = samples > 1 ? moved(this.view, PLACES[sample], width, height) : this.view;
+    const axes = eyeAxes(this.#seen);
     const { right, up, forward } = axes;
+    const { key_light_view: toward, body } = this.#style;
     const light = Math.hypot(toward[0], toward[1], toward[2]) || 1;
     const key = [0, 1, 2].map((k) => (right[k] * toward[0] + up[k] * toward[1] - forward[k] * toward[2]) / light);
-    const rim = luminanceOf(ground) > LIGHT_GROUND ? 0 : RIM_LIGHT;
-    const bed = (this.#style.body?.colour ?? []).map((v) => linear(v));
-    const scene = { target: { out, depth, width, height }, axes, key, ground, rim, bed };
-    return { scene, timeS, beds: this.#style.body ? this.#body : 0, next: 0 };
+    const bed = (body?.colour ?? []).map((v) => linear(v));
+    const scene = { target, axes, key, ground, rim: rimOn(ground), bed, swell: Math.sqrt(this.stride), lights: null };
+    return this.#style.spheres ? { ...scene, lights: this.#lightsOf(scene) } : scene;
+  }
+
+  /** Returns the light on a ball, as {@link fillBall} takes it. @param {PaintedScene} scene */
+  #lightsOf({ axes: { right, up, forward }, key, rim }) {
+    const lights = new Float32Array(3 * BALL_SIDE * BALL_SIDE);
+    const along = (/** @type {number[]} */ axis) => dot(key, axis);
+    const [keyX, keyY, keyZ] = [along(right), along(up), -along(forward)];
+    overBall((at, x, y, z) => {
+      const cosines = { keyward: keyX * x + keyY * y + keyZ * z, skyward: y, edgeOn: 1 - z };
+      lightOn(cosines, { rim, warmth: this.#style.warmth ?? 0 });
+      lights.set(LIGHT, 3 * at);
+    });
+    return lights;
   }
 
   /**
-   * Paints the next discs of a picture: the body, the particles, and after the last one the lines.
-   * @param {Pass} pass @param {number} most
+   * Goes on with a picture: in each sample come the faces, the body, the particles, and after the last one the lines.
+   * @param {Pass} pass @param {number} most  work
    * @returns whether the picture is complete
    */
   #advance(pass, most) {
-    const { scene, timeS, beds } = pass;
-    const end = beds + this.#count;
-    const last = Math.min(end, pass.next + most);
-    for (let k = pass.next; k < Math.min(last, beds); k += 1) if (this.#births[k] <= timeS) this.#paintBed(k, scene);
-    for (let k = Math.max(pass.next, beds); k < last; k += 1)
-      if (this.#births[k - beds] <= timeS) this.#paintDisc(k - beds, scene);
-    pass.next = last;
-    if (last < end) return false;
-    this.#paintCreases(scene.target, scene.ground);
-    if (this.#style.box) this.#paintBox(scene.target, this.#style.box);
-    return true;
+    const { faces, beds, discs, timeS, first, samples } = pass;
+    const { stride } = this;
+    const end = faces + beds + discs;
+    const until = this.work + most;
+    for (;;) {
+      const { scene } = pass;
+      for (; pass.next < end; pass.next += 1) {
+        if (this.work >= until) return false;
+        let k = pass.next;
+        this.work += WORK_OF_ONE;
+        if (k < faces) {
+          this.work += this.#mesh.paint(k, scene, this.#seen, this.#style);
+          continue;
+        }
+        k -= faces;
+        const isBed = k < beds;
+        const i = first + (isBed ? k : k - beds) * stride;
+        if (this.#births[i] > timeS) continue;
+        this.work += isBed ? this.#paintBed(i, scene) : this.#paintDisc(i, scene);
+      }
+      this.#paintCreases(scene.target, scene.ground);
+      if (this.#style.box) this.#paintBox(scene.target, this.#style.box);
+      if (samples === 1) return true;
+      this.#samples.add(scene.target.out);
+      pass.sample += 1;
+      if (pass.sample === samples) {
+        this.#samples.mean(scene.target.out);
+        return true;
+      }
+      pass.next = 0;
+      pass.scene = this.#sampled(pass);
+      this.work += scene.target.out.length;
+    }
   }
 
   /** Returns a position as {@link paintLine} takes it. @param {ArrayLike<number>} p */
   #clip(p) {
-    const m = this.view;
+    const m = this.#seen;
     return [0, 1, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
   }
 
   /** Draws the creases. @param {Target} target @param {number[]} ground  the background in linear light */
   #paintCreases(target, ground) {
     const { dim, plane = null } = this.#style;
-    const { ends, lineColours, view: m } = this;
+    const { ends, lineColours } = this;
+    const m = this.#seen;
     for (const [k, colour] of lineColours.entries()) {
       const piece = [2 * k, 2 * k + 1].map((end) => [...ends.subarray(END * end, END * (end + 1))]);
       const middle = [0, 1, 2].map((c) => 0.5 * (piece[0][c] + piece[1][c]));
@@ -486,7 +486,7 @@ export class Painter {
    * @param {number} x @param {number} y @param {number} z @param {PaintedScene} scene
    */
   #project(x, y, z, { target: { width, height }, axes }) {
-    const { view: m } = this;
+    const m = this.#seen;
     const w = m[3] * x + m[7] * y + m[11] * z + m[15];
     if (!(w > 1e-9)) return null;
     const sx = (0.5 + (0.5 * (m[0] * x + m[4] * y + m[8] * z + m[12])) / w) * width;
@@ -496,7 +496,7 @@ export class Painter {
 
   /** Turns NORMAL to the eye, and returns its cosine with the way there, negative if it was turned round. */
   #face() {
-    const { view: m } = this;
+    const m = this.#seen;
     const x = m[16] - PLACE[0];
     const y = m[17] - PLACE[1];
     const z = m[18] - PLACE[2];
@@ -541,23 +541,23 @@ export class Painter {
    */
   #paintBed(i, scene) {
     const { body, dim_backfaces, dim, plane } = this.#style;
-    const radius = this.radii[i];
-    if (!body || !(radius > 0) || this.levels[i] === NO_LEVEL) return;
-    if (!this.#take(i)) return;
+    const radius = this.radii[i] * scene.swell;
+    if (!body || !(radius > 0) || this.levels[i] === NO_LEVEL) return 0;
+    if (!this.#take(i)) return 0;
     const facing = this.#face();
     const isOpen = body.is_open || !!plane;
-    if (facing < 0 && !isOpen) return;
+    if (facing < 0 && !isOpen) return 0;
     const down = isOpen ? 0 : BED_SUNK * radius;
     const [x, y, z] = [PLACE[0] - down * NORMAL[0], PLACE[1] - down * NORMAL[1], PLACE[2] - down * NORMAL[2]];
     const at = this.#project(x, y, z, scene);
-    if (!at || at.pxPerWorld * radius < LEAST_BED_PX) return;
+    if (!at || at.pxPerWorld * radius < LEAST_BED_PX) return 0;
     const [least, full] = isOpen ? OPEN_OUTLINE_BED : OUTLINE_BED;
     const share = least + (BED_RADIUS - least) * Math.min(1, Math.abs(facing) / full);
     const isToCome = i >= this.#count || !this.#isShown(i);
     const deep = (this.bedDepths?.[i] ?? 0) / Math.max(LEAST_FACING, Math.abs(facing));
     const near = 1 / (at.w + ((isToCome ? TO_COME_BEHIND : BED_BEHIND) + deep) * radius);
     const px = at.pxPerWorld * share * radius;
-    if (isHidden(scene.target, at, px, near)) return;
+    if (isHidden(scene.target, at, px, near)) return 0;
     this.#light(facing, scene);
     // As in the shader, it has the colour of its disc where the gaps fall between pixels.
     const hasGaps = isToCome ? 1 : smoothstep(GAPS_PX, at.pxPerWorld * radius * Math.abs(facing));
@@ -568,7 +568,7 @@ export class Painter {
     }
     const behind = smoothstep(INSIDE_FROM, -facing) * dim_backfaces;
     const value = lit(1, behind, isToCome ? Math.max(TO_COME, dim) : this.#fadeOf(i), scene.ground);
-    this.#fill(scene, { at, px, near, value, rim: value, coreSq: Infinity });
+    return this.#fill(scene, { at, px, near, value, rim: value, coreSq: Infinity });
   }
 
   /**
@@ -578,16 +578,17 @@ export class Painter {
   #paintDisc(i, scene) {
     const { dim_backfaces, disc_scale, outline } = this.#style;
     const { axes, ground } = scene;
-    if (!this.#isShown(i) || !this.#take(i)) return;
+    if (!this.#isShown(i) || !this.#take(i)) return 0;
     // A negative radius is that of a dot that faces the eye, as in shaders/discs.wgsl.
-    const isDot = this.radii[i] < 0;
-    const radius = Math.abs(this.radii[i]) * disc_scale * (isDot ? DOT : 1);
+    const isBall = scene.lights !== null && this.levels[i] !== NO_LEVEL;
+    const isDot = this.radii[i] < 0 && !isBall;
+    const radius = Math.abs(this.radii[i]) * disc_scale * scene.swell * (isDot ? DOT : 1);
     const at = this.#project(PLACE[0], PLACE[1], PLACE[2], scene);
-    if (!at || radius === 0) return;
+    if (!at || radius === 0) return 0;
     // A dot is drawn nearer to the eye by its radius, so that the discs beside it do not cut it.
     const near = 1 / (isDot ? at.w - radius : at.w);
     const px = at.pxPerWorld * radius;
-    if (isHidden(scene.target, at, px, near)) return;
+    if (isHidden(scene.target, at, px, near)) return 0;
     if (isDot) for (let k = 0; k < 3; k += 1) NORMAL[k] = -axes.forward[k];
     const facing = this.#face();
     // A rim of a tenth of the radius separates overlapping discs.
@@ -597,12 +598,23 @@ export class Painter {
       const value = packed(1 - ground[0], 1 - ground[1], 1 - ground[2]);
       return this.#fill(scene, { at, px, near, value, rim: value, coreSq });
     }
-    this.#light(facing, scene);
-    const colour = this.colours[i];
-    for (let k = 0; k < 3; k += 1) COLOUR[k] = LINEAR[(colour >> (8 * k)) & 255];
+    takeColour(this.colours[i]);
     const [behind, away] = [facing < 0 ? dim_backfaces : 0, this.#fadeOf(i)];
+    if (scene.lights && isBall && px >= POINT_PX) {
+      const { sx, sy, w, pxPerWorld } = at;
+      const depthPerPx = 1 / (pxPerWorld * w * w);
+      return fillBall(scene.target, { sx, sy, px, near, depthPerPx, lights: scene.lights, ground, away });
+    }
+    this.#light(facing, scene);
     const value = lit(1, behind, away, ground);
-    this.#fill(scene, { at, px, near, value, rim: hasRim ? lit(1 - RIM_SHADE, behind, away, ground) : value, coreSq });
+    return this.#fill(scene, {
+      at,
+      px,
+      near,
+      value,
+      rim: hasRim ? lit(1 - RIM_SHADE, behind, away, ground) : value,
+      coreSq,
+    });
   }
 
   /**
@@ -616,7 +628,7 @@ export class Painter {
       const pixel = (sy | 0) * target.width + (sx | 0);
       target.depth[pixel] = near;
       target.out[pixel] = value;
-      return;
+      return 1;
     }
     // In view axes the disc's plane is a·dx + b·dy + c·dz = 0 with c > 0 towards the eye. In screen pixels, to first
     // order in the size of the disc, it is the ellipse dx² + dy² + dz² ≤ px² with dz = −(a·dx + b·dy)/c.
@@ -625,7 +637,7 @@ export class Painter {
     // Seen edge on, a disc keeps a width of at least a twelfth of its length, so that it never vanishes.
     const c = Math.max(1 / 12, -dot(NORMAL, axes.forward));
     const depthPerPx = 1 / (pxPerWorld * w * w);
-    fillDisc(target, { sx, sy, px, ka: a / c, kb: b / c, near, depthPerPx, value, rim, coreSq });
+    return fillDisc(target, { sx, sy, px, ka: a / c, kb: b / c, near, depthPerPx, value, rim, coreSq });
   }
 
   /**

@@ -2,6 +2,9 @@
  * Sets the times at which the generation levels of a new surface appear. A fast sampler would finish before its front
  * can be seen, so the levels appear one after another. A slow run is shown as it progresses.
  *
+ * The first surface of a visit waits for its front, so that the body of all of it is there from the first picture on,
+ * in the place of the poster, and the levels grow on it.
+ *
  * @module
  */
 
@@ -22,6 +25,11 @@ export class Reveal {
 
   constructor() {
     this.active = false;
+    /** Whether it is the first surface of a visit, and whether that still waits. */
+    this.isOpening = false;
+    this.isHeld = false;
+    /** Of each level of the first surface the end of its particles. @type {number[]} */
+    this.ends = [];
     this.#startS = 0;
     this.#stepS = STEP_S;
     this.#waitedS = 0;
@@ -32,6 +40,9 @@ export class Reveal {
   /** @param {number} nowS @param {boolean} [isOpening]  whether it is the first surface of a visit */
   begin(nowS, isOpening = false) {
     this.active = true;
+    this.isOpening = isOpening;
+    this.isHeld = isOpening;
+    this.ends = [];
     this.#startS = nowS;
     this.#stepS = isOpening ? OPENING_STEP_S : STEP_S;
     this.#waitedS = 0;
@@ -39,11 +50,41 @@ export class Reveal {
   }
 
   /**
+   * Has the levels of the first surface grow from now on.
+   * @param {number} nowS @param {Uint32Array} levels  of its particles
+   */
+  release(nowS, levels) {
+    this.isHeld = false;
+    this.#startS = nowS;
+    // What fills holes afterwards comes last, whatever its level.
+    for (let i = 0, newest = 0; i < levels.length; i += 1) {
+      newest = Math.max(newest, levels[i]);
+      this.ends[newest] = i + 1;
+    }
+    for (let k = 0; k < this.ends.length; k += 1) {
+      this.ends[k] ??= this.ends[k - 1] ?? 0;
+      this.births[k] = nowS + k * this.#stepS;
+    }
+  }
+
+  /**
+   * Returns how many particles of the first surface have appeared: those of a level one by one.
+   * @param {number} nowS
+   */
+  appeared(nowS) {
+    const k = this.levelAt(nowS);
+    if (k < 0) return 0;
+    const before = this.ends[k - 1] ?? 0;
+    const share = Math.min(1, (nowS - this.births[k]) / this.#stepS);
+    return Math.max(1, before + Math.round(share * (this.ends[k] - before)));
+  }
+
+  /**
    * Returns the time for which the reveal waits, so that a frame adds few levels.
    * @param {number} passedS  since the last frame
    */
   wait(passedS) {
-    if (!this.active) return 0;
+    if (!this.active || this.isHeld) return 0;
     const late = Math.max(0, passedS - LEVELS_A_FRAME * this.#stepS);
     const wait = Math.min(late, MOST_WAIT_S - this.#waitedS);
     this.#waitedS += wait;
@@ -52,6 +93,8 @@ export class Reveal {
 
   end() {
     this.active = false;
+    this.isHeld = false;
+    this.isOpening = false;
     this.births = [];
   }
 
@@ -76,7 +119,7 @@ export class Reveal {
    * @returns {[number, number, number][]} first, last and time of appearance of each
    */
   runs(levels, first, last, { nowS, birthS = -Infinity }) {
-    if (!this.active) return [[first, last, birthS]];
+    if (!this.active || this.isOpening) return [[first, last, birthS]];
     /** @type {[number, number, number][]} */
     const out = [];
     for (let i = first; i < last; ) {

@@ -4,17 +4,12 @@
  * @module
  */
 
-/** @import { BackendKind } from '../types.js' */
-
 /** Largest pixel ratio. Finer pixels are not visible but cost drawing time. */
 const LARGEST_PIXEL_RATIO = 2;
-/** Largest pixel ratio of the painter, whose cost grows with the number of pixels. */
-const LARGEST_PAINTED_RATIO = 1;
 
 export class Screen {
   #host;
   #onResize;
-  #largestRatio;
   #observer;
 
   /**
@@ -31,22 +26,15 @@ export class Screen {
     this.height = 0;
     /** Canvas pixels per page pixel. */
     this.ratio = 1;
-    this.#largestRatio = LARGEST_PIXEL_RATIO;
     this.#observer = new ResizeObserver(() => this.#measure());
     this.#observer.observe(host);
     this.#watchRatio();
     this.#measure();
   }
 
-  /** Adopts the pixel ratio limit of a kind of device. @param {BackendKind} kind */
-  drawnBy(kind) {
-    this.#largestRatio = kind === 'canvas2d' ? LARGEST_PAINTED_RATIO : LARGEST_PIXEL_RATIO;
-    this.#measure();
-  }
-
   #measure() {
     const { clientWidth, clientHeight } = this.#host;
-    const ratio = Math.min(this.#largestRatio, devicePixelRatio || 1);
+    const ratio = Math.min(LARGEST_PIXEL_RATIO, devicePixelRatio || 1);
     this.cssWidth = clientWidth;
     this.cssHeight = clientHeight;
     this.width = Math.round(clientWidth * ratio);

@@ -62,6 +62,11 @@ export interface Colouring {
 /** `part`: the next frame goes on with the same picture. */
 export type FrameResult = 'drawn' | 'part' | 'skipped' | 'none';
 export interface Style {
+  /** the faces of a mesh in place of its particles, null for discs or spheres */
+  faces?: { flat: boolean; edge_px: number } | null;
+  spheres?: boolean;
+  /** canvas pixels per page pixel */
+  pixel_ratio?: number;
   /** sRGB 0 … 1 */
   background: [number, number, number, number];
   disc_scale: number;
@@ -99,6 +104,45 @@ export interface PaintedDisc {
   rim: number;
   coreSq: number;
 }
+/**
+ * How much of a picture is drawn: the share of the pixels of each side, whether the body is, and one of how many
+ * particles.
+ */
+export type Quality = { share: number; body: boolean; stride: number };
+/** A ball on the screen, in pixels. */
+export interface PaintedBall {
+  sx: number;
+  sy: number;
+  px: number;
+  /** depth of its centre */
+  near: number;
+  depthPerPx: number;
+  /** light on the places of a grid over its outline, three components each */
+  lights: Float32Array;
+  ground: number[];
+  /** share by which it fades to the ground */
+  away: number;
+}
+/** A triangle on the screen, in pixels: of each corner the place, the depth, and the colour in linear light. */
+export interface PaintedTriangle {
+  x: Float64Array;
+  y: Float64Array;
+  near: Float64Array;
+  colours: Float64Array;
+  /** width of the lines along its sides; of the side opposite to each corner the share of its line, and its height */
+  linePx: number;
+  drawn: Float64Array;
+  heights: Float64Array;
+  /** of each corner how far it is beyond the cutting plane; null without one */
+  beyond: Float64Array | null;
+}
+/** The columns of the corners of faces, but for their colours. */
+export interface CornerColumns {
+  positions: Float32Array;
+  normals: Float32Array;
+  radii: Float32Array;
+  levels: Uint32Array;
+}
 /** The pixels of a picture and how near each is. */
 export type Target = { out: Uint32Array; depth: Float32Array; width: number; height: number };
 /** What the discs of a picture have in common. */
@@ -113,14 +157,28 @@ export interface PaintedScene {
   rim: number;
   /** colour of the body in linear light; empty without one */
   bed: number[];
+  /** factor of all radii */
+  swell: number;
+  /** light on a sphere, where particles are drawn as spheres */
+  lights: Float32Array | null;
 }
 /** A picture that the painter has begun. */
 export interface Pass {
   scene: PaintedScene;
+  target: Target;
   timeS: number;
-  /** discs of the body, which come before those of the particles */
+  /** the background in linear light, and as a pixel */
+  ground: number[];
+  value: number;
+  /** number of samples, and the one that is being painted */
+  samples: number;
+  sample: number;
+  /** numbers of faces, of discs of the body and of particles, and the first particle that no face stands for */
+  faces: number;
   beds: number;
-  /** the next disc to be painted */
+  discs: number;
+  first: number;
+  /** what is painted next, counted over faces, body and particles */
   next: number;
 }
 export type Theme = 'light' | 'dark';
@@ -190,10 +248,10 @@ export interface DeviceOptions {
   onLost: (kind: BackendKind, message: string) => void;
   /** a kind of device was abandoned, with `isLate` because it took too long to open */
   onFallback: (kind: BackendKind, message: string, isLate?: boolean) => void;
-  /** kind to try first */
+  /** kind to try first; without it the machine decides */
   first?: BackendKind | null;
-  /** what the bundles are fetched after */
-  after?: Promise<unknown>;
+  /** tells which kind this machine draws best with */
+  probe?: () => Promise<BackendKind>;
   open?: typeof openDevice;
   clock?: { now: () => number; wait: (ms: number) => Promise<void> };
 }
@@ -212,6 +270,4 @@ export interface ViewerOptions {
   look: ViewState;
   /** the back end to try first */
   first: BackendKind | null;
-  /** what the bundles of the renderer are fetched after */
-  after: Promise<unknown>;
 }

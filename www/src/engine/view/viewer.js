@@ -19,6 +19,7 @@ import { legendOf, legendOfDots } from './colouring.js';
 import { CreaseUpload } from './creases.js';
 import { DeviceKeeper } from './device.js';
 import { Dimmer } from './dimmer.js';
+import { Effort, WHOLE } from './effort.js';
 import { FaceUpload } from './faces.js';
 import { facing, widestYaw } from './facing.js';
 import { FrameLoop, nowS } from './frames.js';
@@ -36,6 +37,9 @@ import { ParticleUpload } from './upload.js';
 
 /** Picking tolerance around small discs, in page pixels. */
 const PICK_PX = 6;
+
+/** Time without a motion after which the whole picture is drawn. */
+const REST_MS = 150;
 
 /** Interval of the frames that are drawn while a picture is read back. */
 const LOOK_MS = 1000;
@@ -60,6 +64,19 @@ export class Viewer {
   /** Whether the last frame was a part of one. What the device has does not change before the picture is complete. */
   #isPart = false;
 
+  /** The camera of the last picture; what of it was drawn, and since when it is being drawn. */
+  /** @type {CameraState | null} */
+  #drawnCamera = null;
+  #quality = WHOLE;
+  #effort = new Effort();
+  #isMoving = false;
+  #sinceMs = 0;
+  /** Whether the last frame moved and asked for the next. */
+  #isMotion = false;
+
+  /** Wait for the whole picture after a motion. @type {ReturnType<typeof setTimeout> | undefined} */
+  #rest;
+
   /** Distance from which the last fit would have shown the whole ball. */
   #wholeDistance = 0;
 
@@ -67,7 +84,7 @@ export class Viewer {
    * @param {ViewerOptions} options
    * @param {ViewerEvents} events
    */
-  constructor({ host, columns, look, first, after }, events) {
+  constructor({ host, columns, look, first }, events) {
     this.columns = columns;
     this.#events = events;
     this.camera = new Camera(look.camera);
@@ -77,7 +94,7 @@ export class Viewer {
     this.reveal = new Reveal();
     this.#lagS = 0;
     this.#lastS = 0;
-    /** Whether the next surface that grows is first seen from the side of its seed. */
+    /** Whether the next surface that grows is the first one of a visit. */
     this.opening = false;
     /** The camera of the link that was opened last, until the surface is fitted by hand. @type {CameraState | null} */
     this.linked = null;
@@ -97,12 +114,11 @@ export class Viewer {
     this.keeper = new DeviceKeeper({
       host,
       first,
-      after,
       onOpen: (device, isStandIn) => this.#opened(device, isStandIn),
       onLost: events.onLost,
       onFallback: events.onFallback,
     });
-    this.#sight = new IntersectionObserver((entries) => this.keeper.seen(entries[entries.length - 1].isIntersecting));
+    this.#sight = new IntersectionObserver((entries) => this.#seen(entries[entries.length - 1].isIntersecting));
     this.#sight.observe(host);
   }
 
@@ -116,6 +132,7 @@ export class Viewer {
     this.#sight.disconnect();
     this.screen.close();
     this.#calm.onchange = null;
+    clearTimeout(this.#rest);
     this.keeper.close();
     this.frames.close();
   }
@@ -132,7 +149,7 @@ export class Viewer {
     this.#scene.shown = bounds ?? this.#scene.bounds;
     // A surface of another size could otherwise grow around the camera or far from it.
     if (fit) this.fit(true);
-    if (grow && this.look.level === null && !this.#calm.matches && !document.hidden) {
+    if (grow && this.look.level === null && !this.#calm.matches && !this.frames.isHidden) {
       this.#lastS = nowS();
       this.reveal.begin(this.#now(), this.opening);
       this.#events.onReveal({ level: 0, levels: 0, particles: 0 });
@@ -157,17 +174,13 @@ export class Viewer {
 
   /** @param {number} first @param {number} last @param {() => void} onDrawn */
   changed(first, last, onDrawn) {
-    if (this.opening && last > 0) {
-      this.opening = false;
-      const [x, y, z] = this.columns.normals;
-      if (this.reveal.active) this.camera.openOn([x, y, z]);
-    }
+    if (last > 0) this.opening = false;
     this.upload.changed(first, last);
     this.due.legend = true;
     // The last level may have changed.
     if (this.look.level !== null) this.due.style = true;
     // Without a visible picture the sampler does not wait for frames.
-    if (document.hidden || !this.keeper.device) onDrawn();
+    if (this.frames.isHidden || !this.keeper.device) onDrawn();
     else this.frames.afterNext(onDrawn);
     this.frames.ask();
   }
@@ -227,6 +240,16 @@ export class Viewer {
     this.frames.ask();
   }
 
+  /** @param {boolean} isSeen  whether the picture is in sight */
+  #seen(isSeen) {
+    this.keeper.seen(isSeen);
+    this.frames.see(isSeen);
+    // What grew goes on without an eye on it.
+    if (isSeen || !this.reveal.active) return;
+    this.#endReveal();
+    this.upload.all();
+  }
+
   #endReveal() {
     this.reveal.end();
     this.#events.onReveal(null);
@@ -271,8 +294,6 @@ export class Viewer {
   turnTo(normal) {
     const to = facing(this.camera.state, normal);
     if (to) this.camera.turnTo(to);
-    // The turn of the opening would lead away from it.
-    else this.camera.turn = null;
     this.moved();
   }
 
@@ -401,8 +422,10 @@ export class Viewer {
 
   /** @param {Device} device  without any particle yet @param {boolean} isStandIn */
   #opened(device, isStandIn) {
-    this.screen.drawnBy(device.kind);
+    this.#effort.begin(device.kind, this.screen.ratio);
+    this.#drawnCamera = null;
     this.#isPart = false;
+    this.due.size = true;
     this.upload.restart();
     this.#faces.restart();
     this.#creases.restart();
@@ -418,14 +441,17 @@ export class Viewer {
   /** @param {number} clockS @param {number} dtS @returns {FrameResult} */
   #frame(clockS, dtS) {
     const { device } = this.keeper;
-    if (!device) return 'none';
-    this.#lagS += this.reveal.wait(clockS - this.#lastS);
+    if (!device || this.#holds(clockS)) return 'none';
+    const passedS = clockS - this.#lastS;
+    this.#lagS += this.reveal.wait(passedS);
     this.#lastS = clockS;
     const nowS = clockS - this.#lagS;
     const before = this.camera.state;
     const moving = this.camera.step(dtS);
     if (this.camera.state !== before) this.#events.onCamera(this.camera.state);
+    this.#choose(device);
     let outcome;
+    const startMs = performance.now();
     try {
       if (!this.#isPart || !this.upload.isWhole) this.#tell(device, nowS);
       outcome = this.upload.isWhole ? device.renderer.draw(nowS) : 'part';
@@ -435,6 +461,7 @@ export class Viewer {
       return 'none';
     }
     this.#isPart = outcome === 'part';
+    this.#sinceMs += performance.now() - startMs;
     if (this.#isPart) {
       if (this.camera.state !== before) this.frames.ask();
       return 'part';
@@ -444,7 +471,9 @@ export class Viewer {
     const revealing = this.#tellReveal(nowS);
     const dimming = this.dimmer.moving(nowS);
     if (dimming) this.due.style = true;
+    if (outcome === 'drawn') this.#judge(passedS);
     const { upload } = this;
+    this.#isMotion = this.#isMoving && (moving || revealing || upload.glide.active);
     if (moving || revealing || dimming || upload.glide.active || upload.fading(nowS)) this.frames.ask();
     if (outcome === 'drawn') {
       this.keeper.drew();
@@ -454,18 +483,77 @@ export class Viewer {
     return outcome === 'skipped' && this.screen.width > 0 && this.screen.height > 0 ? 'skipped' : 'none';
   }
 
+  /** @param {boolean} isGrowing  whether the front is still placing particles */
+  grow(isGrowing) {
+    this.growing = isGrowing;
+    if (this.reveal.isHeld) this.frames.ask();
+  }
+
+  /**
+   * Returns whether the first surface is still waited for. Once it is there, it is framed for good.
+   * @param {number} clockS
+   */
+  #holds(clockS) {
+    const { reveal, columns, camera } = this;
+    if (!reveal.isHeld) return false;
+    if (this.growing || columns.count === 0) return true;
+    const { ball, distance } = this.#fit();
+    if (camera.state.fit) camera.fit(ball, { distance, jump: true });
+    this.#lastS = clockS;
+    reveal.release(clockS - this.#lagS, columns.levels.subarray(0, columns.count));
+    return false;
+  }
+
+  /**
+   * Chooses how much of the next picture is drawn. A picture that is being painted whole gives way to a motion.
+   * @param {Device} device
+   */
+  #choose({ renderer }) {
+    const { camera, reveal, upload } = this;
+    const isMoving = camera.state !== this.#drawnCamera || reveal.active || upload.glide.active || this.growing;
+    if (this.#isPart && (!isMoving || this.#isMoving)) return;
+    this.#isPart = false;
+    this.#isMoving = isMoving;
+    this.#sinceMs = 0;
+    this.#drawnCamera = camera.state;
+    const before = this.#quality;
+    this.#quality = this.#effort.of(isMoving);
+    const { share, body, stride } = this.#quality;
+    if (share !== before.share) this.due.size = true;
+    if (share !== before.share || body !== before.body) this.due.style = true;
+    if ('choose' in renderer) renderer.choose({ isMoving, stride });
+  }
+
+  /**
+   * Learns from a picture, and has the whole of it drawn once it stands still.
+   * @param {number} passedS  since the last frame
+   */
+  #judge(passedS) {
+    clearTimeout(this.#rest);
+    this.#rest = undefined;
+    if (!this.#isMoving) return;
+    if (this.keeper.device?.kind === 'canvas2d') this.#effort.painted(this.#sinceMs);
+    else if (this.#isMotion) this.#effort.passed(1000 * passedS);
+    if (!this.#effort.isReduced) return;
+    this.#rest = setTimeout(() => this.frames.ask(), REST_MS);
+  }
+
+  /** Whether the whole picture is still to come. */
+  get isWaiting() {
+    return this.#rest !== undefined;
+  }
+
   /** Passes the changes since the last frame to the device. @param {Device} device @param {number} nowS */
-  #tell({ kind, renderer }, nowS) {
+  #tell({ renderer }, nowS) {
     const { screen, due, upload, look, reveal } = this;
     if (due.size) {
-      renderer.resize(screen.width, screen.height);
+      const { share } = this.#quality;
+      renderer.resize(Math.round(share * screen.width), Math.round(share * screen.height));
       due.size = false;
     }
     const count = upload.write(renderer, look, { reveal, calm: this.#calm.matches, nowS });
-    if (kind !== 'canvas2d') {
-      const drawn = look.draw === 'mesh' && !reveal.active;
-      this.#faces.write(/** @type {any} */ (renderer), look, { drawn, range: upload.range });
-    }
+    const drawn = look.draw === 'mesh' && !reveal.active;
+    this.#faces.write(renderer, look, { drawn, range: upload.range });
     this.#creases.write(renderer, look);
     this.#tellView(renderer, this.currentView(), count);
     if (due.style) {
@@ -477,15 +565,20 @@ export class Viewer {
   /** @param {Device['renderer']} renderer @param {View} view @param {number} count  particles that the device holds */
   #tellView(renderer, view, count) {
     renderer.set_view(view.packed);
-    const points = this.upload.writePoints(renderer, this.look, view, { count, ratio: this.screen.ratio });
-    renderer.set_count(count + points, count);
+    const points = this.upload.writePoints(renderer, this.look, view, {
+      count,
+      ratio: this.screen.ratio * this.#quality.share,
+    });
+    const { reveal } = this;
+    if (reveal.isOpening) renderer.set_count(Math.min(count, reveal.appeared(this.#now())), count);
+    else renderer.set_count(count + points, count);
   }
 
   #tellLegend() {
     const { colour, theme, draw, marks } = this.look;
     this.due.legend = false;
     const legend = legendOf(colour, theme, this.columns, this.upload.range);
-    const hasDots = draw === 'mesh' && marks && this.columns.mesh !== null && this.keeper.device?.kind !== 'canvas2d';
+    const hasDots = draw === 'mesh' && marks && this.columns.mesh !== null;
     this.#events.onLegend(hasDots ? { ...legend, dots: legendOfDots(theme) } : legend);
   }
 
@@ -493,7 +586,7 @@ export class Viewer {
   #tellReveal(nowS) {
     const { reveal, columns } = this;
     if (!reveal.active) return false;
-    if (nowS > reveal.endS() + FADE_S && !this.growing) {
+    if (nowS > reveal.endS() + FADE_S && !this.growing && !reveal.isHeld) {
       this.#endReveal();
       return false;
     }
@@ -508,14 +601,16 @@ export class Viewer {
   #style(nowS) {
     const calm = this.#calm.matches;
     const { columns, reveal } = this;
-    return styleOf(this.look, {
+    const { share, body } = this.#quality;
+    const look = body ? this.look : { ...this.look, body: false };
+    return styleOf(look, {
       lastLevel: columns.lastLevel,
       // What has not closed yet can be looked into.
-      isOpen: columns.isOpen || reveal.active,
+      isOpen: columns.isOpen || (reveal.active && !reveal.isOpening),
       bounds: this.#scene.shown,
       dim: this.dimmer.at(nowS, calm),
       calm,
-      pixelRatio: this.screen.ratio,
+      pixelRatio: this.screen.ratio * share,
     });
   }
 
@@ -546,6 +641,8 @@ export class Viewer {
     // A saved picture shows the particles at their final positions, not during an animation.
     if (this.upload.glide.active) this.upload.restart();
     this.#isPart = false;
+    this.#quality = WHOLE;
+    this.due = { ...this.due, size: true, style: true };
     do this.#tell(device, now);
     while (!this.upload.isWhole);
     const [width, height] = renderer.picture_size(widthPx, heightPx);

@@ -8,6 +8,7 @@ import { formatStep, plural } from '../format.js';
 import { createSegmented } from '../segmented.js';
 import { createSelect } from '../select.js';
 import { createSlider } from '../slider.js';
+import { inviteToDrag } from './invite.js';
 
 /**
  * @import { Engine, Parameter, ReadonlySignal } from '../../engine/types.js'
@@ -30,6 +31,7 @@ export function createParameters(engine, { motion, pins }) {
     ),
   );
   const values = computed(() => engine.state.value.parameters);
+  const invited = inviteToDrag(engine);
   return h(
     'div',
     {
@@ -40,6 +42,12 @@ export function createParameters(engine, { motion, pins }) {
       'div',
       { class: 'section-head' },
       h('h2', null, () => (isModel.value ? 'Pulls' : 'Parameters')),
+      h(
+        'span',
+        { class: 'invite', hidden: () => invited.value === null },
+        'Drag ',
+        h('var', null, () => invited.value),
+      ),
       h('span', null, resetAll(engine), grabbing(engine, pins)),
     ),
     h('p', { class: 'quiet', hidden: () => !isModel.value }, () => pullsOf(engine.state.value.pulls.length)),

@@ -20,7 +20,7 @@ const DRAWN = {
   starting: 'Graphics starting',
   webgpu: 'Drawn with WebGPU',
   webgl2: 'Drawn with WebGL2',
-  canvas2d: 'Drawn without acceleration',
+  canvas2d: 'Painted without a graphics card',
 };
 
 /**

@@ -25,7 +25,14 @@ export function mountSampling(body, engine, { settings }, { head }) {
   fill(
     body,
     createTrack(engine),
-    h('div', { class: 'sampling-head' }, kind ? create(kind) : null, createActions(engine), head),
+    h(
+      'div',
+      { class: 'sampling-head' },
+      h('h2', { class: 'sampling-title' }, 'Sampling'),
+      kind ? create(kind) : null,
+      createActions(engine),
+      head,
+    ),
     h('div', { class: 'settings', role: 'group', 'aria-label': 'Settings' }, plain.map(create), more),
     section,
   );
@@ -65,12 +72,12 @@ function createActions(engine) {
     [
       'Run',
       'Samples the surface from its first particle. Key R.',
-      { class: () => (due.value ? 'primary in-tabs' : 'in-tabs'), press: () => engine.run() },
+      { class: () => (due.value ? 'primary in-tabs due' : 'in-tabs'), press: () => engine.run() },
     ],
     [
       'Stop',
       'Ends the run and keeps the particles placed so far. Key Escape.',
-      { class: 'in-tabs', off: idle, press: () => engine.stop() },
+      { class: () => (idle() ? 'in-tabs' : 'in-tabs works'), off: idle, press: () => engine.stop() },
     ],
     [
       'Generate only',

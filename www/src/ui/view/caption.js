@@ -7,7 +7,8 @@ import { formatCount, formatSeconds, formatShare, lastSteps, plural } from '../f
  */
 
 /** Returns the caption during a reveal. @param {{ level: number, particles: number }} reveal */
-export const revealOf = ({ level, particles }) => `Level ${formatCount(level)} · ${plural(particles, 'particle')}`;
+export const revealOf = ({ level, particles }) =>
+  particles === 0 ? '' : `Level ${formatCount(level)} · ${plural(particles, 'particle')}`;
 
 /** Returns the caption while a model or a file is loading. @param {Loading} loading */
 export const loadingOf = ({ name, label, fraction }) => `${name} · ${label} · ${formatShare(fraction, 0)}`;

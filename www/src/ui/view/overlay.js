@@ -4,7 +4,8 @@ import { computed } from '@preact/signals-core';
 import { enlarge } from '../box.js';
 import { button } from '../button.js';
 import { h, live, marked } from '../dom.js';
-import { NO_MESH, verdictOf } from '../mesh-words.js';
+import { explain } from '../explain.js';
+import { verdictOf } from '../mesh-words.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
 import { createKept } from './kept.js';
 
@@ -51,7 +52,7 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   const mesh = computed(() => (told.value ? '' : meshOf(engine)));
   const whole = computed(() => [text.value, told.value?.text, mesh.value].filter(Boolean).join('. '));
   const caption = h('p', { class: 'caption', 'aria-hidden': 'true' });
-  view.append(empty, h('div', { class: 'foot' }, createKept(engine), caption, hint), spoken);
+  view.append(empty, h('div', { class: 'foot' }, createKept(engine), createChip(engine), caption, hint), spoken);
   caption.append(
     h('span', null, () => (engine.loading.value ? loadingOf(engine.loading.value) : text.value)),
     h('span', { class: 'detail' }, () => (engine.loading.value ? '' : told.value?.text)),
@@ -64,7 +65,9 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   );
 
   // The poster is shown until the first particles are drawn.
-  const drawn = computed(() => engine.frame.value > 0 && engine.progress.value.particles > 0);
+  const drawn = computed(
+    () => engine.frame.value > 0 && engine.progress.value.particles > 0 && engine.reveal.value?.particles !== 0,
+  );
   const settled = computed(() => drawn.value || engine.empty.value);
   live(poster, () => poster.classList.toggle('gone', poster.matches('.gone') || settled.value));
   live(start, () => {
@@ -73,12 +76,17 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   hintUntilUsed(hint, stage, settled);
 }
 
+/** Creates the chip that is there where no graphics card draws. @param {Engine} engine */
+const createChip = ({ backend }) =>
+  explain(h('p', { class: 'chip', hidden: () => backend.value !== 'canvas2d' }, 'No graphics card'), () => ({
+    text: 'The processor paints the picture, with fewer pixels while it moves. Particles and files are the same.',
+  }));
+
 /** Returns what is said of the mesh while it is drawn. @param {Engine} engine */
 function meshOf(engine) {
   if (engine.state.value.view.draw !== 'mesh' || engine.empty.value) return '';
   const mesh = engine.mesh.value;
-  const told = mesh && !engine.busy.value && !engine.reveal.value ? verdictOf(mesh) : '';
-  return engine.backend.value === 'canvas2d' ? [told, NO_MESH].filter(Boolean).join(' · ') : told;
+  return mesh && !engine.busy.value && !engine.reveal.value ? verdictOf(mesh) : '';
 }
 
 /** Title and advice of the empty state, by the reason for it. @type {Record<string, [string, string] | undefined>} */

@@ -26,21 +26,27 @@ const TURN_RAD = Math.PI / 12;
  */
 export function createToolbar(engine, { hide, shortcuts, picture, makeMesh, motion, toast }) {
   const view = tool('options', 'View options', 'Turning, discs or mesh, theme.');
-  const save = tool('save', 'Export', 'The particles, or the mesh over them, as a file.');
+  const save = tool('save', 'Export', 'The particles, or the mesh over them, as a file.', undefined, ASIDE);
   const bar = h(
     'div',
     { class: 'toolbar', role: 'group', 'aria-label': 'View tools' },
-    tool('plus', 'Zoom in', 'Key +', () => engine.zoom(ZOOM)),
-    tool('minus', 'Zoom out', 'Key −', () => engine.zoom(1 / ZOOM)),
     tool('fit', 'Fit', 'Brings the whole surface into view. Key F.', () => engine.fit()),
     view,
     pointsToggle(engine),
-    h('span', { class: 'rule', 'aria-hidden': 'true' }),
-    tool('link', 'Copy link', 'A link that holds the whole state and the camera.', () => copyLink(engine, toast)),
-    tool('picture', 'Save picture', 'The picture as a file, on paper, or as a film.', picture),
-    save,
-    h('span', { class: 'rule', 'aria-hidden': 'true' }),
     tool('help', 'Help', 'What the page does, and its keys. Key ?', shortcuts),
+    h('span', { class: 'rule aside', 'aria-hidden': 'true' }),
+    tool('plus', 'Zoom in', 'Key +', () => engine.zoom(ZOOM), ASIDE),
+    tool('minus', 'Zoom out', 'Key −', () => engine.zoom(1 / ZOOM), ASIDE),
+    h('span', { class: 'rule aside', 'aria-hidden': 'true' }),
+    tool(
+      'link',
+      'Copy link',
+      'A link that holds the whole state and the camera.',
+      () => copyLink(engine, toast),
+      ASIDE,
+    ),
+    tool('picture', 'Save picture', 'The picture as a file, on paper, or as a film.', picture, ASIDE),
+    save,
   );
   attachMenu(
     view,
@@ -84,6 +90,9 @@ export function createToolbar(engine, { hide, shortcuts, picture, makeMesh, moti
   );
   return bar;
 }
+
+/** Of what is seen while the pointer is on the picture. */
+const ASIDE = { class: 'square tool aside' };
 
 /**
  * @param {IconName} icon @param {string} label @param {string} text

@@ -1,5 +1,5 @@
 /** What the browser tests share: opening the page with an eye on its requests and errors, and looking at its pixels. */
-import { expect } from '@playwright/test';
+import { expect, test } from '@playwright/test';
 import { INSIDE_TOLD, isInsideTold, pictureOf, SIDES, spotsOf } from '../../pixels.js';
 
 /** @import { Page } from '@playwright/test' */
@@ -11,12 +11,20 @@ export const link = (state) => `#v1.j.${Buffer.from(JSON.stringify(state)).toStr
 export const coarse = { settings: { radius_share: 0.01 } };
 
 /**
- * Opens the page and waits for its first picture.
+ * An address that asks for a back end.
+ * @param {string} address @param {string} kind
+ */
+export const askingFor = (address, kind) => address.replace(/(?=#|$)/, `?backend=${kind}`);
+
+/**
+ * Opens the page, waits for its first picture, and expects that it is drawn as the test says.
  * @param {Page} page
  * @param {string} [address]  below the root of the host
+ * @param {{asks?: string | null, drawnBy?: string}} [backend]  what the address asks for, null for nothing, and what
+ *   then draws; without them both are what the project is named after
  * @returns {Promise<{errors: string[], strangers: string[]}>}  what it complained of, and whom else it asked
  */
-export async function open(page, address = `./${link(coarse)}`) {
+export async function open(page, address = `./${link(coarse)}`, { asks = test.info().project.name, drawnBy } = {}) {
   const errors = /** @type {string[]} */ ([]);
   const strangers = /** @type {string[]} */ ([]);
   page.on('console', (message) => {
@@ -28,9 +36,11 @@ export async function open(page, address = `./${link(coarse)}`) {
     if (url.protocol !== 'data:' && url.protocol !== 'blob:' && url.hostname !== 'localhost')
       strangers.push(request.url());
   });
-  await page.goto(address);
+  await page.goto(asks === null ? address : askingFor(address, asks));
   await page.waitForFunction(() => 'marchingParticles' in window);
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
+  // A back end that fails may do so after the first picture.
+  await expect.poll(async () => (await status(page)).backend).toBe(drawnBy ?? asks);
   return { errors, strangers };
 }
 

@@ -8,7 +8,6 @@ test('WebGPU draws the surface and the points of a model; a lost device is rebui
   const { errors } = await open(page);
   const set = (/** @type {object} */ patch) =>
     page.evaluate((p) => /** @type {any} */ (window).marchingParticles.set(p), patch);
-  expect((await status(page)).backend).toBe('webgpu');
   await expectSurface(page);
   const { state } = await page.evaluate(() => ({ state: /** @type {any} */ (window).marchingParticles.state }));
 
@@ -34,12 +33,16 @@ test('WebGPU draws the surface and the points of a model; a lost device is rebui
   await expect(page.locator('#canvas-host canvas')).toHaveCount(1);
 });
 
+test('a WebGPU of the processor alone is no graphics card: who asks for nothing gets the painter', async ({ page }) => {
+  await open(page, undefined, { asks: null, drawnBy: 'canvas2d' });
+  await expectSurface(page);
+});
+
 test('without navigator.gpu WebGL2 draws', async ({ page }) => {
   await page.addInitScript(() => {
     Object.defineProperty(Navigator.prototype, 'gpu', { value: undefined });
   });
-  await open(page);
-  expect((await status(page)).backend).toBe('webgl2');
+  await open(page, undefined, { asks: 'webgpu', drawnBy: 'webgl2' });
   await expectSurface(page);
 });
 
@@ -53,8 +56,7 @@ test('a shader that the driver refuses is no end of the page: WebGL2 takes over,
       return make.call(this, { ...descriptor, code: `${descriptor.code}\nfn broken( {` });
     };
   });
-  const { errors } = await open(page);
-  await expect.poll(async () => (await status(page)).backend).toBe('webgl2');
+  const { errors } = await open(page, undefined, { asks: 'webgpu', drawnBy: 'webgl2' });
   await expectSurface(page);
   // It is found after the device has opened, and so it is said.
   const { notice } = await status(page);

@@ -3,7 +3,7 @@
  * at most; here they are {@link CONTEXTS}, by an option of the browser, so that it takes fewer pages.
  */
 import { expect, test } from '@playwright/test';
-import { link } from './browser.js';
+import { askingFor, link } from './browser.js';
 
 /** As in `playwright.config.js`. */
 const CONTEXTS = 4;
@@ -17,7 +17,7 @@ test('of more frames than contexts those in view have a live context, and the ot
   // Six pages open at once.
   test.slow();
   await page.setViewportSize({ width: 320, height: 2 * HEIGHT });
-  const address = `./${link({ settings: { radius_share: 0.03, relax_steps: 0 } })}`;
+  const address = askingFor(`./${link({ settings: { radius_share: 0.03, relax_steps: 0 } })}`, 'webgl2');
   const frame = `<iframe src="${address}" style="display:block;border:0;width:300px;height:${HEIGHT}px"></iframe>`;
   await page.route('**/frames.html', (route) =>
     route.fulfill({

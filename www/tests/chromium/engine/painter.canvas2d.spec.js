@@ -1,10 +1,9 @@
 /** The page in a browser without any graphics API: dots on a 2-D canvas. What is in them is tested without a browser. */
 import { expect, test } from '@playwright/test';
-import { expectCanvasShown, expectSurface, open, status } from './browser.js';
+import { expectCanvasShown, expectSurface, open } from './browser.js';
 
 test('the surface is painted without a graphics card, and saved', async ({ page }) => {
-  const { errors } = await open(page);
-  expect((await status(page)).backend).toBe('canvas2d');
+  const { errors } = await open(page, undefined, { asks: null, drawnBy: 'canvas2d' });
   await expectSurface(page);
   await expectCanvasShown(page);
   const png = await page.evaluate(

@@ -1,6 +1,17 @@
 /** The page as a visitor meets it in a browser with WebGL2 only: the first load, input, the address, a lost context. */
 import { expect, test } from '@playwright/test';
-import { atRest, coarse, counts, expectCanvasShown, expectSurface, link, open, picture, status } from './browser.js';
+import {
+  askingFor,
+  atRest,
+  coarse,
+  counts,
+  expectCanvasShown,
+  expectSurface,
+  link,
+  open,
+  picture,
+  status,
+} from './browser.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -11,7 +22,6 @@ const on = (page, expression) =>
 for (const place of ['/', '/sub/path/']) {
   test(`the ellipsoid appears by itself at ${place}, and nobody else is asked for anything`, async ({ page }) => {
     const { errors, strangers } = await open(page, place);
-    expect((await status(page)).backend).toBe('webgl2');
     await expectSurface(page);
     await expectCanvasShown(page);
     const report = /** @type {any} */ (await on(page, 'p.report()'));
@@ -322,11 +332,12 @@ test('the core is fetched once: what the page preloads is what it uses, also for
 
 test('a core that is missing is named, and another try helps', async ({ page }) => {
   await page.route('**/core_bg*.wasm', (route) => route.fulfill({ status: 404, body: 'not found' }));
-  await page.goto('/');
+  await page.goto(askingFor('/', 'webgl2'));
   await expect(page.getByText(/is not on the server: it answers 404/)).toBeVisible();
   await page.unroute('**/core_bg*.wasm');
   await page.getByRole('button', { name: 'Try again' }).click();
   await expect.poll(async () => (await status(page)).progress.phase).toBe('done');
+  expect((await status(page)).backend).toBe('webgl2');
 });
 
 test('until the renderer has come the surface is painted without it', async ({ page }) => {
@@ -338,7 +349,7 @@ test('until the renderer has come the surface is painted without it', async ({ p
     await asked;
     await route.continue();
   });
-  await page.goto(`./${link(coarse)}`);
+  await page.goto(askingFor(`./${link(coarse)}`, 'webgl2'));
   await expect.poll(async () => (await status(page))?.progress.phase, { timeout: 20_000 }).toBe('done');
   expect((await status(page)).backend).toBe('starting');
   await expectSurface(page);

@@ -31,6 +31,7 @@ test('a second engine in its own element has its own state, run and picture, and
     }, expression);
   await expect.poll(() => second('engine.report.value?.count ?? 0')).toBeGreaterThan(100);
   expect(await second('engine.state.value.surface')).toBe('torus');
+  expect(await second('engine.backend.value')).toBe('webgl2');
   await second('engine.debug.still()');
   const picture = () => second(`engine.picture().then(({ data }) => new Set(new Uint32Array(data.buffer)).size)`);
   expect(await picture()).toBeGreaterThan(50);

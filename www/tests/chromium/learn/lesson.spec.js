@@ -4,6 +4,7 @@
 import { expect, test } from '@playwright/test';
 import { axe } from '../../axe.js';
 import { createSite } from '../../server.js';
+import { expectDrawn } from '../ui/helpers.js';
 import { fingerprint, live, openLesson, overflow, settled, TORUS } from './helpers.js';
 
 /**
@@ -42,6 +43,7 @@ test('the learner’s own formula is carried over, and back', async ({ page }) =
   await page.waitForFunction(
     () => /** @type {any} */ (window).marchingParticles?.engine.progress.value.phase === 'done',
   );
+  await expectDrawn(page, 'canvas2d');
   await page.waitForFunction(() =>
     performance.getEntriesByType('resource').some(({ name }) => /\/learn-link/.test(name)),
   );

@@ -41,6 +41,10 @@ test('a page with the picture in a frame sets its state, reads it and gets the r
 
   const frame = page.frameLocator('iframe');
   await expect(frame.locator('.caption')).toBeVisible();
+  const { backend } = await frame
+    .locator('body')
+    .evaluate(() => /** @type {any} */ (window).marchingParticles.status());
+  expect(backend).toBe('canvas2d');
   for (const part of ['.panel-field', '.panel-report', '.panel-levels', '.toolbar', '.legend', '.unhide'])
     await expect(frame.locator(part)).toBeHidden();
   server.close();

@@ -1,5 +1,6 @@
 /** A particle of the picture is explained in the lesson, where it is the same one. */
 import { expect, test } from '@playwright/test';
+import { expectDrawn } from './helpers.js';
 
 test('a pressed particle is explained in the lesson, by its own number, and the way back leads to the picture', async ({
   page,
@@ -9,6 +10,7 @@ test('a pressed particle is explained in the lesson, by its own number, and the 
   await page.waitForFunction(
     () => /** @type {any} */ (window).marchingParticles?.engine.progress.value.phase === 'done',
   );
+  await expectDrawn(page, 'canvas2d');
   // By keys: the particle in the middle, and once more to have it explained.
   await page.locator('#canvas-host').focus();
   await page.keyboard.press('Enter');
@@ -31,6 +33,7 @@ test('of an adaptive picture the lesson explains no single particle, and the car
   await page.goto('./?backend=canvas2d');
   await page.waitForFunction(() => 'marchingParticles' in window);
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
+  await expectDrawn(page, 'canvas2d');
   await page.evaluate(() =>
     /** @type {any} */ (window).marchingParticles.set({ settings: { sampling: 'adaptive', radius_min_share: 0.01 } }),
   );

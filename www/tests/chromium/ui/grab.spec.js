@@ -164,7 +164,7 @@ test('a model is pulled around a place, and what is pinned stays', async ({ page
     const { digest } = await report(page);
     const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.link());
     await page.goto('about:blank');
-    await page.goto(link);
+    await page.goto(link.replace('#', '?backend=canvas2d#'));
     await settled(page);
     expect((await report(page)).digest).toBe(digest);
   });

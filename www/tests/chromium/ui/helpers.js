@@ -10,10 +10,10 @@ const ADDRESS = './?backend=canvas2d';
 /**
  * Opens the page and waits for the first run. Violations of the content security policy and errors fail the test.
  * @param {Page} page
- * @param {{ width?: number, height?: number, hash?: string, folded?: boolean }} [options]  `folded`: the panels are as
- *   on a first visit
+ * @param {{ width?: number, height?: number, hash?: string, folded?: boolean, invites?: boolean }} [options]  `folded`:
+ *   the panels are as on a first visit; `invites`: so is the first slider, which moves by itself
  */
-export async function open(page, { width = 1280, height = 800, hash = '', folded = false } = {}) {
+export async function open(page, { width = 1280, height = 800, hash = '', folded = false, invites = false } = {}) {
   /** @type {string[]} */
   const faults = [];
   page.on('pageerror', (error) => faults.push(String(error)));
@@ -27,6 +27,10 @@ export async function open(page, { width = 1280, height = 800, hash = '', folded
       seen.push(`${event.violatedDirective} ${event.blockedURI} ${event.sample}`),
     );
   });
+  if (!invites)
+    await page.addInitScript(() => {
+      if (location.protocol !== 'about:') localStorage.setItem('marching-particles.invited', 'on');
+    });
   // Most tests begin with all panels open.
   if (!folded)
     await page.addInitScript(() => {
@@ -66,8 +70,12 @@ export async function afresh(page, { width = 1280, height = 800, hash = '' } = {
   await settled(page);
 }
 
-/** Waits until nothing runs and the figures are there. @param {Page} page */
-export async function settled(page) {
+/**
+ * Waits until nothing runs and the figures are there, and expects that the picture is drawn as the address asks.
+ * @param {Page} page
+ * @param {string | null} [drawnBy]  back end, where the address asks for none
+ */
+export async function settled(page, drawnBy = new URL(page.url()).searchParams.get('backend')) {
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
   await page.waitForFunction(() => {
     const { engine } = /** @type {any} */ (window).marchingParticles;
@@ -80,6 +88,13 @@ export async function settled(page) {
       (engine.report.value !== null || engine.empty.value)
     );
   });
+  await expectDrawn(page, drawnBy);
+}
+
+/** Expects that a back end draws the picture. @param {Page} page @param {string | null} kind */
+export async function expectDrawn(page, kind) {
+  const drawnBy = () => page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().backend);
+  await expect.poll(drawnBy).toBe(kind);
 }
 
 /**

@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { afresh, atRest, open, scan, settled, state, typeFormula } from './helpers.js';
+import { afresh, atRest, expectDrawn, open, scan, settled, state, typeFormula } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -271,7 +271,7 @@ test('targets are large, the theme can be switched, and the page says what it is
 
 test('without its style sheet the page still has all its controls', async ({ page }) => {
   await page.route('**/*.css', (route) => route.abort());
-  await page.goto('/');
+  await page.goto('/?backend=canvas2d');
   await settled(page);
   await expect(page.locator('#formula')).toBeAttached();
   await expect(page.getByRole('button', { name: 'Generate only' })).toBeAttached();
@@ -289,14 +289,14 @@ test('a style sheet that comes after the script finds everything in its place', 
     await route.continue();
   });
   // Chromium holds module scripts back until the style sheet is there, unless they are asynchronous; WebKit does not.
-  await page.route(/\/$/, async (route) => {
+  await page.route(/\/\?backend/, async (route) => {
     const response = await route.fetch();
     await route.fulfill({
       response,
       body: (await response.text()).replace('<script type="module"', '<script async type="module"'),
     });
   });
-  await page.goto('/', { waitUntil: 'commit' });
+  await page.goto('/?backend=canvas2d', { waitUntil: 'commit' });
   // No frame is drawn before the style sheet is there.
   await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.engine.description.value, undefined, {
     polling: 100,
@@ -373,6 +373,7 @@ test('the picture of a dark page is dark from the first frame, also where the sa
     ),
   );
   expect(brightest).toBeLessThan(64);
+  await expectDrawn(page, 'canvas2d');
 });
 
 test('the page says in one line what it is', async ({ page }) => {

@@ -48,7 +48,7 @@ test('the mesh', async ({ page }) => {
     await page.keyboard.press('Escape');
   });
 
-  await test.step('the way of drawing is chosen in the view options, and in words where there can be no mesh', async () => {
+  await test.step('the way of drawing is chosen in the view options, and the mesh is judged in words', async () => {
     await afresh(page);
     await page.getByRole('button', { name: 'View options' }).click();
     await expect(page.getByRole('group', { name: 'Faces', exact: true })).toBeHidden();
@@ -59,8 +59,7 @@ test('the mesh', async ({ page }) => {
     await expect(page.getByRole('button', { name: 'Edges' })).toHaveAttribute('aria-pressed', 'false');
     expect((await state(page)).view).toMatchObject({ draw: 'mesh', faces: 'flat', edges: false, marks: true });
     await page.keyboard.press('Escape');
-    // The tests of the panels draw without a graphics device.
-    await expect(page.locator('.caption .joined')).toHaveText(/by WebGPU or WebGL2/);
+    await expect(page.locator('.caption .joined')).toHaveText(/^Watertight · Euler number 2/);
     await page.locator('#stage').click({ position: { x: 5, y: 5 } });
     await page.keyboard.press('m');
     await expect(page.locator('.caption .joined')).toBeEmpty();
@@ -93,7 +92,7 @@ test('the mesh', async ({ page }) => {
 test('the legend says what the dots on the mesh mean, while there are some', async ({ page }) => {
   const { clean } = await open(page);
   // The dots are drawn by the graphics device.
-  await page.goto('./');
+  await page.goto('./?backend=webgl2');
   await settled(page);
   const dots = page.getByText('Dots: not six neighbours, but');
   await expect(dots).toBeHidden();

@@ -258,6 +258,8 @@ test('the picture and what moves in it', async ({ page }) => {
 });
 
 test('a sequence of pictures, and a film', async ({ page }) => {
+  // Each of its 120 pictures is painted in four samples.
+  test.slow();
   const { clean } = await open(page, { width: 480, height: 360 });
   await test.step('a sequence can be given up', async () => {
     const dialog = await openDialog(page);
@@ -291,7 +293,7 @@ test('a sequence of pictures, and a film', async ({ page }) => {
     expect((await state(page)).parameters).toEqual({});
     expect((await report(page)).digest).toBe(before.digest);
     // What moved by itself is no step of the history.
-    await expect(page.getByRole('button', { name: 'Undo' })).toHaveAttribute('aria-disabled', 'true');
+    await expect(page.getByRole('button', { name: 'Undo' })).toBeHidden();
   });
 
   await test.step('a film has the same pictures, each for a thirtieth of a second, however long it takes', async () => {

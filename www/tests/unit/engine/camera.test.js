@@ -174,36 +174,6 @@ describe('the camera', () => {
     expect(camera.state.distance).toBeCloseTo(fitDistance(0.05), 6);
   });
 
-  test('opens on a side and ends where it was, unless a hand comes between', () => {
-    for (const normal of /** @type {Vec3[]} */ ([
-      [0.1, -0.1, -0.99],
-      [-0.8, -0.6, 0],
-    ])) {
-      const camera = new Camera(state);
-      camera.openOn(normal);
-      const seen = -axes(camera.state).forward.reduce((sum, c, k) => sum + c * normal[k], 0);
-      expect(seen).toBeGreaterThan(0.5);
-      let steps = 0;
-      while (camera.step(1 / 60)) steps += 1;
-      expect(steps / 60).toBeCloseTo(2, 1);
-      expect(camera.state).toEqual(state);
-    }
-    for (const act of /** @type {((camera: Camera) => void)[]} */ ([
-      (camera) => camera.rest(),
-      (camera) => camera.zoom(1.2),
-      (camera) => camera.pan(3, 4, viewOf(state, ...size, scene)),
-    ])) {
-      const camera = new Camera(state);
-      camera.openOn([0, 0, -1]);
-      for (let i = 0; i < 60; i += 1) camera.step(1 / 60);
-      const { yaw, pitch } = camera.state;
-      act(camera);
-      expect(camera.step(1 / 60)).toBe(false);
-      expect(camera.state).toMatchObject({ yaw, pitch });
-      expect(pitch).toBeLessThan(state.pitch - 0.1);
-    }
-  });
-
   test('turns to the end where a fit comes between', () => {
     const camera = new Camera(state);
     camera.turnTo({ yaw: 1.5, pitch: 0.4 });

@@ -396,6 +396,12 @@ describe('motion', () => {
     const reveal = new Reveal();
     expect(reveal.wait(1)).toBe(0);
     reveal.begin(100, true);
+    // Before its front is there, it does not begin.
+    expect(reveal.wait(0.5)).toBe(0);
+    reveal.release(
+      100,
+      Uint32Array.from({ length: 56 }, (_, k) => k),
+    );
     const step = reveal.birthOf(1, 100) - 100;
     expect(reveal.birthOf(55, 100) - 100).toBeGreaterThan(2.5);
     expect(reveal.birthOf(55, 100) - 100).toBeLessThan(3);

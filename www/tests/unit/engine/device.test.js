@@ -3,12 +3,16 @@ import { LOADING_MS } from '../../../src/engine/bundle/load.js';
 import { DeviceLost } from '../../../src/engine/view/backends.js';
 import { DeviceKeeper } from '../../../src/engine/view/device.js';
 
+/** @import { BackendKind } from '../../../src/engine/types.js' */
+
 /**
  * A keeper over scripted devices. `broken` kinds cannot be opened; `lost` ones never answer.
- * @param {string[]} [broken] @param {string[]} [lost] @param {Promise<unknown>} [after]
- * @param {boolean} [isSeen]  whether the picture is known to be in sight
+ * @param {string[]} [broken] @param {string[]} [lost] @param {Promise<unknown>} [after]  that of which devices of a
+ *   graphics card come
+ * @param {{isSeen?: boolean, best?: BackendKind, first?: BackendKind}} [how]  `isSeen`: whether the picture is known to
+ *   be in sight; `best`: what the probe finds; `first`: what is asked for
  */
-function kept(broken = [], lost = [], after, isSeen = true) {
+function kept(broken = [], lost = [], after, { isSeen = true, best = 'webgpu', first } = {}) {
   /** @type {string[]} */
   const log = [];
   /** Why the next devices are lost while they open. @type {string[]} */
@@ -22,9 +26,10 @@ function kept(broken = [], lost = [], after, isSeen = true) {
     onOpen: (device, isStandIn) => log.push(`${isStandIn ? 'stand-in' : 'open'} ${device.kind}`),
     onLost: (kind) => log.push(`lost ${kind}`),
     onFallback: (kind, _message, isLate) => log.push(`gave up ${kind}${isLate ? ', late' : ''}`),
-    after,
-    open: async (kind, _host, on, wait) => {
-      await wait;
+    first,
+    probe: async () => best,
+    open: async (kind, _host, on) => {
+      if (kind !== 'canvas2d') await after;
       if (lost.includes(kind)) await new Promise(() => {});
       if (taken.length > 0) throw new DeviceLost(taken.pop());
       if (broken.includes(kind)) throw new Error(`${kind} is not available`);
@@ -58,6 +63,33 @@ describe('the keeper of devices', () => {
     const { keeper, log } = kept(['webgpu', 'webgl2']);
     await keeper.start();
     expect(log.at(-1)).toBe('open canvas2d');
+  });
+
+  test('without a graphics card stays with the painter that stood in, and opens nothing else', async () => {
+    const { keeper, log } = kept([], [], undefined, { best: 'canvas2d' });
+    await Promise.all([keeper.start(), keeper.standIn()]);
+    expect(log).toEqual(['stand-in canvas2d', 'open canvas2d']);
+    keeper.drew();
+    expect(log).toHaveLength(2);
+    expect(keeper.opened).toBe(1);
+    await keeper.retry();
+    expect(log.slice(2)).toEqual(['close canvas2d', 'open canvas2d']);
+  });
+
+  test('opens what is asked for, whatever the probe finds', async () => {
+    for (const first of /** @type {const} */ (['webgpu', 'webgl2', 'canvas2d'])) {
+      for (const best of /** @type {const} */ (['webgpu', 'webgl2', 'canvas2d'])) {
+        const { keeper, log } = kept([], [], undefined, { best, first });
+        await keeper.start();
+        expect(log).toEqual([`open ${first}`]);
+      }
+    }
+  });
+
+  test('begins with the kind that the probe finds', async () => {
+    const { keeper, log } = kept([], [], undefined, { best: 'webgl2' });
+    await keeper.start();
+    expect(log).toEqual(['open webgl2']);
   });
 
   test('is stood in for until it has drawn', async () => {
@@ -176,7 +208,7 @@ describe('the keeper of devices', () => {
   });
 
   test('throws away a device that arrives after the page is gone', async () => {
-    const { keeper, log, settle } = kept();
+    const { keeper, log, settle } = kept([], [], undefined, { first: 'webgpu' });
     const opening = keeper.start();
     keeper.close();
     await opening;
@@ -194,7 +226,7 @@ describe('the keeper of devices', () => {
   });
 
   test('whose place is not known yet takes no other picture’s context, and opens again once it is in sight', async () => {
-    const { keeper, log, events, settle } = kept(['webgpu'], [], undefined, false);
+    const { keeper, log, events, settle } = kept(['webgpu'], [], undefined, { isSeen: false });
     await keeper.start();
     events.at(-1).onLost('unknown', 'another picture needs it');
     await settle();

@@ -35,6 +35,23 @@ describe('a frame', () => {
     expect(frames).toHaveLength(0);
   });
 
+  test('of a picture out of sight is not asked for, one that was is withdrawn, and who waits for it is let go', () => {
+    const cancel = vi.fn();
+    vi.stubGlobal('cancelAnimationFrame', cancel);
+    const loop = new FrameLoop(() => 'drawn');
+    const drawn = vi.fn();
+    loop.ask();
+    loop.afterNext(drawn);
+    loop.see(false);
+    expect(cancel).toHaveBeenCalledWith(1);
+    expect(drawn).toHaveBeenCalledTimes(1);
+    expect(loop.isHidden).toBe(true);
+    loop.ask();
+    expect(frames).toHaveLength(1);
+    loop.see(true);
+    expect(frames).toHaveLength(2);
+  });
+
   test('after an hour asleep is one short step on, and no burst of frames', () => {
     const steps = /** @type {number[]} */ ([]);
     const loop = new FrameLoop((_now, step) => {

@@ -1,0 +1,95 @@
+/**
+ * The light on what the painter draws, and its colours: what shaders/common.wgsl does for the other renderers.
+ *
+ * @module
+ */
+import { clamp } from '../vector.js';
+import { encoded, linear } from './oklab.js';
+
+/** Tables from a byte to linear light, and from linear light in steps of 1/1023 to a byte. */
+export const LINEAR = Float32Array.from({ length: 256 }, (_, v) => linear(v / 255));
+const ENCODED = Uint8Array.from({ length: 1024 }, (_, v) => Math.round(255 * encoded(v / 1023)));
+
+/** Luminance of a ground above which it is light, and the light along the outline on a dark one, as there. */
+const LIGHT_GROUND = 0.179;
+const RIM_LIGHT = 0.1;
+/** Shares of its light and of its chroma that the inside of a surface keeps. */
+const INSIDE_LIGHT = 0.6;
+const INSIDE_CHROMA = 0.75;
+const GROUND_LIGHT = 0.32;
+const SKY_LIGHT = 0.6;
+const KEY_LIGHT = 0.74;
+const WRAP = 0.3;
+const OUTLINE_SHADE = 0.14;
+const COOL_TO_WARM = /** @type {const} */ ([0.35, 1.15]);
+
+/** @param {readonly number[]} edges @param {number} x */
+export function smoothstep([from, to], x) {
+  const t = clamp((x - from) / (to - from), 0, 1);
+  return t * t * (3 - 2 * t);
+}
+
+/** @param {number[]} linear */
+const luminanceOf = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
+
+/** Returns the light along the outline on a ground, which is in linear light. @param {number[]} ground */
+export const rimOn = (ground) => (luminanceOf(ground) > LIGHT_GROUND ? 0 : RIM_LIGHT);
+
+/** Packs three linear components into a pixel. @param {number} r @param {number} g @param {number} b */
+export const packed = (r, g, b) =>
+  (255 << 24) | (ENCODED[(b * 1023) | 0] << 16) | (ENCODED[(g * 1023) | 0] << 8) | ENCODED[(r * 1023) | 0];
+
+// A frame draws up to some million discs, so that what is found of one is written to the same places every time: arrays
+// of its own would take most of the frame.
+export const LIGHT = new Float64Array(3);
+export const COLOUR = new Float64Array(3);
+/** What {@link shade} has found. */
+export const SHADE = new Float64Array(3);
+
+/** Writes a packed colour to COLOUR, in linear light. @param {number} colour */
+export function takeColour(colour) {
+  for (let k = 0; k < 3; k += 1) COLOUR[k] = LINEAR[(colour >> (8 * k)) & 255];
+}
+
+/**
+ * Writes the light on a surface for each component of its colour to LIGHT, as `light_on` in shaders/common.wgsl does.
+ * @param {{keyward: number, skyward: number, edgeOn: number}} cosines  of its normal with the
+ *   directions to the key light and to the sky; `edgeOn`: 1 at the outline
+ * @param {{rim: number, warmth: number}} how
+ */
+export function lightOn({ keyward, skyward, edgeOn }, { rim, warmth }) {
+  const sky = 0.5 + 0.5 * skyward;
+  const key = Math.max(0, (keyward + WRAP) / (1 + WRAP));
+  const direct =
+    (GROUND_LIGHT + (SKY_LIGHT - GROUND_LIGHT) * sky + KEY_LIGHT * key * key) * (1 - OUTLINE_SHADE * edgeOn ** 3);
+  const light = direct + rim * edgeOn ** 4 * sky;
+  const warm = warmth * (smoothstep(COOL_TO_WARM, light) - 0.5);
+  LIGHT[0] = light * (1 + 0.6 * warm);
+  LIGHT[1] = light * (1 + 0.1 * warm);
+  LIGHT[2] = light * (1 - warm);
+}
+
+/**
+ * Writes COLOUR, in linear light, under a share of LIGHT to SHADE, as an inside by the share `behind`, faded to the
+ * ground by the share `away`.
+ * @param {number} share @param {number} behind @param {number} away @param {number[]} ground
+ */
+export function shade(share, behind, away, ground) {
+  const r = COLOUR[0] * (LIGHT[0] * share);
+  const g = COLOUR[1] * (LIGHT[1] * share);
+  const b = COLOUR[2] * (LIGHT[2] * share);
+  const luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  const component = (/** @type {number} */ value, /** @type {number} */ k) => {
+    const inside = INSIDE_LIGHT * (luminance + (value - luminance) * INSIDE_CHROMA);
+    return Math.min(1, value + (inside - value) * behind) * (1 - away) + ground[k] * away;
+  };
+  SHADE[0] = component(r, 0);
+  SHADE[1] = component(g, 1);
+  SHADE[2] = component(b, 2);
+}
+
+/** The same as a pixel. @param {number} share @param {number} behind @param {number} away @param {number[]} ground */
+export function lit(share, behind, away, ground) {
+  shade(share, behind, away, ground);
+  return packed(SHADE[0], SHADE[1], SHADE[2]);
+}

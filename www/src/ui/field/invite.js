@@ -1,0 +1,68 @@
+/**
+ * Has the first slider move a little by itself, once, after the first surface of a first visit has grown: the surface
+ * follows, and a word says what may be dragged. Any press or key ends it.
+ */
+import { computed, effect, signal } from '@preact/signals-core';
+import { remembered } from '../remembered.js';
+import { snap } from '../scale.js';
+
+/** @import { Engine, Parameter, ReadonlySignal, Signal } from '../../engine/types.js' */
+
+/** Time of the motion, there and back, and how far it goes, as a share of the range. */
+const MOTION_MS = 1800;
+const SHARE = 0.14;
+/** Pause before it, in which the surface stands still. */
+const PAUSE_MS = 1200;
+
+/**
+ * Returns the name of the parameter that is to be dragged, null before and once anything was touched.
+ * @param {Engine} engine
+ * @returns {ReadonlySignal<string | null>}
+ */
+export function inviteToDrag(engine) {
+  const was = remembered('invited', false);
+  /** @type {Signal<string | null>} */
+  const invited = signal(null);
+  if (was.peek() || matchMedia('(prefers-reduced-motion: reduce)').matches) return invited;
+  const has = computed(
+    () => engine.report.value !== null && engine.reveal.value === null && !engine.busy.value && engine.frame.value > 0,
+  );
+  let hasGrown = false;
+  const end = effect(() => {
+    hasGrown ||= engine.reveal.value !== null;
+    const [first] = engine.field.value?.parameters ?? [];
+    if (!hasGrown || !has.value || !first || Object.keys(engine.state.value.parameters).length > 0) return;
+    queueMicrotask(() => end());
+    setTimeout(() => {
+      // Whoever has touched anything needs no invitation.
+      if (was.peek()) return;
+      was.value = true;
+      invited.value = first.name;
+      move(engine, first);
+    }, PAUSE_MS);
+  });
+  const touch = () => {
+    for (const type of ['pointerdown', 'keydown', 'wheel']) removeEventListener(type, touch, true);
+    was.value = true;
+    invited.value = null;
+  };
+  for (const type of ['pointerdown', 'keydown', 'wheel']) addEventListener(type, touch, true);
+  return invited;
+
+  /** @param {Engine} of @param {Parameter} parameter */
+  function move(of, { name, value, min, max, step }) {
+    const fromMs = performance.now();
+    const way = (max - value > value - min ? 1 : -1) * SHARE * (max - min);
+    const go = (/** @type {number} */ nowMs) => {
+      const share = (nowMs - fromMs) / MOTION_MS;
+      if (invited.peek() === null || share >= 1) return of.resetParameter(name);
+      // As where a parameter is played, a run that takes longer than a frame is waited for.
+      if (!of.busy.peek()) {
+        const place = value + way * Math.sin(Math.PI * Math.max(0, share)) ** 2;
+        of.setParameter(name, snap({ min, max, step }, place), { live: true });
+      }
+      requestAnimationFrame(go);
+    };
+    requestAnimationFrame(go);
+  }
+}
