@@ -85,3 +85,4 @@ mod thickness;
 #[cfg(feature = "cli")]
 mod threads;
 mod tips;
+mod wrapped;
