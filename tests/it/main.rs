@@ -40,6 +40,7 @@ mod golden;
 mod graded;
 mod grip;
 mod holes;
+mod jumps;
 mod limits;
 mod mesh;
 mod mesh_export;
