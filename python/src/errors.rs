@@ -1,6 +1,6 @@
 //! Errors of the core as exceptions of Python.
 
-use marching_particles::{Error, FieldError, FormulaError, JobError, SettingsError};
+use marching_particles::{Error, FieldError, FormulaError, FormulaErrorKind, JobError, SettingsError};
 use pyo3::PyErr;
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -17,7 +17,9 @@ mod python {
 /// The exception of a formula. Python counts characters where Rust counts bytes.
 pub(crate) fn of_formula(error: &FormulaError, text: &str) -> PyErr {
     let characters = |byte: usize| text.get(..byte).map_or(0, |before| before.chars().count());
-    let span = (characters(error.span.start), characters(error.span.end));
+    // A parameter is no part of the text.
+    let has_place = error.kind != FormulaErrorKind::BadParameter;
+    let span = has_place.then(|| (characters(error.span.start), characters(error.span.end)));
     let choices = error.choices.to_vec();
     python::FormulaError::new_err((
         error.message.clone(),

@@ -38,8 +38,10 @@ def test_a_misspelt_function_has_a_suggestion():
 
 
 def test_an_unknown_parameter_is_named():
-    with pytest.raises(mp.FormulaError, match="`b`"):
+    with pytest.raises(mp.FormulaError, match="`b`") as caught:
         mp.sample("x^2 + y^2 + z^2 = a", params={"b": 2})
+    # It has no place in the formula.
+    assert caught.value.span is None and str(caught.value) == caught.value.message
 
 
 @pytest.mark.parametrize(

@@ -175,6 +175,8 @@ pub struct Facts {
     /// The faces of a solid, as equations, with which a cutter lies flush: what it would leave of
     /// them has no thickness and is no part of the surface.
     pub flush_faces: Vec<String>,
+    /// Names that the field defines, and that nothing in it uses.
+    pub unused: Vec<String>,
     /// A sentence for the user on why f is the same everywhere, if it is known.
     pub why_constant: Option<String>,
 }

@@ -121,14 +121,14 @@ impl Measurements {
 
 /// Places away from the border of a clipped surface where the triangles of natural neighbours do
 /// not close it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Opening {
     /// Number of edges that belong to one triangle alone.
     pub(crate) edges: usize,
     /// Number of points in no triangle.
     pub(crate) points: usize,
-    /// Position of an open edge or of a point in no triangle.
-    pub(crate) position: Vec3,
+    /// Positions of the open edges and of the points in no triangle, at least one.
+    pub(crate) places: Vec<Vec3>,
 }
 
 /// Measures the particles at `position` with outward unit normals `normal` on the surface of
@@ -442,8 +442,9 @@ fn opening(topology: &Topology, mesh: &[[u32; 3]], inner: &[bool], position: &[V
     let is_inner = |i: &u32| inner[*i as usize];
     let open = || topology.lone_edges.iter().filter(|edge| edge.iter().all(is_inner));
     let bare = || (0..inner.len()).filter(|&i| is_bare[i]);
-    let first = open().map(|&[i, _]| i as usize).next().or_else(|| bare().next())?;
-    Some(Opening { edges: open().count(), points: bare().count(), position: position[first] })
+    let places: Vec<Vec3> = open().map(|&[i, _]| i as usize).chain(bare()).map(|i| position[i]).collect();
+    let (edges, points) = (open().count(), bare().count());
+    (!places.is_empty()).then_some(Opening { edges, points, places })
 }
 
 /// Measures the holes. Returns the wide ones.

@@ -5,6 +5,7 @@
 //! either leads to is a [`Sample`].
 
 mod check;
+mod jumps;
 mod measuring;
 mod mesh;
 mod plan;

@@ -371,7 +371,9 @@ impl<F: Field> Run<F> {
             distance,
             spacing: 2.0 * f64::from(particles.radius[particle]),
         }));
-        warnings.extend(self.meshing.joined().into_iter().flat_map(|mesh| Warning::of_mesh(measured, mesh)));
+        let ends_at_jumps = Warning::tell_of_jumps(&warnings);
+        let of_mesh = |mesh| Warning::of_mesh(measured, mesh, ends_at_jumps);
+        warnings.extend(self.meshing.joined().into_iter().flat_map(of_mesh));
         let inside = self.meshing.joined().map_or(measured.inside, |mesh| mesh.inside);
         warnings.extend(inside.filter(|&inside| inside != Inside::Negative).map(Warning::LargerInside));
         let is_beyond = self.reach == Some(Reach::Endless) && border == 0 && count > 0;

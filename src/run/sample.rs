@@ -123,7 +123,7 @@ impl Sample {
     /// they were measured, holes, and particles in no triangle.
     #[must_use]
     pub fn mesh_warnings(&self) -> Vec<Warning> {
-        Warning::of_mesh(&self.measured, self.mesh())
+        Warning::of_mesh(&self.measured, self.mesh(), Warning::tell_of_jumps(&self.report.warnings))
     }
 
     /// Volume that the [mesh](Sample::mesh) encloses, see [`Triangulation::volume`];

@@ -1,11 +1,14 @@
 //! Warnings about a run: a typed list. The first sentence of each says in one line what happened
 //! and what to do; the others are details, which the page folds away.
 
+mod missing;
+
+use super::jumps::breaks_in;
 use super::report::creases_and_seams;
 use super::{Report, Run, Severity, check};
 use crate::field::Field;
 use crate::field::model::{GivenMesh, GivenTopology, ModelInfo};
-use crate::math::{Bounds, counted, place_text, shortest_text, text_within};
+use crate::math::{Bounds, counted, place_text};
 use crate::mesh::build::Triangulation;
 use crate::mesh::facing::Inside;
 use crate::particles::Particles;
@@ -15,6 +18,8 @@ use crate::sampler::{
     COUNT_TOLERANCE, Doubt, FateCounts, Refusal, Sampled, SingularKind, SizeMode, StopReason, Unsampled,
 };
 use core::fmt;
+use glam::DVec3;
+use missing::{about_length, unproven, without_particle};
 use serde::{Serialize, Serializer};
 
 /// Least share of the particles that face another sheet where sheets are said to be close. The
@@ -73,6 +78,11 @@ pub enum Warning {
         /// The faces, as equations.
         faces: Vec<String>,
     },
+    /// Names that the formula defines, and that nothing uses.
+    Unused {
+        /// The names.
+        names: Vec<String>,
+    },
     /// The gradient that the field gives is not that of its values.
     Gradient {
         /// Position at which the two differ.
@@ -122,6 +132,15 @@ pub enum Warning {
         /// Radius of the run.
         length: f64,
     },
+    /// The surface ends in a cusp along curves, where f has no gradient.
+    Rims {
+        /// Number of curves.
+        curves: usize,
+        /// A place where it does.
+        position: [f64; 3],
+        /// Radius of the run.
+        length: f64,
+    },
     /// Sheets of the surface cross along creases.
     Crosses {
         /// Number of curves.
@@ -159,6 +178,13 @@ pub enum Warning {
         /// Number of particles in no triangle.
         points: usize,
         /// Position of an open edge or of a particle in no triangle.
+        position: [f64; 3],
+        /// Radius of the run.
+        length: f64,
+    },
+    /// The surface ends where f jumps from one sign to the other.
+    Jumps {
+        /// A place where it does.
         position: [f64; 3],
         /// Radius of the run.
         length: f64,
@@ -240,6 +266,7 @@ impl Warning {
             Self::Beyond { .. } => ("beyond", Caution),
             Self::SampledAs { .. } => ("sampled_as", Note),
             Self::FlushFaces { .. } => ("flush_faces", Note),
+            Self::Unused { .. } => ("unused", Note),
             Self::Gradient { .. } => ("gradient", Fault),
             Self::Count { .. } => ("count", Caution),
             Self::NotRefined(_) => ("not_refined", Caution),
@@ -247,12 +274,14 @@ impl Warning {
             Self::Children { is_closed, .. } => ("children", if *is_closed { Note } else { Caution }),
             Self::CloseSheets { .. } => ("close_sheets", Caution),
             Self::Meets { .. } => ("meets", Note),
+            Self::Rims { .. } => ("rims", Note),
             Self::Crosses { .. } => ("crosses", Note),
             Self::Moved => ("moved", Note),
             Self::EndedEarly { .. } => ("ended_early", Fault),
             Self::SmallFeatures { .. } => ("small_features", Caution),
             Self::WithoutParticle { .. } => ("without_particle", Fault),
             Self::Open { .. } => ("open", Fault),
+            Self::Jumps { .. } => ("jumps", Note),
             Self::MeshDiffers { .. } => ("mesh_differs", Fault),
             Self::MeshHoles { .. } => ("mesh_holes", Fault),
             Self::MeshLeavesOut { .. } => ("mesh_leaves_out", Caution),
@@ -289,15 +318,15 @@ impl Serialize for Warning {
 impl Warning {
     /// The warnings about a mesh. Its topology is compared with that of the particles, if they were
     /// measured. Where a box cuts the surface, the two end in different ways beside its faces, and
-    /// only the components are compared.
-    pub(super) fn of_mesh(measured: &Measurements, mesh: &Triangulation) -> Vec<Self> {
+    /// only the components are compared; where f jumps they do everywhere, and nothing is.
+    pub(super) fn of_mesh(measured: &Measurements, mesh: &Triangulation, ends_at_jumps: bool) -> Vec<Self> {
         let mut warnings = Vec::new();
         let Connectivity { components, euler, .. } = measured.figures.connectivity;
         let is_cut = measured.figures.boundary_excluded > 0;
         let components = [mesh.topology.components.len(), components];
         let euler = [mesh.topology.euler(), euler];
         let differs = components[0] != components[1] || !is_cut && euler[0] != euler[1];
-        if differs && !measured.valence.is_empty() {
+        if differs && !ends_at_jumps && !measured.valence.is_empty() {
             warnings.push(Self::MeshDiffers { components, euler });
         }
         if !mesh.unfilled.is_empty() {
@@ -307,6 +336,11 @@ impl Warning {
             warnings.push(Self::MeshLeavesOut { count: mesh.left_out.len() });
         }
         warnings
+    }
+
+    /// Whether one of some warnings says that the surface ends where f jumps.
+    pub(super) fn tell_of_jumps(warnings: &[Self]) -> bool {
+        warnings.iter().any(|warning| matches!(warning, Self::Jumps { .. }))
     }
 
     /// The warning about a surface that was fitted to the mesh of a file, if it has another
@@ -346,6 +380,9 @@ impl<F: Field> Run<F> {
         }
         let facts = self.field.given.facts();
         warnings.extend(facts.sampled_as.map(|equation| Warning::SampledAs { equation }));
+        if !facts.unused.is_empty() {
+            warnings.push(Warning::Unused { names: facts.unused });
+        }
         if !facts.flush_faces.is_empty() {
             warnings.push(Warning::FlushFaces { faces: facts.flush_faces });
         }
@@ -389,7 +426,10 @@ impl<F: Field> Run<F> {
         // Children of a coarse front are no trouble once its mesh has been checked and refined.
         let FateCounts { not_converged, undefined, .. } =
             if counts.refined_levels.is_some() { FateCounts::default() } else { counts.fates };
-        if not_converged > 0 || undefined > 0 {
+        let ends = self.ends();
+        // New particles find no surface beyond its ends.
+        let is_told = ends.at_jump.is_some() && ends.others.is_none();
+        if (not_converged > 0 || undefined > 0) && !is_told {
             // The figures of other particles say nothing of these.
             let is_closed = self.measuring.facing.is_some() && self.measuring.measured.opening.is_none();
             warnings.push(Warning::Children { not_converged, undefined, is_closed });
@@ -397,9 +437,10 @@ impl<F: Field> Run<F> {
         if self.has_moved() {
             warnings.push(Warning::Moved);
         }
-        let meets = [self.places_of_meeting(), self.crossing()];
+        let [meets, rims] = self.singular_warnings();
+        let meets = [rims, meets, self.crossing()];
         // A smaller radius takes no sheets apart that meet.
-        let is_close = !is_unresolved && meets == [None, None] && facing >= CLOSE_COUNT;
+        let is_close = !is_unresolved && meets.iter().all(Option::is_none) && facing >= CLOSE_COUNT;
         warnings.extend(meets.into_iter().flatten());
         if is_close && facing as f64 >= CLOSE_SHARE * total as f64 {
             warnings.push(Warning::CloseSheets { count: facing });
@@ -415,8 +456,13 @@ impl<F: Field> Run<F> {
             let components = sampled.without.clone();
             warnings.push(Warning::WithoutParticle { components, length, is_unresolved });
         }
-        if let Some(opening) = self.measuring.measured.opening.filter(|_| !is_unresolved) {
-            let position = self.place(opening.position.as_dvec3().to_array());
+        if let Some(place) = ends.at_jump {
+            warnings.push(Warning::Jumps { position: self.place(place.to_array()), length });
+        }
+        if let (Some(opening), Some(place), false) =
+            (&self.measuring.measured.opening, ends.others, is_unresolved)
+        {
+            let position = self.place(place.to_array());
             let (edges, points) = (opening.edges, opening.points);
             warnings.push(Warning::Open { edges, points, position, length });
         }
@@ -427,7 +473,12 @@ impl<F: Field> Run<F> {
             Doubt::NoBounds | Doubt::Creases => false,
             Doubt::Witnesses { .. } => !is_unresolved,
             Doubt::Unfinished => !self.has_moved(),
-            _ => true,
+            // A cell at a jump stays open at any radius and in any box.
+            Doubt::Cells { position, size, .. } => {
+                let place = DVec3::from_array(*position);
+                ends.at_jump.is_none() || !breaks_in(&mut *self.evaluator(), place, *size)
+            }
+            Doubt::Unresolved { .. } => true,
         };
         let moved = doubts.into_iter().filter(is_told).map(|doubt| doubt.moved(|place| self.place(place)));
         warnings.extend(moved.map(|doubt| Warning::Unproven { doubt, length }));
@@ -442,15 +493,24 @@ impl<F: Field> Run<F> {
         Some(Warning::Crosses { curves: creases.crossings, position, length: self.sampler.radius() })
     }
 
-    /// The warning that the surface crosses or touches itself where its gradient vanishes, if it
-    /// does.
-    fn places_of_meeting(&self) -> Option<Warning> {
-        let mut places = self.sampler.singular_places();
-        places.retain(|place| matches!(place.kind, SingularKind::Crossing | SingularKind::Touch));
-        let crossings = places.iter().filter(|place| place.kind == SingularKind::Crossing).count();
-        let position = self.place(places.first()?.position.to_array());
-        let (touches, length) = (places.len() - crossings, self.sampler.radius());
-        Some(Warning::Meets { crossings, touches, position, length })
+    /// The warnings about places where the gradient vanishes: where the surface crosses or touches
+    /// itself, and where it ends in a cusp.
+    fn singular_warnings(&self) -> [Option<Warning>; 2] {
+        let length = self.sampler.radius();
+        let field = &mut *self.evaluator();
+        let places = self.sampler.singular_places();
+        let kinds: Vec<SingularKind> = places.iter().map(|place| place.kind_by_signs(field)).collect();
+        let found = |wanted: &[SingularKind]| {
+            let first = kinds.iter().position(|kind| wanted.contains(kind))?;
+            Some(self.place(places[first].position.to_array()))
+        };
+        let count = |wanted: SingularKind| kinds.iter().filter(|&&kind| kind == wanted).count();
+        let [crossings, touches, rims] =
+            [SingularKind::Crossing, SingularKind::Touch, SingularKind::Rim].map(count);
+        let meets = found(&[SingularKind::Crossing, SingularKind::Touch]);
+        let meets = meets.map(|position| Warning::Meets { crossings, touches, position, length });
+        let ends = found(&[SingularKind::Rim]);
+        [meets, ends.map(|position| Warning::Rims { curves: rims, position, length })]
     }
 }
 
@@ -490,6 +550,10 @@ impl fmt::Display for Warning {
                 if faces.len() == 1 { "It is" } else { "They are" },
                 faces.join(", ")
             ),
+            Self::Unused { names } => {
+                let (verb, names) = (if names.len() == 1 { "is" } else { "are" }, names.join(", "));
+                write!(f, "{names} {verb} defined and not used: leave that out, or check the name.")
+            }
             Self::Gradient { position, length } => write!(
                 f,
                 "The gradient does not fit the values of f: correct it, or leave it out. Near {} the two differ, so that particles \
@@ -553,6 +617,12 @@ impl fmt::Display for Warning {
                     place_text(*position, *length)
                 )
             }
+            Self::Rims { curves, position, length } => write!(
+                f,
+                "The surface has {}. f has no gradient there, first near {}: normals turn over, and the particles lie beside it.",
+                counted(*curves, "sharp rim", "sharp rims"),
+                place_text(*position, *length)
+            ),
             Self::Crosses { curves, position, length } => write!(
                 f,
                 "Sheets of the surface cross along {}. They share the particles there, first near {}: components and Euler number \
@@ -589,6 +659,12 @@ impl fmt::Display for Warning {
                     place_text(*position, *length)
                 )
             }
+            Self::Jumps { position, length } => write!(
+                f,
+                "f jumps where the surface ends, first near {}: there is no zero between its parts. To close it, put a steep \
+                 slope in place of the jump, as of smoothstep.",
+                place_text(*position, *length)
+            ),
             Self::MeshDiffers { components, euler } => {
                 let told = |k: usize| {
                     let components = counted(components[k], "component", "components");
@@ -660,77 +736,6 @@ fn those_that_are(things: [(usize, String); 2]) -> String {
     words.collect::<Vec<_>>().join(" and ")
 }
 
-/// A distance with two digits.
-fn about_length(x: f64) -> String {
-    shortest_text(format!("{x:.1e}").parse::<f64>().unwrap_or(x))
-}
-
-/// Names the places of the components without a particle.
-fn without_particle(
-    f: &mut fmt::Formatter<'_>,
-    components: &[Unsampled],
-    length: f64,
-    is_unresolved: bool,
-) -> fmt::Result {
-    let named = components.iter().take(NAMED).map(|&Unsampled { position, reach, goes_on }| {
-        let about = if goes_on { "more than" } else { "about" };
-        format!(
-            "{}, reaching {about} {} from there",
-            place_text(position, length),
-            text_within(reach, length)
-        )
-    });
-    let places = named.collect::<Vec<_>>().join("; near ");
-    let more = components.len().saturating_sub(NAMED);
-    let rest = if more > 0 { format!("; and at {more} more places") } else { String::new() };
-    let summary = if is_unresolved {
-        "Parts of the surface lie too close together to be told apart."
-    } else {
-        "Parts of the surface have no particle: choose a smaller radius."
-    };
-    write!(f, "{summary} There is none near {places}{rest}.")
-}
-
-/// Says why it is not proven that every component has been found.
-fn unproven(f: &mut fmt::Formatter<'_>, doubt: &Doubt, length: f64) -> fmt::Result {
-    match *doubt {
-        Doubt::NoBounds => f.write_str(
-            "A small component may be missing. The function has no bounds by which a proof could find it, and the survey's grid may \
-             pass it over.",
-        ),
-        Doubt::Creases => f.write_str(
-            "A small component may be missing. The creases of the surface were searched, not proven to be all.",
-        ),
-        Doubt::Unfinished => {
-            f.write_str("A component may be missing, because the run was stopped during the search.")
-        }
-        Doubt::Unresolved { position, gap, least } => write!(
-            f,
-            "Two sheets are too close for single precision: move them apart. Near {} they are {} apart; sheets closer than about {} \
-             may be sampled as one in this box, so that components and Euler number may be wrong. A smaller radius does not \
-             help. One factor of f at a time does.",
-            place_text(position, length),
-            about_length(gap),
-            about_length(least)
-        ),
-        Doubt::Cells { count, position, size } => write!(
-            f,
-            "A small component may be missing: a smaller box may show it. The search for components left {} of the box open, the \
-             first near {} and {} wide: f is singular there, or too hard to bound.",
-            counted(count as usize, "cell", "cells"),
-            place_text(position, size.min(length)),
-            about_length(size)
-        ),
-        Doubt::Witnesses { count, position } => write!(
-            f,
-            "A component may be missing: a smaller radius may decide it. Of {} it is not proven that a particle lies on the same \
-             component, first near {}; another part of the surface may be too near.",
-            counted(count as usize, "point of the surface", "points of the surface"),
-            place_text(position, length)
-        ),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -755,6 +760,7 @@ mod tests {
             Warning::Beyond { bounds: Bounds::cube(1.0 / 3.0) },
             Warning::SampledAs { equation: "x = 0".to_owned() },
             Warning::FlushFaces { faces: vec!["z - 1 = 0".to_owned()] },
+            Warning::Unused { names: vec!["c_rgb".to_owned(), "r".to_owned()] },
             Warning::Gradient { position, length },
             Warning::Count { count: 8_406, wanted: 8_000 },
             Warning::Unpaired { axis: 0, repeats: true },
@@ -763,6 +769,7 @@ mod tests {
             Warning::Children { not_converged: 12_345, undefined: 123, is_closed: true },
             Warning::CloseSheets { count: 12_345 },
             Warning::Meets { crossings: 12, touches: 34, position, length },
+            Warning::Rims { curves: 12, position, length },
             Warning::Crosses { curves: 12, position, length },
             Warning::Moved,
             Warning::EndedEarly { seeds: 123 },
@@ -770,6 +777,7 @@ mod tests {
             without(true),
             without(false),
             Warning::Open { edges: 12, points: 34, position, length },
+            Warning::Jumps { position, length },
             Warning::MeshDiffers { components: [1, 2], euler: [2, 4] },
             Warning::MeshHoles { count: 12 },
             Warning::MeshLeavesOut { count: 12 },

@@ -273,8 +273,11 @@ impl Sampler {
     /// The places of the surface where f has no gradient, as far as they are known.
     pub(crate) fn singular_places(&self) -> Vec<SingularPlace> {
         let mut places = singular::places(self.components.singular());
-        let passed =
-            self.creases.passed.map(|position| SingularPlace { position, kind: SingularKind::Crossing });
+        let passed = self.creases.passed.map(|position| SingularPlace {
+            position,
+            kind: SingularKind::Crossing,
+            points: Vec::new(),
+        });
         places.extend(passed.filter(|passed| places.iter().all(|place| place.kind != passed.kind)));
         places
     }

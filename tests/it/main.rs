@@ -41,6 +41,7 @@ mod golden;
 mod graded;
 mod grip;
 mod holes;
+mod jumps;
 mod limits;
 mod mesh;
 mod mesh_export;
@@ -86,3 +87,4 @@ mod thickness;
 #[cfg(feature = "cli")]
 mod threads;
 mod tips;
+mod wrapped;

@@ -9,7 +9,7 @@ class FormulaError(ValueError):
     Attributes:
         formula: The text that was given.
         span: Begin and end of the part that is meant, as indices of ``formula``. They are equal
-            where something is missing.
+            where something is missing. None if a parameter is wrong that the formula does not hold.
         suggestion: Text to put in place of the span, if there is a good guess.
         choices: Texts for the span, if the formula has several readings.
     """
@@ -18,11 +18,13 @@ class FormulaError(ValueError):
         super().__init__(message, formula, span, suggestion, choices)
         self.message = message
         self.formula = formula
-        self.span = tuple(span)
+        self.span = None if span is None else tuple(span)
         self.suggestion = suggestion
         self.choices = list(choices)
 
     def __str__(self):
+        if self.span is None:
+            return self.message
         start, end = self.span
         # The line in which the span begins.
         begin = self.formula.rfind("\n", 0, start) + 1

@@ -200,14 +200,21 @@ impl Field for Combination {
         Box::new(CombinationEvaluator::new(self, frame))
     }
 
-    /// The periods that all parts have.
+    /// The periods that all parts have, and what any part leaves unused.
     fn facts(&self) -> Facts {
         let mut periods = self.parts.iter().map(|part| part.facts().periods);
         let first = periods.next().unwrap_or_default();
         let common = periods.fold(first, |common, own| {
             core::array::from_fn(|axis| common[axis].filter(|_| common[axis] == own[axis]))
         });
-        Facts { periods: common, ..Facts::default() }
+        let mut unused: Vec<String> = Vec::new();
+        for name in self.parts.iter().flat_map(|part| part.facts().unused) {
+            // The parts of one formula have the same definitions.
+            if !unused.contains(&name) {
+                unused.push(name);
+            }
+        }
+        Facts { periods: common, unused, ..Facts::default() }
     }
 
     fn calls(&self) -> Option<u64> {

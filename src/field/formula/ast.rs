@@ -98,6 +98,14 @@ impl Expr {
         found
     }
 
+    /// Marks the definitions whose names stand in this expression.
+    fn mark_used(&self, is_used: &mut [bool]) {
+        if let ExprKind::Defined(Reference { index, .. }, _) = &self.kind {
+            is_used[*index] = true;
+        }
+        self.each(&mut |part| part.mark_used(is_used));
+    }
+
     /// The first condition in this expression that stands in the place of a number; one that stands
     /// for the whole expression if that `is` no condition.
     pub(crate) fn misplaced_condition(&self, is_condition: bool) -> Option<&Self> {
@@ -151,6 +159,25 @@ pub(crate) struct Definition {
 }
 
 impl Equation {
+    /// The names of the definitions that the surface does not depend on, each once.
+    pub(crate) fn unused(&self) -> Vec<String> {
+        let mut is_used = vec![false; self.definitions.len()];
+        let surface = [&self.left].into_iter().chain(&self.right).chain(&self.region);
+        surface.for_each(|part| part.mark_used(&mut is_used));
+        for (k, definition) in self.definitions.iter().enumerate().rev() {
+            if is_used[k] {
+                definition.body.mark_used(&mut is_used);
+            }
+        }
+        let mut names: Vec<String> = Vec::new();
+        for (definition, is_used) in self.definitions.iter().zip(is_used) {
+            if !is_used && !names.contains(&definition.name) {
+                names.push(definition.name.clone());
+            }
+        }
+        names
+    }
+
     /// Whether the equation has the form of a definition, a name and what varies, or what has the
     /// same name: without brackets around the name it would be taken for one.
     pub(crate) fn looks_like_definition(&self) -> bool {

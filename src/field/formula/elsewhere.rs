@@ -121,19 +121,51 @@ const UNKNOWN: &[&str] = &[
     "arg", "sigmoid", "softplus", "relu", "any", "all",
 ];
 
-/// Functions that make grids and pictures.
+/// Functions that make grids and pictures, in small letters.
 const PROGRAM: &[&str] = &[
     "meshgrid",
     "ndgrid",
     "linspace",
     "mgrid",
-    "isosurface",
-    "fimplicit3",
+    "contour3d",
+    "contourplot",
     "contourplot3d",
+    "densityplot3d",
+    "ezplot3",
+    "ezsurf",
+    "fimplicit",
+    "fimplicit3",
+    "fsurf",
+    "implicit_plot",
+    "implicit_plot3d",
+    "implicitplot",
     "implicitplot3d",
+    "implicitregion",
+    "isosurface",
+    "marching_cubes",
+    "parametric_plot3d",
+    "parametricplot3d",
     "plot",
+    "plot3d",
+    "plot_implicit",
     "print",
+    "regionplot",
+    "regionplot3d",
+    "revolutionplot3d",
+    "slicecontourplot3d",
+    "sphericalplot3d",
+    "splot",
 ];
+
+/// Whether `name` is that of a function that makes grids or pictures.
+pub(super) fn is_program(name: &str) -> bool {
+    PROGRAM.contains(&name.to_ascii_lowercase().as_str())
+}
+
+/// The error for what is written in a function that makes grids or pictures.
+pub(super) fn formula_alone(name: &str, span: core::ops::Range<usize>) -> FormulaError {
+    FormulaError::new(ErrorKind::UnknownFunction, span, format!("Type the formula alone, without `{name}`"))
+}
 
 fn is_of_vectors(name: &str) -> bool {
     is_vector(name)
@@ -160,7 +192,8 @@ pub(super) fn is_elsewhere(name: &str) -> bool {
         || call_elsewhere(name).is_some()
         || is_of_vectors(name)
         || matches!(name, "log" | "lg")
-        || [UNKNOWN, PROGRAM].iter().any(|list| list.contains(&lower.as_str()))
+        || is_program(name)
+        || UNKNOWN.contains(&lower.as_str())
 }
 
 /// The error for a name that means several logarithms, at this place; none for another name.
@@ -190,8 +223,8 @@ pub(super) fn call_error(text: &str, tokens: &[Spanned], at: usize) -> Option<Fo
     if is_of_vectors(name) {
         return Some(error(NO_VECTORS.into()));
     }
-    if PROGRAM.contains(&lower.as_str()) {
-        return Some(error(format!("Type the formula alone, without `{name}`")));
+    if is_program(name) {
+        return Some(formula_alone(name, span.clone()));
     }
     if UNKNOWN.contains(&lower.as_str()) {
         return Some(error(format!(

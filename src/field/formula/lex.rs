@@ -143,6 +143,11 @@ impl Lexer<'_> {
                 self.skip_line();
                 return Ok(());
             }
+            ('%', _) if self.constant_of_maxima(start).is_some() => {
+                let name = self.constant_of_maxima(start).unwrap_or_default();
+                self.next += name.len();
+                Token::Name(name)
+            }
             ('%', _) if self.begins_line(start) => {
                 self.skip_line();
                 return Ok(());
@@ -250,6 +255,23 @@ impl Lexer<'_> {
         })
     }
 
+    /// The constant of Maxima, such as `%pi`, whose sign is character `start`. After an operand the
+    /// sign is that of a remainder; at the beginning of a line it begins a comment, unless an
+    /// operator follows the name.
+    fn constant_of_maxima(&self, start: usize) -> Option<String> {
+        let length = self.characters[start + 1..].iter().take_while(|(_, c)| continues_name(*c)).count();
+        let name = self.written(start + 1, start + 1 + length);
+        let is_operand = match self.tokens.last().map(|last| &last.token) {
+            Some(Token::Number(_) | Token::Name(_) | Token::Close(_) | Token::Superscript(_)) => true,
+            Some(Token::Bar(bar)) => *bar != Bar::Opening,
+            _ => false,
+        };
+        let next = self.get(self.after_spaces(start + 1 + length));
+        let is_comment = self.begins_line(start) && !next.is_some_and(|c| "+-*/^".contains(c));
+        let is_constant = matches!(name.as_str(), "pi" | "e" | "phi" | "i");
+        (is_constant && !is_comment && (!is_operand || self.begins_line(start))).then_some(name)
+    }
+
     /// Skips the comment that `//` at character `start` begins. What might be the divisor of a
     /// whole division, as in Python, is an error.
     fn remark(&mut self, start: usize) -> Result<(), FormulaError> {
@@ -355,8 +377,31 @@ impl Lexer<'_> {
         index
     }
 
+    /// The token of a named letter of Mathematica, `\[Pi]`, whose backslash is character `start`.
+    fn named_letter(&mut self, start: usize) -> Option<Token> {
+        let rest = self.written(start, self.characters.len().min(start + 24));
+        let (name, _) = rest.strip_prefix("\\[")?.split_once(']')?;
+        let token = match name {
+            "Pi" | "Phi" | "Tau" => Token::Name(name.to_ascii_lowercase()),
+            "Equal" => Token::Equals,
+            _ => {
+                let command = match name.strip_prefix("Capital") {
+                    Some(capital) => capital.to_owned(),
+                    None => name.to_ascii_lowercase(),
+                };
+                Token::Name(latex::greek(&command)?.into())
+            }
+        };
+        self.next = start + name.chars().count() + 3;
+        Some(token)
+    }
+
     /// Appends the tokens of the LaTeX command whose backslash is character `start`.
     fn command(&mut self, start: usize) -> Result<(), FormulaError> {
+        if let Some(token) = self.named_letter(start) {
+            self.tokens.push(Spanned { token, span: self.span(start, self.next) });
+            return Ok(());
+        }
         while self.get(self.next).is_some_and(|c| c.is_ascii_alphabetic()) {
             self.next += 1;
         }

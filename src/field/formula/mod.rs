@@ -28,9 +28,11 @@
 //! `\sqrt[3]{x}`, `\left|x\right|`, `\sin\theta`), and what programs write: `x.^2`, `np.sin(x)`,
 //! `Sin[x]`, `pow(x, 2.0f)`, `length(vec3(x, y, z))`, `lambda x, y, z: …`.
 //!
-//! An unknown name becomes an *automatic* parameter, unless it looks like a misspelling, or like
-//! functions written as one with their arguments: `xsinx`. A text with several readings is an error
-//! that offers each of them.
+//! An unknown name becomes an *automatic* parameter, unless it looks like a misspelling, like
+//! functions written as one with their arguments, `xsinx`, or like the imaginary unit `i`. A text
+//! with several readings is an error that offers each of them. A call of another program that draws
+//! a formula, and an equation in polar, cylindrical or spherical coordinates, are errors that
+//! suggest the formula of x, y and z.
 //!
 //! # Evaluation
 //!
@@ -66,6 +68,7 @@ mod operations;
 mod parse;
 mod patches;
 mod periods;
+mod polar;
 mod porosity;
 mod powers;
 mod products;
@@ -82,6 +85,7 @@ mod steps;
 mod tests;
 mod thickness;
 mod token;
+mod wrapped;
 
 pub use ast::{FUNCTIONS, FunctionInfo};
 pub use builder::Expr;
@@ -251,8 +255,9 @@ impl Formula {
     pub fn as_written(text: &str, declared: &[Parameter]) -> Result<Self, FormulaError> {
         check_declared(declared)?;
         let known: Vec<&str> = declared.iter().map(|parameter| &*parameter.name).collect();
-        let (parsed, automatic) =
-            syntax(text, &known).map_err(|error| repair::throughout(text, &known, error))?;
+        let (parsed, automatic) = syntax(text, &known).map_err(|error| {
+            wrapped::error(text, &known).unwrap_or_else(|| repair::throughout(text, &known, error))
+        })?;
         let used = |parameter: &&Parameter| parsed.names.iter().any(|(name, _)| *name == parameter.name);
         let mut parameters: Vec<Parameter> = declared.iter().filter(used).cloned().collect();
         let unused = declared.iter().filter(|p| !used(p)).map(|p| p.name.to_string()).collect();
@@ -564,7 +569,10 @@ impl Formula {
 fn syntax(text: &str, declared: &[&str]) -> Result<(statements::Parsed, Vec<String>), FormulaError> {
     let parsed = statements::parse(text, declared)?;
     let automatic = automatic_names(text, &parsed, declared)?;
-    Ok((parsed, automatic))
+    match polar::error(text, &parsed, declared) {
+        Some(error) => Err(error),
+        None => Ok((parsed, automatic)),
+    }
 }
 
 /// The number that a text without names stands for, in the language of formulas: `2*pi`, `1e-3`,
@@ -665,6 +673,7 @@ impl Field for Formula {
             }),
             sampled_as: self.simplified.as_deref().map(display::plain_equation),
             flush_faces: self.flush.to_vec(),
+            unused: self.written.equation.unused(),
             why_constant: first.map(|first| spelling::no_coordinate(&first.name)),
         }
     }

@@ -3,7 +3,7 @@
 
 use super::MAX_DEPTH;
 use super::ast::{COORDINATES, Constant, Expr, ExprKind, FUNCTIONS, Reference};
-use super::elsewhere::{self, NO_VECTORS, call_error, called};
+use super::elsewhere::{self, NO_VECTORS, call_error, called, formula_alone, is_program};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::parse::{Parse, Parser, wrong_arity};
 use super::spelling::{readings, similar};
@@ -52,6 +52,10 @@ impl Parser<'_> {
             {
                 return Err(FormulaError::new(ErrorKind::UnexpectedSymbol, span, NO_VECTORS));
             }
+        }
+        let is_applied = self.begins_factor() || matches!(self.peek().token, Token::Number(_));
+        if !is_declared && is_program(&name) && is_applied {
+            return Err(formula_alone(&name, span));
         }
         if name == "E" && !is_declared && self.peek().token == Token::Caret {
             let message = "Euler's number is written `e`. Or add a slider `E`";

@@ -555,6 +555,21 @@ impl<'a> Parser<'a> {
         Err(self.unclosed(span, closing(open)))
     }
 
+    /// The token that closes the bracket around the next token, if there is no comma before it.
+    fn late_closing(&self) -> Option<&Spanned> {
+        let mut depth = 0_usize;
+        for later in &self.tokens[self.next..] {
+            match later.token {
+                Token::Close(_) if depth == 0 => return Some(later),
+                Token::Comma if depth == 0 => return None,
+                Token::Open(_) => depth += 1,
+                Token::Close(_) => depth -= 1,
+                _ => {}
+            }
+        }
+        None
+    }
+
     /// Error where the bracket at `open` should be closed by `closing`.
     pub(super) fn unclosed(&self, open: &Range<usize>, closing: char) -> FormulaError {
         let place = slice(self.text, &(0..open.start)).chars().count() + 1;
@@ -573,7 +588,7 @@ impl<'a> Parser<'a> {
                 let before = self.next.checked_sub(1).map_or(0, |last| self.tokens[last].span.end);
                 // Editors close a bracket as soon as it is opened: that one stands too far to the
                 // right.
-                let late = self.tokens[self.next..].iter().find(|later| later.token == Token::Close(closing));
+                let late = self.late_closing();
                 let (span, inside) = match late {
                     Some(late) => (before..late.span.end, slice(self.text, &(before..late.span.start))),
                     None => (before..before, ""),

@@ -25,6 +25,11 @@ pub(super) fn unlikely_parameter(
     if let Some(error) = elsewhere::logarithm(name, span.clone()) {
         return Some(error.unknown(name));
     }
+    if is_imaginary(text, name, span) {
+        let message =
+            format!("Complex numbers are not read. If `{name}` is a parameter, add a slider `{name}`");
+        return Some(error(message));
+    }
     let mut readings = readings(name, all, false);
     if !readings.is_empty() {
         // An exponent may belong to the last operand: `sinx^2`.
@@ -75,17 +80,18 @@ pub(super) fn unlikely_parameter(
     Some(error(message).suggest(meant))
 }
 
-/// Says that a name is a parameter, in a formula without coordinates. Names of polar coordinates
-/// are told what to write for them.
+/// Whether a name is that of the imaginary unit: `i`, in Mathematica `I`, in Python `2j`.
+fn is_imaginary(text: &str, name: &str, span: &Range<usize>) -> bool {
+    match name {
+        "i" | "I" => true,
+        "j" | "J" => text[..span.start.min(text.len())].ends_with(|c: char| c.is_ascii_digit() || c == '.'),
+        _ => false,
+    }
+}
+
+/// Says that a name is a parameter, in a formula without coordinates.
 pub(super) fn no_coordinate(name: &str) -> String {
-    let instead = match name {
-        "r" | "R" | "rho" | "ρ" | "radius" => {
-            "the distance from the origin is `hypot(x, y, z)`, that from the z axis `hypot(x, y)`"
-        }
-        "theta" | "θ" => "the angle around the z axis is `atan2(y, x)`",
-        _ => "a surface is a formula of x, y and z",
-    };
-    format!("`{name}` is a parameter here, not a coordinate: {instead}.")
+    format!("`{name}` is a parameter here, not a coordinate: a surface is a formula of x, y and z.")
 }
 
 /// The exponent with which a text begins, such as `^2`, `**2` or `²`; empty if it begins with none.

@@ -81,14 +81,15 @@ fn is_at(tokens: &[Spanned], at: usize, token: &Token) -> bool {
 }
 
 /// The names between token `at` and the token `end`, with commas between them and perhaps types
-/// before them, and the token after `end`.
+/// before them, and the token after `end`. Mathematica writes `f[x_]`.
 fn names(tokens: &[Spanned], mut at: usize, end: &Token) -> Option<(Vec<String>, usize)> {
     let mut names = Vec::new();
     loop {
         if word(tokens, at).is_some_and(|word| KEYWORDS.contains(&word)) && word(tokens, at + 1).is_some() {
             at += 1;
         }
-        names.push(word(tokens, at)?.to_owned());
+        let name = word(tokens, at)?;
+        names.push(if *end == Token::Close(']') { name.strip_suffix('_')? } else { name }.to_owned());
         at += 1;
         if is_at(tokens, at, end) {
             return Some((names, at + 1));
@@ -124,8 +125,10 @@ fn head(tokens: &[Spanned], at: usize) -> Option<Head> {
     word(tokens, name)?;
     let has_keyword = name > at;
     let (mut arguments, mut next) = (Vec::new(), name + 1);
-    if is_at(tokens, next, &Token::Open('(')) {
-        (arguments, next) = names(tokens, next + 1, &Token::Close(')'))?;
+    for (open, close) in [('(', ')'), ('[', ']')] {
+        if is_at(tokens, name + 1, &Token::Open(open)) {
+            (arguments, next) = names(tokens, next + 1, &Token::Close(close))?;
+        }
     }
     let is_python = has_keyword && !arguments.is_empty() && is_at(tokens, next, &Token::Colon);
     if !is_python && !is_at(tokens, next, &Token::Equals) {

@@ -20,6 +20,7 @@ use crate::math::{Bounds, Forest, Interval, ROUNDING, Sym3, sort_few};
 use crate::particles::{Particles, Slots};
 use crate::sampler::probe::BATCH;
 use crate::spatial::tree::Tree;
+use core::f64::consts::TAU;
 use glam::{DMat3, DVec3, Vec3};
 
 /// Number of sizes of a box around a singular point that are tried: the longest side of the whole
@@ -67,6 +68,13 @@ pub(crate) const SAME: f64 = 1e-6;
 /// Distance from a point of the survey within which a singular point is searched, in spacings of
 /// its grid: the diagonal of a cell.
 const NEAR: f64 = 1.75;
+/// Points of a curve around which the signs of f are looked at.
+const LOOKED_AT: usize = 8;
+/// Radius of the circles on which they are, as a share of the search distance. Smaller: the two
+/// sides of a cusp are too near to each other to be seen; larger: other sheets are met.
+const ROUND: f64 = 0.25;
+/// Points on such a circle. Sheets that cross at less than 0.4° are not seen to.
+const AROUND: usize = 1024;
 /// Extent of linked points that are no curve, as a share of the search distance: at a point where
 /// sheets touch, Newton's method ends within a hundredth of it.
 const ONE_PLACE: f64 = 0.25;
@@ -110,14 +118,86 @@ pub(crate) enum SingularKind {
     Curve,
     /// A curve along which the surface crosses itself.
     Crossing,
+    /// A curve along which the surface ends in a cusp.
+    Rim,
 }
 
 /// A place where the gradient vanishes on the surface.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct SingularPlace {
     /// A point of the place.
     pub(crate) position: DVec3,
     pub(crate) kind: SingularKind,
+    /// The points that are known of a curve, or the one at which sheets touch.
+    pub(crate) points: Vec<Singular>,
+}
+
+impl SingularPlace {
+    /// The kind of the place by the signs of f around its points. Around a crossing, and across
+    /// sheets that touch, there are four changes or more, around a cusp two, the one close after
+    /// the other. Second derivatives do not tell these apart: beside a cusp they differ from 0, and
+    /// Newton's method ends beside it.
+    pub(crate) fn kind_by_signs(&self, field: &mut dyn Evaluator) -> SingularKind {
+        match self.kind {
+            SingularKind::Touch => self.kind_of_touch(field),
+            SingularKind::Curve | SingularKind::Crossing if !self.points.is_empty() => {
+                self.kind_of_curve(field)
+            }
+            kind => kind,
+        }
+    }
+
+    fn kind_of_curve(&self, field: &mut dyn Evaluator) -> SingularKind {
+        let (mut crosses, mut ends) = (false, false);
+        for point in self.points.iter().step_by(self.points.len().div_ceil(LOOKED_AT)) {
+            let radius = ROUND * point.reach;
+            // Of points that are nearer, the direction is that of rounding.
+            let away = |other: &&Singular| other.position.distance_squared(point.position);
+            let others = self.points.iter().filter(|other| away(other) > radius * radius);
+            let nearest = others.min_by(|a, b| away(a).total_cmp(&away(b)));
+            let Some(along) = nearest.and_then(|other| (other.position - point.position).try_normalize())
+            else {
+                continue;
+            };
+            let changes = sign_changes_around(field, point.position, along, radius);
+            crosses |= changes.len() > 2;
+            ends |= matches!(changes[..], [a, b] if (b - a).min(AROUND - (b - a)) < AROUND / 4);
+        }
+        match (crosses, ends) {
+            (true, _) => SingularKind::Crossing,
+            (false, true) => SingularKind::Rim,
+            (false, false) => SingularKind::Curve,
+        }
+    }
+
+    fn kind_of_touch(&self, field: &mut dyn Evaluator) -> SingularKind {
+        let touches = self.points.iter().any(|point| {
+            let hessian = matrix(&field.jet(point.position).hessian);
+            let columns = [hessian.x_axis, hessian.y_axis, hessian.z_axis];
+            let longest =
+                columns.into_iter().max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+            let Some(normal) = longest.and_then(DVec3::try_normalize) else { return true };
+            // Circles in planes across the sheets.
+            let (u, v) = normal.any_orthonormal_pair();
+            let radius = ROUND * point.reach;
+            [u, v, u + v, u - v]
+                .into_iter()
+                .any(|along| sign_changes_around(field, point.position, along.normalize(), radius).len() > 2)
+        });
+        if touches { SingularKind::Touch } else { SingularKind::Point }
+    }
+}
+
+/// The places on a circle around a curve, of [`AROUND`], after which f changes its sign.
+fn sign_changes_around(field: &mut dyn Evaluator, at: DVec3, along: DVec3, radius: f64) -> Vec<usize> {
+    let (u, v) = along.any_orthonormal_pair();
+    let signs: Vec<bool> = (0..AROUND)
+        .map(|k| {
+            let turn = TAU * k as f64 / AROUND as f64;
+            field.value_and_gradient(at + radius * (libm::cos(turn) * u + libm::sin(turn) * v)).0 < 0.0
+        })
+        .collect();
+    (0..AROUND).filter(|&k| signs[k] != signs[(k + 1) % AROUND]).collect()
 }
 
 /// Singular points and sharp bends near the points of a survey.
@@ -297,7 +377,9 @@ pub(crate) fn places(points: &[Singular]) -> Vec<SingularPlace> {
             false if point.is_flat => SingularKind::Touch,
             false => SingularKind::Point,
         };
-        places.push(SingularPlace { position: point.position, kind });
+        let points =
+            if kind == SingularKind::Point { Vec::new() } else { group.into_iter().copied().collect() };
+        places.push(SingularPlace { position: point.position, kind, points });
     }
     places
 }

@@ -1,0 +1,126 @@
+//! Whether a surface ends where f jumps.
+//!
+//! A surface without a border ends nowhere but where f does: where it has no value, or where it
+//! jumps. Beside such an end f is 0 on one side and not on the other, so that its sign changes
+//! across the jump, and no halving of the way across makes the change smaller.
+
+use super::Run;
+use crate::field::{Enclosure, Evaluator, Field};
+use crate::math::Bounds;
+use glam::DVec3;
+
+/// Number of halvings of a way across a jump: as many as double precision tells apart.
+const HALVINGS: u32 = 52;
+/// Least change of f at the end of the halvings, as a share of that at their beginning, where f
+/// jumps. A continuous power of exponent 1/20 has 0.16 left.
+const LEFT: f64 = 0.25;
+/// Points along each side of the cube around a place, between which f is compared.
+const SIDE: usize = 3;
+
+/// Places where the triangles end at which it is looked for a jump of f. More of them take longer,
+/// by some thousand values of f each.
+const LOOKED_AT: usize = 32;
+
+/// Places where the triangles of the particles end.
+#[derive(Default)]
+pub(super) struct Ends {
+    /// The first one at which f jumps.
+    pub(super) at_jump: Option<DVec3>,
+    /// The first one at which it does not.
+    pub(super) others: Option<DVec3>,
+}
+
+impl<F: Field> Run<F> {
+    /// Where the triangles of the particles end, from a selection of the places.
+    pub(super) fn ends(&self) -> Ends {
+        let mut ends = Ends::default();
+        let Some(opening) = &self.measuring.measured.opening else { return ends };
+        let (field, reach) = (&mut *self.evaluator(), 2.0 * self.sampler.radius());
+        let step = opening.places.len().div_ceil(LOOKED_AT);
+        for place in opening.places.iter().step_by(step).map(|place| place.as_dvec3()) {
+            let kind = if jumps_near(field, place, reach) { &mut ends.at_jump } else { &mut ends.others };
+            kind.get_or_insert(place);
+        }
+        ends
+    }
+}
+
+/// Whether f jumps from one sign to the other within about `reach` of a place.
+pub(super) fn jumps_near(field: &mut dyn Evaluator, place: DVec3, reach: f64) -> bool {
+    let node = |k: usize| {
+        let [x, y, z] = [k % SIDE, k / SIDE % SIDE, k / (SIDE * SIDE)].map(|step| step as f64 - 1.0);
+        place + reach * DVec3::new(x, y, z)
+    };
+    let ends: [(DVec3, f64); SIDE * SIDE * SIDE] = core::array::from_fn(|k| {
+        let p = node(k);
+        (p, field.value_and_gradient(p).0)
+    });
+    (0..ends.len()).any(|k| {
+        [1, SIDE, SIDE * SIDE].into_iter().any(|step| {
+            let is_last = k / step % SIDE == SIDE - 1;
+            !is_last && is_jump(field, ends[k], ends[k + step])
+        })
+    })
+}
+
+/// Whether f is not known to be continuous within `reach` of a place, by its bounds.
+pub(super) fn breaks_in(field: &mut dyn Evaluator, place: DVec3, reach: f64) -> bool {
+    let Some(field) = field.bounded() else { return false };
+    let around = Bounds::new(place - reach, place + reach);
+    (0..field.factors()).any(|factor| {
+        let mut known = [Enclosure::UNKNOWN];
+        field.enclose(factor, &[around], &mut known);
+        known[0].may_vanish && !known[0].continuous
+    })
+}
+
+/// Whether f jumps from one sign to the other between two places, which are given with its values.
+fn is_jump(field: &mut dyn Evaluator, mut a: (DVec3, f64), mut b: (DVec3, f64)) -> bool {
+    let is_negative = |(_, value): (DVec3, f64)| value < 0.0;
+    let change = |a: (DVec3, f64), b: (DVec3, f64)| (a.1 - b.1).abs();
+    let whole = change(a, b);
+    if is_negative(a) == is_negative(b) || !whole.is_finite() {
+        return false;
+    }
+    for _ in 0..HALVINGS {
+        let p = 0.5 * (a.0 + b.0);
+        let middle = (p, field.value_and_gradient(p).0);
+        if is_negative(middle) == is_negative(a) {
+            a = middle;
+        } else {
+            b = middle;
+        }
+    }
+    // False for NaN, which f is where it has no value.
+    change(a, b) >= LEFT * whole
+}
+
+#[cfg(test)]
+mod tests {
+    use super::jumps_near;
+    use crate::field::formula::Formula;
+    use crate::field::{Field, Frame};
+    use glam::DVec3;
+
+    #[test]
+    fn a_jump_is_told_from_a_zero_however_steep() {
+        for (formula, jumps) in [
+            ("if(x < 0.01, z, z - 1)", true),
+            ("z - floor(x)", true),
+            ("z - 0.2 + sign(x + 0.03)", true),
+            ("z - 1e-6 sign(x)", true),
+            ("x + z", false),
+            ("tanh(1000000 x) + z", false),
+            ("cbrt(x) + z", false),
+            ("sign(x) abs(x)^(1/9)", false),
+            ("abs(x)^3 sign(x) + z", false),
+            ("sqrt(x - 0.01) + z", false),
+            ("max(x, z) - 0.01", false),
+            ("x^2 + y^2 + z^2 + 1", false),
+        ] {
+            let field = Formula::parse(formula).expect("a formula");
+            let mut evaluator = field.evaluator(Frame::default());
+            assert_eq!(jumps_near(&mut *evaluator, DVec3::ZERO, 0.1), jumps, "{formula}");
+        }
+    }
+}
