@@ -83,8 +83,8 @@ impl Fit {
         self.info.beyond_share = share;
         let percent = significant((100.0 * share).max(0.1));
         self.info.warnings.push(format!(
-            "The surface would go on beyond its points, with {percent} % of its area: it ends at their border. \
-             Choose to keep what lies beyond the points if it is wanted, to close a solid for example."
+            "The fitted surface goes on beyond its points, with {percent} % of its area: by itself it ends at their \
+             border, unless you choose to keep what lies beyond."
         ));
         let mut data = RbfData::clone(&self.data);
         data.border = Some(border);

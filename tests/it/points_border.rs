@@ -131,7 +131,7 @@ fn a_surface_through_points_ends_where_they_end() {
         let fit = fit(&points, k < 3);
         let name = open.name;
         assert!(fit.info.beyond_share > 0.0, "{name}: {:?}", fit.info);
-        let told = |text: &String| text.contains("beyond its points");
+        let told = |text: &String| text.contains("goes on beyond its points");
         assert!(fit.info.warnings.iter().any(told), "{name}: {:?}", fit.info.warnings);
 
         let cut = sampled(&fit, fit.field());
