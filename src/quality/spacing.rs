@@ -8,9 +8,9 @@ use crate::math::{key, unkey};
 use crate::slices::{MEDIUM, pause, ranges};
 use serde::Serialize;
 
-/// Histogram of the nearest-neighbour distances over the ideal ones: the ideal spacing, or twice the
-/// particle's wanted radius where one is given. Bins are equal, and values outside fall into the
-/// outermost.
+/// Histogram of the nearest-neighbour distances over the ideal ones: the ideal spacing, or twice
+/// the particle's wanted radius where one is given. Bins are equal, and values outside fall into
+/// the outermost.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Histogram {

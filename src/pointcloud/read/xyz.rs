@@ -60,7 +60,7 @@ pub(super) fn begins_with(line: &[u8]) -> bool {
 fn with_point(word: &[u8]) -> Cow<'_, [u8]> {
     let is_comma = |byte: &u8| *byte == b',';
     let has_digits = word.split(is_comma).all(|part| part.iter().any(u8::is_ascii_digit));
-    if word.iter().filter(|byte| is_comma(byte)).count() != 1 || !has_digits {
+    if word.contains(&b'.') || word.iter().filter(|byte| is_comma(byte)).count() != 1 || !has_digits {
         return Cow::Borrowed(word);
     }
     let points = word.iter().map(|&byte| if byte == b',' { b'.' } else { byte });

@@ -391,9 +391,9 @@ export type Grip = {
   idle: Array<string>,
 };
 
-/** Histogram of the nearest-neighbour distances over the ideal ones: the ideal spacing, or twice the
-* particle's wanted radius where one is given. Bins are equal, and values outside fall into the
-* outermost. */
+/** Histogram of the nearest-neighbour distances over the ideal ones: the ideal spacing, or twice
+* the particle's wanted radius where one is given. Bins are equal, and values outside fall into
+* the outermost. */
 export type Histogram = {
   /** Lower end of the first bin. */
   min: number,
