@@ -119,9 +119,9 @@ pub struct Spacing {
     pub rho: f64,
     /// First percentile of the nearest-neighbour distance.
     pub nearest_percentile_1: f64,
-    /// Pairs of points nearer than 0.75: over `ideal_spacing`, as `nn_min`, or of natural neighbours
-    /// over the sum of their wanted radii, as `overlap_min`, where those are known. A duplicate is a
-    /// pair with the point that it equals. None where there are no distances.
+    /// Pairs of points nearer than 0.75: over `ideal_spacing`, as `nn_min`, or of natural
+    /// neighbours over the sum of their wanted radii, as `overlap_min`, where those are known. A
+    /// duplicate is a pair with the point that it equals. None where there are no distances.
     pub crowded: Option<usize>,
 }
 

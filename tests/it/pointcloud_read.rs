@@ -395,7 +395,7 @@ fn errors_name_their_place_and_give_advice() {
             "the length of a list must be a whole",
         ),
         ("a.ply", ply("elements 3\n", ""), "line 3: `elements` begins no line of a PLY header"),
-        ("a.ply", ply(xyz, "1 2 3\n4 5\n"), "line 9: this vertex has fewer numbers than the header says"),
+        ("a.ply", ply(xyz, "1 2 3000\n4 5\n"), "line 9: this vertex has fewer numbers than the header says"),
         ("a.ply", ply(xyz, "1 2 3000000\n"), "line 8: the file ends before all 2 vertex rows; it is cut off"),
         (
             "a.ply",

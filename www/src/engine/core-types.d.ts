@@ -239,9 +239,9 @@ export type Figures = {
   rho: number,
   /** First percentile of the nearest-neighbour distance. */
   nearest_percentile_1: number,
-  /** Pairs of points nearer than 0.75: over `ideal_spacing`, as `nn_min`, or of natural neighbours
-  * over the sum of their wanted radii, as `overlap_min`, where those are known. A duplicate is a
-  * pair with the point that it equals. None where there are no distances. */
+  /** Pairs of points nearer than 0.75: over `ideal_spacing`, as `nn_min`, or of natural
+  * neighbours over the sum of their wanted radii, as `overlap_min`, where those are known. A
+  * duplicate is a pair with the point that it equals. None where there are no distances. */
   crowded: number | null,
   /** Radius of the largest hole over `ideal_spacing`/√3, that of the perfect lattice: 1 is ideal. */
   cover: number,
