@@ -12,8 +12,8 @@ use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 use std::collections::BTreeMap;
 
-/// Reach, in spacings of the points. Of a thousand clouds of 20,000 random points one has a gap with
-/// a radius of 2.5 spacings. Larger: wider holes are bridged, and wider bays.
+/// Reach, in spacings of the points. Of a thousand clouds of 20,000 random points one has a gap
+/// with a radius of 2.5 spacings. Larger: wider holes are bridged, and wider bays.
 const REACH: f64 = 4.0;
 /// Neighbours by which the spacing is measured. A disc that reaches to the last of them has the
 /// area of as many squares, each one spacing wide.
