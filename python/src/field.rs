@@ -50,12 +50,13 @@ impl Field {
 
     /// The field of a surface through points, with the report on it as JSON.
     #[staticmethod]
-    #[pyo3(signature = (points, normals, centres))]
+    #[pyo3(signature = (points, normals, centres, is_cut))]
     fn points(
         py: Python<'_>,
         points: PyReadonlyArray2<'_, f64>,
         normals: Option<PyReadonlyArray2<'_, f64>>,
         centres: u32,
+        is_cut: bool,
     ) -> PyResult<(Self, String)> {
         let file = ply(points.as_slice()?, normals.as_ref().map(|normals| normals.as_slice()).transpose()?);
         py.detach(|| {
@@ -66,7 +67,8 @@ impl Field {
             }
             let fit = job.complete().map_err(raised)?;
             let report = serde_json::to_string(&fit.info).expect("a report is data");
-            Ok((Self { field: Arc::new(fit.field()), bounds: Some(fit.bounds) }, report))
+            let field = if is_cut { fit.field() } else { fit.field().untrimmed() };
+            Ok((Self { field: Arc::new(field), bounds: Some(fit.bounds) }, report))
         })
     }
 

@@ -157,6 +157,13 @@ pub trait Field: MaybeSend + MaybeSync {
     fn creased(&self) -> Option<&dyn Creased> {
         None
     }
+
+    /// The field that stands for this one in what is [put together](union) of it and others, where
+    /// that is another one: the function without what ends its surface.
+    #[doc(hidden)]
+    fn operand(&self) -> Option<Arc<dyn Field>> {
+        None
+    }
 }
 
 /// Facts about a field that no value tells.
@@ -277,6 +284,10 @@ impl<P: Deref<Target: Field> + MaybeSend + MaybeSync> Field for P {
 
     fn creased(&self) -> Option<&dyn Creased> {
         (**self).creased()
+    }
+
+    fn operand(&self) -> Option<Arc<dyn Field>> {
+        (**self).operand()
     }
 }
 

@@ -56,6 +56,10 @@ pub struct ModelInfo {
     pub farthest: [f64; 3],
     /// The mesh of the file, if it has faces.
     pub mesh: Option<GivenMesh>,
+    /// Share of the area of the fitted surface in its box that lies beyond the border of the
+    /// points; 0 where there is no border.
+    #[serde(default)]
+    pub beyond_share: f64,
     /// Origin of the normals.
     pub normals: NormalSource,
     /// Warnings for the user, as sentences: they go from the bundle that fits a model to the one

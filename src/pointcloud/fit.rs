@@ -15,10 +15,10 @@
 
 use super::solve::{Decomposition, SingularMatrix};
 use super::thin::check_spread;
-use super::{Cloud, CloudError, ModelInfo};
+use super::{Cloud, CloudError, ModelInfo, border};
 use crate::field::rbf::{CentredFrame, RbfData, RbfField};
 use crate::field::{Field, Frame};
-use crate::math::{Bounds, sort_numbers};
+use crate::math::{Bounds, significant, sort_numbers};
 use crate::slices::{self, HEAVY, LIGHT};
 use glam::{BVec3, DVec3, Vec3};
 use nalgebra::{DMatrix, DMatrixViewMut, DVector};
@@ -64,14 +64,31 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The field of the surface.
+    /// The field of the surface, which ends at the border of the points: see
+    /// [`RbfField::untrimmed`].
     ///
     /// # Panics
     ///
     /// Never: what was solved is finite.
     #[must_use]
     pub fn field(&self) -> RbfField {
-        RbfField::new(self.data.clone()).unwrap_or_else(|error| panic!("a solved system is a field: {error}"))
+        let field = RbfField::new(self.data.clone());
+        field.unwrap_or_else(|error| panic!("a solved system is a field: {error}")).trimmed()
+    }
+
+    /// Looks for the border of the points, and says how much of the surface lies beyond it.
+    pub(super) async fn trim(&mut self, points: &[DVec3], centres: &[DVec3]) {
+        let found = border::find(&self.field().untrimmed(), points, centres, &self.bounds).await;
+        let Some((border, share)) = found else { return };
+        self.info.beyond_share = share;
+        let percent = significant((100.0 * share).max(0.1));
+        self.info.warnings.push(format!(
+            "The fitted surface goes on beyond its points, with {percent} % of its area: by itself it ends at their \
+             border, unless you choose to keep what lies beyond."
+        ));
+        let mut data = RbfData::clone(&self.data);
+        data.border = Some(border);
+        self.data = Arc::new(data);
     }
 }
 

@@ -280,8 +280,13 @@ async fn of_cloud(
     status.centres.get_or_init(|| cloud.only(&chosen).position);
     // Those of a file are counted before equal ones are joined.
     let points = info.points;
+    let is_closed = info.mesh.and_then(|mesh| mesh.topology).is_some_and(|topology| topology.borders == 0);
+    let is_scan = points > 0 && !is_closed;
     let mut fit = approximate(&cloud, &chosen, &given, info, status.begin(&SOLVING)).await?;
     fit.info.points = fit.info.points.max(points);
+    if is_scan {
+        fit.trim(&cloud.position, &cloud.only(&chosen).position).await;
+    }
     status.begin(&DONE)(0.0);
     Ok(fit)
 }

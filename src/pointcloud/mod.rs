@@ -5,6 +5,7 @@
 //! system. The result is an [`RbfData`](crate::field::rbf::RbfData), which is all that the
 //! sampler's core takes: the page solves in a module and a worker of their own.
 
+mod border;
 mod eigen;
 pub mod fit;
 pub mod job;

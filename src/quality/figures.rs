@@ -7,13 +7,13 @@ use serde::Serialize;
 const NONE: f64 = f64::NAN;
 
 /// The figures of a set of particles, one number per property; NaN (null in JSON) where undefined.
-/// Lengths are over d_hex unless said otherwise. JSON has all figures side by side.
+/// Lengths are over `ideal_spacing` unless said otherwise. JSON has all figures side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Figures {
     /// Spacing of a perfect hexagonal lattice of as many points on the same area, √(2A/(√3 N)), in
     /// the field's units.
-    pub d_hex: f64,
+    pub ideal_spacing: f64,
     /// Area, as given or of the triangles found, in the field's units.
     pub area: f64,
     /// Points that differ from an earlier one by no more than rounding; dropped before the
@@ -21,7 +21,8 @@ pub struct Figures {
     pub dup: usize,
     /// Points with a non-finite coordinate; left out of everything.
     pub not_finite: usize,
-    /// Points within 4 d_hex of the border of a clipped surface, left out of the per-point figures.
+    /// Points within 4 ideal spacings of the border of a clipped surface, left out of the per-point
+    /// figures.
     pub boundary_excluded: usize,
     /// Errors of the points and of their normals.
     #[serde(flatten)]
@@ -49,7 +50,7 @@ pub struct Figures {
 impl Default for Figures {
     fn default() -> Self {
         Self {
-            d_hex: NONE,
+            ideal_spacing: NONE,
             area: NONE,
             dup: 0,
             not_finite: 0,
@@ -58,10 +59,10 @@ impl Default for Figures {
             spacing: Spacing {
                 nn_min: NONE,
                 nn_mean: NONE,
-                nn_cv: NONE,
+                spacing_variation: NONE,
                 nn_ratio: NONE,
                 rho: NONE,
-                rho_1: NONE,
+                nearest_percentile_1: NONE,
                 crowded: None,
             },
             coverage: Coverage {
@@ -111,16 +112,16 @@ pub struct Spacing {
     /// Mean nearest-neighbour distance.
     pub nn_mean: f64,
     /// Standard deviation of the nearest-neighbour distance over its mean.
-    pub nn_cv: f64,
+    pub spacing_variation: f64,
     /// Smallest over mean nearest-neighbour distance.
     pub nn_ratio: f64,
     /// Normalised Poisson-disk radius: `nn_min` under its usual name.
     pub rho: f64,
     /// First percentile of the nearest-neighbour distance.
-    pub rho_1: f64,
-    /// Pairs of points nearer than 0.75: over d_hex, as `nn_min`, or of natural neighbours over the
-    /// sum of their wanted radii, as `overlap_min`, where those are known. A duplicate is a pair
-    /// with the point that it equals. None where there are no distances.
+    pub nearest_percentile_1: f64,
+    /// Pairs of points nearer than 0.75: over `ideal_spacing`, as `nn_min`, or of natural
+    /// neighbours over the sum of their wanted radii, as `overlap_min`, where those are known. A
+    /// duplicate is a pair with the point that it equals. None where there are no distances.
     pub crowded: Option<usize>,
 }
 
@@ -128,7 +129,7 @@ pub struct Spacing {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Coverage {
-    /// Radius of the largest hole over d_hex/√3, that of the perfect lattice: 1 is ideal.
+    /// Radius of the largest hole over `ideal_spacing`/√3, that of the perfect lattice: 1 is ideal.
     pub cover: f64,
     /// Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius
     /// there, which is the mean of the wanted radii of the points around the hole. One factor
@@ -211,7 +212,7 @@ pub struct Angles {
     pub a_gt90: f64,
 }
 
-/// Returns d_hex, the spacing of a perfect hexagonal lattice of `count` points on this `area`:
+/// Returns the spacing of a perfect hexagonal lattice of `count` points on this `area`:
 /// √(2A/(√3 N)).
 pub(super) fn hexagonal_spacing(area: f64, count: usize) -> f64 {
     (2.0 * area / (SQRT_3 * count as f64)).sqrt()

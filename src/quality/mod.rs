@@ -239,7 +239,7 @@ pub(crate) async fn in_slices(
     let nearest = report.nearest.iter().enumerate().filter(|&(i, _)| is_first(i));
     report.histogram = Histogram::new(nearest.map(|(i, &distance)| (i, distance)), |i| match options.radii {
         Some(radii) => radii.get(i).map_or(f64::NAN, |&radius| 2.0 * f64::from(radius)),
-        None => figures.d_hex,
+        None => figures.ideal_spacing,
     });
     report
 }
@@ -274,28 +274,28 @@ async fn figures_of(
         return DistinctFigures { figures, ..measured };
     }
     figures.area = prepared.area;
-    figures.d_hex = hexagonal_spacing(figures.area, points.count() + duplicates);
+    figures.ideal_spacing = hexagonal_spacing(figures.area, points.count() + duplicates);
     pause().await;
-    figures.accuracy = accuracy::measure(&points.residual, &points.normal_angles, figures.d_hex);
+    figures.accuracy = accuracy::measure(&points.residual, &points.normal_angles, figures.ideal_spacing);
 
     let border = match bounds {
-        Some(bounds) => Some(Border::new(field, bounds, &points.tree, figures.d_hex).await),
+        Some(bounds) => Some(Border::new(field, bounds, &points.tree, figures.ideal_spacing).await),
         None => None,
     };
     let inner = points_away_from(border.as_ref(), points).await;
     figures.boundary_excluded = (0..n).filter(|&i| !inner[i] && points.creases.is_first(i)).count();
     pause().await;
     let once: Vec<bool> = (0..n).map(|i| inner[i] && points.creases.is_first(i)).collect();
-    figures.spacing = spacing::measure(points, &once, *duplicates, figures.d_hex);
+    figures.spacing = spacing::measure(points, &once, *duplicates, figures.ideal_spacing);
     pause().await;
     let wanted = options.radii.map(|radii| WantedRadii::new(points, radii, figures.area));
     pause().await;
     measured.pairs = measure_neighbourhoods(points, &inner, wanted.as_ref(), &mut figures).await;
-    measured.energy = energy::of_points(points, wanted.as_ref(), figures.d_hex).await;
+    measured.energy = energy::of_points(points, wanted.as_ref(), figures.ideal_spacing).await;
     measure_triangles(prepared, [&inner, &once], &mut figures, &mut measured).await;
     if !mesh.is_empty() {
         let (border, wanted) = (border.as_ref(), wanted.as_ref());
-        let lattice = (figures.d_hex / SQRT_3) as f32;
+        let lattice = (figures.ideal_spacing / SQRT_3) as f32;
         let cover = Cover {
             tree: &points.tree,
             creases: &points.creases,
@@ -376,7 +376,7 @@ async fn measure_neighbourhoods(
         let least = wanted.add_pairs(points, inner, &mut pairs).await;
         figures.edges.overlap_min = if figures.dup > 0 { 0.0 } else { least };
     } else {
-        spacing::add_pairs(points, inner, figures.d_hex, &mut pairs).await;
+        spacing::add_pairs(points, inner, figures.ideal_spacing, &mut pairs).await;
     }
     pairs
 }
@@ -456,7 +456,7 @@ async fn measure_holes(
 ) -> Vec<Hole> {
     let n = cover.tree.len() - cover.creases.further();
     let holes = holes::measure(field, cover, samples_for(n), crossings).await;
-    figures.coverage.cover = holes.widest / (figures.d_hex / SQRT_3);
+    figures.coverage.cover = holes.widest / (figures.ideal_spacing / SQRT_3);
     if cover.wanted.is_some() {
         figures.coverage.cover_local = holes.relative;
     }

@@ -22,7 +22,7 @@ const MOST: usize = 64;
 pub struct Pair {
     /// Indices of the particles, the smaller one first.
     pub particles: [u32; 2],
-    /// Distance over d_hex or, where there are wanted radii, over their sum.
+    /// Distance over the ideal spacing or, where there are wanted radii, over their sum.
     pub ratio: f64,
 }
 

@@ -8,8 +8,9 @@ use crate::math::{key, unkey};
 use crate::slices::{MEDIUM, pause, ranges};
 use serde::Serialize;
 
-/// Histogram of the nearest-neighbour distances over the ideal ones: d_hex, or twice the particle's
-/// wanted radius where one is given. Bins are equal, and values outside fall into the outermost.
+/// Histogram of the nearest-neighbour distances over the ideal ones: the ideal spacing, or twice
+/// the particle's wanted radius where one is given. Bins are equal, and values outside fall into
+/// the outermost.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Histogram {
@@ -99,9 +100,9 @@ pub(super) fn measure(points: &MeasuredPoints, inner: &[bool], duplicates: usize
         nn_min: distance(0) / d_hex,
         rho: distance(0) / d_hex,
         nn_mean: moments.mean() / d_hex,
-        nn_cv: moments.variation(),
+        spacing_variation: moments.variation(),
         nn_ratio: distance(0) / moments.mean(),
-        rho_1: (below + (above - below) * place.fract()) / d_hex,
+        nearest_percentile_1: (below + (above - below) * place.fract()) / d_hex,
         crowded: None,
     }
 }

@@ -70,6 +70,9 @@ pub enum Error {
     /// A function of the program has failed: its error.
     #[error("the function that is sampled has failed: {0}")]
     Field(FieldError),
+    /// The run was ended before its first particle: nothing is known of the surface.
+    #[error("the run was ended before its first particle was placed: let it go on, or start it again")]
+    Cancelled,
     /// No particle could be placed.
     #[error("{message}")]
     Nothing {
@@ -432,7 +435,8 @@ impl<F: Field> Run<F> {
     ///
     /// # Errors
     ///
-    /// If there is no particle, or a function of the program has failed: the error says why.
+    /// If there is no particle, or a function of the program has failed: the error says why. A run
+    /// that was ended before its first particle is [`Error::Cancelled`].
     pub fn finish(self) -> Result<Sample, Error> {
         self.finish_with(Measured::Particles)
     }
@@ -467,8 +471,10 @@ impl<F: Field> Run<F> {
             return Ok(());
         }
         let progress = self.last.clone().unwrap_or_else(|| self.sampler.progress());
-        let is_cancelled = progress.stop_reason == Some(StopReason::Cancelled);
-        if self.reach == Some(Reach::Unknown) && !is_cancelled && self.sampler.shows_nothing() {
+        let Some(reason) = progress.stop_reason.filter(|reason| *reason != StopReason::Cancelled) else {
+            return Err(Error::Cancelled);
+        };
+        if self.reach == Some(Reach::Unknown) && self.sampler.shows_nothing() {
             let defined = extent::defined_share(&mut *self.field.given.evaluator(Frame::default()));
             return Err(Error::NoBox { halves: &extent::HALVES, cells: extent::CELLS, defined });
         }
@@ -478,7 +484,7 @@ impl<F: Field> Run<F> {
         {
             message = format!("{message} {cause}");
         }
-        Err(Error::Nothing { reason: progress.stop_reason.unwrap_or(StopReason::Cancelled), message })
+        Err(Error::Nothing { reason, message })
     }
 
     /// The particles so far; of a generation level under way, the columns may hold provisional rows

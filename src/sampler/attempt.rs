@@ -398,6 +398,13 @@ impl Attempt {
         tolerance(self.radius as f32, survey.residual_limits(), survey.gradient_scale)
     }
 
+    /// Number of the front under way, from 1: of all attempts, those at a front that is refined
+    /// among them.
+    pub(super) fn number(&self) -> u32 {
+        let refined = self.refining.as_ref().map_or(0, |refining| refining.search.completed);
+        self.search.completed + refined + 1
+    }
+
     /// Notes that this attempt has covered the surface with `count` particles, or more than that if
     /// it `is_capped`. Says whether another one, with the radius as now corrected, should come
     /// nearer to the wanted count. After the last one it is the nearest one again.

@@ -1,7 +1,7 @@
 //! Messages for the user of a run that has ended.
 
 use super::{Sampler, StopReason};
-use crate::math::place_text;
+use crate::math::{place_text, significant};
 use crate::sampler::discovery::completeness::Doubt;
 use crate::sampler::discovery::survey::Absence;
 use crate::sampler::settings::SizeMode;
@@ -23,6 +23,11 @@ impl Sampler {
             StopReason::NoSurface if self.survey.absence == Absence::Proven => {
                 "f has no zero in this box (proven by interval arithmetic).".into()
             }
+            StopReason::NoSurface if self.survey.absence == Absence::Steps => format!(
+                "f takes only {} and jumps between them: give a signed function, which is negative inside, positive outside, \
+                 and changes gradually, such as the distance from the surface.",
+                values_text(&self.survey.steps)
+            ),
             StopReason::NoSurface if self.survey.absence == Absence::Bare => format!(
                 "No surface: f comes to zero, for example near {}, but only on a curve or at a point, beside which it keeps one sign. For a \
                  surface around it enter a small number on the right, such as x^2 + y^2 = 0.01.",
@@ -80,6 +85,17 @@ impl Sampler {
                     .into()
             }
         })
+    }
+}
+
+/// A few values in words.
+fn values_text(values: &[f64]) -> String {
+    let text: Vec<String> = values.iter().map(|&value| significant(value)).collect();
+    match text.as_slice() {
+        [a, b] => format!("the values {a} and {b}"),
+        [a, b, c] => format!("the values {a}, {b} and {c}"),
+        [first, .., last] => format!("{} values, from {first} to {last},", text.len()),
+        _ => "one value".to_owned(),
     }
 }
 

@@ -33,6 +33,9 @@ pub struct Progress {
     /// Rows of the columns that will stay: one for each particle, or one on each side for those on
     /// creases.
     pub rows: usize,
+    /// Front under way, from 1: each attempt at a wanted number of particles begins anew, with
+    /// another radius.
+    pub attempt: u32,
     /// Generation level under way.
     pub level: u32,
     /// Level of the refinement under way, 1 the coarse one; 0 in every other phase.
@@ -137,6 +140,7 @@ impl Sampler {
             phase: self.phase,
             particles: columns.count_of_first(rows),
             rows,
+            attempt: self.attempt.number(),
             level: self.output.particles.level[..settled].last().copied().unwrap_or(0),
             refine_level,
             refine_levels,

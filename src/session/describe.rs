@@ -293,7 +293,7 @@ const REPORT: &[ReportRow] = &[
         .help("Smallest distance of two neighbours over the sum of their radii."),
     row("quality.crowded", "Pairs nearer than 0.75", "Spacing").down_to("0").places(PAIRS)
         .help("Pairs of particles that are nearer to each other than 0.75, measured as the closest one."),
-    row("quality.nn_cv", "Spacing variation", "Spacing").unit("%").digits(1).down_to("0 %").unless("quality.size_cv")
+    row("quality.spacing_variation", "Spacing variation", "Spacing").unit("%").digits(1).down_to("0 %").unless("quality.size_cv")
         .help("Standard deviation of the distance to the nearest neighbour over its mean."),
     row("quality.size_cv", "Spacing variation", "Spacing").unit("%").digits(1).down_to("0 %")
         .help("Standard deviation over mean of the distance between natural neighbours over the sum of their radii."),

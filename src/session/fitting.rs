@@ -49,8 +49,19 @@ pub enum BoxCell {
     Periodic,
 }
 
+/// Where the surface of a model from points ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BeyondPoints {
+    /// At the border of the points.
+    #[default]
+    Cut,
+    /// Where the fitted function ends it, or the box.
+    Kept,
+}
+
 /// Settings that act before a run: the box, and the solid that is made of the surface of a formula.
-/// They mean nothing to a model from points.
+/// To a model from points only the last one means something.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SolidSettings {
@@ -63,11 +74,13 @@ pub struct SolidSettings {
     /// Thickness of the sheet around the surface that is sampled in its place, in the units of the
     /// coordinates; 0 for the surface itself. See [`Formula::thickened_by`].
     pub thickness: Thickness,
+    /// Where the surface of a model from points ends.
+    pub beyond_points: BeyondPoints,
 }
 
 impl SolidSettings {
     /// Names of these settings, which the page gives together with those of a run.
-    pub const NAMES: [&str; 4] = ["box_mode", "box_faces", "box_cell", "thickness"];
+    pub const NAMES: [&str; 5] = ["box_mode", "box_faces", "box_cell", "thickness", "beyond_points"];
     /// The numbers that [`SolidSettings::thickness`] can be.
     pub const THICKNESSES: RangeInclusive<f64> = 0.0..=*Bounds::DIAGONALS.end();
 
@@ -213,9 +226,24 @@ impl Session {
         if choice.thickness != self.fitting.choice.thickness {
             self.fitting.restart();
         }
+        if choice.beyond_points != self.fitting.choice.beyond_points {
+            self.trim_points(choice.beyond_points);
+        }
         self.fitting.is_settled &= choice == self.fitting.choice;
         self.fitting.choice = choice;
         Ok(())
+    }
+
+    /// Has the surface of a model from points end at their border, or go on.
+    fn trim_points(&mut self, choice: BeyondPoints) {
+        if let Source::Points { field, info, within } = self.run.field().clone()
+            && field.data().border.is_some()
+        {
+            let field = field.untrimmed();
+            let field = if choice == BeyondPoints::Cut { field.trimmed() } else { field };
+            self.fitting.creases = None;
+            self.run.set_field(Source::Points { field, info, within }, false);
+        }
     }
 
     /// Finds the box of the next run and the creases of the surface in it, up to `budget` slices of

@@ -11,7 +11,7 @@ mod setting;
 pub use code::{Code, Language};
 pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, describe};
 pub use fault::{Excess, Fault, FaultKind};
-pub use fitting::{BoxCell, BoxFaces, BoxMode, SolidSettings};
+pub use fitting::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
 pub use record::{FileRecord, FileRequest};
 pub use setting::{
     Choice, Condition, Setting, SettingGroup, SettingKind, SettingScale, SettingValue, settings,
@@ -414,13 +414,16 @@ impl Session {
         };
         let has_same_pulls = known.as_ref().is_some_and(|field| field.pulls() == pulls);
         let refused = |error| Fault::new(FaultKind::Points, &error);
-        let mut field = known.map_or_else(|| RbfField::new(data), Ok).map_err(refused)?;
+        let mut field = known.map_or_else(|| RbfField::new(data), Ok).map_err(refused)?.untrimmed();
         field.pull(pulls).map_err(refused)?;
         let within = match &request.formula {
             Some(text) => Some(Self::model_formula(text, &field, request)?),
             None => None,
         };
         let is_same = has_same_pulls && within == before;
+        if self.fitting.choice.beyond_points == BeyondPoints::Cut {
+            field = field.trimmed();
+        }
         self.run.set_field(Source::Points { field, info, within }, is_same);
         self.run.set_bounds(bounds, None);
         self.surface = None;

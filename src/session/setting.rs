@@ -1,7 +1,7 @@
 //! The settings as they are shown: from this table the page builds a control for each, the command
 //! line an option, and `docs/settings.md` a row. Defaults and ranges are those of [`Settings`].
 
-use super::fitting::{BoxCell, BoxFaces, BoxMode, SolidSettings};
+use super::fitting::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
 use crate::sampler::{GapPolicy, LawKind, Method, Sampling, Settings, SizeMode};
 use core::ops::RangeInclusive;
 use serde::Serialize;
@@ -252,6 +252,7 @@ macro_rules! choices {
 choices!(BOXES of BoxMode: Fit "fit" "Fit", Fixed "fixed" "Fixed");
 choices!(FACES of BoxFaces: Open "open" "Open", Closed "closed" "Closed");
 choices!(CELLS of BoxCell: Lone "lone" "Lone", Periodic "periodic" "Periodic");
+choices!(ENDS of BeyondPoints: Cut "cut" "Cut off", Kept "kept" "Kept");
 choices!(SAMPLINGS of Sampling: Uniform "uniform" "Uniform", Adaptive "adaptive" "Adaptive");
 choices!(SIZES of SizeMode: Radius "radius" "Radius", Count "count" "Count");
 choices!(LAWS of LawKind: ChordError "chord_error" "Chord error", MaxCurvature "max_curvature" "Largest curvature",
@@ -310,6 +311,13 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
                 "Thickness t of a sheet that is sampled in place of the surface, |f| ≤ t/2 |∇f|, in the units of x, y and z; 0 for the surface itself. A formula such as 0.1 + 0.05z makes it vary. Of formulas.",
             ))
         },
+        of_box(choice(
+            "beyond_points",
+            BeyondPoints::default(),
+            "Beyond points",
+            "Cut off: the surface ends at the border of its points, and bridges gaps of a few spacings. Kept: it goes on. Of models from points.",
+            ENDS,
+        )),
         choice(
             "sampling",
             run.sampling,

@@ -58,7 +58,7 @@ fn json_line_holds_the_figures_of_the_run() {
     for phase in ["seeding", "generation", "relaxation", "quality"] {
         assert!(run["seconds"][phase].as_f64() > Some(0.0), "{phase}");
     }
-    for figure in ["six", "psi6", "cover", "rho", "nn_cv", "ang_min_mean", "err_max", "quant"] {
+    for figure in ["six", "psi6", "cover", "rho", "spacing_variation", "ang_min_mean", "err_max", "quant"] {
         assert!(run["quality"][figure].as_f64() > Some(0.0), "{figure}");
         assert!(run["quality_before"][figure].as_f64() > Some(0.0), "{figure} before");
     }

@@ -251,6 +251,7 @@ fn a_formula_with_a_model_is_described_and_its_creases_are_found_in_slices() {
         centres: vec![[0.0; 3], [0.0, 0.0, 1000.0]],
         alpha: vec![1.0, -1e-9],
         beta: vec![[0.0; 3]; 2],
+        border: None,
     };
     let info = ModelInfo { name: "ball".into(), points: 2, centres: 2, ..ModelInfo::default() };
     let with = |text: &str| FieldRequest {

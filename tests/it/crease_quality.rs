@@ -25,7 +25,7 @@ fn figures(name: &str, solid: Creased, euler: i64, flatness: f64) -> Measurement
     assert!((figures.area / known - 1.0).abs() < flatness, "{told}");
     assert!(figures.accuracy.err_max < 1e-5 && figures.accuracy.nrm_max < 0.01, "{told}");
     let spacing = (2.0 * figures.area / (3.0_f64.sqrt() * particles.count() as f64)).sqrt();
-    assert!((figures.d_hex / spacing - 1.0).abs() < 1e-12, "{told}");
+    assert!((figures.ideal_spacing / spacing - 1.0).abs() < 1e-12, "{told}");
     // No edge leads across a hole of a patch.
     assert!(figures.edges.edge_cv < 0.4, "{told}");
     // The nearest of all particles, of whatever patch.

@@ -592,3 +592,115 @@ fn the_shares_of_a_call_rise_to_one() {
         assert!((run.fraction() - 1.0).abs() < 1e-9, "{text}: {} in the end", run.fraction());
     }
 }
+
+#[test]
+fn a_run_that_is_cancelled_before_its_first_particle_is_no_empty_surface() {
+    let settings = Settings::with_count(FEW).in_box(Bounds::cube(1.5));
+    let run = |steps: u32, is_cancelled: bool| {
+        let mut run = Run::start(sphere, &settings).expect("a sphere");
+        for _ in 0..steps {
+            run.step(1);
+        }
+        if is_cancelled {
+            run.cancel();
+        }
+        run.finish()
+    };
+    for is_cancelled in [true, false] {
+        assert_eq!(run(0, is_cancelled).err(), Some(Error::Cancelled));
+    }
+    // Later there are particles, and the sample says why it ends there.
+    let mut steps = 1;
+    while run(steps, true).is_err() {
+        assert_eq!(run(steps, true).err(), Some(Error::Cancelled), "{steps} steps");
+        steps *= 2;
+    }
+    let sample = run(steps, true).expect("particles");
+    assert_eq!(sample.report().stop_reason, Some(StopReason::Cancelled));
+    // Where there is no surface, a run to the end says so.
+    let nothing = sample_of_nothing(&settings);
+    assert!(matches!(nothing, Error::Nothing { reason: StopReason::NoSurface, .. }), "{nothing}");
+}
+
+fn sample_of_nothing(settings: &Settings) -> Error {
+    sample(|p: DVec3| p.length() + 1.0, settings).expect_err("no surface")
+}
+
+#[test]
+fn particles_become_fewer_only_where_another_attempt_at_a_count_begins() {
+    let heart = Formula::parse("(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3").expect("a formula");
+    let mut run = Run::start(heart, &Settings::with_count(FEW)).expect("a heart");
+    let (mut attempt, mut attempt_before, mut particles) = (1, 1, 0);
+    loop {
+        let progress = run.step(200);
+        if progress.stop_reason.is_some() {
+            break;
+        }
+        assert!(progress.attempt >= attempt, "attempt {} after {attempt}", progress.attempt);
+        // A seed that stays alone is taken back. The particles of an attempt go with the next one's
+        // first step.
+        assert!(
+            progress.attempt > attempt_before || 2 * progress.particles >= particles,
+            "attempt {attempt}: {} particles after {particles}",
+            progress.particles
+        );
+        (attempt_before, attempt, particles) = (attempt, progress.attempt, progress.particles);
+    }
+}
+
+#[test]
+fn a_function_that_only_tells_inside_from_outside_is_refused_with_its_values() {
+    use rand_core::Rng;
+    let mut random = rand_pcg::Pcg64Mcg::new(17);
+    let mut number = || f64::from(random.next_u32()) / f64::from(u32::MAX);
+    for round in 0..40 {
+        let centre = DVec3::new(number(), number(), number()) - 0.5;
+        let is_round = number() < 0.5;
+        let distance = move |p: DVec3| {
+            let q = p - centre;
+            if is_round { q.length() - 1.0 } else { q.abs().max_element() - 0.8 }
+        };
+        let values = [[0.0, 1.0], [1.0, 0.0], [-1.0, 1.0], [-0.25, 3.0]][round % 4];
+        let is_layered = number() < 0.3;
+        let told = move |p: DVec3| match distance(p) {
+            d if d > 0.3 && is_layered => 7.0,
+            d => values[usize::from(d > 0.0)],
+        };
+        let mut listed = values.to_vec();
+        listed.extend(is_layered.then_some(7.0));
+        listed.sort_by(f64::total_cmp);
+        let listed: Vec<String> = listed.iter().map(f64::to_string).collect();
+        let (last, others) = listed.split_last().expect("values");
+        let text = format!("f takes only the values {} and {last} and jumps", others.join(", "));
+        let settings = Settings::with_count(300);
+        let settings = if number() < 0.5 { settings } else { settings.in_box(Bounds::cube(2.0)) };
+        match sample(told, &settings) {
+            Err(Error::Nothing { reason: StopReason::NoSurface, message }) => {
+                assert!(message.starts_with(&text), "round {round}: {message} is not {text}");
+            }
+            other => panic!("round {round}: {other:?}"),
+        }
+        // A distance that is cut off is one where it is near zero.
+        let width = 0.2 * number() * number();
+        let cut = sample(move |p: DVec3| (p.distance(centre) - 1.0).clamp(-width, width), &settings);
+        assert!(cut.is_ok(), "round {round}: a width of {width}");
+    }
+}
+
+#[test]
+fn a_formula_that_jumps_between_whole_numbers_is_refused_with_them() {
+    for (text, values) in [
+        ("step(1, hypot(x, y, z))", "the values 0 and 1"),
+        ("sign(x^2 + y^2 + z^2 - 1)", "the values -1"),
+        ("if(x^2 + y^2 < 1, -1, 1)", "the values -1 and 1"),
+        ("floor(hypot(x, y, z))", "4 values, from 0 to 3,"),
+    ] {
+        let formula = Formula::parse(text).expect("a formula");
+        match sample(formula, &Settings::with_count(300).in_box(Bounds::cube(2.0))) {
+            Err(Error::Nothing { message, .. }) => {
+                assert!(message.starts_with(&format!("f takes only {values}")), "{text}: {message}");
+            }
+            other => panic!("{text}: {other:?}"),
+        }
+    }
+}

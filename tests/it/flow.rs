@@ -307,10 +307,10 @@ fn a_mesh_is_given_up_where_its_surface_falls_apart_and_joined_again() {
 fn particles_that_have_followed_can_be_relaxed() {
     let mut run = started(ELLIPSOID, 1.0, 1.5, &Settings::with_count(1_000));
     sweep(&mut run, ELLIPSOID, [1.0, 1.3], 40, u32::MAX);
-    let before = (run.count(), run.report().measures.quality.expect("figures").spacing.nn_cv);
+    let before = (run.count(), run.report().measures.quality.expect("figures").spacing.spacing_variation);
     assert!(run.relax(20));
     finish(&mut run, u32::MAX);
-    let after = (run.count(), run.report().measures.quality.expect("figures").spacing.nn_cv);
+    let after = (run.count(), run.report().measures.quality.expect("figures").spacing.spacing_variation);
     assert_eq!(before.0, after.0);
     assert!(after.1 < before.1, "{after:?} from {before:?}");
     assert_eq!(run.particles().identity.len(), after.0);

@@ -116,7 +116,7 @@ fn a_front_covers_smooth_surfaces_regularly() {
         // rounding.
         assert!(figures.accuracy.err_max <= 2.5e-4, "{context}");
         // No two particles are closer than the match tolerance.
-        let closest = figures.spacing.nn_min * figures.d_hex / (2.0 * sampler.radius());
+        let closest = figures.spacing.nn_min * figures.ideal_spacing / (2.0 * sampler.radius());
         assert!(closest >= 0.7 * (1.0 - 1e-5), "{context}: closest pair {closest}");
     }
 }
@@ -146,7 +146,8 @@ fn filling_gaps_shrinks_the_largest_hole_and_crowds_nothing() {
         assert_eq!(particles.local[..left.len()], left.local, "{surface}");
         let (was, is) = (gallery_figures(surface, left, None), gallery_figures(surface, particles, None));
         // The unit is 2r, because the hexagonal spacing changes with the count.
-        let hole = |f: &Figures| f.coverage.cover * f.d_hex / 3.0_f64.sqrt() / (2.0 * filled.radius());
+        let hole =
+            |f: &Figures| f.coverage.cover * f.ideal_spacing / 3.0_f64.sqrt() / (2.0 * filled.radius());
         assert!(hole(&is) < hole(&was), "{surface}: {} to {}", hole(&was), hole(&is));
         assert!(hole(&is) < 0.83, "{surface}: {}", hole(&is));
         for i in left.len()..particles.len() {

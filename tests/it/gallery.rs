@@ -331,3 +331,26 @@ fn gradients_side_by_side_have_the_bits_of_those_of_single_points() {
         }
     }
 }
+
+#[test]
+fn everyday_words_find_a_surface() {
+    // As the page's search has it: in what is said of a surface.
+    let finds = |word: &str| {
+        SURFACES.iter().any(|surface| {
+            let text = [surface.name, surface.words, surface.story, surface.formula].join(" ");
+            text.to_lowercase().contains(word)
+        })
+    };
+    for word in
+        ["donut", "screw", "nut", "knot", "infill", "bone", "egg", "pipe", "foam", "star", "ball", "ring"]
+    {
+        assert!(finds(word), "{word}");
+    }
+    for surface in SURFACES.iter() {
+        assert!(!surface.words.is_empty(), "{}", surface.id);
+        for word in surface.words.split(' ') {
+            assert!(!word.is_empty() && word == word.to_lowercase(), "{}: {word}", surface.id);
+            assert!(gallery::by_word(word).any(|found| found.id == surface.id), "{}: {word}", surface.id);
+        }
+    }
+}

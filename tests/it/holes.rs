@@ -67,7 +67,7 @@ fn agrees(formula: &str, share: f64, seed: u64) -> bool {
     };
     let mut field = Formula::as_written(formula, &[]).expect("it was parsed before");
     let mut random = Pcg32::seed_from_u64(seed);
-    let ideal = figures.d_hex / 3.0_f64.sqrt();
+    let ideal = figures.ideal_spacing / 3.0_f64.sqrt();
     let (mut largest, mut inner) = (0.0_f64, 0.0_f64);
     for _ in 0..POINTS {
         let start = DVec3::from_array([(); 3].map(|()| HALF * (2.0 * unit(&mut random) - 1.0)));
@@ -77,7 +77,7 @@ fn agrees(formula: &str, share: f64, seed: u64) -> bool {
             session.run.particles().local.iter().map(near).fold(f64::INFINITY, f64::min).sqrt() / ideal;
         largest = largest.max(hole);
         // The figure leaves out what is near the border.
-        if p.abs().max_element() < HALF - 4.5 * figures.d_hex {
+        if p.abs().max_element() < HALF - 4.5 * figures.ideal_spacing {
             inner = inner.max(hole);
         }
     }

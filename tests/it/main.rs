@@ -62,6 +62,8 @@ mod pointcloud_formats;
 mod pointcloud_job;
 #[cfg(feature = "points")]
 mod pointcloud_read;
+#[cfg(feature = "points")]
+mod points_border;
 mod products;
 mod proof;
 mod quality;

@@ -340,7 +340,8 @@ fn errors_name_their_place_and_give_advice() {
         ("a.xyz", "1 2 3 4 5 6\n4 5 6\n".into(), "line 2: 3 columns, where the lines before have 6"),
         ("a.xyz", "1 2 three\n".into(), "line 1: z is `three`, which is not a number"),
         ("a.xyz", "0,5 1,5 2,5\n".into(), "line 1: the numbers have decimal commas; write decimal points"),
-        ("a.xyz", "0,5;1,5;2,5\n".into(), "line 1: the numbers have decimal commas"),
+        ("a.csv", "0,5;1;2\n0.5;1;2\n".into(), "line 2: some numbers have a decimal comma, others a point"),
+        ("a.csv", "1.234,5;1;2\n".into(), "line 1: x is `1.234,5`, which is not a number"),
         ("a.xyz", "hello\n".into(), "line 1: `hello` is no number; a point is x y z"),
         ("a", "hello world\n".into(), "a text file of no known kind"),
         ("a.obj", "v 1 2\n".into(), "line 1: three numbers are needed, z is missing"),
@@ -394,7 +395,7 @@ fn errors_name_their_place_and_give_advice() {
             "the length of a list must be a whole",
         ),
         ("a.ply", ply("elements 3\n", ""), "line 3: `elements` begins no line of a PLY header"),
-        ("a.ply", ply(xyz, "1 2 3\n4 5\n6"), "line 9: this vertex has fewer numbers than the header says"),
+        ("a.ply", ply(xyz, "1 2 3000\n4 5\n"), "line 9: this vertex has fewer numbers than the header says"),
         ("a.ply", ply(xyz, "1 2 3000000\n"), "line 8: the file ends before all 2 vertex rows; it is cut off"),
         (
             "a.ply",
@@ -572,5 +573,94 @@ proptest! {
         let _ = read_all("a", &bytes).map(made);
         let cut = tetrahedron_ply(big, "float", "int", "uchar");
         prop_assert!(read_all("a", &cut[..at]).is_err());
+    }
+}
+
+/// Some numbers with up to three decimals, as they are drawn from a seed.
+fn decimals(seed: u64, count: usize) -> Vec<f64> {
+    use rand_core::Rng;
+    let mut random = rand_pcg::Pcg64Mcg::new(seed.into());
+    (0..count).map(|_| f64::from(random.next_u32() % 20_001) / 1000.0 - 10.0).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Where the lines of a PLY file end says nothing, unless each holds a row.
+    #[test]
+    fn the_numbers_of_a_ply_text_may_stand_on_any_lines(
+        seed in 0_u64..1000,
+        ends in proptest::collection::vec(1_usize..9, 40),
+        has_tags in any::<bool>(),
+        end in prop_oneof![Just("\n"), Just("\r\n")],
+    ) {
+        let numbers = decimals(seed, 15);
+        let mut words: Vec<String> = Vec::new();
+        for (k, p) in numbers.chunks(3).enumerate() {
+            if has_tags {
+                // A list in front of the position.
+                words.extend([vec!["0"], vec!["2", "7", "8"]][k % 2].iter().map(|word| (*word).to_owned()));
+            }
+            words.extend(p.iter().map(f64::to_string));
+        }
+        words.extend(["3", "0", "1", "2", "4", "0", "2", "3", "4"].map(str::to_owned));
+        let tags = if has_tags { "property list uchar int tags\n" } else { "" };
+        let mut text = format!(
+            "ply\nformat ascii 1.0\nelement vertex 5\n{tags}property float x\nproperty float y\n\
+             property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+        );
+        let (mut left, mut lines) = (words.as_slice(), 0);
+        for count in ends.into_iter().cycle() {
+            let (line, rest) = left.split_at(count.min(left.len()));
+            text.push_str(&line.join(" "));
+            text.push_str(end);
+            (left, lines) = (rest, lines + 1);
+            if left.is_empty() {
+                break;
+            }
+        }
+        // As many lines as rows would be rows.
+        prop_assume!(lines != 7);
+        let (_, mesh) = read("a.ply", &text);
+        let read: Vec<f64> = mesh.position.iter().flat_map(|p| p.to_array()).collect();
+        prop_assert_eq!(read, numbers, "{}", text);
+        prop_assert_eq!(mesh.faces.len(), 2, "{}", text);
+    }
+
+    /// A table has one reading, whatever separates its columns and decimals.
+    #[test]
+    fn tables_are_read_with_decimal_commas_where_something_else_separates(
+        seed in 0_u64..1000,
+        (separator, comma) in prop_oneof![
+            Just((";", true)), Just(("; ", true)), Just(("\t", true)), Just((";", false)),
+            Just(("\t", false)), Just((",", false)), Just((" ", false)),
+        ],
+        order in prop_oneof![Just([0, 1, 2]), Just([2, 0, 1]), Just([1, 2, 0])],
+        has_name in any::<bool>(),
+        is_quoted in any::<bool>(),
+        end in prop_oneof![Just("\n"), Just("\r\n")],
+    ) {
+        let numbers = decimals(seed, 30);
+        let is_named = has_name || order != [0, 1, 2];
+        let mut text = String::new();
+        if is_named {
+            let names = order.map(|k| ["x", "y", "z"][k]);
+            let first = if has_name { format!("id{separator}") } else { String::new() };
+            let _ = write!(text, "{first}{}{end}", names.join(separator));
+        }
+        for (row, p) in numbers.chunks(3).enumerate() {
+            if has_name {
+                let _ = write!(text, "{row}{separator}");
+            }
+            let words = order.map(|k| {
+                let word = p[k].to_string();
+                let word = if comma { word.replace('.', ",") } else { word };
+                if is_quoted && separator != " " { format!("\"{word}\"") } else { word }
+            });
+            let _ = write!(text, "{}{end}", words.join(separator));
+        }
+        let (_, mesh) = read("a.csv", &text);
+        let read: Vec<f64> = mesh.position.iter().flat_map(|p| p.to_array()).collect();
+        prop_assert_eq!(read, numbers, "{}", text);
     }
 }

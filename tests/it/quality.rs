@@ -129,14 +129,14 @@ fn hexagonal_lattice_is_perfect_in_every_figure() {
     println!("{f:#?}");
     // Discs that touch cover π/(2√3) of the plane.
     close("uncovered", f.coverage.uncovered, 1.0 - core::f64::consts::PI / 12.0_f64.sqrt(), 3e-3);
-    close("d_hex", f.d_hex, scale, 1e-9);
+    close("ideal_spacing", f.ideal_spacing, scale, 1e-9);
     close("area", f.area, cell * points.len() as f64, 1e-9);
     close("err_max", f.accuracy.err_max, 0.0, 0.0);
     close("nn_min", f.spacing.nn_min, 1.0, 1e-4);
     close("rho", f.spacing.rho, f.spacing.nn_min, 0.0);
-    close("rho_1", f.spacing.rho_1, 1.0, 1e-4);
+    close("nearest_percentile_1", f.spacing.nearest_percentile_1, 1.0, 1e-4);
     close("nn_mean", f.spacing.nn_mean, 1.0, 1e-4);
-    close("nn_cv", f.spacing.nn_cv, 0.0, 1e-4);
+    close("spacing_variation", f.spacing.spacing_variation, 0.0, 1e-4);
     close("nn_ratio", f.spacing.nn_ratio, 1.0, 1e-4);
     close("cover", f.coverage.cover, 1.0, 1e-4);
     close("quant", f.coverage.quant, 1.0, 3e-3);
@@ -171,8 +171,8 @@ fn square_lattice_has_valence_four_and_half_right_angles() {
     let report = measure(&points, &[], &plane(), Some(&bounds), &with_area(points.len(), scale * scale));
     let f = report.figures;
     println!("{f:#?}");
-    let d_hex = (2.0 / 3.0_f64.sqrt()).sqrt();
-    close("nn_min", f.spacing.nn_min, 1.0 / d_hex, 1e-9);
+    let ideal_spacing = (2.0 / 3.0_f64.sqrt()).sqrt();
+    close("nn_min", f.spacing.nn_min, 1.0 / ideal_spacing, 1e-9);
     close("six", f.order.six, 0.0, 0.0);
     close("val_sd", f.order.val_sd, 0.0, 0.0);
     let centre = points.iter().position(|&p| p == Vec3::ZERO).expect("the origin is a lattice point");
@@ -192,14 +192,14 @@ fn nearly_square_lattice_has_the_figures_of_the_square() {
     let options = with_area(points.len(), scale * scale);
     let f = measure(&points, &[], &plane(), Some(&bounds), &options).figures;
     println!("{f:#?}");
-    let d_hex = (2.0 / 3.0_f64.sqrt()).sqrt();
+    let ideal_spacing = (2.0 / 3.0_f64.sqrt()).sqrt();
     close("six", f.order.six, 1.0, 0.0);
     close("ang_min", f.angles.ang_min, 45.0, 1.0);
     close("gt90", f.angles.gt90, 0.0, 0.0);
     close("tri_ok", f.connectivity.tri_ok, 1.0, 0.0);
     // The circumradius of a triangle of area 1/2 is half the product of its sides.
     let circumradius = 0.5 * (1.0_f64 + 0.02 * 0.02).sqrt() * (1.0_f64 + 0.98 * 0.98).sqrt();
-    close("cover", f.coverage.cover, circumradius / (d_hex / 3.0_f64.sqrt()), 1e-4);
+    close("cover", f.coverage.cover, circumradius / (ideal_spacing / 3.0_f64.sqrt()), 1e-4);
     // The mean squared distance to the centre of a unit square is 1/6. The measured region cuts
     // through a row of cells.
     close("quant", f.coverage.quant, (1.0 / 6.0) / (5.0 / (18.0 * 3.0_f64.sqrt())), 0.01);
@@ -247,7 +247,7 @@ fn fibonacci_sphere_is_a_closed_manifold() {
     close("defect", f64::from(defect), 12.0 - surplus, 1e-6);
     // Rounding to single precision moves the points off the sphere.
     assert!(
-        f.accuracy.err_max * f.d_hex < 2e-7 && f.accuracy.err_max > 0.0,
+        f.accuracy.err_max * f.ideal_spacing < 2e-7 && f.accuracy.err_max > 0.0,
         "err_max = {}",
         f.accuracy.err_max
     );
@@ -292,11 +292,11 @@ fn white_noise_has_its_known_figures() {
     close("quant", f.coverage.quant, 1.985, 0.03);
     close("nn_mean", f.spacing.nn_mean, 0.465, 0.005);
     // The nearest-neighbour distance of a Poisson process is Rayleigh distributed.
-    close("nn_cv", f.spacing.nn_cv, (4.0 / core::f64::consts::PI - 1.0).sqrt(), 0.01);
+    close("spacing_variation", f.spacing.spacing_variation, (4.0 / core::f64::consts::PI - 1.0).sqrt(), 0.01);
     assert!(f.spacing.rho < 0.02, "rho = {}", f.spacing.rho);
     // The cumulative distribution of the distances is 1 − exp(−π N x²/A).
     let first = (-(1.0_f64 - 0.01).ln() * 3.0_f64.sqrt() / 2.0 / core::f64::consts::PI).sqrt();
-    close("rho_1", f.spacing.rho_1, first, 0.1 * first);
+    close("nearest_percentile_1", f.spacing.nearest_percentile_1, first, 0.1 * first);
     close("tri_ok", f.connectivity.tri_ok, 1.0, 0.01);
     assert_eq!(f.order.open, 0);
 }
@@ -306,12 +306,12 @@ fn hole_is_measured_as_a_hole() {
     let mut points = fibonacci(3000);
     let whole = measure(&points, &[], &sphere(), None, &MeasureOptions::default()).figures;
     let centre = points[1500];
-    let radius = 2.5 * whole.d_hex as f32;
+    let radius = 2.5 * whole.ideal_spacing as f32;
     points.retain(|p| p.distance(centre) > radius);
     let f = measure(&points, &[], &sphere(), None, &MeasureOptions::default()).figures;
     // The largest empty disc is at least as large as the hole, and at most one spacing larger.
-    let gap = f.coverage.cover * f.d_hex / 3.0_f64.sqrt();
-    assert!(gap >= f64::from(radius) && gap < f64::from(radius) + whole.d_hex, "{gap} for {radius}");
+    let gap = f.coverage.cover * f.ideal_spacing / 3.0_f64.sqrt();
+    assert!(gap >= f64::from(radius) && gap < f64::from(radius) + whole.ideal_spacing, "{gap} for {radius}");
     // The triangulation bridges the hole, so the sphere stays closed.
     assert_eq!((f.connectivity.euler, f.order.open), (2, 0));
     assert!(f.angles.gt90 > whole.angles.gt90);
@@ -330,7 +330,7 @@ fn missed_component_and_missed_half_are_holes_too() {
     let bounds = Bounds { min: [-1.5, -1.5, -1.5], max: [5.5, 1.5, 1.5] };
     let options = MeasureOptions { area: Some(2.0 * SPHERE_AREA), ..MeasureOptions::default() };
     let f = measure(&points, &[], &pair, Some(&bounds), &options).figures;
-    let hole = f.coverage.cover * f.d_hex / 3.0_f64.sqrt();
+    let hole = f.coverage.cover * f.ideal_spacing / 3.0_f64.sqrt();
     close("hole", hole, 4.0, 0.05);
     // Half of the area has the mean squared distance to the first sphere.
     let mean_sq = f.coverage.quant * 5.0 / (18.0 * 3.0_f64.sqrt()) * f.area / 2000.0;
@@ -339,7 +339,7 @@ fn missed_component_and_missed_half_are_holes_too() {
     let half: Vec<Vec3> = points.into_iter().filter(|p| p.z > 0.0).collect();
     let bounds = Bounds::cube(1.25);
     let f = measure(&half, &[], &sphere(), Some(&bounds), &MeasureOptions::default()).figures;
-    close("hole", f.coverage.cover * f.d_hex / 3.0_f64.sqrt(), 2.0_f64.sqrt(), 0.05);
+    close("hole", f.coverage.cover * f.ideal_spacing / 3.0_f64.sqrt(), 2.0_f64.sqrt(), 0.05);
 }
 
 #[test]
@@ -398,8 +398,8 @@ fn touching_the_box_from_inside_is_no_border_and_crossing_it_is() {
     let f = measure(&points, &[], &sphere(), Some(&cut), &options).figures;
     println!("{f:#?}");
     // The zone extends from the border, 60° from the pole, to where the chord to the border is 4
-    // d_hex.
-    let arc = 2.0 * (2.0 * f.d_hex).asin();
+    // ideal_spacing.
+    let arc = 2.0 * (2.0 * f.ideal_spacing).asin();
     let zone = core::f64::consts::TAU * (0.5 - (60.0_f64.to_radians() + arc).cos());
     let wanted = zone / area * points.len() as f64;
     close("boundary_excluded", f.boundary_excluded as f64, wanted, 0.03 * wanted);
@@ -521,7 +521,7 @@ fn equal_radii_make_the_local_hole_the_hole() {
     let options = MeasureOptions { radii: Some(&radii), ..MeasureOptions::default() };
     let f = measure(&points, &[], &sphere(), Some(&Bounds::cube(1.5)), &options).figures;
     close("cover_local", f.coverage.cover_local, f.coverage.cover, 1e-5);
-    close("overlap_min", f.edges.overlap_min, f.spacing.nn_min * f.d_hex / 1.4, 1e-5);
+    close("overlap_min", f.edges.overlap_min, f.spacing.nn_min * f.ideal_spacing / 1.4, 1e-5);
     let f = measure(&points, &[], &sphere(), None, &MeasureOptions::default()).figures;
     assert!(f.coverage.cover_local.is_nan() && f.edges.overlap_min.is_nan());
 }
@@ -551,7 +551,7 @@ fn crowded_pairs_are_those_of_a_search_of_all_pairs() {
     let mut random = Random::new(5);
     let points: Vec<Vec3> = (0..700).map(|_| random.on_sphere()).collect();
     let report = measure(&points, &[], &sphere(), None, &MeasureOptions::default());
-    let limit = CROWDED * report.figures.d_hex;
+    let limit = CROWDED * report.figures.ideal_spacing;
     let mut pairs: Vec<(f64, [u32; 2])> = Vec::new();
     for j in 0..points.len() {
         for i in 0..j {
@@ -567,7 +567,7 @@ fn crowded_pairs_are_those_of_a_search_of_all_pairs() {
     assert_eq!(report.places.pairs.len(), 64);
     for (told, (distance, particles)) in report.places.pairs.iter().zip(&pairs) {
         assert_eq!(told.particles, *particles);
-        close("ratio", told.ratio, distance / report.figures.d_hex, 1e-6);
+        close("ratio", told.ratio, distance / report.figures.ideal_spacing, 1e-6);
     }
 }
 
@@ -657,7 +657,7 @@ fn degenerate(points: &[Vec3], normals: &[Vec3]) -> Measurements {
 
 #[test]
 fn degenerate_input_gives_undefined_figures_and_no_panic() {
-    assert!(degenerate(&[], &[]).figures.d_hex.is_nan());
+    assert!(degenerate(&[], &[]).figures.ideal_spacing.is_nan());
     let one = degenerate(&[Vec3::X], &[]);
     assert!(one.figures.spacing.nn_min.is_nan() && one.nearest[0] == f32::INFINITY && one.valence[0] == 0);
     let two = degenerate(&[Vec3::X, Vec3::Y], &[Vec3::NAN, Vec3::ZERO]);

@@ -154,7 +154,7 @@ fn holes_and_crowded_pairs_shrink() {
         let context = format!("{id}, seed 0\nbefore {was:?}\nafter  {is:?}");
         assert!(is.coverage.cover < was.coverage.cover, "{context}");
         assert!(is.coverage.cover <= 1.45, "{context}");
-        assert!(is.spacing.rho_1 > was.spacing.rho_1, "{context}");
+        assert!(is.spacing.nearest_percentile_1 > was.spacing.nearest_percentile_1, "{context}");
         assert!(is.angles.gt90 < was.angles.gt90, "{context}");
         assert!(is.edges.edge_cv < was.edges.edge_cv, "{context}");
         assert_eq!((is.connectivity.euler, is.order.open), (euler, 0), "{context}");

@@ -464,6 +464,7 @@ fn a_field_from_points_takes_the_formulas_place_and_gives_it_back() {
         centres: vec![[0.0; 3], [0.0, 0.0, 1000.0]],
         alpha: vec![1.0, -1e-9],
         beta: vec![[0.0; 3]; 2],
+        border: None,
     };
     let info = ModelInfo { name: "ball".into(), points: 2, centres: 2, ..ModelInfo::default() };
     let mut session = Session::new();
@@ -566,7 +567,9 @@ mod solids {
     use marching_particles::Thickness;
     use marching_particles::math::Bounds;
     use marching_particles::sampler::{Settings, StopReason};
-    use marching_particles::session::{BoxCell, BoxFaces, BoxMode, FieldRequest, Session, SolidSettings};
+    use marching_particles::session::{
+        BeyondPoints, BoxCell, BoxFaces, BoxMode, FieldRequest, Session, SolidSettings,
+    };
 
     fn solid(box_faces: BoxFaces, thickness: f64) -> SolidSettings {
         SolidSettings { box_faces, thickness: thickness.into(), ..SolidSettings::default() }
@@ -577,6 +580,7 @@ mod solids {
         box_faces: BoxFaces::Open,
         box_cell: BoxCell::Lone,
         thickness: Thickness::Number(0.0),
+        beyond_points: BeyondPoints::Cut,
     };
 
     /// A run of the session on a field, in which the box is found in slices of work, as the page

@@ -26,6 +26,8 @@ export interface Options {
   spacing?: number;
   /** the box that is sampled; without it one that fits the surface */
   bounds?: Bounds;
+  /** of points: whether their surface ends at their border, as it does without it, or goes on */
+  beyondPoints?: 'cut' | 'kept';
   /**
    * of points: a formula that names their surface `model`, as an operand of max, min, smin, smax or
    * abs, or with a number that is added: `max(model, z)` cuts it

@@ -55,6 +55,7 @@ const SIZES = ['count', 'radius', 'spacing'];
 const KNOWN = [
   ...SIZES,
   'bounds',
+  'beyondPoints',
   'formula',
   'params',
   'adaptive',
@@ -166,13 +167,17 @@ export function checked(field, options) {
   const unknown = Object.keys(options).find((name) => !KNOWN.includes(name));
   if (unknown !== undefined)
     throw new InputError(`${unknown}: there is no such option. There are ${KNOWN.join(', ')}.`);
-  const { bounds, formula, params, adaptive = false, method, seed, measure = true } = options;
+  const { beyondPoints, bounds, formula, params, adaptive = false, method, seed, measure = true } = options;
   /** @type {Record<string, number | string>} */
   const settings = { max_particles: 4_400_000, ...sizeOf(options) };
   if (flag('adaptive', adaptive)) settings.sampling = 'adaptive';
   if (method !== undefined) settings.method = choice('method', method, ['front', 'refined']);
   if (seed !== undefined)
     settings.seed = number('seed', seed, (n) => Number.isSafeInteger(n) && n >= 0, 'a whole number from 0 on');
+  if (beyondPoints !== undefined) {
+    if (what.cloud === undefined) throw new InputError('beyondPoints: for points, beyond which their surface may go on.');
+    settings.beyond_points = choice('beyondPoints', beyondPoints, ['cut', 'kept']);
+  }
   if (formula !== undefined) Object.assign(what, modelFormula(formula, what));
   if (params !== undefined && what.formula === undefined)
     throw new InputError('params: a formula has parameters, a function or points have none.');

@@ -103,4 +103,5 @@ def fit_points(
     normals: Union[npt.ArrayLike, None] = None,
     *,
     centres: int = 200,
+    beyond_points: Literal["cut", "kept"] = "cut",
 ) -> Model: ...

@@ -63,7 +63,7 @@ class Model(Field):
         return f"<Model of {self.report['points']:,} points>"
 
 
-def fit_points(points, normals=None, *, centres=200):
+def fit_points(points, normals=None, *, centres=200, beyond_points="cut"):
     """Fits a surface to points.
 
     A sum of radial functions about some of the points is fitted to all of them; noise is smoothed
@@ -73,6 +73,9 @@ def fit_points(points, normals=None, *, centres=200):
         points: Array (n, 3), in any unit of length.
         normals: Array (n, 3) of outward normals of any length; without it they are estimated.
         centres: Number of radial functions, 100 to 800. The time grows with its cube.
+        beyond_points: ``"cut"``: the surface ends at the border of the points, and bridges gaps of
+            a few of their spacings; ``"kept"``: it goes on. A solid that is put together of it and
+            others has all of it.
 
     Returns:
         A :class:`Model`, to be given to :func:`sample`.
@@ -84,7 +87,10 @@ def fit_points(points, normals=None, *, centres=200):
     if normals is not None:
         what = "an array of a normal for each point, of the shape of points"
         normals = numbers("normals", normals, points.shape, what)
-    field, report = _core.Field.points(points, normals, integer("centres", centres, *_core.CENTRES))
+    if beyond_points not in ("cut", "kept"):
+        raise ValueError(f'beyond_points is "cut" or "kept", and not {beyond_points!r}')
+    centres = integer("centres", centres, *_core.CENTRES)
+    field, report = _core.Field.points(points, normals, centres, beyond_points == "cut")
     return Model(field, json.loads(report))
 
 

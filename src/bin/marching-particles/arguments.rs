@@ -8,7 +8,9 @@ use marching_particles::export::VERTICES;
 use marching_particles::field::{model, rbf::Pull};
 use marching_particles::math::{Bounds, BoxError, shortest_text};
 use marching_particles::pointcloud::job::CENTRES;
-use marching_particles::session::{BoxCell, BoxFaces, BoxMode, FileRecord, Language, SolidSettings};
+use marching_particles::session::{
+    BeyondPoints, BoxCell, BoxFaces, BoxMode, FileRecord, Language, SolidSettings,
+};
 use marching_particles::{
     Format, Measured, MeshFormat, Placement, Thickness, Unit, UpAxis, Vertices, gallery,
 };
@@ -284,6 +286,11 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, value_name = "N", help_heading = "Surface", value_parser = centres)]
     pub(crate) centres: Option<u32>,
 
+    /// Where the surface of --points ends: `cut` at the border of the points, where it would go on
+    /// beyond them; `kept` goes on. Gaps of a few spacings of the points are bridged [default: cut]
+    #[arg(long, value_name = "WORD", value_parser = beyond_points, help_heading = "Surface")]
+    pub(crate) beyond_points: Option<BeyondPoints>,
+
     /// Value of a parameter; once for each
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter, help_heading = "Surface")]
     pub(crate) parameters: Vec<(String, f64)>,
@@ -404,6 +411,15 @@ fn vertices() -> impl TypedValueParser<Value = Vertices> {
     })
 }
 
+/// Where the surface of points ends.
+fn beyond_points(text: &str) -> Result<BeyondPoints, String> {
+    match text {
+        "cut" => Ok(BeyondPoints::Cut),
+        "kept" => Ok(BeyondPoints::Kept),
+        _ => Err("it is `cut` or `kept`".to_owned()),
+    }
+}
+
 impl SurfaceArguments {
     /// The solid that is to be made of the surface.
     pub(crate) fn solid(&self) -> SolidSettings {
@@ -413,6 +429,7 @@ impl SurfaceArguments {
             box_faces: if self.closed { BoxFaces::Closed } else { BoxFaces::Open },
             box_cell: if self.periodic { BoxCell::Periodic } else { BoxCell::Lone },
             thickness: self.thickness.clone().unwrap_or_default(),
+            beyond_points: self.beyond_points.unwrap_or_default(),
         }
     }
 }

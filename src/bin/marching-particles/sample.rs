@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use marching_particles::export::VERTICES;
 use marching_particles::field::formula::{self, MODEL};
 use marching_particles::field::model::{self, ModelInfo};
-use marching_particles::math::shortest_text;
+use marching_particles::math::{grouped, shortest_text};
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::DEFAULT_CENTRES;
 use marching_particles::sampler::{COUNT_ROOM, SizeMode};
@@ -18,8 +18,8 @@ use marching_particles::session::{
     BoxFaces, Fault, FaultKind, FieldAnswer, FieldRequest, FileRecord, Session, SolidSettings, Source,
 };
 use marching_particles::{
-    Bounds, Error, Field, Format, MeshFile, MeshFormat, Parameter, ParticleFile, Phase, Reach, RecordText,
-    Run, Settings, StopReason, Thickness, Vertices, gallery,
+    Bounds, Error, Field, Format, MeshFile, MeshFormat, Parameter, ParticleFile, Phase, Placement, Reach,
+    RecordText, Run, Settings, StopReason, Thickness, Vertices, gallery,
 };
 use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
@@ -70,13 +70,18 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     if let Some((_, language)) = arguments.print {
         return code::print(arguments, language);
     }
-    let formats = formats(arguments, &arguments.out, Format::of_extension, &Format::ALL)?;
-    let mesh_formats = self::formats(arguments, &arguments.mesh, MeshFormat::of_extension, &MeshFormat::ALL)?;
+    let is_mesh =
+        |extension: &str| MeshFormat::of_extension(extension).map(|_| "--mesh, which has triangles");
+    let is_points = |extension: &str| Format::of_extension(extension).map(|_| "--out, which has points");
+    let formats = formats(arguments, &arguments.out, Format::of_extension, &Format::ALL, is_mesh)?;
+    let mesh_formats =
+        self::formats(arguments, &arguments.mesh, MeshFormat::of_extension, &MeshFormat::ALL, is_points)?;
     let is_piped = arguments.out.iter().chain(&arguments.mesh).any(|path| is_standard(path));
     if arguments.format.is_some() && !is_piped {
         return Err(Failure::Usage("--format is for standard output: --out - or --mesh -".to_owned()));
     }
     check_vertices(arguments)?;
+    check_placement(arguments)?;
     let records: Vec<PathBuf> = (arguments.out.iter().zip(&formats))
         .filter(|(path, format)| **format == Format::Csv && !is_standard(path))
         .map(|(path, _)| record_path(path))
@@ -243,12 +248,26 @@ fn check_vertices(arguments: &SampleArguments) -> Result<(), Failure> {
     )))
 }
 
-/// Format of each file. It is checked before any work is done.
+/// Refuses a scale, a unit or an axis without a file that it is for.
+fn check_placement(arguments: &SampleArguments) -> Result<(), Failure> {
+    let usual = Placement::default();
+    let Placement { scale, unit, up } = arguments.placement();
+    let given = [("--scale", scale != usual.scale), ("--unit", unit != usual.unit), ("--up", up != usual.up)];
+    match given.into_iter().find(|(_, is_given)| *is_given) {
+        Some((option, _)) if arguments.mesh.is_empty() => Err(Failure::Usage(format!(
+            "{option} is for the files of --mesh: the points of --out keep the units of the formula"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Format of each file, which another `option` may know. It is checked before any work is done.
 fn formats<T>(
     arguments: &SampleArguments,
     paths: &[PathBuf],
     of_extension: impl Fn(&str) -> Option<T>,
     all: &[(&str, T)],
+    of_other: impl Fn(&str) -> Option<&'static str>,
 ) -> Result<Vec<T>, Failure> {
     paths
         .iter()
@@ -256,10 +275,13 @@ fn formats<T>(
             of_extension(&extension(arguments, path)).ok_or_else(|| {
                 let known: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
                 let known = known.join(", ");
-                Failure::Usage(if is_standard(path) {
+                let name = path.display();
+                Failure::Usage(if let Some(option) = of_other(&extension(arguments, path)) {
+                    format!("{name} is a file of {option}: known here are {known}")
+                } else if is_standard(path) {
                     format!("standard output takes its format from --format; known here are {known}")
                 } else {
-                    format!("{} has no extension that names a format; known are {known}", path.display())
+                    format!("{name} has no extension that names a format; known are {known}")
                 })
             })
         })
@@ -292,6 +314,15 @@ fn fit_points(arguments: &SurfaceArguments, quiet: bool) -> Result<Option<Fit>, 
             return Err(Failure::Usage(
                 "parameters are for formulas: a model from points has none, but as an operand of one \
                  (--formula \"max(model, z - h)\")"
+                    .into(),
+            ));
+        }
+        _ if arguments.beyond_points.is_some()
+            && (arguments.points.is_none() || arguments.formula.is_some()) =>
+        {
+            return Err(Failure::Usage(
+                "--beyond-points is for --points by themselves: as an operand of a formula they have all of \
+                 their surface"
                     .into(),
             ));
         }
@@ -426,7 +457,9 @@ fn refused_field(arguments: &SurfaceArguments, fault: Fault) -> Failure {
 fn unknown_surface(id: &str) -> String {
     let surfaces = gallery::SURFACES.iter().map(|surface| surface.id);
     let known = surfaces.chain(model::MODELS.iter().map(|model| model.id));
+    let meant: Vec<String> = gallery::by_word(id).map(|surface| format!("`{}`", surface.id)).collect();
     match formula::similar(id, known) {
+        _ if !meant.is_empty() => format!("there is no surface `{id}`: did you mean {}?", meant.join(" or ")),
         Some(guess) => format!("there is no surface `{id}`: did you mean `{guess}`?"),
         None => format!("there is no surface `{id}`; `marching-particles surfaces` lists them"),
     }
@@ -456,8 +489,15 @@ fn step_to_end(run: &mut Run<Source>, seconds: &mut Seconds, bar: &ProgressBar) 
                 Phase::Relaxation => {
                     format!("relaxation {}/{}", progress.relax_step, progress.relax_steps)
                 }
-                Phase::Refinement => format!("refining {} particles", progress.particles),
-                _ => format!("level {}, {} particles", progress.level, progress.particles),
+                Phase::Refinement => format!("refining {} particles", grouped(progress.particles)),
+                _ => {
+                    let attempt = match progress.attempt {
+                        1 => String::new(),
+                        attempt => format!("attempt {attempt}, "),
+                    };
+                    let particles = grouped(progress.particles);
+                    format!("{attempt}level {}, {particles} particles", progress.level)
+                }
             });
         }
         steps = steps.wrapping_add(1);

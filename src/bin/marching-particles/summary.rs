@@ -4,7 +4,7 @@ use crate::outcome::{MeshCounts, Outcome, Porosity};
 use marching_particles::field::model::{ModelInfo, NormalSource};
 use marching_particles::math::{counted, grouped, significant};
 use marching_particles::session::{ReportRow, describe};
-use marching_particles::{Cut, Inside, Severity};
+use marching_particles::{Cut, Inside, Severity, Thickness};
 use serde_json::Value;
 use std::io::{self, Write};
 
@@ -20,12 +20,18 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
         None => writeln!(out, "{}: {}", outcome.surface.as_deref().unwrap_or("formula"), outcome.formula)?,
     }
     if !outcome.parameters.is_empty() {
-        let values: Vec<String> =
-            outcome.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        let values: Vec<String> = outcome
+            .parameters
+            .iter()
+            .map(|(name, value)| format!("{name} = {}", significant(*value)))
+            .collect();
         writeln!(out, "{}", values.join(", "))?;
     }
     if let Some(thickness) = &outcome.thickness {
-        write!(out, "sheet of thickness {thickness}")?;
+        match thickness {
+            Thickness::Number(number) => write!(out, "sheet of thickness {}", significant(*number))?,
+            Thickness::Formula(text) => write!(out, "sheet of thickness {text}")?,
+        }
         match outcome.porosity {
             Some(Porosity { wanted, reached: Some(reached) }) => {
                 let [wanted, reached] = [wanted, reached].map(|share| significant(100.0 * share));

@@ -195,6 +195,14 @@ impl Patches for CombinationEvaluator<'_> {
         2 * self.parts[part].branch_at(p) + part as u32
     }
 
+    fn has_limits(&mut self) -> bool {
+        self.field.is_limited
+    }
+
+    fn is_limit(&mut self, branch: u32) -> bool {
+        self.field.is_limited && !branch.is_multiple_of(2)
+    }
+
     fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
         /// Largest box, as a share of the diagonal of the box of the run, of which one point tells
         /// enough.

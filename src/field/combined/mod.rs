@@ -129,7 +129,14 @@ where
 }
 
 fn shared<A: IntoField<K, Field: 'static>, K>(given: A) -> Arc<dyn Field> {
-    Arc::new(given.into_field())
+    let field = given.into_field();
+    field.operand().unwrap_or_else(|| Arc::new(field))
+}
+
+/// The surface of a field, which ends where another field becomes positive.
+pub(super) fn limited(surface: Arc<dyn Field>, limit: Arc<dyn Field>) -> Arc<dyn Creased> {
+    let whole = Combination::new(Rule::Greatest, vec![surface, limit]);
+    Arc::new(Combination { is_limited: true, ..whole })
 }
 
 pub(super) fn least(a: Arc<dyn Field>, b: Arc<dyn Field>) -> Arc<dyn Field> {
@@ -165,11 +172,13 @@ struct Combination {
     /// Pairs of a branch of the first part and one of the second that meet without an edge
     /// somewhere, as far as that has been looked for.
     seams: Vec<[u32; 2]>,
+    /// Whether the zeros of the second part are no part of the surface, which ends at them.
+    is_limited: bool,
 }
 
 impl Combination {
     fn new(rule: Rule, parts: Vec<Arc<dyn Field>>) -> Self {
-        Self { rule, parts, seams: Vec::new() }
+        Self { rule, parts, seams: Vec::new(), is_limited: false }
     }
 
     fn is_extreme(&self) -> bool {
@@ -267,6 +276,6 @@ impl Creased for Combination {
             rule => rule,
         };
         let parts = self.parts.iter().map(|part| turned(part, is_negative, shift)).collect();
-        Arc::new(Self::new(rule, parts))
+        Arc::new(Self { is_limited: self.is_limited, ..Self::new(rule, parts) })
     }
 }

@@ -16,6 +16,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::symmetric([1.25, 1.05, 0.85]),
         degree: Some(2),
         genus: Some(0),
+        words: "egg potato pill rugby ball",
         story: "A sphere stretched by three different factors, the simplest closed surface whose \
                 curvature varies from point to point. At each of its four umbilics the two principal \
                 curvatures agree.",
@@ -30,6 +31,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::cube(1.25),
         degree: Some(2),
         genus: Some(0),
+        words: "ball globe bubble planet",
         story: "All points at one distance from a centre: the closed surface that holds the most volume \
                 for its area. No lattice of six neighbours covers it, because the defects of valence \
                 must add up to twelve.",
@@ -47,6 +49,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::symmetric([1.65, 1.65, 0.55]),
         degree: Some(4),
         genus: Some(1),
+        words: "donut doughnut ring tyre tire bagel",
         story: "A circle of radius r carried around an axis at distance R; it is dome-shaped on the \
                 outside and saddle-shaped on the inside. Its Euler number is zero, so that a covering \
                 with six neighbours everywhere is possible.",
@@ -64,6 +67,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds { min: [-2.35, -1.82, -1.35], max: [1.6, 1.82, 1.35] },
         degree: Some(4),
         genus: Some(1),
+        words: "donut doughnut ring lopsided",
         story: "A torus seen in a spherical mirror: the tube swells on one side and narrows on the \
                 other. All its lines of curvature are circles, which Charles Dupin found around 1802, \
                 while still a student.",
@@ -78,6 +82,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::cube(2.5),
         degree: Some(4),
         genus: Some(5),
+        words: "dice block holes",
         story: "Eight balls at the corners of a cube, joined along its twelve edges to a surface of \
                 genus five. Raise c past 12.5 and the bridges break.",
         source: "É. Goursat, Annales scientifiques de l'École normale supérieure 4, 1887",
@@ -93,6 +98,7 @@ pub(super) const SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::symmetric([1.1, 1.1, 1.2]),
         genus: Some(0),
+        words: "box cube cushion soap rounded",
         story: "The sphere's formula with another exponent: 2 gives an ellipsoid, and growing exponents \
                 turn it into a box with rounded edges. The designer and poet Piet Hein made the form \
                 popular in the 1960s.",
@@ -107,6 +113,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::symmetric([1.2, 0.72, 0.28]),
         degree: Some(8),
         genus: Some(2),
+        words: "pretzel eight handles donut doughnut",
         story: "A plane figure of eight, Gerono's lemniscate, thickened until it is the skin of a body \
                 with two holes. Squaring a curve's equation and adding z² does the same for any plane \
                 curve.",
@@ -121,6 +128,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::cube(3.0),
         degree: Some(4),
         genus: Some(3),
+        words: "tetrahedron pyramid",
         story: "Four balls joined along the six edges of a tetrahedron, which leaves three handles. At t = 0 \
                 they only touch, in six cone points, and below there are four seeds for four components.",
         source: "É. Goursat, Annales scientifiques de l'École normale supérieure 4, 1887",
@@ -137,6 +145,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::cube(1.45),
         degree: Some(12),
         genus: Some(13),
+        words: "cube cage lattice frame",
         story: "Six rings, one on each face of a cube, thick enough to melt together where they come \
                 close. With the first settings it has genus thirteen; thin the rings and it falls apart \
                 into six tori.",
@@ -153,6 +162,7 @@ pub(super) const SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::cube(0.95),
         genus: Some(5),
+        words: "nut part machine bracket cad drill hole csg washer",
         story: "A cube cut to a ball and drilled along three axes: constructive solid geometry with \
                 every sharp edge replaced by a smooth blend of width k. The crossing drill holes make \
                 its genus five.",
@@ -166,6 +176,7 @@ pub(super) const SURFACES: &[Surface] = &[
         parameters: &[parameter("t", "Level", 0.0, [-0.8, 0.8, 0.01])],
         bounds: Bounds::cube(1.05),
         degree: Some(6),
+        words: "chebyshev many holes",
         story: "The sum of three Chebyshev polynomials of degree six, whose even waves make a lattice of \
                 bodies joined by thin necks. Sergei Chmutov used such sums in 1992 to build surfaces with \
                 very many cone points, which open here as t leaves an odd number.",
@@ -182,6 +193,7 @@ pub(super) const SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::cube(1.2),
         genus: Some(0),
+        words: "bumpy golf ball waves noise planet asteroid",
         story: "A sphere whose distance from the centre swings between 1 − a and 1 + a. Its curvature grows \
                 with the square of n, so it shows well what adaptive sizes are for.",
         source: "Made for this gallery",

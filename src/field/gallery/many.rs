@@ -15,6 +15,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::symmetric([1.7, 1.2, 1.2]),
         degree: Some(4),
         genus: Some(0),
+        words: "peanut bone dumbbell",
         story: "The points whose distances from two foci have the constant product b². For b just above \
                 a it has a waist; at b = a that shrinks to a point, and below there are two eggs.",
         source: "E. W. Weisstein, Cassini Surface, MathWorld",
@@ -30,6 +31,7 @@ pub(super) const SURFACES: &[Surface] = &[
         ],
         bounds: Bounds { min: [-1.3, -1.6, -0.85], max: [1.7, 1.6, 0.85] },
         genus: Some(0),
+        words: "blobs drops water balls",
         story: "Three bells of density and the surface where they add up to t: pull the centres apart \
                 and the drops part. James Blinn introduced such blobs in 1982 to draw molecules.",
         source: "J. F. Blinn, A generalization of algebraic surface drawing, ACM Transactions on Graphics 1(3), 1982",
@@ -44,6 +46,7 @@ pub(super) const SURFACES: &[Surface] = &[
             parameter("r", "Radius of the tubes", 0.26, [0.08, 0.28, 0.01]),
         ],
         bounds: Bounds::symmetric([1.65, 1.2, 1.2]),
+        words: "knot chain links hopf jewellery",
         story: "Two tori, each through the hole of the other: a Hopf link. The smaller of two distances \
                 joins two bodies without a blend, and no front can pass from one ring to the other.",
         source: "H. Hopf, Über die Abbildungen der dreidimensionalen Sphäre auf die Kugelfläche, Mathematische Annalen 104, 1931",
@@ -55,6 +58,7 @@ pub(super) const SURFACES: &[Surface] = &[
         formula: "t = cos(x) + cos(y) + cos(z)",
         parameters: &[parameter("t", "Level", 1.25, [1.15, 2.8, 0.01])],
         bounds: Bounds::cube(8.9),
+        words: "crystal atoms grid packing",
         story: "The formula of Schwarz P at a level above one, where the chambers have come apart: 27 equal \
                 bodies, and 27 seeds. Each of them is closed, so their Euler numbers add up to 54.",
         source: "H. G. von Schnering and R. Nesper, Nodal surfaces of Fourier series, Zeitschrift für Physik B 83, 1991",
@@ -67,6 +71,7 @@ pub(super) const SURFACES: &[Surface] = &[
         parameters: &[parameter("b", "Ratio of the radii", 0.8, [0.6, 0.95, 0.005])],
         bounds: Bounds::cube(1.1),
         degree: Some(6),
+        words: "onion shells hollow",
         story: "Three spheres about one centre, by a product of their formulas. Raise b and they become thin \
                 sheets: particles of one sheet must not answer for those of the next, although they are \
                 close.",

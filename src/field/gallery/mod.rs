@@ -38,6 +38,9 @@ pub struct Surface {
     /// Whether the surface with the default parameters has no singular point.
     #[serde(skip)]
     pub smooth: bool,
+    /// Words by which people look for the surface and that its name, formula and story do not have,
+    /// in lower case, with spaces between them.
+    pub words: &'static str,
     /// Two sentences about the surface.
     pub story: &'static str,
     /// Reference to a text about the surface.
@@ -66,6 +69,12 @@ impl Surface {
     }
 }
 
+/// The surfaces that are looked for by a word which is not their name.
+pub fn by_word(word: &str) -> impl Iterator<Item = &'static Surface> {
+    let word = word.to_lowercase();
+    SURFACES.iter().filter(move |surface| surface.words.split(' ').any(|own| own == word))
+}
+
 /// Surface with the identifier `id`.
 #[must_use]
 pub fn find(id: &str) -> Option<&'static Surface> {
@@ -92,6 +101,7 @@ const OPEN: Surface = Surface {
     closed: false,
     genus: None,
     smooth: true,
+    words: "",
     story: "",
     source: "",
 };

@@ -13,6 +13,7 @@ pub(super) const SURFACES: &[Surface] = &[
         degree: Some(6),
         genus: Some(0),
         smooth: false,
+        words: "love valentine",
         story: "Gabriel Taubin's sextic of the early 1990s, made to try out the drawing of implicit \
                 surfaces. The gradient vanishes at the dimple and at the tip, which makes both of them \
                 hard for any method that follows it.",
@@ -27,6 +28,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::cube(1.6),
         degree: Some(3),
         smooth: false,
+        words: "cubic nodes tetrahedron",
         story: "The cubic surface with four cone points, the most that a cubic can have; nine straight \
                 lines lie on it. Move t off 1 and the points open or pinch off.",
         source: "A. Cayley, A memoir on cubic surfaces, Philosophical Transactions of the Royal Society 159, 1869",
@@ -40,6 +42,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::symmetric([0.8, 0.8, 1.1]),
         degree: Some(4),
         smooth: false,
+        words: "hourglass drops",
         story: "An eight turned about its axis: two drops that touch in one cone point. One particle \
                 stands there for both, and a front grows over each drop from it.",
         source: "H. Hauser, Gallery of algebraic surfaces, University of Vienna",
@@ -53,6 +56,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds { min: [-0.1, -0.6, -0.6], max: [1.1, 0.6, 0.6] },
         degree: Some(4),
         smooth: false,
+        words: "pear drop teardrop onion",
         story: "A pear, or a drop that is about to fall, with a cusp instead of a cone at its tip. There the \
                 surface becomes thinner than any particle, and the proof that every component was found \
                 stays open.",
@@ -67,6 +71,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::cube(2.6),
         degree: Some(4),
         smooth: false,
+        words: "nodes algebraic",
         story: "A quartic surface with sixteen cone points, the most possible, built from a sphere of \
                 radius mu and the four planes of a tetrahedron. Ernst Kummer met the family in 1864 \
                 while studying bundles of light rays.",
@@ -81,6 +86,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::cube(1.9),
         degree: Some(6),
         smooth: false,
+        words: "star icosahedron world record nodes",
         story: "65 cone points, arranged with the symmetry of an icosahedron, fifteen of them at \
                 infinity: no surface of degree six has more. Wolf Barth found it in 1996, half a \
                 century after a supposed proof that 52 was the limit.",
@@ -95,6 +101,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::cube(0.55),
         degree: Some(4),
         smooth: false,
+        words: "steiner projective plane",
         story: "Jakob Steiner's model, found in Rome in 1844, of the projective plane: it crosses itself \
                 along three lines, which meet in a triple point. The gradient vanishes on the lines, so \
                 particles stop beside them and warnings say so.",
@@ -108,6 +115,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds { min: [-3.6, -3.2, -4.6], max: [3.6, 5.2, 4.6] },
         degree: Some(6),
         smooth: false,
+        words: "bottle one-sided mobius möbius",
         story: "A closed surface with one side, which in space has to pass through itself. On the curve \
                 of self-crossing the gradient vanishes: no method can place particles there by following \
                 it, and this one says so.",

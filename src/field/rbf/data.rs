@@ -1,12 +1,17 @@
 //! Centres and coefficients, their encoding as bytes, and the field in double precision.
 
+use super::border::{Ball, Border};
 use crate::field::Jet;
-use crate::math::Sym3;
+use crate::math::{Bounds, Sym3};
 use core::array;
 use glam::{DVec3, Vec3};
 
 /// First bytes of the encoding, with its version.
 const MAGIC: [u8; 8] = *b"mp-hrbf1";
+/// First bytes of the encoding of centres with a border.
+const MAGIC_WITH_BORDER: [u8; 8] = *b"mp-hrbf2";
+/// Number of doubles of a ball of the border: centre, radius.
+const OF_BALL: usize = 4;
 /// Number of doubles per centre: position, α, β.
 const NUMBERS: usize = 7;
 /// Number of points that are evaluated together in double precision: two SIMD registers of
@@ -14,7 +19,8 @@ const NUMBERS: usize = 7;
 const QUAD: usize = 4;
 
 /// Centres and coefficients of f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³. The three
-/// lists have equal lengths.
+/// lists have equal lengths. With them comes the border of the points, where the surface goes on
+/// beyond it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RbfData {
     /// Centres cⱼ.
@@ -23,6 +29,8 @@ pub struct RbfData {
     pub alpha: Vec<f64>,
     /// Coefficients βⱼ.
     pub beta: Vec<[f64; 3]>,
+    /// The border of the points, if the surface goes on beyond it.
+    pub border: Option<Border>,
 }
 
 /// Why the data does not describe a field.
@@ -86,13 +94,21 @@ impl RbfData {
     }
 
     /// Encodes the data as bytes: eight magic bytes, then seven little-endian doubles per centre.
+    /// Before the centres stand the border's, if there is one: the number of its balls, the corners
+    /// of its box, and four doubles per ball.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = MAGIC.to_vec();
-        for j in 0..self.centres.len() {
-            bytes.extend(self.numbers(j).iter().flat_map(|number| number.to_le_bytes()));
+        let mut numbers = Vec::new();
+        if let Some(border) = &self.border {
+            numbers.push(border.balls().len() as f64);
+            numbers.extend(border.bounds().min.into_iter().chain(border.bounds().max));
+            for Ball { centre, radius } in border.balls() {
+                numbers.extend([centre.x, centre.y, centre.z, *radius]);
+            }
         }
-        bytes
+        numbers.extend((0..self.centres.len()).flat_map(|j| self.numbers(j)));
+        let magic = if self.border.is_some() { MAGIC_WITH_BORDER } else { MAGIC };
+        magic.into_iter().chain(numbers.into_iter().flat_map(f64::to_le_bytes)).collect()
     }
 
     /// Decodes and checks bytes from [`RbfData::to_bytes`].
@@ -101,15 +117,20 @@ impl RbfData {
     ///
     /// If the bytes have another format, or if the data fails [`RbfData::check`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, DataError> {
-        let body = bytes.strip_prefix(&MAGIC).ok_or(DataError::Bytes)?;
+        let (magic, body) = bytes.split_first_chunk().ok_or(DataError::Bytes)?;
         let (numbers, rest) = body.as_chunks::<{ size_of::<f64>() }>();
+        let numbers: Vec<f64> = numbers.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
+        let (border, numbers) = match *magic {
+            MAGIC => (None, numbers.as_slice()),
+            MAGIC_WITH_BORDER => border_of(&numbers).ok_or(DataError::Bytes)?,
+            _ => return Err(DataError::Bytes),
+        };
         let (rows, short) = numbers.as_chunks::<NUMBERS>();
         if !rest.is_empty() || !short.is_empty() {
             return Err(DataError::Bytes);
         }
-        let mut data = Self::default();
-        for row in rows {
-            let [x, y, z, a, u, v, w] = row.map(f64::from_le_bytes);
+        let mut data = Self { border, ..Self::default() };
+        for &[x, y, z, a, u, v, w] in rows {
             data.centres.push([x, y, z]);
             data.alpha.push(a);
             data.beta.push([u, v, w]);
@@ -215,4 +236,13 @@ impl RbfData {
         }
         sums
     }
+}
+
+/// The border at the start of the numbers of an encoding, and the numbers behind it.
+fn border_of(numbers: &[f64]) -> Option<(Option<Border>, &[f64])> {
+    let (&[count, a, b, c, d, e, f], rest) = numbers.split_first_chunk()?;
+    let (balls, rest) = rest.split_at_checked(OF_BALL.checked_mul(count as usize)?)?;
+    let ball = |&[x, y, z, radius]: &[f64; OF_BALL]| Ball { centre: DVec3::new(x, y, z), radius };
+    let balls = balls.as_chunks().0.iter().map(ball).collect();
+    Some((Some(Border::new(balls, Bounds { min: [a, b, c], max: [d, e, f] })?), rest))
 }

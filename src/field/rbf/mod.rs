@@ -5,6 +5,7 @@
 //! the coefficients from the conditions f = 0 and ∇f = n at points. The models of the paper (§6)
 //! are fields of this kind.
 
+mod border;
 mod coefficients;
 mod data;
 mod frame;
@@ -13,13 +14,16 @@ mod pulls;
 mod taylor;
 mod tree;
 
+pub use border::{Ball, Border};
 pub use data::{DataError, RbfData};
 pub use frame::CentredFrame;
 pub(crate) use pulls::pulled_box;
 pub use pulls::{LONGEST_PULL, Pull};
 
-use super::{Evaluator, Field, Frame, Jet, Pointwise};
+use super::combined::limited;
+use super::{Creased, Evaluator, Field, Frame, Jet, Pointwise};
 use crate::math::Sym3;
+use core::fmt::{self, Debug, Formatter};
 use glam::{DVec3, Vec3};
 use pulls::Pulls;
 use std::sync::Arc;
@@ -33,11 +37,26 @@ use std::sync::Arc;
 /// The value is that of the sum in double precision to about 10⁻⁶ of the model's size, and it jumps
 /// by as much between cells. The Hessian has no limit at a centre with β ≠ 0; at the centre itself
 /// it is the sum over the other centres.
-#[derive(Clone, Debug)]
+///
+/// Its surface goes on where there are no points, or, [trimmed](RbfField::trimmed), it ends at
+/// their border.
+#[derive(Clone)]
 pub struct RbfField {
     data: Arc<RbfData>,
     tree: Arc<tree::CellTree>,
     pulls: Pulls,
+    /// The surface that ends at the border of the points, if this one does.
+    trimmed: Option<Arc<dyn Creased>>,
+}
+
+impl Debug for RbfField {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let is_trimmed = self.trimmed.is_some();
+        f.debug_struct("RbfField")
+            .field("data", &self.data)
+            .field("is_trimmed", &is_trimmed)
+            .finish_non_exhaustive()
+    }
 }
 
 impl RbfField {
@@ -51,7 +70,30 @@ impl RbfField {
         let data = data.into();
         data.check()?;
         let tree = Arc::new(tree::CellTree::new(&data));
-        Ok(Self { data, tree, pulls: Pulls::default() })
+        Ok(Self { data, tree, pulls: Pulls::default(), trimmed: None })
+    }
+
+    /// This field with a surface that ends at the border of its points, if that has more than they
+    /// tell.
+    #[must_use]
+    pub fn trimmed(mut self) -> Self {
+        if let Some(border) = &self.data.border {
+            let border = PulledBorder { border: border.clone(), pulls: self.pulls.clone() };
+            self.trimmed = Some(limited(Arc::new(self.clone().untrimmed()), Arc::new(border)));
+        }
+        self
+    }
+
+    /// This field with a surface that goes on where there are no points.
+    #[must_use]
+    pub fn untrimmed(self) -> Self {
+        Self { trimmed: None, ..self }
+    }
+
+    /// Whether the surface ends at the border of its points.
+    #[must_use]
+    pub fn is_trimmed(&self) -> bool {
+        self.trimmed.is_some()
     }
 
     /// Makes these pulls on the surface of the centres, in the place of those before.
@@ -63,6 +105,9 @@ impl RbfField {
     #[doc(hidden)]
     pub fn pull(&mut self, pulls: &[Pull]) -> Result<(), DataError> {
         self.pulls = Pulls::new(pulls)?;
+        if self.is_trimmed() {
+            *self = self.clone().trimmed();
+        }
         Ok(())
     }
 
@@ -90,13 +135,46 @@ impl Field for RbfField {
     }
 
     fn jet(&self, p: DVec3) -> Jet {
+        if let Some(trimmed) = &self.trimmed {
+            return trimmed.jet(p);
+        }
         let mut jet = self.data.jet(self.pulls.back(p));
         self.pulls.pull_back(p, &mut jet);
         jet
     }
 
     fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
-        Box::new(RbfEvaluator { field: self, frame, places: Vec::new() })
+        match &self.trimmed {
+            Some(trimmed) => trimmed.evaluator(frame),
+            None => Box::new(RbfEvaluator { field: self, frame, places: Vec::new() }),
+        }
+    }
+
+    fn creased(&self) -> Option<&dyn Creased> {
+        self.trimmed.as_deref()
+    }
+
+    fn operand(&self) -> Option<Arc<dyn Field>> {
+        self.is_trimmed().then(|| Arc::new(self.clone().untrimmed()) as Arc<dyn Field>)
+    }
+}
+
+/// The border of the points of a model, which the pulls on its surface move.
+struct PulledBorder {
+    border: Border,
+    pulls: Pulls,
+}
+
+impl Field for PulledBorder {
+    fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
+        let jet = self.jet(p);
+        (jet.value, jet.gradient)
+    }
+
+    fn jet(&self, p: DVec3) -> Jet {
+        let mut jet = self.border.jet(self.pulls.back(p));
+        self.pulls.pull_back(p, &mut jet);
+        jet
     }
 }
 
@@ -112,7 +190,7 @@ impl RbfEvaluator<'_> {
     /// Calls `store` with the index of each point and with the first numbers of f, ∇f and ∇∇f at
     /// it, before they are scaled.
     fn sums<const N: usize>(&mut self, points: &[Vec3], store: impl FnMut(usize, [f32; N])) {
-        let Self { field: RbfField { data, tree, pulls }, frame, places } = self;
+        let Self { field: RbfField { data, tree, pulls, .. }, frame, places } = self;
         let pulls = Some(pulls).filter(|pulls| !pulls.list().is_empty());
         let points = match pulls {
             None => points,

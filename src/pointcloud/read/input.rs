@@ -93,6 +93,12 @@ impl<'a> Input<'a> {
         core::iter::from_fn(|| self.line()).find(|line| !line.trim_ascii().is_empty())
     }
 
+    /// Number of lines that are left and not blank.
+    pub(super) fn lines_with_text(&self) -> u64 {
+        let lines = self.bytes[self.at..].split(|byte| matches!(byte, b'\n' | b'\r'));
+        lines.filter(|line| !line.trim_ascii().is_empty()).count() as u64
+    }
+
     /// Consumes `count` bytes. If fewer remain, there is none, and nothing is consumed.
     pub(super) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
         let bytes = self.bytes[self.at..].get(..count)?;

@@ -1,5 +1,9 @@
 //! Reader of PLY files, with any elements and properties in any order, as text or binary in either
 //! byte order.
+//!
+//! A row of a text is a line where there are as many lines as rows: a line that is too short is
+//! told then, and what is left of one that is too long is skipped. Otherwise lines mean nothing,
+//! and the numbers follow each other.
 
 use super::ReadError;
 use super::input::{COMPONENTS, Input, number, quoted};
@@ -13,13 +17,18 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
     let end = elements.iter().rposition(Element::is_used).map_or(0, |last| last + 1);
     let vertices = elements.iter().find(|element| element.is_vertex()).map_or(0, |vertex| vertex.count);
     let mut corners = Vec::new();
+    let rows = elements.iter().filter(|element| !element.properties.is_empty());
+    let rows = rows.fold(0_u64, |sum, element| sum.saturating_add(element.count));
+    let are_lines = encoding == Encoding::Text && input.lines_with_text() == rows;
+    let mut line: &[u8] = b"";
     for element in elements[..end].iter().filter(|element| !element.properties.is_empty()) {
         if encoding != Encoding::Text {
             input.begin_records(&element.name);
         }
         let has_normal = element.has_components(3..6);
         for _ in 0..element.count {
-            let mut row = PlyRow::begin(input, encoding, element)?;
+            let left = if are_lines { b"" } else { line };
+            let mut row = PlyRow::begin(input, encoding, element, are_lines, left)?;
             let mut values = [0.0; COMPONENTS.len()];
             corners.clear();
             for property in &element.properties {
@@ -37,6 +46,7 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
                     }
                 }
             }
+            line = row.line;
             if element.is_vertex() {
                 mesh.add_point(values, has_normal)?;
             }
@@ -52,21 +62,39 @@ struct PlyRow<'r, 'a> {
     input: &'r mut Input<'a>,
     encoding: Encoding,
     element: &'r Element,
+    /// Whether the row is a line.
+    is_line: bool,
     /// The words of the line that are left.
     line: &'a [u8],
 }
 
 impl<'r, 'a> PlyRow<'r, 'a> {
-    fn begin(input: &'r mut Input<'a>, encoding: Encoding, element: &'r Element) -> Result<Self, ReadError> {
+    /// Begins a row with the words of a line that are `left`.
+    fn begin(
+        input: &'r mut Input<'a>,
+        encoding: Encoding,
+        element: &'r Element,
+        is_line: bool,
+        left: &'a [u8],
+    ) -> Result<Self, ReadError> {
         input.begin_record();
-        let line = if encoding == Encoding::Text { input.line_with_text() } else { Some(&b""[..]) };
-        match line {
-            Some(line) => Ok(Self { input, encoding, element, line }),
-            None => Err(input.error(format!(
-                "the file ends before all {} {} rows; it is cut off: export it again",
-                element.count, element.name
-            ))),
+        let mut row = Self { input, encoding, element, is_line, line: left };
+        if is_line {
+            row.take_line()?;
         }
+        Ok(row)
+    }
+
+    /// Goes on with the next line.
+    fn take_line(&mut self) -> Result<(), ReadError> {
+        let Some(line) = self.input.line_with_text() else {
+            return Err(self.input.error(format!(
+                "the file ends before all {} {} rows; it is cut off: export it again",
+                self.element.count, self.element.name
+            )));
+        };
+        self.line = line;
+        Ok(())
     }
 
     /// The next number as it is in the file: a word, or bytes.
@@ -74,6 +102,9 @@ impl<'r, 'a> PlyRow<'r, 'a> {
         if self.encoding != Encoding::Text {
             let cut_off = "the file ends here; it is cut off, or its header is wrong: export it again";
             return self.input.take(scalar.size).ok_or_else(|| self.input.error(cut_off));
+        }
+        if !self.is_line && self.line.trim_ascii().is_empty() {
+            self.take_line()?;
         }
         let line = self.line.trim_ascii_start();
         let end = line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len());

@@ -7,6 +7,7 @@ use super::{ReadError, push};
 use crate::math::median;
 use core::ops::Range;
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// Lengths at which a vector may be a normal that was written with few digits, over that of the
 /// others: of unit normals with one digit after the point each component is off by 0.05 at most,
@@ -52,7 +53,18 @@ fn named(words: &[&[u8]]) -> Option<XyzColumns> {
 pub(super) fn begins_with(line: &[u8]) -> bool {
     let mut words = Vec::new();
     split(line, separator(line), &mut words);
-    words.first().is_some_and(|word| number(word).is_some()) || named(&words).is_some()
+    words.first().is_some_and(|word| number(&with_point(word)).is_some()) || named(&words).is_some()
+}
+
+/// A word between separators, with a decimal point in the place of a decimal comma.
+fn with_point(word: &[u8]) -> Cow<'_, [u8]> {
+    let is_comma = |byte: &u8| *byte == b',';
+    let has_digits = word.split(is_comma).all(|part| part.iter().any(u8::is_ascii_digit));
+    if word.contains(&b'.') || word.iter().filter(|byte| is_comma(byte)).count() != 1 || !has_digits {
+        return Cow::Borrowed(word);
+    }
+    let points = word.iter().map(|&byte| if byte == b',' { b'.' } else { byte });
+    Cow::Owned(points.collect())
 }
 
 /// The character that separates the columns of a line, if it is one of those between which a column
@@ -89,8 +101,8 @@ fn split<'a>(line: &'a [u8], separator: Option<u8>, words: &mut Vec<&'a [u8]>) {
     }
 }
 
-/// Whether the commas of a line are decimal commas: at least three words are separated otherwise,
-/// and one has a comma between digits.
+/// Whether the commas of a line without separators may be decimal commas: at least three words are
+/// separated otherwise, and one has a comma between digits.
 fn has_decimal_commas(line: &[u8]) -> bool {
     /// Number of words that are looked at. A point has three to six, with colours and other columns
     /// some more.
@@ -125,6 +137,9 @@ struct Known {
     told: XyzColumns,
     /// Number of points that the file says it has.
     promised: Option<u64>,
+    /// Whether a coordinate has a decimal comma, and whether one has a decimal point.
+    has_commas: bool,
+    has_points: bool,
 }
 
 impl Known {
@@ -181,11 +196,11 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
         if line.is_empty() {
             continue;
         }
-        if line.contains(&b',') && has_decimal_commas(line) {
-            return Err(input.error("the numbers have decimal commas; write decimal points"));
-        }
         if known.columns.is_empty() {
             known.separator = separator(line);
+        }
+        if known.separator.is_none() && line.contains(&b',') && has_decimal_commas(line) {
+            return Err(input.error("the numbers have decimal commas; write decimal points"));
         }
         split(line, known.separator, &mut words);
         if known.separator == Some(b'\t') && words.len() < known.columns.len() {
@@ -222,12 +237,20 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
         let mut values = [0.0; 6];
         for (word, &component) in words.iter().zip(&known.columns) {
             if let Some(component) = component.map(usize::from) {
-                values[component] = input.coordinate_of(word, input::COMPONENTS[component])?;
+                let number = with_point(word);
+                known.has_commas |= matches!(number, Cow::Owned(_));
+                known.has_points |= word.contains(&b'.');
+                values[component] = input.coordinate_of(&number, input::COMPONENTS[component])?;
             }
+        }
+        if known.has_commas && known.has_points {
+            return Err(
+                input.error("some numbers have a decimal comma, others a point; write decimal points")
+            );
         }
         mesh.add_point(values, known.columns.contains(&Some(5)))?;
         for word in &words[3..3 + others.width] {
-            push(&mut others.values, coordinate_number(word).unwrap_or(f64::NAN))?;
+            push(&mut others.values, coordinate_number(&with_point(word)).unwrap_or(f64::NAN))?;
         }
     }
     if let Some(promised) = known.promised.filter(|&promised| promised != mesh.position.len() as u64) {

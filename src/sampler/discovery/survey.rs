@@ -54,6 +54,8 @@ pub(crate) struct Survey {
     is_limited: bool,
     /// Share of the nodes of the grid at which f has a value.
     pub(crate) defined: f64,
+    /// The values of f in ascending order, where it takes no others.
+    pub(crate) steps: Vec<f64>,
     /// Why the survey has no points, where it has none.
     pub(crate) absence: Absence,
     /// Whether the points come from another search.
@@ -82,6 +84,8 @@ pub(crate) enum Absence {
     Bare,
     /// Nothing of the surface is within its limits.
     Limited,
+    /// f takes a few values only, and jumps between them.
+    Steps,
 }
 
 /// Candidates for points of the surface, and the range of the values on the grid.
@@ -98,6 +102,9 @@ struct Candidates {
     greatest: f32,
     /// Nodes at which f is defined.
     defined: usize,
+    /// Nodes that have been looked at, and those of them at which f is flat.
+    seen: usize,
+    flat: usize,
     /// Edges that the surface may cross twice, until they have been looked at.
     dips: Vec<Dip>,
 }
@@ -113,6 +120,8 @@ impl Candidates {
             least,
             greatest,
             defined: 0,
+            seen: 0,
+            flat: 0,
             dips: Vec::new(),
         }
     }
@@ -145,6 +154,8 @@ impl Candidates {
                 if !here.value.is_finite() {
                     continue;
                 }
+                self.seen += 1;
+                self.flat += usize::from(here.gradient == Vec3::ZERO);
                 let mut crossings = 0;
                 let ends = [
                     (i + 1 < nx).then(|| lower.at(grid, [i + 1, j, z])),
@@ -264,9 +275,14 @@ pub(crate) fn survey(probe: &mut Probe, bounds: &Bounds, dense: Option<u32>) -> 
         core::mem::swap(&mut lower, &mut upper);
     }
     let mut out = Survey { area: found.area, ..Survey::default() };
+    out.defined = found.defined as f64 / (grid.nodes[0] * grid.nodes[1] * layers) as f64;
+    if 2 * found.flat >= found.seen
+        && let Some(steps) = steps(probe.field, bounds)
+    {
+        return Survey { area: 0.0, steps, absence: Absence::Steps, resolution: ulps(bounds), ..out };
+    }
     let spacing = grid.spacing as f32;
     out.gradient_scale = gradient_scale(probe, &found.place, &found.areas);
-    out.defined = found.defined as f64 / (grid.nodes[0] * grid.nodes[1] * layers) as f64;
     let Candidates { place, areas, is_unsure, .. } = &mut found;
     project(probe, bounds, Starts { place, areas, is_unsure, branch: None }, spacing, &mut out);
     if out.position.is_empty() && out.bare.is_none() {
@@ -283,8 +299,75 @@ pub(crate) fn survey(probe: &mut Probe, bounds: &Bounds, dense: Option<u32>) -> 
             None if out.is_limited => Absence::Limited,
             None => found.absence(),
         };
+        if matches!(out.absence, Absence::NoZero | Absence::NotSeen)
+            && let Some(steps) = steps(probe.field, bounds)
+        {
+            (out.steps, out.absence) = (steps, Absence::Steps);
+        }
     }
     out
+}
+
+/// The values of a field, in ascending order, if it takes a few only and jumps between them.
+fn steps(field: &mut dyn Evaluator, bounds: &Bounds) -> Option<Vec<f64>> {
+    /// Points along a side of the grid on which the values are listed. Larger: fewer values that
+    /// are taken in small regions are missed.
+    const SIDE: usize = 16;
+    /// Values that are few. A function of one coordinate alone takes one for each of its sixteen.
+    const MOST: usize = 64;
+    /// Ways between two points along which f is looked at, to tell jumps from steep slopes.
+    const WAYS: usize = 16;
+    /// Values that f may take at a jump alone, as sign does at 0. On a slope each step gives one.
+    const MOST_AT_A_JUMP: usize = 2;
+    let points: Vec<DVec3> = bounds.spread(SIDE).collect();
+    // Adding 0 makes −0 equal to 0.
+    let mut value_at = |p: DVec3| field.value_and_gradient(p).0 + 0.0;
+    let mut values: Vec<f64> = Vec::new();
+    let mut ways: Vec<[(DVec3, f64); 2]> = Vec::new();
+    let mut before = None;
+    for p in points {
+        let value = value_at(p);
+        if !value.is_finite() {
+            continue;
+        }
+        if let Err(at) = values.binary_search_by(|known| known.total_cmp(&value)) {
+            values.insert(at, value);
+            if values.len() > MOST {
+                return None;
+            }
+        }
+        let here = (p, value);
+        ways.extend(before.replace(here).filter(|(_, other)| *other != value).map(|other| [other, here]));
+    }
+    if values.len() < 2 {
+        return None;
+    }
+    for [mut a, mut b] in selection(&ways, WAYS).copied() {
+        let known = values.len();
+        loop {
+            let middle = 0.5 * (a.0 + b.0);
+            if middle == a.0 || middle == b.0 {
+                break;
+            }
+            let value = value_at(middle);
+            if value == a.1 {
+                a.0 = middle;
+                continue;
+            } else if !value.is_finite() {
+                break;
+            }
+            if let Err(at) = values.binary_search_by(|known| known.total_cmp(&value)) {
+                values.insert(at, value);
+                if values.len() > known + MOST_AT_A_JUMP {
+                    return None;
+                }
+            }
+            b = (middle, value);
+        }
+    }
+    let frame = field.frame();
+    let given = |value: f64| value / f64::from(frame.scale) * frame.double.unwrap_or(1.0);
+    Some(values.into_iter().map(given).collect())
 }
 
 /// Candidates that are moved onto the surface.

@@ -202,11 +202,11 @@ export type FieldRequest = {
 };
 
 /** The figures of a set of particles, one number per property; NaN (null in JSON) where undefined.
-* Lengths are over d_hex unless said otherwise. JSON has all figures side by side. */
+* Lengths are over `ideal_spacing` unless said otherwise. JSON has all figures side by side. */
 export type Figures = {
   /** Spacing of a perfect hexagonal lattice of as many points on the same area, √(2A/(√3 N)), in
   * the field's units. */
-  d_hex: number,
+  ideal_spacing: number,
   /** Area, as given or of the triangles found, in the field's units. */
   area: number,
   /** Points that differ from an earlier one by no more than rounding; dropped before the
@@ -214,7 +214,8 @@ export type Figures = {
   dup: number,
   /** Points with a non-finite coordinate; left out of everything. */
   not_finite: number,
-  /** Points within 4 d_hex of the border of a clipped surface, left out of the per-point figures. */
+  /** Points within 4 ideal spacings of the border of a clipped surface, left out of the per-point
+  * figures. */
   boundary_excluded: number,
   /** Largest first-order distance |f|/|∇f| to the surface. */
   err_max: number,
@@ -231,18 +232,18 @@ export type Figures = {
   /** Mean nearest-neighbour distance. */
   nn_mean: number,
   /** Standard deviation of the nearest-neighbour distance over its mean. */
-  nn_cv: number,
+  spacing_variation: number,
   /** Smallest over mean nearest-neighbour distance. */
   nn_ratio: number,
   /** Normalised Poisson-disk radius: `nn_min` under its usual name. */
   rho: number,
   /** First percentile of the nearest-neighbour distance. */
-  rho_1: number,
-  /** Pairs of points nearer than 0.75: over d_hex, as `nn_min`, or of natural neighbours over the
-  * sum of their wanted radii, as `overlap_min`, where those are known. A duplicate is a pair
-  * with the point that it equals. None where there are no distances. */
+  nearest_percentile_1: number,
+  /** Pairs of points nearer than 0.75: over `ideal_spacing`, as `nn_min`, or of natural
+  * neighbours over the sum of their wanted radii, as `overlap_min`, where those are known. A
+  * duplicate is a pair with the point that it equals. None where there are no distances. */
   crowded: number | null,
-  /** Radius of the largest hole over d_hex/√3, that of the perfect lattice: 1 is ideal. */
+  /** Radius of the largest hole over `ideal_spacing`/√3, that of the perfect lattice: 1 is ideal. */
   cover: number,
   /** Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius
   * there, which is the mean of the wanted radii of the points around the hole. One factor
@@ -390,8 +391,9 @@ export type Grip = {
   idle: Array<string>,
 };
 
-/** Histogram of the nearest-neighbour distances over the ideal ones: d_hex, or twice the particle's
-* wanted radius where one is given. Bins are equal, and values outside fall into the outermost. */
+/** Histogram of the nearest-neighbour distances over the ideal ones: the ideal spacing, or twice
+* the particle's wanted radius where one is given. Bins are equal, and values outside fall into
+* the outermost. */
 export type Histogram = {
   /** Lower end of the first bin. */
   min: number,
@@ -968,6 +970,9 @@ export type ModelInfo = {
   farthest: [number, number, number],
   /** The mesh of the file, if it has faces. */
   mesh: GivenMesh | null,
+  /** Share of the area of the fitted surface in its box that lies beyond the border of the
+  * points; 0 where there is no border. */
+  beyond_share: number,
   /** Origin of the normals. */
   normals: NormalSource,
   /** Warnings for the user, as sentences: they go from the bundle that fits a model to the one
@@ -982,7 +987,7 @@ export type NormalSource = "given" | "from_mesh" | "estimated";
 export type Pair = {
   /** Indices of the particles, the smaller one first. */
   particles: [number, number],
-  /** Distance over d_hex or, where there are wanted radii, over their sum. */
+  /** Distance over the ideal spacing or, where there are wanted radii, over their sum. */
   ratio: number,
 };
 
@@ -1046,6 +1051,9 @@ export type Progress = {
   /** Rows of the columns that will stay: one for each particle, or one on each side for those on
   * creases. */
   rows: number,
+  /** Front under way, from 1: each attempt at a wanted number of particles begins anew, with
+  * another radius. */
+  attempt: number,
   /** Generation level under way. */
   level: number,
   /** Level of the refinement under way, 1 the coarse one; 0 in every other phase. */
@@ -1312,6 +1320,9 @@ export type SurfaceEntry = {
   /** Genus with the default parameters; none unless the surface is closed, connected and free of
   * self-intersections. */
   genus: number | null,
+  /** Words by which people look for the surface and that its name, formula and story do not have,
+  * in lower case, with spaces between them. */
+  words: string,
   /** Two sentences about the surface. */
   story: string,
   /** Reference to a text about the surface. */

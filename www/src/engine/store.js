@@ -15,6 +15,7 @@ export const idleProgress = () => ({
   phase: 'idle',
   particles: 0,
   rows: 0,
+  attempt: 1,
   level: 0,
   refine_level: 0,
   refine_levels: 0,

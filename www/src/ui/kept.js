@@ -48,6 +48,12 @@ export function keptOf(engine) {
       end: 'Do not make opposite faces alike',
       act: () => engine.resetSetting('box_cell'),
     });
+  if (settings.beyond_points !== undefined && engine.field.value?.model)
+    kept.push({
+      text: 'Kept beyond its points',
+      end: 'End the surface where its points end',
+      act: () => engine.resetSetting('beyond_points'),
+    });
   if (bounds !== null || settings.box_mode !== undefined)
     kept.push({
       text: engine.enlargement() ? 'Enlarged box' : 'Box set by hand',

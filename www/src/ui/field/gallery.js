@@ -154,8 +154,8 @@ function groupsOf({ surfaces, models }) {
 }
 
 /** Returns whether all words are in what is said of a surface. @param {Entry} entry @param {readonly string[]} words */
-function has({ name, story, formula = '' }, words) {
-  const text = `${name} ${story} ${formula}`.toLowerCase();
+function has({ name, story, formula = '', words: others = '' }, words) {
+  const text = `${name} ${others} ${story} ${formula}`.toLowerCase();
   return words.every((word) => text.includes(word));
 }
 

@@ -1,4 +1,7 @@
-/** The choices of the solid that is made of a surface: closed by the clip box, a sheet of some thickness. */
+/**
+ * The choices of the solid that is made of a surface: closed by the clip box, a sheet of some thickness. Of a model from
+ * points: whether its surface goes on beyond them.
+ */
 import { computed, signal } from '@preact/signals-core';
 import { h, live, marked, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
@@ -10,6 +13,8 @@ const THICKNESS = 'thickness';
 const CLOSED = 'closed';
 const CELL = 'box_cell';
 const PERIODIC = 'periodic';
+const BEYOND = 'beyond_points';
+const KEPT = 'kept';
 const NEGATIVE = 'A thickness is a number from 0 on, in the units of x, y and z, or a formula such as 0.1 + 0.05z.';
 
 /** @param {Engine} engine @param {Description} description */
@@ -37,6 +42,7 @@ export function createSolid(engine, { settings }) {
     );
   const closed = check(FACES, CLOSED, 'Closed');
   const periodic = h('div', { hidden: () => !isClosed() }, check(CELL, PERIODIC, 'Periodic'));
+  const beyond = check(BEYOND, KEPT, 'Beyond points');
   const wrong = signal('');
   const told = uniqueId('thickness');
   const box = h('input', {
@@ -59,7 +65,9 @@ export function createSolid(engine, { settings }) {
     else engine.setSetting(THICKNESS, number ?? text);
   }
   live(box, () => {
-    box.value = String(chosen.value[THICKNESS] || '');
+    const given = chosen.value[THICKNESS];
+    // What is typed is taken as it is; a number from elsewhere is shown with six digits, and stays what it is.
+    box.value = typeof given === 'number' ? String(Number(given.toPrecision(6)) || '') : (given ?? '');
     wrong.value = '';
   });
   const help = () => ({
@@ -72,11 +80,16 @@ export function createSolid(engine, { settings }) {
       class: 'section solid',
       role: 'group',
       'aria-label': 'Solid',
-      hidden: () => Boolean(engine.field.value?.model),
+      hidden: () => engine.field.value?.model?.beyond_share === 0,
     },
     h(
       'div',
-      { class: 'section-head' },
+      { class: 'section-head', hidden: () => !engine.field.value?.model },
+      explain(beyond, () => about(BEYOND), { side: 'above' }),
+    ),
+    h(
+      'div',
+      { class: 'section-head', hidden: () => Boolean(engine.field.value?.model) },
       explain(closed, help, { side: 'above' }),
       explain(periodic, () => ({ ...about(CELL), title: 'Periodic' }), { side: 'above' }),
       explain(thickness, () => about(THICKNESS), { side: 'above' }),

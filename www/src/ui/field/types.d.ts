@@ -43,5 +43,12 @@ export interface Finding {
   /** the present surface */
   chosen: ReadonlySignal<string | null>;
 }
-export type Entry = { id: string; name: string; story: string; formula?: string; credit?: string };
+export type Entry = {
+  id: string;
+  name: string;
+  story: string;
+  formula?: string;
+  credit?: string;
+  words?: string;
+};
 export type Functions = Description['functions'];

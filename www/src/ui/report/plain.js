@@ -28,7 +28,7 @@ export const PLAIN = [
     help: 'How much the distance between neighbours varies, relative to its mean. A perfect lattice has 0 %.',
     write: (report) => {
       // Particles of many sizes are measured by their own radii.
-      const variation = valueAt(report, 'quality.size_cv') ?? valueAt(report, 'quality.nn_cv');
+      const variation = valueAt(report, 'quality.size_cv') ?? valueAt(report, 'quality.spacing_variation');
       return typeof variation === 'number' ? `±\u202f${percent(variation)}` : MISSING;
     },
   },

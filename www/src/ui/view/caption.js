@@ -23,7 +23,10 @@ export function captionOf(progress, { partial, empty, busy, seconds, steps }) {
     case 'seeding':
       return 'Looking for the surface';
     case 'generation':
-      return busy ? `Level ${formatCount(progress.level)} · ${particles}` : resting();
+      if (!busy) return resting();
+      return progress.attempt > 1
+        ? `Attempt ${formatCount(progress.attempt)}, level ${formatCount(progress.level)} · ${particles}`
+        : `Level ${formatCount(progress.level)} · ${particles}`;
     case 'refinement':
       return busy
         ? `Refining, level ${formatCount(progress.refine_level)} of ${formatCount(progress.refine_levels)} · ${particles}`

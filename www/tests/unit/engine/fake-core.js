@@ -68,6 +68,7 @@ export function fakeCore({
     phase: stop ? 'done' : count < target ? 'generation' : refined_levels ? 'refinement' : 'relaxation',
     particles: count,
     rows: count,
+    attempt: 1,
     level: Math.floor(Math.sqrt(count)),
     refine_level: Math.floor(refined) + 1,
     refine_levels: refined_levels,

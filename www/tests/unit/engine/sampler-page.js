@@ -18,6 +18,7 @@ export const seconds = { seeding: 0.001, generation: 0.002, refinement: 0, relax
 export const progress = (/** @type {number} */ particles, /** @type {any} */ more = {}) => ({
   phase: 'generation',
   particles,
+  attempt: 1,
   level: 1,
   refine_level: 0,
   refine_levels: 0,

@@ -117,14 +117,14 @@ describe('the report', () => {
 
   it('begins with four figures in plain words', () => {
     const plain = (/** @type {object} */ report) => PLAIN.map(({ write }) => write(/** @type {any} */ (report)));
-    const quality = { nn_cv: 0.0732, err_max: 5.3e-5 };
+    const quality = { spacing_variation: 0.0732, err_max: 5.3e-5 };
     expect(plain({ count: 4301, quality, search: 'proven', sampled: { missing: 0 } })).toEqual([
       '4,301',
       '±\u202f7.3\u202f%',
       '0.0053\u202f%',
       'proven',
     ]);
-    const poor = { nn_cv: 0.3, size_cv: 0.081, err_max: 1e-8 };
+    const poor = { spacing_variation: 0.3, size_cv: 0.081, err_max: 1e-8 };
     expect(plain({ count: 1, quality: poor, search: 'searched', sampled: { missing: 2 } })).toEqual([
       '1',
       '±\u202f8.1\u202f%',
