@@ -22,6 +22,12 @@ pub(super) const MIN_FLAT: f32 = 0.2;
 /// Smaller: more particles are in no triangle; larger: a surface that crosses itself gets holes.
 pub(crate) const MAX_LIFT: f32 = 0.35;
 
+/// Two points are collinear with the centre if the sine of the angle between them is at most this.
+/// Rounding in single precision turns the line between two points by 6·10⁻⁸ times their coordinates
+/// over their distance: this holds up to a thousand spacings from the origin. The circle through
+/// three such points is 10⁴ times as wide as they are apart, so no triangle of a mesh is lost.
+const COLLINEAR: f32 = 1e-4;
+
 /// The points of a tree in a box, with their normals.
 #[derive(Default)]
 pub(super) struct BallPoints {
@@ -229,6 +235,11 @@ impl Ball {
         self.nearest_sq = nearest_sq.min_element();
     }
 
+    /// Number of points.
+    pub(super) fn len(&self) -> usize {
+        self.count
+    }
+
     /// The point with a number below [`MOST`], by its place in the tree.
     pub(super) fn index(&self, k: usize) -> u32 {
         self.index[k]
@@ -266,16 +277,21 @@ impl Ball {
 
     /// The point after `from` in the hull of the inverted points: to its left where `side` is 1, to
     /// its right where it is −1; and the square of the diameter of the circle through both and the
-    /// centre. None, and infinite, if there is none within half a turn.
+    /// centre. None, and infinite, if there is none within half a turn, up to [`COLLINEAR`].
     pub(super) fn next(&self, from: usize, side: f32) -> (Option<usize>, f32) {
         let [u, v] = self.flat(from);
+        let over_from_sq = self.distance_sq(from).recip();
         let found = self.least(|block| {
             let [x, y] = [&self.flat[0], &self.flat[1]].map(|row| four(row, block));
+            let distance_sq = four(&self.distance_sq, block);
             let cross = y * (side * u) - x * (side * v);
             // The cotangent of the angle at the point over the chord from the centre to `from`: the
             // circle's centre is half that many chords away from the chord.
-            let cotangent = (four(&self.distance_sq, block) - (x * u + y * v)) / cross;
-            Vec4::select(cross.cmpgt(Vec4::ZERO), cotangent, Vec4::INFINITY)
+            let cotangent = (distance_sq - (x * u + y * v)) / cross;
+            // The sine squared is at most one: no product of two small numbers is rounded to zero.
+            let is_beside = cross.cmpgt(Vec4::ZERO)
+                & ((cross * over_from_sq) * cross).cmpgt(distance_sq * (COLLINEAR * COLLINEAR));
+            Vec4::select(is_beside, cotangent, Vec4::INFINITY)
         });
         let cotangent = found.map_or(f32::INFINITY, |(cotangent, _)| cotangent);
         (found.map(|(_, k)| k), self.distance_sq(from) * (1.0 + cotangent * cotangent))

@@ -104,7 +104,7 @@ struct Ray {
     width_sq: f32,
 }
 
-/// A star under construction; empty where its rays do not close up.
+/// A star under construction; empty only where the centre has no other point on its sheet.
 #[derive(Default)]
 struct Star {
     rays: Vec<Ray>,
@@ -453,19 +453,17 @@ impl Star {
         }
     }
 
-    /// Follows the hull of the inverted points from the nearest one on.
+    /// Follows the hull of the inverted points from the nearest one on, to the left until it
+    /// closes, or else to both sides as far as it goes.
     fn follow(&mut self, ball: &Ball) {
         self.rays.clear();
         let Some(first) = ball.nearest() else { return };
         let mut point = first;
-        loop {
+        // The hull has no more corners than there are points.
+        while self.rays.len() < ball.len() {
             let (mut next, width_sq) = ball.next(point, 1.0);
             if point != first && next.is_some_and(|next| ball.is_between(point, first, next)) {
                 next = Some(first); // Rounding has led past the first one.
-            }
-            if self.rays.len() == NEAR {
-                self.rays.clear();
-                return;
             }
             self.rays.push(Ray { point, width_sq });
             match next {
@@ -474,14 +472,11 @@ impl Star {
                 None => break,
             }
         }
-        // Nothing follows the last one: go on at the other side of the first.
         let left = self.rays.len();
         point = first;
-        while let (Some(next), width_sq) = ball.next(point, -1.0) {
-            if self.rays.len() == NEAR {
-                self.rays.clear();
-                return;
-            }
+        while self.rays.len() < ball.len()
+            && let (Some(next), width_sq) = ball.next(point, -1.0)
+        {
             self.rays.push(Ray { point: next, width_sq });
             point = next;
         }
