@@ -127,7 +127,8 @@ fn refusal(result: Result<(), Halt>) -> Result<Option<Refusal>, Stopped> {
 }
 
 /// Refines the components of a coarse front: brings the few particles into order, and keeps it
-/// while their number is multiplied by four from level to level. Returns the reason, if the front
+/// while their number is multiplied by four from level to level. Each level is held to f itself,
+/// since patches are refined by their own functions. Returns the reason, if the front
 /// is refused.
 async fn refine(desk: &Desk, components: &mut Components) -> Result<Option<Refusal>, Stopped> {
     refusal(make_levels(desk, components).await)
@@ -148,10 +149,14 @@ async fn make_levels(desk: &Desk, components: &mut Components) -> Result<(), Hal
                 desk.until_on(mesh, move |_, mesh, _, left| mesh.put_in_order(&mut rings, left)).await?;
             components.end_level(k, ordered);
         }
-        desk.until_on(components, move |sampler, components, _, left| {
-            sampler.show_level(components, to_come, left)
+        let mut inspected = None;
+        desk.until_on(components, move |sampler, components, probe, left| {
+            if inspected.is_none() {
+                sampler.show_level(components, to_come, left);
+            }
+            sampler.inspect_level(inspected.get_or_insert(0), probe, left)
         })
-        .await?;
+        .await??;
     }
     Ok(())
 }

@@ -12,7 +12,7 @@ use crate::sampler::discovery::survey::Absence;
 use crate::sampler::flow::{BALANCE_EVERY, FlowSurface, Settled};
 use crate::sampler::front::{Front, FrontContext};
 use crate::sampler::phase::{Phase, StopReason};
-use crate::sampler::probe::Probe;
+use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::progress::RefineProgress;
 use crate::sampler::refine::{Coarse, Components, MovingMesh, Next, Refinement, Refusal, SurfaceFacts, Turn};
 use crate::sampler::relaxation::{MoveLimits, Relaxation, RepulsionLaw, Sweep, Swept};
@@ -496,17 +496,46 @@ impl Sampler {
 
     /// Shows the particles of a level that all components have made, whole, so that a run that is
     /// cancelled has all of its particles.
-    pub(super) fn show_level(
-        &mut self,
-        components: &mut Components,
-        to_come: u32,
-        left: &mut u32,
-    ) -> Option<()> {
+    pub(super) fn show_level(&mut self, components: &mut Components, to_come: u32, left: &mut u32) {
         let ladder = self.attempt.refining.as_ref().and_then(|refining| refining.ladder.as_ref());
         self.output.particles = components.particles(to_come, ladder);
         self.output.moved = true;
         *left = left.saturating_sub(self.output.particles.len() as u32);
-        Some(())
+    }
+
+    /// Inspects the particles of a level from number `next` on: whether f is zero at all that are
+    /// on no crease, or where one has been refined over the edge of its patch, which nobody has
+    /// found there.
+    pub(super) fn inspect_level(
+        &mut self,
+        next: &mut usize,
+        probe: &mut Probe,
+        left: &mut u32,
+    ) -> Option<Result<(), Refusal>> {
+        /// Largest distance of a particle from the surface, in radii. It is far above the tolerance
+        /// of the projection; larger: narrower strips beyond an edge are missed.
+        const OFF: f32 = 0.02;
+        let Output { particles, .. } = &self.output;
+        if particles.patch.is_empty() {
+            return Some(Ok(()));
+        }
+        let blur = self.survey.resolution;
+        *next = (*next).max(particles.twins.len());
+        while *next < particles.len() {
+            if *left == 0 {
+                return None;
+            }
+            let end = particles.len().min(*next + BATCH);
+            let (value, gradient) = probe.gradients(&particles.local[*next..end]);
+            for ((row, value), gradient) in (*next..end).zip(value).zip(gradient) {
+                if value.abs() > gradient.length() * (OFF * particles.radius[row] + blur) {
+                    return Some(Err(Refusal::Folded { at: particles.local[row].into() }));
+                }
+            }
+            *next = end;
+            *left = left.saturating_sub(BATCH as u32);
+        }
+        Some(Ok(()))
     }
 
     /// Says whether the refined particles stand; if not, or if the refinement was given up for a
