@@ -1,6 +1,6 @@
 //! Components, borders and Euler number of a list of triangles, counted from the list alone.
 
-use crate::math::NONE;
+use crate::math::{Forest, NONE};
 use crate::slices::{self, LIGHT, MEDIUM, pause};
 use core::ops::Range;
 
@@ -260,6 +260,50 @@ impl Topology {
             self.components.push(component);
         }
         self.component_of = component_of;
+    }
+}
+
+/// Gives the fans of triangles around pinched vertices vertices of their own, as far as `corners`
+/// tell them apart: the same triangles by rows, of which a vertex may have several. A fan takes the
+/// first row that no other fan of its vertex has. So bodies that touch in a point are two.
+pub(crate) fn separate_fans(triangles: &mut [[u32; 3]], corners: &[[u32; 3]], pinched: &[u32]) {
+    if pinched.is_empty() {
+        return;
+    }
+    // The corners at each pinched vertex, by triangle and place in it.
+    let mut around: Vec<(u32, [usize; 2])> = Vec::new();
+    for (k, triangle) in triangles.iter().enumerate() {
+        let corners = triangle.iter().enumerate();
+        around.extend(
+            corners.filter(|(_, v)| pinched.binary_search(v).is_ok()).map(|(corner, &v)| (v, [k, corner])),
+        );
+    }
+    around.sort_unstable();
+    for of_vertex in around.chunk_by(|one, other| one.0 == other.0) {
+        let v = of_vertex[0].0;
+        let mut fans = Forest::new(of_vertex.len());
+        for (i, &(_, [k, _])) in (0..).zip(of_vertex) {
+            for (j, &(_, [l, _])) in (0..i).zip(of_vertex) {
+                if triangles[k].iter().any(|&w| w != v && triangles[l].contains(&w)) {
+                    fans.join(i, j);
+                }
+            }
+        }
+        let mut rows: Vec<(u32, u32)> =
+            (0..).zip(of_vertex).map(|(i, &(_, [k, corner]))| (corners[k][corner], fans.find(i))).collect();
+        rows.sort_unstable();
+        // The first row of each fan, in the order of the rows.
+        let mut named: Vec<(u32, u32)> = Vec::new();
+        for of_row in rows.chunk_by(|one, other| one.0 == other.0) {
+            let (row, fan) = of_row[0];
+            if of_row.iter().all(|other| other.1 == fan) && named.iter().all(|other| other.1 != fan) {
+                named.push((row, fan));
+            }
+        }
+        for (i, &(_, [k, corner])) in (0..).zip(of_vertex) {
+            let fan = fans.find(i);
+            triangles[k][corner] = named.iter().find(|named| named.1 == fan).map_or(v, |named| named.0);
+        }
     }
 }
 

@@ -156,13 +156,15 @@ const ROOMS: [Room; 4] = [
             ("formula/operand", &["combined"]),
             ("combined", &[]),
             ("descent", &[]),
+            ("crossing", &["descent"]),
             ("evaluator", &[]),
             ("differences", &[]),
             ("function", &["differences"]),
             ("given", &["function"]),
             ("gallery", &["formula"]),
             ("model", &[]),
-            ("rbf", &[]),
+            // The border of points limits the function that is fitted to them.
+            ("rbf", &["combined"]),
         ],
     ),
 ];

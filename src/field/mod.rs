@@ -5,6 +5,7 @@
 //! fields from text, [`gallery`] holds named formulas, and [`rbf`] sums radial functions.
 
 mod combined;
+pub(crate) mod crossing;
 pub(crate) mod descent;
 mod differences;
 mod evaluator;

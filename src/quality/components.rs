@@ -9,8 +9,14 @@ use crate::slices::{MEDIUM, pause};
 /// has the most points; ties are in the order of the points as given.
 ///
 /// Two points are on one component if a triangle joins them, or if they are natural neighbours and
-/// one is in no triangle, and if their distance is not [`LONG`] at either.
-pub(super) async fn label(points: &MeasuredPoints, spacing: &[f32], mesh: &[[u32; 3]]) -> (Vec<u32>, usize) {
+/// one is in no triangle, and if their distance is not [`LONG`] at either. `welded` are the
+/// triangles by vertices, which the patches share.
+pub(super) async fn label(
+    points: &MeasuredPoints,
+    spacing: &[f32],
+    mesh: &[[u32; 3]],
+    welded: &[[u32; 3]],
+) -> (Vec<u32>, usize) {
     let n = points.tree.len();
     let distance_sq = |i: usize, j: usize| points.tree.position[i].distance_squared(points.tree.position[j]);
     let mut forest = Forest::new(n);
@@ -21,12 +27,13 @@ pub(super) async fn label(points: &MeasuredPoints, spacing: &[f32], mesh: &[[u32
             forest.join(i as u32, j as u32);
         }
     };
-    for chunk in mesh.chunks(MEDIUM) {
-        for triangle in chunk {
-            let [a, b, c] = triangle.map(|i| i as usize);
-            for (i, j) in [(a, b), (b, c), (c, a)] {
-                join(i, j);
-                is_used[i] = true;
+    // The vertex of each point; of a point in which bodies touch, that of one of them.
+    let mut vertex: Vec<u32> = (0..n).map(|i| points.creases.first(i) as u32).collect();
+    for (chunk, welded) in mesh.chunks(MEDIUM).zip(welded.chunks(MEDIUM)) {
+        for (rows, &[a, b, c]) in chunk.iter().zip(welded) {
+            for (&row, (i, j)) in rows.iter().zip([(a, b), (b, c), (c, a)]) {
+                join(i as usize, j as usize);
+                (vertex[row as usize], is_used[row as usize]) = (i, true);
             }
         }
         pause().await;
@@ -35,7 +42,7 @@ pub(super) async fn label(points: &MeasuredPoints, spacing: &[f32], mesh: &[[u32
         points.stars.of(i).for_each(|j| join(i, j));
     }
     // What joins patches is the particles on creases.
-    (0..n).for_each(|i| forest.join(i as u32, points.creases.first(i) as u32));
+    (0..).zip(&vertex).for_each(|(i, &vertex)| forest.join(i, vertex));
     let root: Vec<u32> = (0..n as u32).map(|i| forest.find(i)).collect();
 
     // At the root of each component: the number of points, and the first of them in the order

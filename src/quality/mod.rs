@@ -14,7 +14,8 @@
 //! decides.
 //!
 //! A mesh fills the places in on which stars disagree. The figures do without: their triangles are
-//! those that stars see, so that nothing that was filled in says that a surface is closed.
+//! those that stars see, so that nothing that was filled in says that a surface is closed. A run
+//! whose mesh closes what these leave open reports the components and the Euler number of its mesh.
 //!
 //! On a surface with creases the neighbours of a particle are those of its own patch, and the
 //! triangles are those of the mesh, which end at the creases. A particle on a crease has no full
@@ -55,7 +56,7 @@ use crate::math::{Bounds, NONE, SQRT_3};
 use crate::mesh::facing::{Inside, facing};
 use crate::mesh::stars::Sheets;
 use crate::slices::{self, MEDIUM, pause};
-use crate::topology::Topology;
+use crate::topology::{Topology, separate_fans};
 use accuracy::{first_order_height, height_along};
 use border::Border;
 use figures::hexagonal_spacing;
@@ -415,14 +416,19 @@ async fn measure_triangles(
     }
     figures.angles = angles.figures();
     let first = |i: u32| points.creases.first(i as usize) as u32;
-    let welded: Vec<[u32; 3]> = mesh.iter().map(|triangle| triangle.map(first)).collect();
-    let topology = Topology::in_slices(&welded, n).await;
+    let mut welded: Vec<[u32; 3]> = mesh.iter().map(|triangle| triangle.map(first)).collect();
+    let mut topology = Topology::in_slices(&welded, n).await;
+    if !points.creases.is_empty() && !topology.pinched_vertices.is_empty() {
+        separate_fans(&mut welded, mesh, &topology.pinched_vertices);
+        topology = Topology::in_slices(&welded, n).await;
+    }
     figures.connectivity.euler = topology.euler();
     let is_whole_around: Vec<bool> = (0..n).map(|i| once[i] && !points.creases.is_rim(i)).collect();
     measured.opening = opening(&topology, &welded, &is_whole_around, &points.tree.position);
     pause().await;
     measured.inside = facing(&points.tree.position, &welded, &topology).await.inside;
-    (measured.component, figures.connectivity.components) = components::label(points, spacing, mesh).await;
+    (measured.component, figures.connectivity.components) =
+        components::label(points, spacing, mesh, &welded).await;
     let unanimous = triangles.unanimous.iter().filter(away).count();
     figures.connectivity.agree =
         share(unanimous, angles.count + triangles.single.iter().filter(away).count());

@@ -4,8 +4,9 @@ use super::accuracy::{NormalAngles, angle_between, first_order_height, height_al
 use super::creases::CreaseRows;
 use super::sheets::ByField;
 use crate::field::Evaluator;
+use crate::field::crossing::is_passed;
 use crate::math::{Bounds, NONE};
-use crate::mesh::build;
+use crate::mesh::build::{self, Middle};
 use crate::mesh::stars::{Sheets, StarPoints, Stars};
 use crate::particles::Particles;
 use crate::slices::{self, HEAVY, MEDIUM};
@@ -142,10 +143,16 @@ impl MeasuredPoints {
     }
 
     /// The triangles over the points, each patch up to its creases.
-    pub(super) async fn mesh(&self, rows: &Particles, bounds: Option<&Bounds>) -> Vec<[u32; 3]> {
+    pub(super) async fn mesh(
+        &self,
+        field: &mut dyn Evaluator,
+        rows: &Particles,
+        bounds: Option<&Bounds>,
+    ) -> Vec<[u32; 3]> {
         let Some(sheets) = &self.sheets else { return Vec::new() };
         let placed = self.creases.placed(&self.tree, &self.normal, rows);
-        let mesh = build::join(&placed, sheets, bounds).await;
+        let has_surface = |Middle { place, up, reach }: Middle| is_passed(field, place, up, reach);
+        let mesh = build::join(&placed, sheets, bounds).await.judged(&placed, has_surface).await;
         let mut place = vec![NONE; placed.len()];
         (0..).zip(&self.tree.origin).for_each(|(k, &row)| place[row as usize] = k);
         mesh.into_corners().into_iter().map(|triangle| triangle.map(|row| place[row as usize])).collect()

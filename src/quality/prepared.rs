@@ -58,7 +58,7 @@ impl Prepared {
             let spacing = spacing_of(&points).await;
             let patched = rows.filter(|_| !points.creases.is_empty());
             let (triangles, mesh) = if let Some(rows) = patched {
-                let mesh = points.mesh(rows, bounds).await;
+                let mesh = points.mesh(field, rows, bounds).await;
                 points.creases.find_edges(&mesh);
                 (Triangles::seen(&points.stars, &mesh), mesh)
             } else {

@@ -19,7 +19,7 @@ const SIDE: usize = 3;
 
 /// Places where the triangles end at which it is looked for a jump of f. More of them take longer,
 /// by some thousand values of f each.
-const LOOKED_AT: usize = 32;
+const LOOKED_AT: usize = 8;
 
 /// Places where the triangles of the particles end.
 #[derive(Default)]

@@ -4,13 +4,15 @@
 use super::Run;
 use crate::export::{File, FileContent, MeshFile};
 use crate::field::Field;
+use crate::field::crossing::is_passed;
 use crate::math::{Bounds, sort_few};
-use crate::mesh::build::{self, Triangulation};
+use crate::mesh::build::{self, Middle, Triangulation};
 use crate::mesh::facing::Inside;
 use crate::mesh::stars::Sheets;
 use crate::particles::Particles;
-use crate::slices::{Estimated, MEDIUM};
+use crate::slices::{self, Estimated, MEDIUM};
 use crate::topology::Component;
+use glam::DVec3;
 use serde::Serialize;
 use std::io;
 
@@ -164,9 +166,55 @@ impl<F: Field> Run<F> {
             self.meshing.state = MeshState::Joining(Estimated::new(Box::pin(work), expected));
         }
         if let MeshState::Joining(work) = &mut self.meshing.state {
-            self.meshing.state = MeshState::Joined(Box::new(work.advance(budget)?));
+            let mesh = work.advance(budget)?;
+            self.meshing.state = MeshState::Joined(Box::new(self.judged(mesh)));
+            self.take_topology();
         }
         self.meshing.joined().map(|mesh| MeshAnswer::new(mesh, self.particles()))
+    }
+
+    /// The mesh, without what fills holes where the field has no surface, and facing outward where
+    /// the field is larger inside.
+    fn judged(&self, mesh: Triangulation) -> Triangulation {
+        let field = &mut *self.evaluator();
+        let has_surface = |Middle { place, up, reach }: Middle| is_passed(field, place, up, reach);
+        let mesh = slices::complete(mesh.judged(self.particles(), has_surface));
+        if self.is_negative_outside() { mesh.facing_outward() } else { mesh }
+    }
+
+    /// Whether the box cuts nothing of the surface, and f is negative at all of its corners.
+    fn is_negative_outside(&self) -> bool {
+        let Bounds { min, max } = self.local_bounds();
+        let corners = (0..8).map(|k| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { min } else { max }[axis]));
+        let field = &mut *self.evaluator();
+        self.at_border() == 0 && corners.map(DVec3::from).all(|p| field.value_and_gradient(p).0 < 0.0)
+    }
+
+    /// Takes the topology of the sample from its mesh where the triangles of natural neighbours
+    /// leave gaps, which they do where the surface bends too much for its particles, and the mesh
+    /// leaves none.
+    pub(super) fn take_topology(&mut self) {
+        let (Some(_), Some(mesh)) = (&self.measuring.measured.opening, self.meshing.joined()) else { return };
+        if !self.is_whole(mesh) {
+            return;
+        }
+        let (components, euler) = (mesh.topology.components.len(), mesh.topology.euler());
+        let measured = &mut self.measuring.measured;
+        let connectivity = &mut measured.figures.connectivity;
+        (connectivity.components, connectivity.euler, measured.opening) = (components, euler, None);
+    }
+
+    /// Whether a mesh is a manifold that is open at the faces of the box alone.
+    fn is_whole(&self, mesh: &Triangulation) -> bool {
+        /// Distance from a face, in radii, at which an edge is at the box: one and a half spacings.
+        const AT_BOX: f64 = 3.0;
+        let (bounds, particles) = (self.local_bounds(), self.particles());
+        let is_at_box = |&v: &u32| {
+            let p = particles.local[v as usize].as_dvec3();
+            let from_face = (p - bounds.lo()).min(bounds.hi() - p).min_element();
+            from_face <= AT_BOX * f64::from(particles.radius[v as usize])
+        };
+        mesh.topology.is_manifold() && mesh.topology.lone_edges.iter().all(|edge| edge.iter().all(is_at_box))
     }
 
     /// The mesh; none before [`Run::join`] is done.

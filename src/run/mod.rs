@@ -449,7 +449,12 @@ impl<F: Field> Run<F> {
     /// The error of [`Run::finish`].
     pub fn finish_with(mut self, measured: Measured) -> Result<Sample, Error> {
         self.check_not_empty()?;
-        let report = self.report_with(measured);
+        let mut report = self.report_with(measured);
+        if self.measuring.measured.opening.is_some() {
+            // Only the field can say which of the gaps are surface.
+            slices::in_pool(|| while self.join(u32::MAX).is_none() {});
+            report = self.reported();
+        }
         self.check_field()?;
         Ok(Sample::new(self, report))
     }

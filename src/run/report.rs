@@ -354,10 +354,15 @@ impl<F: Field> Run<F> {
         }
         (self.measuring.measured, self.measuring.facing, self.measuring.sheets) =
             (now, Some(facing), Some(sheets));
+        // A refined run has led to its mesh.
+        if self.measuring.measured.opening.is_some() && !self.sampler.triangles().is_empty() {
+            while self.join(u32::MAX).is_none() {}
+        }
+        self.take_topology();
     }
 
     /// The report, with the measurements that are there.
-    fn reported(&mut self) -> Report {
+    pub(super) fn reported(&mut self) -> Report {
         let is_overflowing = self.sampler.is_open_by_overflow(self.field.function());
         let blur = self.sampler.blur(self.field.function());
         let particles = self.sampler.particles();
@@ -401,7 +406,7 @@ impl<F: Field> Run<F> {
     /// a crease is outside of its patch, which is told apart by the distance from the box: a child
     /// is two radii away. The children of particles that have moved lay elsewhere; they would now
     /// fall outside where a way of two radii in the tangent plane does.
-    fn at_border(&self) -> usize {
+    pub(super) fn at_border(&self) -> usize {
         let (particles, bounds) = (self.particles(), self.local_bounds());
         let is_inside = |i: usize, reach: Vec3| {
             let (p, reach) = (particles.local[i], 2.0 * particles.radius[i] * reach);

@@ -204,6 +204,11 @@ pub enum Warning {
         /// Number of border loops.
         count: usize,
     },
+    /// Parts of the mesh touch in vertices that they share.
+    MeshTouches {
+        /// Number of such vertices.
+        count: usize,
+    },
     /// Particles are in no triangle of the mesh.
     MeshLeavesOut {
         /// Number of particles.
@@ -287,6 +292,7 @@ impl Warning {
             Self::Jumps { .. } => ("jumps", Note),
             Self::MeshDiffers { .. } => ("mesh_differs", Fault),
             Self::MeshHoles { .. } => ("mesh_holes", Fault),
+            Self::MeshTouches { .. } => ("mesh_touches", Note),
             Self::MeshLeavesOut { .. } => ("mesh_leaves_out", Caution),
             Self::LargerInside(_) => ("larger_inside", Note),
             Self::FileDiffers { .. } => ("file_differs", Caution),
@@ -320,8 +326,9 @@ impl Serialize for Warning {
 
 impl Warning {
     /// The warnings about a mesh. Its topology is compared with that of the particles, if they were
-    /// measured. Where a box cuts the surface, the two end in different ways beside its faces, and
-    /// only the components are compared; where f jumps they do everywhere, and nothing is.
+    /// measured and their triangles leave no gaps. Where a box cuts the surface, the two end in
+    /// different ways beside its faces, and only the components are compared; where f jumps they do
+    /// everywhere, and nothing is.
     pub(super) fn of_mesh(measured: &Measurements, mesh: &Triangulation, ends_at_jumps: bool) -> Vec<Self> {
         let mut warnings = Vec::new();
         let Connectivity { components, euler, .. } = measured.figures.connectivity;
@@ -329,11 +336,17 @@ impl Warning {
         let components = [mesh.topology.components.len(), components];
         let euler = [mesh.topology.euler(), euler];
         let differs = components[0] != components[1] || !is_cut && euler[0] != euler[1];
-        if differs && !ends_at_jumps && !measured.valence.is_empty() {
+        // Triangles of natural neighbours with gaps have no topology to compare.
+        let is_comparable = !ends_at_jumps && !measured.valence.is_empty() && measured.opening.is_none();
+        if differs && is_comparable {
             warnings.push(Self::MeshDiffers { components, euler });
         }
         if !mesh.unfilled.is_empty() {
             warnings.push(Self::MeshHoles { count: mesh.unfilled.len() });
+        }
+        let touches = mesh.topology.pinched_vertices.len();
+        if touches > 0 {
+            warnings.push(Self::MeshTouches { count: touches });
         }
         if !mesh.left_out.is_empty() {
             warnings.push(Self::MeshLeavesOut { count: mesh.left_out.len() });
@@ -687,6 +700,11 @@ impl fmt::Display for Warning {
                 "The mesh has {}, where sheets meet or particles are too sparse.",
                 counted(*count, "hole that could not be filled", "holes that could not be filled")
             ),
+            Self::MeshTouches { count } => write!(
+                f,
+                "Parts of the mesh touch in {}, where it is no manifold.",
+                counted(*count, "point", "points")
+            ),
             Self::MeshLeavesOut { count } => {
                 write!(f, "{} in no triangle of the mesh.", counted(*count, "particle is", "particles are"))
             }
@@ -741,68 +759,4 @@ fn those_that_are(things: [(usize, String); 2]) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Longest first sentence, in letters: three lines of the page's report.
-    const FIRST_SENTENCE: usize = 110;
-
-    #[test]
-    fn the_first_sentence_is_short_and_names_no_part_of_the_method() {
-        let (position, length) = ([-1.0 / 3.0, 1.0e-4, 12.5], 0.01);
-        let unproven = |doubt| Warning::Unproven { doubt, length };
-        let unsampled = Unsampled { position, reach: 0.1, goes_on: true };
-        let without = |is_unresolved| Warning::WithoutParticle {
-            components: vec![unsampled; NAMED + 1],
-            length,
-            is_unresolved,
-        };
-        let warnings = [
-            Warning::Limit { predicted: 12_345_678, limit: 1_000_000 },
-            Warning::Touches,
-            Warning::Bare { position, length },
-            Warning::Beyond { bounds: Bounds::cube(1.0 / 3.0) },
-            Warning::SampledAs { equation: "x = 0".to_owned() },
-            Warning::FlushFaces { faces: vec!["z - 1 = 0".to_owned()] },
-            Warning::Unused { names: vec!["c_rgb".to_owned(), "r".to_owned()] },
-            Warning::Gradient { position, length },
-            Warning::Count { count: 8_406, wanted: 8_000 },
-            Warning::Unpaired { axis: 0, repeats: true },
-            Warning::Unpaired { axis: 2, repeats: false },
-            Warning::Children { not_converged: 12_345, undefined: 123, is_closed: false },
-            Warning::Children { not_converged: 12_345, undefined: 123, is_closed: true },
-            Warning::CloseSheets { count: 12_345 },
-            Warning::Meets { crossings: 12, touches: 34, position, length },
-            Warning::Rims { curves: 12, position, length },
-            Warning::Crosses { curves: 12, position, length },
-            Warning::Moved,
-            Warning::EndedEarly { seeds: 123 },
-            Warning::SmallFeatures { count: 123 },
-            without(true),
-            without(false),
-            Warning::Open { edges: 12, points: 34, position, length },
-            Warning::Jumps { position, length },
-            Warning::MeshDiffers { components: [1, 2], euler: [2, 4] },
-            Warning::MeshHoles { count: 12 },
-            Warning::MeshLeavesOut { count: 12 },
-            Warning::LargerInside(Inside::Both),
-            unproven(Doubt::NoBounds),
-            unproven(Doubt::Creases),
-            unproven(Doubt::Unfinished),
-            unproven(Doubt::Unresolved { position, gap: 1.0e-7, least: 1.0e-6 }),
-            unproven(Doubt::Cells { count: 28_264, position, size: 0.045 }),
-            unproven(Doubt::Witnesses { count: 12, position }),
-            Warning::Digits { position, distance: 1.0e-3, spacing: 0.01 },
-            Warning::Overflow,
-        ];
-        for warning in warnings {
-            let text = warning.to_string();
-            let first = text.split(". ").next().unwrap_or_default();
-            assert!(first.len() <= FIRST_SENTENCE, "{} letters: {first}", first.len());
-            for word in ["child", "cell of", "undecided", "converge", "survey", "seed", "NaN"] {
-                assert!(!first.contains(word), "{word}: {first}");
-            }
-            assert!(text.ends_with('.') || matches!(warning, Warning::SampledAs { .. }), "{text}");
-        }
-    }
-}
+mod tests;

@@ -55,6 +55,8 @@ mod parity;
 mod pasted;
 mod periodic;
 #[cfg(feature = "points")]
+mod plain;
+#[cfg(feature = "points")]
 mod pointcloud;
 #[cfg(feature = "points")]
 mod pointcloud_formats;

@@ -3,7 +3,9 @@
 use super::patch::{Gap, Patch};
 use super::rim::Rim;
 use crate::math::{Bounds, sort_few};
+use crate::particles::Particles;
 use crate::slices::pause;
+use glam::Vec3;
 
 /// Least cosine of the angle between the normal of a triangle and that of a point on it: that of
 /// 78°. The points are those that are set into the triangle, and the corners of one that fills a
@@ -57,9 +59,54 @@ impl Borders<'_> {
     }
 }
 
+/// A hole that was filled.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Fill {
+    /// The loop around it, with the hole on the left.
+    pub(super) hole: Vec<u32>,
+    pub(super) triangles: Vec<[u32; 3]>,
+}
+
+/// The middle of a triangle that fills a hole.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Middle {
+    pub(crate) place: Vec3,
+    /// Unit normal.
+    pub(crate) up: Vec3,
+    /// Longest side of the triangle.
+    pub(crate) reach: f32,
+}
+
+impl Fill {
+    /// The middle of the largest triangle.
+    pub(super) fn middle(&self, particles: &Particles) -> Middle {
+        let place = |row: u32| particles.local[row as usize];
+        let area = |&[a, b, c]: &[u32; 3]| (place(b) - place(a)).cross(place(c) - place(a));
+        let size = |triangle: &[u32; 3]| area(triangle).length_squared();
+        let largest = |one: [u32; 3], other: [u32; 3]| if size(&other) > size(&one) { other } else { one };
+        let triangle = self.triangles.iter().copied().reduce(largest).unwrap_or_default();
+        let [a, b, c] = triangle.map(place);
+        Middle {
+            place: (a + b + c) / 3.0,
+            up: area(&triangle).normalize_or_zero(),
+            reach: a.distance(b).max(b.distance(c)).max(c.distance(a)),
+        }
+    }
+
+    /// The fill with other names for its vertices.
+    pub(super) fn renamed(self, name: impl Fn(u32) -> u32) -> Self {
+        let Self { hole, triangles } = self;
+        Self {
+            hole: hole.into_iter().map(&name).collect(),
+            triangles: triangles.into_iter().map(|triangle| triangle.map(&name)).collect(),
+        }
+    }
+}
+
 /// Fills the holes.
-pub(super) async fn fill(patch: &mut Patch<'_>, borders: &Borders<'_>) {
+pub(super) async fn fill(patch: &mut Patch<'_>, borders: &Borders<'_>) -> Vec<Fill> {
     let mut cutter = Cutter::default();
+    let mut filled = Vec::new();
     for _ in 0..ROUNDS {
         let mut resisting = Vec::new();
         for hole in borders.holes(patch) {
@@ -68,7 +115,9 @@ pub(super) async fn fill(patch: &mut Patch<'_>, borders: &Borders<'_>) {
                 continue;
             }
             let mut cut = |is_right| cutter.cut(patch, borders.rim, &hole, is_right);
-            if !cut(faces_as_corners) && !cut(faces_as_mean) {
+            if cut(faces_as_corners) || cut(faces_as_mean) {
+                filled.push(Fill { hole, triangles: cutter.triangles.clone() });
+            } else {
                 resisting.push(hole);
             }
         }
@@ -84,9 +133,10 @@ pub(super) async fn fill(patch: &mut Patch<'_>, borders: &Borders<'_>) {
             }
         }
         if !has_grown {
-            return;
+            break;
         }
     }
+    filled
 }
 
 /// The borders of the triangles: closed loops of vertices with the hole on the left. Where there is
@@ -220,7 +270,7 @@ pub(super) fn unpinch(patch: &mut Patch, rim: &Rim) {
 mod tests {
     use super::super::patch::with_plane;
     use super::*;
-    use glam::{DVec3, Vec3};
+    use glam::DVec3;
 
     /// Product of the sides over four times the area.
     fn circumradius([a, b, c]: [DVec3; 3]) -> f64 {

@@ -12,7 +12,8 @@
 //!    and together are closed.
 //! 5. *Holes.* The borders of what is left are traced, and the polygons with few edges are cut into
 //!    triangles. Where that fails, a vertex is taken out, which makes the hole larger and its
-//!    border simpler.
+//!    border simpler. Where the field is at hand, it then says which of them are surface
+//!    ([`Triangulation::judged`]).
 //! 6. *Points left out* go into the triangle below them.
 //! 7. *Borders* are freed of vertices where the surface touches itself.
 //!
@@ -33,9 +34,10 @@ use super::stars::{ByDirection, Sheet, Sheets};
 use crate::math::{Bounds, sort_pairs};
 use crate::particles::Particles;
 use crate::slices::{self, LIGHT, pause, ranges};
-use crate::topology::Topology;
+use crate::topology::{Topology, separate_fans};
 use glam::DVec3;
-use holes::Borders;
+pub(crate) use holes::Middle;
+use holes::{Borders, Fill};
 use patch::Patch;
 use rim::Rim;
 
@@ -43,10 +45,11 @@ use rim::Rim;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangulation {
     /// Triples of particles, each by its first row, so that particles on creases are vertices that
-    /// the patches share; at the tip of a cone each sheet has a vertex of its own. They form an
-    /// oriented manifold: every edge has one triangle or two, every vertex one fan. Closed parts
-    /// face outward, also where f is larger inside; others are counter-clockwise round their
-    /// normals. [`Self::corners`] has the same triangles by rows.
+    /// the patches share; at the tip of a cone each sheet has a vertex of its own, and where bodies
+    /// touch in a point each body has one. They form an oriented manifold: every edge has one
+    /// triangle or two, every vertex one fan. Closed parts face outward, also where f is larger
+    /// inside; others are counter-clockwise round their normals, or face outward with the whole of
+    /// a bounded surface that its field knows. [`Self::corners`] has the same triangles by rows.
     pub triangles: Vec<[u32; 3]>,
     /// Components, borders and Euler numbers, counted anew on the triangles.
     pub topology: Topology,
@@ -63,6 +66,8 @@ pub struct Triangulation {
     /// For each vertex, whether the triangles around it were turned to face outward; empty where
     /// none were.
     pub(crate) turned: Vec<bool>,
+    /// The holes that were filled, by rows.
+    pub(crate) filled: Vec<Fill>,
 }
 
 impl Triangulation {
@@ -71,6 +76,53 @@ impl Triangulation {
     pub(crate) async fn known(mut triangles: Vec<[u32; 3]>, particles: &Particles) -> Self {
         creases::separate(&mut triangles, particles);
         Joined { triangles, ..Joined::default() }.counted(particles).await
+    }
+
+    /// The triangulation without the triangles that fill holes where there is no surface, by what
+    /// `has_surface` says of the largest triangle of each fill: it is open there. Where particles
+    /// end at an edge that nobody knows, as where two balls meet, they leave a loop that looks like
+    /// a hole, and a disc in it would close either ball.
+    pub(crate) async fn judged(
+        self,
+        particles: &Particles,
+        mut has_surface: impl FnMut(Middle) -> bool,
+    ) -> Self {
+        let (filled, none): (Vec<Fill>, Vec<Fill>) =
+            self.filled.iter().cloned().partition(|fill| has_surface(fill.middle(particles)));
+        if none.is_empty() {
+            return self;
+        }
+        let mut unfilled = self.unfilled.clone();
+        let mut gone: Vec<[u32; 3]> = none.iter().flat_map(|fill| fill.triangles.iter().copied()).collect();
+        unfilled.extend(none.into_iter().map(|fill| fill.hole));
+        gone.sort_unstable();
+        let mut triangles = self.into_corners();
+        triangles.retain(|triangle| gone.binary_search(triangle).is_err());
+        Joined { triangles, unfilled, filled }.counted(particles).await
+    }
+
+    /// Turns the triangles around these vertices round.
+    fn turn(&mut self, turned: Vec<bool>) {
+        if self.corners.is_empty() {
+            self.corners.clone_from(&self.triangles);
+        }
+        let is_turned = |v: u32| turned[v as usize];
+        let inward = self.triangles.iter_mut().filter(|triangle| is_turned(triangle[0]));
+        inward.for_each(|triangle| triangle.swap(1, 2));
+        self.unfilled.iter_mut().filter(|hole| is_turned(hole[0])).for_each(|hole| hole[1..].reverse());
+        self.topology.turn(is_turned);
+        self.turned = turned;
+    }
+
+    /// The triangulation of a bounded surface outside of which f is negative, if no part of it is
+    /// closed: all parts are turned to face outward.
+    pub(crate) fn facing_outward(mut self) -> Self {
+        if self.inside.is_none() && !self.triangles.is_empty() {
+            let vertices = self.topology.component_of.len();
+            self.inside = Some(Inside::Positive);
+            self.turn(vec![true; vertices]);
+        }
+        self
     }
 
     /// Returns the corners of the triangles as rows of the particles. A particle on a crease has a
@@ -137,14 +189,15 @@ impl Triangulation {
 #[derive(Default)]
 struct Joined {
     triangles: Vec<[u32; 3]>,
-    /// Loops around holes that no manifold fills, with the hole on the left.
+    /// Loops around holes that no manifold fills.
     unfilled: Vec<Vec<u32>>,
+    filled: Vec<Fill>,
 }
 
 impl Joined {
     /// The triangulation over the rows of particles.
     async fn counted(self, particles: &Particles) -> Triangulation {
-        let Self { triangles: corners, unfilled } = self;
+        let Self { triangles: corners, unfilled, filled } = self;
         let (count, joints) = (particles.len(), particles.joints());
         let first = |v: u32| joints.get(v as usize).copied().unwrap_or(v);
         let mut is_met = vec![false; count];
@@ -152,18 +205,24 @@ impl Joined {
         pause().await;
         let left_out = (0..count as u32).filter(|&v| first(v) == v && !is_met[v as usize]).collect();
         pause().await;
-        let (mut triangles, mut corners) = if joints.is_empty() {
+        let (mut triangles, corners) = if joints.is_empty() {
             (corners, Vec::new())
         } else {
             (corners.iter().map(|triangle| triangle.map(first)).collect(), corners)
         };
         pause().await;
         let mut topology = Topology::in_slices(&triangles, count).await;
+        if !corners.is_empty() && !topology.pinched_vertices.is_empty() {
+            pause().await;
+            separate_fans(&mut triangles, &corners, &topology.pinched_vertices);
+            topology = Topology::in_slices(&triangles, count).await;
+        }
         pause().await;
-        // The loops have the mesh on their left.
+        // A border edge has one direction, which depends on how its part was turned.
         let mut edges: Vec<[u32; 2]> = Vec::new();
         for hole in &unfilled {
-            edges.extend((0..hole.len()).map(|k| [hole[(k + 1) % hole.len()], hole[k]].map(first)));
+            let sides = (0..hole.len()).map(|k| [hole[(k + 1) % hole.len()], hole[k]].map(first));
+            edges.extend(sides.flat_map(|[a, b]| [[a, b], [b, a]]));
         }
         sort_pairs(&mut edges);
         let is_open = |border: &Vec<u32>| {
@@ -172,19 +231,24 @@ impl Joined {
         };
         let is_unfilled: Vec<bool> = topology.borders.iter().map(is_open).collect();
         let Facing { turned, inside } = facing(&particles.local, &triangles, &topology).await;
-        if !turned.is_empty() {
-            if corners.is_empty() {
-                corners.clone_from(&triangles);
-            }
-            let inward = triangles.iter_mut().filter(|triangle| turned[triangle[0] as usize]);
-            inward.for_each(|triangle| triangle.swap(1, 2));
-            topology.turn(|v| turned[v as usize]);
-            pause().await;
-        }
         let unfilled = topology.borders.iter().zip(is_unfilled);
         let unfilled =
             unfilled.filter(|(_, is_unfilled)| *is_unfilled).map(|(border, _)| border.clone()).collect();
-        Triangulation { triangles, topology, unfilled, left_out, inside, corners, turned }
+        let mut mesh = Triangulation {
+            triangles,
+            topology,
+            unfilled,
+            left_out,
+            inside,
+            corners,
+            turned: Vec::new(),
+            filled,
+        };
+        if !turned.is_empty() {
+            mesh.turn(turned);
+            pause().await;
+        }
+        mesh
     }
 }
 
@@ -268,7 +332,7 @@ impl Sheet {
         let borders = Borders { bounds, rim: &rim };
         settle::settle(&mut patch).await;
         rim.clear(&mut patch).await;
-        holes::fill(&mut patch, &borders).await;
+        let filled = holes::fill(&mut patch, &borders).await;
         let mut keys = Vec::new();
         for range in ranges(tree.len(), LIGHT) {
             for v in range.start as u32..range.end as u32 {
@@ -283,6 +347,7 @@ impl Sheet {
         pause().await;
 
         let row = |v: u32| tree.origin[v as usize];
+        joined.filled.extend(filled.into_iter().map(|fill| fill.renamed(row)));
         joined.triangles.extend(patch.triangles().map(|triangle| triangle.map(row)));
         pause().await;
         let mut holes = borders.holes(&patch);
