@@ -118,7 +118,7 @@ fn drop_jumps_at(field: &mut dyn Evaluator, list: &mut Vec<Change>, side: usize)
     let at = |change: &Change| change.node[side / 2];
     let outermost = |list: &[Change]| {
         let all = list.iter().map(at);
-        if side % 2 == 0 { all.min() } else { all.max() }
+        if side.is_multiple_of(2) { all.min() } else { all.max() }
     };
     while let Some(layer) = outermost(list) {
         let outer: Vec<Change> = list.iter().filter(|change| at(change) == layer).copied().collect();

@@ -391,9 +391,11 @@ fn digits_that_double_precision_does_not_hold_are_said_with_where_and_how_much()
 #[test]
 fn jumps_are_no_surface_and_end_the_projection_along_the_circle() {
     // The steps of the first one are numbers other than 0.
-    for (formula, words) in
-        [("floor(3x) + 0.5", "proven"), ("sign(x - 0.1234) + y/100", "jumps"), ("sign(x)", "jumps")]
-    {
+    for (formula, words) in [
+        ("floor(3x) + 0.5", "jumps between them"),
+        ("sign(x - 0.1234) + y/100", "jumps"),
+        ("sign(x)", "jumps"),
+    ] {
         let (session, progress, _) = sampled(formula, 0.9, &coarse());
         assert_eq!(progress.stop_reason, Some(StopReason::NoSurface), "{formula}");
         assert_eq!(session.run.count(), 0, "{formula}");
@@ -403,11 +405,9 @@ fn jumps_are_no_surface_and_end_the_projection_along_the_circle() {
     let (session, progress, report) = sampled("floor(5x)/5 - y", 1.0, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
     assert!(report.growth.fates.not_converged > 100, "{:?}", report.growth.fates);
-    assert!(
-        report.warnings.iter().any(|w| w.to_string().contains("found no surface")),
-        "{:?}",
-        report.warnings
-    );
+    // No smaller radius helps there.
+    let words: Vec<String> = report.warnings.iter().map(ToString::to_string).collect();
+    assert!(words.len() == 1 && words[0].starts_with("f jumps where the surface ends"), "{words:?}");
     for p in &session.run.particles().local {
         assert!(((5.0 * p.x).floor() / 5.0 - p.y).abs() < 1e-4, "{p}");
     }

@@ -19,7 +19,7 @@ fn direction(random: &mut Pcg32) -> DVec3 {
     loop {
         let p = DVec3::from_array([(); 3].map(|()| between(random, -1.0, 1.0)));
         if p.length_squared() > 0.01 && p.length_squared() <= 1.0 {
-            return p.normalize();
+            return p.normalize_or_zero();
         }
     }
 }
@@ -116,7 +116,7 @@ fn an_arm_that_winds_is_in_the_box() {
         // A quarter or more of a circle from the surface of the ball, of the thickness of a cell.
         let (radius, turn) = (between(random, 1.5, 2.5), between(random, 1.5, 3.0));
         let (u, w) = (direction(random), direction(random));
-        let v = u.cross(w).normalize();
+        let v = u.cross(w).normalize_or_zero();
         let middle = u * radius;
         let place =
             move |angle: f64| middle - u * (radius * libm::cos(angle)) + v * (radius * libm::sin(angle));

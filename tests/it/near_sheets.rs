@@ -110,7 +110,7 @@ fn of_nearer_sheets_the_report_says_how_near_they_are_and_where() {
 fn a_search_that_is_not_proven_says_why() {
     for (formula, words) in [
         ("y^2 - x^3", "of the box open"),
-        ("floor(5x)/5 - y", "of the box open"),
+        ("floor(5x)/5 - y", "f jumps"),
         ("(x^2+y^2+z^2-1)*(x^2+y^2+z^2-1.00001)*(x^2+y^2+z^2-1.00002)", "too close for single precision"),
     ] {
         let (_, report) = finished(formula, Bounds::cube(1.5), &of_radius(0.1, 1.5));

@@ -21,9 +21,10 @@ enum Tree {
     Call(usize, Box<Self>),
 }
 
+/// A name in most programs, one in Mathematica, and its function.
+type Call = (&'static str, &'static str, fn(f64) -> f64);
 /// Functions with their names in Mathematica.
-const CALLS: [(&str, &str, fn(f64) -> f64); 3] =
-    [("sin", "Sin", libm::sin), ("cos", "Cos", libm::cos), ("abs", "Abs", f64::abs)];
+const CALLS: [Call; 3] = [("sin", "Sin", libm::sin), ("cos", "Cos", libm::cos), ("abs", "Abs", f64::abs)];
 
 fn below(random: &mut Pcg32, n: usize) -> usize {
     random.next_u32() as usize % n

@@ -175,7 +175,8 @@ export function checked(field, options) {
   if (seed !== undefined)
     settings.seed = number('seed', seed, (n) => Number.isSafeInteger(n) && n >= 0, 'a whole number from 0 on');
   if (beyondPoints !== undefined) {
-    if (what.cloud === undefined) throw new InputError('beyondPoints: for points, beyond which their surface may go on.');
+    if (what.cloud === undefined)
+      throw new InputError('beyondPoints: for points, beyond which their surface may go on.');
     settings.beyond_points = choice('beyondPoints', beyondPoints, ['cut', 'kept']);
   }
   if (formula !== undefined) Object.assign(what, modelFormula(formula, what));

@@ -116,7 +116,14 @@ fn written(text: &str, declared: &[&str], names: &[(&str, &str)]) -> Option<Stri
     let own = |name: &str| if name == PHI { "phi_1".to_owned() } else { name.to_owned() };
     let definitions: String =
         names.iter().map(|(name, place)| format!("{} = {place}; ", own(name))).collect();
-    let defined = definitions + &replaced(&|name, _| own(name));
+    let equation = replaced(&|name, _| own(name));
+    // `r = …` would define it again, `(r) = …` is an equation.
+    let starts = names.iter().map(|(name, _)| own(name)).find(|name| {
+        let rest = equation.strip_prefix(name.as_str());
+        rest.is_some_and(|rest| rest.trim_start().starts_with('='))
+    });
+    let equation = starts.map_or(equation.clone(), |name| equation.replacen(&name, &format!("({name})"), 1));
+    let defined = definitions + &equation;
     let meant = values(&defined, declared)?;
     let is_meant = |way: &String| values(way, declared).is_some_and(|found| is_same(&found, &meant));
     let ways = [replaced(&|_, place| place.to_owned()), replaced(&|_, place| format!("({place})"))];

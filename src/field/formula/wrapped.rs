@@ -225,7 +225,7 @@ fn plain(text: &str) -> String {
     let mut plain = text.as_bytes().to_vec();
     let mut at = 0;
     let mut blank = |range: Range<usize>| {
-        plain[range].iter_mut().filter(|byte| **byte != b'\n').for_each(|byte| *byte = b' ')
+        plain[range].iter_mut().filter(|byte| **byte != b'\n').for_each(|byte| *byte = b' ');
     };
     while let Some(c) = text[at..].chars().next() {
         let rest = &text[at..];

@@ -35,8 +35,8 @@ const REACHES: [f64; 4] = [0.01, 0.04, 0.16, 0.64];
 const RESOLVED: f64 = 0.2;
 /// Points of a ray.
 const ON_RAY: u32 = 4;
-/// Least slope along a ray, as a share of that of f: on one along the surface f is constant, rounded
-/// or not.
+/// Least slope along a ray, as a share of that of f: on one along the surface f is constant,
+/// rounded or not.
 const LEAST_SLOPE: f64 = 0.3;
 /// Largest error over the scatter of a few points.
 const WORST: f64 = 4.0;
@@ -94,7 +94,7 @@ fn scatter(field: &mut dyn Evaluator, p: DVec3, spacing: f64) -> f64 {
     let slope = gradient.length();
     let rays: Vec<DVec3> = Bounds::cube(1.0)
         .corners()
-        .map(DVec3::normalize)
+        .map(DVec3::normalize_or_zero)
         .into_iter()
         .filter(|ray| ray.dot(gradient).abs() > LEAST_SLOPE * slope)
         .collect();

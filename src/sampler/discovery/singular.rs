@@ -180,9 +180,9 @@ impl SingularPlace {
             // Circles in planes across the sheets.
             let (u, v) = normal.any_orthonormal_pair();
             let radius = ROUND * point.reach;
-            [u, v, u + v, u - v]
-                .into_iter()
-                .any(|along| sign_changes_around(field, point.position, along.normalize(), radius).len() > 2)
+            [u, v, u + v, u - v].into_iter().any(|along| {
+                sign_changes_around(field, point.position, along.normalize_or_zero(), radius).len() > 2
+            })
         });
         if touches { SingularKind::Touch } else { SingularKind::Point }
     }

@@ -41,6 +41,7 @@ export const description = {
       genus: 0,
       story: '',
       source: '',
+      words: '',
       group: 'Closed',
     },
     {
@@ -53,6 +54,7 @@ export const description = {
       genus: 1,
       story: '',
       source: '',
+      words: '',
       group: 'Closed',
     },
   ],

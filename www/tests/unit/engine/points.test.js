@@ -27,6 +27,7 @@ const info = /** @type {ModelInfo} */ ({
   residual_95: 0.006,
   residual_max: 0.01,
   farthest: [0, 0, 0],
+  beyond_share: 0,
   mesh: null,
   normals: 'given',
   warnings: [],

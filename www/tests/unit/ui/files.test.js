@@ -17,6 +17,7 @@ const info = /** @type {ModelInfo} */ ({
   residual_95: 0.00641,
   residual_max: 0.0134,
   farthest: [0, 0, 0],
+  beyond_share: 0,
   mesh: null,
   normals: 'from_mesh',
   warnings: [],
