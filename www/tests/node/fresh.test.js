@@ -10,7 +10,7 @@ const otherOf = ({ choices, default: own, min, max }) =>
   choices?.length ? choices.find(({ value }) => value !== own)?.value : ((own === max ? min : max) ?? 0.1);
 
 /** What belongs to the surface it was chosen for. Every other setting is of the way of sampling, and stays. */
-const OF_SURFACE = ['box_cell', 'box_faces', 'box_mode', 'thickness'];
+const OF_SURFACE = ['beyond_points', 'box_cell', 'box_faces', 'box_mode', 'thickness'];
 
 test('of all settings, those of a surface end with it, and a changed formula keeps them', async () => {
   const p = await open();
@@ -44,7 +44,8 @@ test('what of a surface stays with a changed formula is told, with the button th
   engine.setPlane({ normal: [1, 0, 0], offset: 0 });
   engine.setBounds({ min: [-1, -1, -1], max: [1, 1, 0.2] });
   const chosen = { box_cell: 'periodic', box_faces: 'closed', box_mode: 'fixed', thickness: 0.1 };
-  expect(Object.keys(chosen)).toEqual(OF_SURFACE);
+  // Where a model ends is no matter of a formula.
+  expect(['beyond_points', ...Object.keys(chosen)]).toEqual(OF_SURFACE);
   for (const [name, value] of Object.entries(chosen)) engine.setSetting(name, value);
   engine.setFormula('x^2 + y^2 + 2z^2 = 1');
   expect(keptOf(engine).map(({ text }) => text.replace(/,.*/, ''))).toEqual([

@@ -39,7 +39,7 @@ describe('levels', () => {
     expect(shades[1]).toBeGreaterThan(0.2 * shades[0]);
   });
 
-  test('to go from level to level costs a frame each, and nothing is told to the device again', async () => {
+  test('to go from level to level costs a frame, or two where it then stands still, and nothing is told to the device again', async () => {
     const p = await open();
     p.engine.setView({ level: 1 });
     await p.debug.still();
@@ -47,10 +47,12 @@ describe('levels', () => {
     for (const level of [2, 3, 7]) {
       const { frames } = p.debug.counts();
       p.engine.setView({ level });
-      await eventually(() => p.debug.counts().frames).toBe(frames + 1);
+      await eventually(() => p.debug.counts().frames).toBeGreaterThan(frames);
     }
     await p.debug.still();
-    expect(p.debug.counts()).toMatchObject({ frames: before.frames + 3, uploads: before.uploads });
+    const { frames, uploads } = p.debug.counts();
+    expect(uploads).toBe(before.uploads);
+    expect(frames - before.frames).toBeLessThanOrEqual(6);
   });
 
   test('a front that grows is framed as it is, until a hand takes the camera', async () => {
@@ -146,10 +148,16 @@ test('creases are lines, on which dots are picked once', async () => {
   const p = await open();
   p.engine.setView({ theme: 'light' });
   await p.set({ formula: 'max(abs(x), abs(y), abs(z)) = 1', settings: { radius_share: 0.03 } });
-  /** Number of pixels in the colour of creases. */
+  /** Number of pixels in about the colour of creases, whose edges are smooth. */
   const inked = async () => {
     const { pixels } = await p.pixels(160, 120);
-    return new Uint32Array(pixels.buffer).filter((pixel) => pixel === PALETTES.light.ink).length;
+    const [ink, at] = [
+      PALETTES.light.ink,
+      (/** @type {number} */ pixel, /** @type {number} */ k) => (pixel >> (8 * k)) & 255,
+    ];
+    return new Uint32Array(pixels.buffer).filter((pixel) =>
+      [0, 1, 2].every((k) => Math.abs(at(pixel, k) - at(ink, k)) < 32),
+    ).length;
   };
   expect(await inked()).toBeGreaterThan(100);
   p.engine.setView({ creases: false });

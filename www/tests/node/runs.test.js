@@ -21,7 +21,7 @@ describe('a sampler that fails', () => {
       const p = await open();
       const before = p.state;
       strike(fault);
-      if (fault === 'hang') p.engine.setParameter('a', 1.25);
+      if (fault === 'hang') p.engine.setParameter('a', 1.1);
       await until(p.engine.notice, (notice) => notice?.id === (fault === 'hang' ? 'hang' : 'panic'));
       expect(p.debug.counts().restarts).toBe(1);
       expect((await p.run())?.count).toBeGreaterThan(500);

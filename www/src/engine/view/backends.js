@@ -5,6 +5,7 @@
  * @module
  */
 
+import { hasSimd } from '../bundle/load.js';
 import { askAdapter, askDrawer } from '../probe/index.js';
 
 /**
@@ -22,6 +23,8 @@ export class DeviceLost extends Error {}
 
 /** Returns whether the browser supports a back end, so that its bundle is worth fetching. @param {BackendKind} kind */
 async function available(kind) {
+  // The renderers are compiled with SIMD, as the core is.
+  if (kind !== 'canvas2d' && !hasSimd()) return false;
   if (kind === 'webgpu') return (await askAdapter()) !== null;
   return kind === 'canvas2d' || (await askDrawer()) !== 'none';
 }

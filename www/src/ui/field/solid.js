@@ -1,6 +1,6 @@
 /**
- * The choices of the solid that is made of a surface: closed by the clip box, a sheet of some thickness. Of a model from
- * points: whether its surface goes on beyond them.
+ * The choices of the solid that is made of a surface: closed by the clip box, a sheet of some thickness. Of a model
+ * from points: whether its surface goes on beyond them.
  */
 import { computed, signal } from '@preact/signals-core';
 import { h, live, marked, uniqueId } from '../dom.js';
