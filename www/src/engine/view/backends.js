@@ -66,6 +66,8 @@ export async function openDevice(kind, host, events) {
   host.append(canvas);
   /** Whether the renderer was asked for a context of the canvas. */
   let isAsked = false;
+  // What fails on a context that was taken away is no fault of the device.
+  const isTaken = () => isAsked && canvas.getContext('webgl2')?.isContextLost();
   try {
     /** @type {Renderer | Painter} */
     let renderer;
@@ -78,7 +80,9 @@ export async function openDevice(kind, host, events) {
       isAsked = kind === 'webgl2';
       renderer = await Made.create(canvas, lost, (/** @type {string} */ message) => {
         queueMicrotask(() => {
-          if (!closed) events.onError(message);
+          if (closed) return;
+          if (isTaken()) events.onLost('taken away', message);
+          else events.onError(message);
         });
       });
     }
@@ -100,7 +104,7 @@ export async function openDevice(kind, host, events) {
   } catch (error) {
     closed = true;
     canvas.remove();
-    if (isAsked && canvas.getContext('webgl2')?.isContextLost()) throw new DeviceLost(String(error));
+    if (isTaken()) throw new DeviceLost(String(error));
     throw error;
   }
 }
