@@ -74,17 +74,17 @@ impl Field {
 
     /// The union, in a box around those of both fields if they are known.
     fn union(&self, other: &Self) -> Self {
-        self.with(other, |a, b| marching_particles::union(a, b), self.joined(other))
+        self.with(other, marching_particles::union, self.joined(other))
     }
 
     /// The intersection, which lies in the box of either field.
     fn intersection(&self, other: &Self) -> Self {
-        self.with(other, |a, b| marching_particles::intersection(a, b), self.bounds.or(other.bounds))
+        self.with(other, marching_particles::intersection, self.bounds.or(other.bounds))
     }
 
     /// The difference, which lies in the box of this field.
     fn difference(&self, other: &Self) -> Self {
-        self.with(other, |a, b| marching_particles::difference(a, b), self.bounds)
+        self.with(other, marching_particles::difference, self.bounds)
     }
 
     /// The smooth union. A smooth minimum is below the lesser value by a sixth of the width at

@@ -15,7 +15,7 @@ _Function = Callable[[npt.NDArray[np.float64]], npt.ArrayLike]
 class FormulaError(ValueError):
     message: str
     formula: str
-    span: tuple[int, int]
+    span: Union[tuple[int, int], None]
     suggestion: Union[str, None]
     choices: list[str]
 
