@@ -303,7 +303,8 @@ function goButton(engine) {
     else engine.run();
   });
   const due = isDue(engine);
-  return button({ class: () => (due.value ? 'primary go' : 'go'), press }, () => (active.value ? 'Stop' : 'Run'));
+  const look = () => (due.value ? 'primary go due' : active.value ? 'go works' : 'go');
+  return button({ class: look, press }, () => (active.value ? 'Stop' : 'Run'));
 }
 
 /** @param {ReturnType<typeof createHistory>} history */
