@@ -227,3 +227,13 @@ test('after the first surface has grown, the first slider moves by itself, once'
   expect(await page.evaluate(() => /** @type {any} */ (window).values)).toEqual([]);
   await clean();
 });
+
+test('another surface is not invited to by the name of a parameter that it has not', async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: 'no-preference' });
+  const { clean } = await open(page, { invites: true });
+  await expect(page.locator('.invite')).toHaveText('Drag a');
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.set({ surface: 'tanglecube' }));
+  expect((await state(page)).parameters).toEqual({});
+  await expect(page.locator('.invite')).toBeHidden();
+  await clean();
+});
