@@ -15,8 +15,8 @@ const SHARE = 0.14;
 const PAUSE_MS = 1200;
 
 /**
- * Returns the name of the parameter that is to be dragged, null before, once anything was touched, and where the surface
- * has no such parameter.
+ * Returns the name of the parameter that is to be dragged; null before, once anything was touched,
+ * and where the surface has no such parameter.
  * @param {Engine} engine
  * @returns {ReadonlySignal<string | null>}
  */
