@@ -11,7 +11,7 @@ import { COLOUR, lightOn, lit, rimOn } from '../src/engine/view/shade.js';
 
 /** Side of the free square of the window, in units of the poster. */
 const SIDE = 720;
-/** Margin around the square, since the surface may reach beyond it. `--poster-share` in layout.css has it, too. */
+/** Margin around the square, since the surface may reach beyond it. The width in view.css counts with it. */
 const MARGIN = 36;
 /** Half axes of the default surface, and the distance from which its outline fills the square (`status` of the page). */
 const HALF = [1, 0.7, 0.5];

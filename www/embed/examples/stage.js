@@ -1,6 +1,15 @@
 // What three.js needs around an object: a light, a camera that fits it, and a canvas in an element.
 import { Box3, DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Sphere, WebGLRenderer } from 'three';
 
+/**
+ * After so many slow frames in a row it stands still: without a graphics card the page would hardly
+ * answer.
+ */
+const SLOW_FRAMES = 5;
+const SLOW_MS = 80;
+/** Largest turn of a frame, in radians. */
+const MOST_STEP = 0.05;
+
 /** @param {string} id  of the element @param {import('three').Object3D} object */
 export function show(id, object) {
   const host = document.getElementById(id);
@@ -34,8 +43,21 @@ export function show(id, object) {
   }).observe(host);
   // Seen from all around, or from one side for those who ask for less motion.
   if (matchMedia('(prefers-reduced-motion: reduce)').matches) return;
-  renderer.setAnimationLoop((ms) => {
-    angle = 0.6 + ms / 6000;
+  let lastMs = Infinity;
+  let slow = 0;
+  function turn(/** @type {number} */ ms) {
+    slow = ms - lastMs > SLOW_MS ? slow + 1 : 0;
+    angle += Math.min(MOST_STEP, Math.max(0, ms - lastMs) / 6000);
+    lastMs = ms;
     draw();
+    if (slow < SLOW_FRAMES) return;
+    sight.disconnect();
+    renderer.setAnimationLoop(null);
+  }
+  // What nobody sees stands still.
+  const sight = new IntersectionObserver((entries) => {
+    lastMs = Infinity;
+    renderer.setAnimationLoop(entries.at(-1)?.isIntersecting ? turn : null);
   });
+  sight.observe(host);
 }

@@ -108,18 +108,24 @@ export function mountInterface(engine, { grabs = false } = {}) {
   mountHover(stage, engine, { view, explainIt: (index) => void explainIt(index) });
   byId('tabs').append(goButton(engine));
 
-  void described.then((description) => {
-    mountField(byId('field-body'), engine, description, { motion, pins });
+  void described.then(async (description) => {
     const mesh = createMeshButton(engine, toast);
-    mountSampling(byId('sampling-body'), engine, description, { head: [mesh.element, samplingTools] });
-    mountReport(byId('report-body'), engine, description, byId('report-title'));
-    const legend = createLegend(engine, description);
     const [hide, makeMesh] = [layout.hideMore, () => void mesh.open()];
     const tools = { hide, shortcuts: shortcuts.open, picture, makeMesh, motion, toast };
+    // First what the camera's fit leaves free.
+    const legend = createLegend(engine, description);
     view.prepend(legend, createToolbar(engine, tools));
     layout.follow(legend);
-    shell.dataset.ready = '';
-    loadMarks(engine, { stage, view, pins });
+    for (const mountPart of [
+      () => mountField(byId('field-body'), engine, description, { motion, pins }),
+      () => mountSampling(byId('sampling-body'), engine, description, { head: [mesh.element, samplingTools] }),
+      () => mountReport(byId('report-body'), engine, description, byId('report-title')),
+      () => loadMarks(engine, { stage, view, pins }),
+    ]) {
+      // A press is answered between two, and a picture drawn.
+      await new Promise((resolve) => setTimeout(resolve));
+      mountPart();
+    }
   });
   void timeline.then((made) => {
     levels.hidden = made === null;
@@ -303,7 +309,8 @@ function goButton(engine) {
     else engine.run();
   });
   const due = isDue(engine);
-  return button({ class: () => (due.value ? 'primary go' : 'go'), press }, () => (active.value ? 'Stop' : 'Run'));
+  const look = () => (due.value ? 'primary go due' : active.value ? 'go works' : 'go');
+  return button({ class: look, press }, () => (active.value ? 'Stop' : 'Run'));
 }
 
 /** @param {ReturnType<typeof createHistory>} history */

@@ -60,3 +60,66 @@ test('the examples run, under the policy of the page, with their code beside the
   await expect(page.locator('#facts')).toContainText('triangles, volume');
   expect(faults).toEqual([]);
 });
+
+/** Keeps how often each stage draws, by calls of WebGL2. @param {import('@playwright/test').Page} page */
+const countDrawing = (page) =>
+  page.addInitScript(() => {
+    const drawn = /** @type {Record<string, number>} */ ({ gyroid: 0, function: 0 });
+    Object.assign(window, { drawn });
+    const { prototype } = WebGL2RenderingContext;
+    for (const name of /** @type {const} */ (['drawArrays', 'drawElements', 'drawElementsInstanced'])) {
+      const draw = /** @type {(...given: any[]) => void} */ (prototype[name]);
+      prototype[name] = function (/** @type {any[]} */ ...given) {
+        const { parentElement } = /** @type {HTMLCanvasElement} */ (this.canvas);
+        drawn[parentElement?.id ?? ''] += 1;
+        return draw.apply(this, given);
+      };
+    }
+  });
+/** @param {import('@playwright/test').Page} page @returns {Promise<Record<string, number>>} */
+const drawn = (page) => page.evaluate(() => ({ .../** @type {any} */ (window).drawn }));
+/** Waits for frames of the browser. @param {import('@playwright/test').Page} page */
+const frames = (page) =>
+  page.evaluate(async () => {
+    for (let k = 0; k < 20; k += 1) await new Promise(requestAnimationFrame);
+  });
+
+test('what moves is drawn while it is in view, and the page can be photographed', async ({ page }) => {
+  const faults = faultsOf(page);
+  await page.emulateMedia({ reducedMotion: 'no-preference' });
+  await countDrawing(page);
+  await page.goto('./embed/');
+  await expect(page.locator('body')).toHaveAttribute('data-filled');
+  await page.locator('#gyroid').scrollIntoViewIfNeeded();
+  const before = await drawn(page);
+  await expect.poll(async () => (await drawn(page)).gyroid).toBeGreaterThan(before.gyroid + 1);
+  expect((await page.screenshot()).length).toBeGreaterThan(1000);
+  await page.locator('#download').scrollIntoViewIfNeeded();
+  // The browser tells of it with its next frames.
+  await frames(page);
+  const hidden = await drawn(page);
+  await frames(page);
+  expect(await drawn(page)).toEqual(hidden);
+  expect(faults).toEqual([]);
+});
+
+test('where frames take long, what turns by itself comes to rest', async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: 'no-preference' });
+  await countDrawing(page);
+  await page.addInitScript(() => {
+    // Frames of a tenth of a second.
+    window.requestAnimationFrame = (draw) => Number(setTimeout(() => draw(performance.now()), 100));
+    window.cancelAnimationFrame = (handle) => clearTimeout(handle);
+  });
+  await page.goto('./embed/');
+  await expect(page.locator('body')).toHaveAttribute('data-filled');
+  await page.locator('#gyroid').scrollIntoViewIfNeeded();
+  await expect.poll(async () => (await drawn(page)).gyroid).toBeGreaterThan(4);
+  await expect
+    .poll(async () => {
+      const { gyroid } = await drawn(page);
+      await frames(page);
+      return (await drawn(page)).gyroid - gyroid;
+    })
+    .toBe(0);
+});

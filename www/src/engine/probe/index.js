@@ -4,6 +4,8 @@
  * @module
  */
 
+import { drawerOn } from './drawer.js';
+
 /**
  * @import { BackendKind } from '../types.js'
  * @import { Drawer } from './types.js'
@@ -33,7 +35,9 @@ export function askAdapter() {
   return adapter;
 }
 
-/** Returns who draws WebGL2. */
+/**
+ * Returns who draws WebGL2. In some browsers the page has it and a worker has not: there the page asks itself.
+ */
 export function askDrawer() {
   drawer ??= within(
     new Promise((resolve, reject) => {
@@ -42,7 +46,8 @@ export function askDrawer() {
         worker.terminate();
         tell();
       };
-      worker.onmessage = ({ data }) => end(() => resolve(data));
+      worker.onmessage = ({ data }) =>
+        end(() => resolve(data === 'none' ? drawerOn(() => document.createElement('canvas')) : data));
       worker.onerror = ({ message }) => end(() => reject(new Error(message)));
     }),
   );

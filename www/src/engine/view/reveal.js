@@ -50,20 +50,24 @@ export class Reveal {
   }
 
   /**
-   * Has the levels of the first surface grow from now on.
+   * Has the levels of the first surface grow from now on. Those before the first one that is seen, on the far side, are
+   * there at once.
    * @param {number} nowS @param {Uint32Array} levels  of its particles
+   * @param {(particle: number) => boolean} [isSeen]
    */
-  release(nowS, levels) {
+  release(nowS, levels, isSeen = () => true) {
     this.isHeld = false;
     this.#startS = nowS;
+    let first = Infinity;
     // What fills holes afterwards comes last, whatever its level.
     for (let i = 0, newest = 0; i < levels.length; i += 1) {
       newest = Math.max(newest, levels[i]);
       this.ends[newest] = i + 1;
+      if (newest < first && isSeen(i)) first = newest;
     }
     for (let k = 0; k < this.ends.length; k += 1) {
       this.ends[k] ??= this.ends[k - 1] ?? 0;
-      this.births[k] = nowS + k * this.#stepS;
+      this.births[k] = nowS + Math.max(0, k - first) * this.#stepS;
     }
   }
 

@@ -500,7 +500,11 @@ export class Viewer {
     const { ball, distance } = this.#fit();
     if (camera.state.fit) camera.fit(ball, { distance, jump: true });
     this.#lastS = clockS;
-    reveal.release(clockS - this.#lagS, columns.levels.subarray(0, columns.count));
+    const { eye } = this.currentView();
+    const { placed, normals } = columns;
+    const isSeen = (/** @type {number} */ i) =>
+      [0, 1, 2].reduce((sum, k) => sum + normals[3 * i + k] * (eye[k] - placed[3 * i + k]), 0) > 0;
+    reveal.release(clockS - this.#lagS, columns.levels.subarray(0, columns.count), isSeen);
     return false;
   }
 

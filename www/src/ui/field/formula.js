@@ -217,9 +217,12 @@ function createPreview(engine) {
     const { scrollWidth, clientWidth } = preview;
     if (scrollWidth > clientWidth) preview.style.fontSize = `${Math.max(LEAST_SIZE, clientWidth / scrollWidth)}em`;
   };
+  // It is measured with the next frame, which lays the page out anyway.
+  let asked = 0;
   live(preview, () => {
     void math.value;
-    fit();
+    cancelAnimationFrame(asked);
+    asked = requestAnimationFrame(fit);
   });
   live(preview, () => preview.classList.toggle('stale', isLast.value));
   let width = 0;

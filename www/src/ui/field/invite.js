@@ -15,7 +15,8 @@ const SHARE = 0.14;
 const PAUSE_MS = 1200;
 
 /**
- * Returns the name of the parameter that is to be dragged, null before and once anything was touched.
+ * Returns the name of the parameter that is to be dragged; null before, once anything was touched,
+ * and where the surface has no such parameter.
  * @param {Engine} engine
  * @returns {ReadonlySignal<string | null>}
  */
@@ -23,7 +24,9 @@ export function inviteToDrag(engine) {
   const was = remembered('invited', false);
   /** @type {Signal<string | null>} */
   const invited = signal(null);
-  if (was.peek() || matchMedia('(prefers-reduced-motion: reduce)').matches) return invited;
+  const names = computed(() => engine.field.value?.parameters.map(({ name }) => name) ?? []);
+  const shown = computed(() => (names.value.includes(invited.value ?? '') ? invited.value : null));
+  if (was.peek() || matchMedia('(prefers-reduced-motion: reduce)').matches) return shown;
   const has = computed(
     () => engine.report.value !== null && engine.reveal.value === null && !engine.busy.value && engine.frame.value > 0,
   );
@@ -35,7 +38,7 @@ export function inviteToDrag(engine) {
     queueMicrotask(() => end());
     setTimeout(() => {
       // Whoever has touched anything needs no invitation.
-      if (was.peek()) return;
+      if (was.peek() || names.peek()[0] !== first.name) return;
       was.value = true;
       invited.value = first.name;
       move(engine, first);
@@ -47,7 +50,7 @@ export function inviteToDrag(engine) {
     invited.value = null;
   };
   for (const type of ['pointerdown', 'keydown', 'wheel']) addEventListener(type, touch, true);
-  return invited;
+  return shown;
 
   /** @param {Engine} of @param {Parameter} parameter */
   function move(of, { name, value, min, max, step }) {
@@ -55,7 +58,7 @@ export function inviteToDrag(engine) {
     const way = (max - value > value - min ? 1 : -1) * SHARE * (max - min);
     const go = (/** @type {number} */ nowMs) => {
       const share = (nowMs - fromMs) / MOTION_MS;
-      if (invited.peek() === null || share >= 1) return of.resetParameter(name);
+      if (shown.peek() === null || share >= 1) return of.resetParameter(name);
       // As where a parameter is played, a run that takes longer than a frame is waited for.
       if (!of.busy.peek()) {
         const place = value + way * Math.sin(Math.PI * Math.max(0, share)) ** 2;

@@ -35,7 +35,8 @@ export function createTimeline(body, engine, { told, say }) {
   });
   const range = rangeOf(player);
   const track = trackOf(levels, range);
-  fill(body, buttonsOf(player), track, captionOf(levels), speedOf(player), chartsOf(body, engine, player, say));
+  const charts = chartsOf(body, engine, player, say);
+  fill(body, playOf(player), track, captionOf(levels), stepsOf(player), speedOf(player), charts);
   explain(
     track,
     () => ({
@@ -223,21 +224,26 @@ function chartsOf(body, engine, player, say) {
 }
 
 /** @param {Player} player */
-function buttonsOf(player) {
-  const { playing } = player;
+function playOf(player) {
+  const { playing, levels } = player;
+  return step('Space', {
+    class: 'plain square levels-play',
+    icon: () => (playing.value ? 'pause' : 'play'),
+    'aria-label': () => (playing.value ? 'Pause' : 'Play'),
+    off: () => !levels.some.value,
+    press: () => player.toggle(),
+  });
+}
+
+/** @param {Player} player */
+function stepsOf(player) {
   const { some, at, last } = player.levels;
   const isFirst = () => !some.value || at.value === 0;
   const isLast = () => !some.value || at.value >= last.value;
   const move = (/** @type {To} */ to) => () => player.move(to);
-  return h('div', { class: 'levels-buttons', role: 'group', 'aria-label': 'Step along the timeline' }, [
+  return h('div', { class: 'levels-steps', role: 'group', 'aria-label': 'Step along the timeline' }, [
     step('Home', { icon: 'first', 'aria-label': 'First level', off: isFirst, press: move('first') }),
     step('Page up', { icon: 'back', 'aria-label': 'Level back', off: isFirst, press: move(-1) }),
-    step('Space', {
-      icon: () => (playing.value ? 'pause' : 'play'),
-      'aria-label': () => (playing.value ? 'Pause' : 'Play'),
-      off: () => !some.value,
-      press: () => player.toggle(),
-    }),
     step('Page down', { icon: 'forward', 'aria-label': 'Level forward', off: isLast, press: move(1) }),
     step('End', { icon: 'last', 'aria-label': 'All levels', off: isLast, press: move('last') }),
   ]);

@@ -9,8 +9,7 @@ const level = async (page) => (await state(page)).view.level;
 /** @param {Page} page */
 const slider = (page) => page.getByRole('slider', { name: /^Timeline, by/ });
 /** @param {Page} page @param {string} name */
-const press = (page, name) =>
-  page.getByRole('group', { name: 'Step along the timeline' }).getByRole('button', { name, exact: true }).click();
+const press = (page, name) => page.locator('#panel-levels').getByRole('button', { name, exact: true }).click();
 /** The levels of the particles, counted. @param {Page} page @returns {Promise<number[]>} */
 const fresh = (page) =>
   page.evaluate(() => {

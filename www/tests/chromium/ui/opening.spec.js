@@ -54,10 +54,11 @@ test('the surface grows level by level before a camera that stands still where t
 });
 
 for (const [width, height, tolerance] of /** @type {const} */ ([
-  [1440, 900, 0.01],
-  [1920, 1080, 0.01],
-  [1024, 768, 0.03],
-  [390, 844, 0.03],
+  [1440, 900, 0.005],
+  [1920, 1080, 0.005],
+  [1024, 768, 0.01],
+  [390, 844, 0.01],
+  [360, 740, 0.01],
 ])) {
   test(`at ${width} by ${height} the poster has the outline of the picture that takes its place`, async ({ page }) => {
     const { clean } = await open(page, { width, height, folded: true });
@@ -224,5 +225,15 @@ test('after the first surface has grown, the first slider moves by itself, once'
   await page.waitForTimeout(300);
   await expect(page.locator('.invite')).toBeHidden();
   expect(await page.evaluate(() => /** @type {any} */ (window).values)).toEqual([]);
+  await clean();
+});
+
+test('another surface is not invited to by the name of a parameter that it has not', async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: 'no-preference' });
+  const { clean } = await open(page, { invites: true });
+  await expect(page.locator('.invite')).toHaveText('Drag a');
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.set({ surface: 'tanglecube' }));
+  expect((await state(page)).parameters).toEqual({});
+  await expect(page.locator('.invite')).toBeHidden();
   await clean();
 });

@@ -74,7 +74,7 @@ test('the view', async ({ page }) => {
     }
   });
 
-  await test.step('on a phone the tabs open one sheet at a time, and the run is always in reach', async () => {
+  await test.step('on a phone the tabs open one sheet at a time, and the run is on that of sampling', async () => {
     await afresh(page, { width: 390, height: 844 });
     const tabs = page.getByRole('navigation', { name: 'Panels' });
     await expect(page.locator('#panel-field')).toBeVisible();
@@ -83,6 +83,8 @@ test('the view', async ({ page }) => {
     await expect(page.locator('.plain-figures')).toBeVisible();
     await tabs.getByRole('button', { name: 'Report' }).click();
     await expect(page.locator('#panel-report')).toBeHidden();
+    await expect(tabs.getByRole('button', { name: 'Run' })).toBeHidden();
+    await tabs.getByRole('button', { name: 'Sampling' }).click();
     await tabs.getByRole('button', { name: 'Run' }).dblclick();
     await settled(page);
     expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().partial)).toBe(false);

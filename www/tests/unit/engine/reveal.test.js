@@ -31,6 +31,23 @@ test('the first surface waits for its front, and then appears particle by partic
   expect(reveal.isOpening).toBe(false);
 });
 
+test('what of the first surface begins on the far side is there at once, and what is seen grows', () => {
+  const reveal = new Reveal();
+  reveal.begin(0, true);
+  const first = LEVELS.indexOf(4) + 1;
+  reveal.release(8, LEVELS, (i) => i === first);
+  expect(reveal.births.slice(0, 5)).toEqual([8, 8, 8, 8, 8]);
+  const [between] = reveal.births.slice(5).map((birthS, k) => birthS - reveal.births[4 + k]);
+  expect(between).toBeGreaterThan(0);
+  for (let k = 5; k < reveal.births.length; k += 1)
+    expect(reveal.births[k] - reveal.births[k - 1]).toBeCloseTo(between, 9);
+  expect(reveal.appeared(8)).toBe(LEVELS.indexOf(4));
+  // All of it is on the far side.
+  reveal.begin(8, true);
+  reveal.release(9, LEVELS, () => false);
+  expect(new Set(reveal.births)).toEqual(new Set([9]));
+});
+
 test('another surface appears while its front is placed', () => {
   const reveal = new Reveal();
   reveal.begin(5);
