@@ -11,9 +11,9 @@ const FRAMES = CONTEXTS + 2;
 /** Height of a frame: two of them are in view. */
 const HEIGHT = 170;
 
-test('of more frames than contexts those in view have a live context, and the others dots in its place', async ({
-  page,
-}) => {
+test('of more frames than contexts those in view have a live context, and the others dots in its place', {
+  tag: '@all',
+}, async ({ page }) => {
   // Six pages open at once.
   test.slow();
   await page.setViewportSize({ width: 320, height: 2 * HEIGHT });

@@ -20,9 +20,9 @@ async function drag(page, what, x, y) {
 /** @param {Locator} slider */
 const numberOf = async (slider) => Number(await slider.getAttribute('aria-valuenow'));
 
-test('the surface bends under the finger and by keys, and Newton’s child stays out until it was guessed', async ({
-  page,
-}) => {
+test('the surface bends under the finger and by keys, and Newton’s child stays out until it was guessed', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#circle', width: 1440, height: 900 });
   const figure = await live(page, 'circle');
   const [sentence, told] = [figure.locator('.side > p').first(), figure.locator('.told')];
@@ -65,9 +65,9 @@ test('the surface bends under the finger and by keys, and Newton’s child stays
   clean();
 });
 
-test('the radii of a particle and of those around it are dragged, and φ and τ follow step by step', async ({
-  page,
-}) => {
+test('the radii of a particle and of those around it are dragged, and φ and τ follow step by step', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#angles', width: 390, height: 844 });
   const figure = await live(page, 'angles');
   const [own, other] = ['particle', 'others'].map((of) => figure.getByRole('slider', { name: `Radius of the ${of}` }));
@@ -102,7 +102,7 @@ test('the radii of a particle and of those around it are dragged, and φ and τ 
   clean();
 });
 
-test('a number of the text is a handle of its figure, and follows it', async ({ page }) => {
+test('a number of the text is a handle of its figure, and follows it', { tag: '@all' }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#rings' });
   const figure = await live(page, 'rings');
   const text = page.locator('#rings > p');
@@ -127,7 +127,9 @@ test('a number of the text is a handle of its figure, and follows it', async ({ 
   clean();
 });
 
-test('a choice that was left is as it was: its dials show what is run, and go on from there', async ({ page }) => {
+test('a choice that was left is as it was: its dials show what is run, and go on from there', { tag: '@all' }, async ({
+  page,
+}) => {
   test.setTimeout(120_000);
   const { clean } = await openLesson(page, { hash: '#what-if-fail' });
   const bench = page.locator('#bench');
@@ -162,7 +164,7 @@ test('a choice that was left is as it was: its dials show what is run, and go on
   clean();
 });
 
-test('while both are run, what stands there is marked as old', async ({ page }) => {
+test('while both are run, what stands there is marked as old', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#what-if-fail' });
   const bench = page.locator('#bench');
   await expect(bench.locator('.outcome')).toBeVisible({ timeout: 60_000 });
@@ -173,7 +175,7 @@ test('while both are run, what stands there is marked as old', async ({ page }) 
   await expect(bench.getByRole('columnheader', { name: /a hundred steps/ })).toBeVisible();
 });
 
-test('a picture is pinned while its number is turned, and over no question', async ({ page }) => {
+test('a picture is pinned while its number is turned, and over no question', { tag: '@all' }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#rings', width: 1280, height: 720 });
   const stage = await live(page, 'rings');
   const [number, question] = [

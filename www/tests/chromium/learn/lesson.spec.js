@@ -35,7 +35,7 @@ test('every chapter has a live figure, in a folder of a host, too, and is access
   clean();
 });
 
-test('the learner’s own formula is carried over, and back', async ({ page }) => {
+test('the learner’s own formula is carried over, and back', { tag: '@all' }, async ({ page }) => {
   const formula = 'x^2 + y^2 + z^2 = 0.5';
   const state = Buffer.from(JSON.stringify({ formula })).toString('base64url');
   await page.setViewportSize({ width: 1280, height: 800 });
@@ -57,7 +57,9 @@ test('the learner’s own formula is carried over, and back', async ({ page }) =
   expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.state.formula)).toBe(formula);
 });
 
-test('a surface without a point gives way to the ellipsoid, and the page says so', async ({ page }) => {
+test('a surface without a point gives way to the ellipsoid, and the page says so', { tag: '@all' }, async ({
+  page,
+}) => {
   const none = Buffer.from(
     JSON.stringify({ formula: 'x^2 + y^2 + z^2 + 1 = 0', bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, from: '' }),
   ).toString('base64url');
@@ -66,7 +68,7 @@ test('a surface without a point gives way to the ellipsoid, and the page says so
   await expect(page.locator('#notice')).toContainText('The figures show an ellipsoid.');
 });
 
-test('a figure keeps the answer to itself until the question is revealed', async ({ page }) => {
+test('a figure keeps the answer to itself until the question is revealed', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: `#predict-ring&surface=${TORUS}` });
   const rings = await live(page, 'rings');
   await expect(rings.locator('.chart')).toBeHidden();
@@ -82,7 +84,9 @@ test('a figure keeps the answer to itself until the question is revealed', async
   await expect(rings.locator('.chart')).toContainText(`Level 12: ${told} new particles.`);
 });
 
-test('a question is answered from the keyboard alone, by a press on the picture, too', async ({ page }) => {
+test('a question is answered from the keyboard alone, by a press on the picture, too', { tag: '@all' }, async ({
+  page,
+}) => {
   await openLesson(page);
   await live(page, 'cost');
   const cost = page.locator('#predict-cost');
@@ -108,9 +112,9 @@ test('a question is answered from the keyboard alone, by a press on the picture,
   expect(asked && drawn && drawn.y - asked.y - asked.height).toBeLessThan(60);
 });
 
-test('in a comparison one camera turns both pictures, and a press on one sets the seed of the other', async ({
-  page,
-}) => {
+test('in a comparison one camera turns both pictures, and a press on one sets the seed of the other', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: `#what-if-fail&surface=${TORUS}` });
   const bench = page.locator('#bench');
   await expect(bench.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
@@ -149,7 +153,7 @@ test('in a comparison one camera turns both pictures, and a press on one sets th
   clean();
 });
 
-test('the match tolerance is dragged in its sentence, and the figure follows', async ({ page }) => {
+test('the match tolerance is dragged in its sentence, and the figure follows', { tag: '@all' }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#first' });
   const first = await live(page, 'first');
   const number = page.locator('#first').getByRole('slider', { name: 'Match tolerance' });
@@ -173,7 +177,9 @@ test('the match tolerance is dragged in its sentence, and the figure follows', a
   clean();
 });
 
-test('the picture of a figure stays in view while a number of the text is dragged far from it', async ({ page }) => {
+test('the picture of a figure stays in view while a number of the text is dragged far from it', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#rings', width: 390, height: 844 });
   const picture = (await live(page, 'rings')).locator('.picture');
   const number = page.locator('#rings').getByRole('slider', { name: 'Ring', exact: true });
@@ -200,9 +206,9 @@ test('the picture of a figure stays in view while a number of the text is dragge
   clean();
 });
 
-test('a particle is followed by events, particles and levels, with its plane, its line and a slot from the side', async ({
-  page,
-}) => {
+test('a particle is followed by events, particles and levels, with its plane, its line and a slot from the side', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#first' });
   const first = await live(page, 'first');
   const [name, told] = [first.getByText(/^Particle \d+ on level/), first.locator('.told')];
@@ -237,7 +243,7 @@ test('a particle is followed by events, particles and levels, with its plane, it
   clean();
 });
 
-test('a stop far down stays at the top while the figures above it come', async ({ page }) => {
+test('a stop far down stays at the top while the figures above it come', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#judge' });
   const judge = page.locator('#judge');
   const top = () => judge.evaluate((element) => Math.round(element.getBoundingClientRect().top));
@@ -249,7 +255,7 @@ test('a stop far down stays at the top while the figures above it come', async (
 /** The number of a cell of a table. @param {Locator} row @param {number} k */
 const numberIn = async (row, k) => Number((await row.getByRole('cell').nth(k).innerText()).replace(/[^\d.]/g, ''));
 
-test('what the text claims of the ellipsoid is what its runs say', async ({ page }) => {
+test('what the text claims of the ellipsoid is what its runs say', { tag: '@all' }, async ({ page }) => {
   const { clean } = await openLesson(page);
   const skip = async (/** @type {string} */ id) => {
     await page.locator(`#${id}`).getByRole('button', { name: 'Skip' }).click();
@@ -295,7 +301,7 @@ test('what the text claims of the ellipsoid is what its runs say', async ({ page
   clean();
 });
 
-test('an unknown stop leads to the nearest one, and the page says so', async ({ page }) => {
+test('an unknown stop leads to the nearest one, and the page says so', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#ringz' });
   await expect(page.locator('#notice')).toHaveText(
     'There is no stop “ringz” in this lesson. This is the nearest, “Rings”.',
@@ -305,7 +311,7 @@ test('an unknown stop leads to the nearest one, and the page says so', async ({ 
   await expect(page.locator('#notice')).toBeInViewport({ ratio: 1 });
 });
 
-test('the focus goes from the button of a question to its answer', async ({ page }) => {
+test('the focus goes from the button of a question to its answer', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#predict-ring' });
   await page.getByLabel('Particles in ring 12').fill('70');
   await page.keyboard.press('Enter');
@@ -313,7 +319,7 @@ test('the focus goes from the button of a question to its answer', async ({ page
   await expect(page.locator('#predict-ring .predict-result')).toBeFocused();
 });
 
-test('without the bundle the text stays and a figure says what is missing', async ({ page }) => {
+test('without the bundle the text stays and a figure says what is missing', { tag: '@all' }, async ({ page }) => {
   await page.route(/lesson_bg.*\.wasm$/, (route) => route.abort());
   await openLesson(page);
   const why = await settled(page, 'judge-first');
@@ -325,7 +331,7 @@ test('without the bundle the text stays and a figure says what is missing', asyn
 
 test.describe('without JavaScript', () => {
   test.use({ javaScriptEnabled: false });
-  test('the article is complete, with a still for every figure', async ({ page }) => {
+  test('the article is complete, with a still for every figure', { tag: '@all' }, async ({ page }) => {
     await page.goto('./learn/');
     await expect(page.getByText('Particles are such a list')).toBeVisible();
     await expect(page.locator('.opening noscript p')).toBeVisible();
@@ -349,7 +355,7 @@ test.describe('without JavaScript', () => {
 
 test.describe('stored', () => {
   test.use({ serviceWorkers: 'allow' });
-  test('after one visit the lesson needs no network', async ({ page }) => {
+  test('after one visit the lesson needs no network', { tag: '@all' }, async ({ page }) => {
     const server = createSite();
     await new Promise((done) => server.listen(0, 'localhost', () => done(undefined)));
     const { port } = /** @type {AddressInfo} */ (server.address());
@@ -365,9 +371,9 @@ test.describe('stored', () => {
   });
 });
 
-test('every question is answered by the run, or skipped, and on a phone nothing is wider than the page', async ({
-  page,
-}) => {
+test('every question is answered by the run, or skipped, and on a phone nothing is wider than the page', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { width: 390, height: 760 });
   for (const name of FIGURES) await live(page, name);
   const questions = page.locator('.predict');
@@ -387,7 +393,7 @@ test('every question is answered by the run, or skipped, and on a phone nothing 
   clean();
 });
 
-test('the front grows when it is asked to, at once under reduced motion', async ({ page }) => {
+test('the front grows when it is asked to, at once under reduced motion', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#rings' });
   const rings = await live(page, 'rings');
   const level = rings.getByRole('slider', { name: 'Level' });
@@ -400,7 +406,9 @@ test('the front grows when it is asked to, at once under reduced motion', async 
   await expect(level).toHaveValue(last);
 });
 
-test('guesses and answers are there again after a reload, and are forgotten on request', async ({ page }) => {
+test('guesses and answers are there again after a reload, and are forgotten on request', { tag: '@all' }, async ({
+  page,
+}) => {
   await openLesson(page, { hash: '#predict-cost' });
   const cost = page.locator('#predict-cost');
   await cost.getByRole('radio', { name: 'Both about the same' }).check();
@@ -422,9 +430,9 @@ test('guesses and answers are there again after a reload, and are forgotten on r
   await expect(page.locator('#predict-ring').getByLabel('Particles in ring 12')).toHaveValue('');
 });
 
-test('the last pairs are judged by eye, then by their figures, and then they have marks and names', async ({
-  page,
-}) => {
+test('the last pairs are judged by eye, then by their figures, and then they have marks and names', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#judge' });
   const judge = await live(page, 'judge-last');
   const question = page.locator('#predict-last');
@@ -473,7 +481,9 @@ test('the last pairs are judged by eye, then by their figures, and then they hav
   clean();
 });
 
-test('in a comparison one switch marks five and seven neighbours in both pictures', async ({ page }) => {
+test('in a comparison one switch marks five and seven neighbours in both pictures', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await openLesson(page, { hash: '#what-if-order' });
   const bench = page.locator('#bench');
   await expect(bench.locator('table.compare')).toBeVisible({ timeout: 60_000 });
@@ -487,7 +497,9 @@ test('in a comparison one switch marks five and seven neighbours in both picture
   clean();
 });
 
-test('the cards are a page of their own, each with both sides, on the learner’s surface, too', async ({ page }) => {
+test('the cards are a page of their own, each with both sides, on the learner’s surface, too', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await openLesson(page, { hash: `#surface=${TORUS}`, width: 390 });
   await page.getByRole('link', { name: 'Where the program differs from the paper' }).first().click();
   await page.waitForURL(/learn\/cards\/.*#surface=/);

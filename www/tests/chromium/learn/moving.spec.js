@@ -20,9 +20,9 @@ async function answer(page) {
   await expect(question).toContainText('As you said.');
 }
 
-test('particles follow the slider, by keyboard and by mouse, back on what was kept, and a front comes at rest', async ({
-  page,
-}) => {
+test('particles follow the slider, by keyboard and by mouse, back on what was kept, and a front comes at rest', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#moving' });
   const figure = await live(page, 'moving');
   const chart = figure.locator('.chart');
@@ -63,9 +63,9 @@ test('particles follow the slider, by keyboard and by mouse, back on what was ke
   clean();
 });
 
-test('the lane beside it and the surface are chosen: none is born there, and the tanglecube falls apart', async ({
-  page,
-}) => {
+test('the lane beside it and the surface are chosen: none is born there, and the tanglecube falls apart', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#moving', width: 390 });
   const figure = await live(page, 'moving');
   const slider = figure.getByRole('slider');
@@ -90,7 +90,7 @@ test('the lane beside it and the surface are chosen: none is born there, and the
   clean();
 });
 
-test('the table goes along with its replay', async ({ page }) => {
+test('the table goes along with its replay', { tag: '@all' }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#moving' });
   const figure = await live(page, 'moving');
   await answer(page);
@@ -109,7 +109,7 @@ test('the table goes along with its replay', async ({ page }) => {
   clean();
 });
 
-test('the learner’s own surface moves by its parameter', async ({ page }) => {
+test('the learner’s own surface moves by its parameter', { tag: '@all' }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: `#moving&surface=${TORUS}` });
   const figure = await live(page, 'moving');
   await expect(figure.getByText('if its formula has a parameter')).toHaveCount(0);
@@ -126,7 +126,7 @@ test('the learner’s own surface moves by its parameter', async ({ page }) => {
   clean();
 });
 
-test('under reduced motion the picture is where the slider is, at once', async ({ page }) => {
+test('under reduced motion the picture is where the slider is, at once', { tag: '@all' }, async ({ page }) => {
   await page.emulateMedia({ reducedMotion: 'reduce' });
   await openLesson(page, { hash: '#moving' });
   const figure = await live(page, 'moving');
@@ -142,7 +142,7 @@ test('under reduced motion the picture is where the slider is, at once', async (
   expect(seen.size).toBe(2);
 });
 
-test('the link to the first page grabs its surface', async ({ page }) => {
+test('the link to the first page grabs its surface', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#moving' });
   await page.getByRole('link', { name: 'Grab the ellipsoid' }).click();
   await page.waitForURL(/\?grab/);

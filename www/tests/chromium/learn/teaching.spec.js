@@ -13,9 +13,9 @@ async function teachers(page, name) {
   await page.getByRole('button', { name, exact: true }).click();
 }
 
-test('keys and clickers go from stop to stop and blank the wall, and each stop has its own address', async ({
-  page,
-}) => {
+test('keys and clickers go from stop to stop and blank the wall, and each stop has its own address', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#rings&mode=present' });
   await live(page, 'rings');
   await expect(page.locator('.chapter:visible')).toHaveCount(1);
@@ -50,7 +50,9 @@ test('keys and clickers go from stop to stop and blank the wall, and each stop h
   clean();
 });
 
-test('the notes have a window of their own, with the next stop and a clock, which steers, too', async ({ page }) => {
+test('the notes have a window of their own, with the next stop and a clock, which steers, too', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#rings&mode=present' });
   await live(page, 'rings');
   const [notes] = await Promise.all([page.waitForEvent('popup'), page.keyboard.press('n')]);
@@ -121,7 +123,9 @@ test(
   },
 );
 
-test('a presentation begins at the chapter that is read, and fits a small window', async ({ page }) => {
+test('a presentation begins at the chapter that is read, and fits a small window', { tag: '@all' }, async ({
+  page,
+}) => {
   await openLesson(page, { hash: `#seams&surface=${TORUS}`, width: 390, height: 700 });
   await live(page, 'seams');
   await teachers(page, 'Present');
@@ -130,7 +134,9 @@ test('a presentation begins at the chapter that is read, and fits a small window
   expect(await overflow(page)).toBe(0);
 });
 
-test('the hand-out has blanks for the predictions, and every answer on its last page', async ({ page }) => {
+test('the hand-out has blanks for the predictions, and every answer on its last page', { tag: '@all' }, async ({
+  page,
+}) => {
   test.setTimeout(180_000);
   await openLesson(page);
   await page.evaluate(() => {
@@ -171,14 +177,18 @@ test('the hand-out has blanks for the predictions, and every answer on its last 
   expect(sheets.toString('latin1').match(/\/Type\s*\/Page\b/g)?.length).toBeLessThanOrEqual(10);
 });
 
-test('what the browser prints by itself has no answers, and the page says where to find them', async ({ page }) => {
+test('what the browser prints by itself has no answers, and the page says where to find them', { tag: '@all' }, async ({
+  page,
+}) => {
   await openLesson(page, { hash: '#rings' });
   await live(page, 'rings');
   await page.evaluate(() => dispatchEvent(new Event('afterprint')));
   await expect(page.locator('#notice')).toContainText('“Print”, under “For teachers”');
 });
 
-test('where the part for teachers does not load, the article is printed and the page says so', async ({ page }) => {
+test('where the part for teachers does not load, the article is printed and the page says so', { tag: '@all' }, async ({
+  page,
+}) => {
   /** @type {string[]} */
   const faults = [];
   page.on('pageerror', (error) => faults.push(String(error)));
@@ -205,7 +215,7 @@ test('where the part for teachers does not load, the article is printed and the 
   expect(faults).toEqual([]);
 });
 
-test('a reader loads nothing of what is for a class', async ({ page }) => {
+test('a reader loads nothing of what is for a class', { tag: '@all' }, async ({ page }) => {
   /** @type {string[]} */
   const loaded = [];
   page.on('request', (request) => loaded.push(new URL(request.url()).pathname));
@@ -218,7 +228,7 @@ test('a reader loads nothing of what is for a class', async ({ page }) => {
   expect(loaded.filter((path) => /\/teach-/.test(path))).toHaveLength(1);
 });
 
-test('an assignment locks what the teacher chose, and its answers are one file', async ({ page }) => {
+test('an assignment locks what the teacher chose, and its answers are one file', { tag: '@all' }, async ({ page }) => {
   test.setTimeout(120_000);
   const { clean } = await openLesson(page, { hash: `#what-if-fail&surface=${TORUS}` });
   await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
@@ -334,7 +344,9 @@ const classOf = (count) =>
     ),
   }));
 
-test('a lecturer drops thirty files and sees the answers beside what the run says', async ({ page }) => {
+test('a lecturer drops thirty files and sees the answers beside what the run says', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await openLesson(page);
   await teachers(page, 'Assignment');
   await page.getByRole('dialog').getByRole('link', { name: 'Collect answers' }).click();
@@ -389,7 +401,7 @@ test('a lecturer drops thirty files and sees the answers beside what the run say
   clean();
 });
 
-test('the values of a comparison are part of the address', async ({ page }) => {
+test('the values of a comparison are part of the address', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#what-if-step&left=0.2&right=none' });
   const bench = page.locator('#bench');
   await expect(bench.getByLabel('Left', { exact: true })).toHaveValue('0.2', { timeout: 60_000 });
@@ -403,7 +415,9 @@ test('the values of a comparison are part of the address', async ({ page }) => {
   await expect.poll(() => page.evaluate(() => location.hash)).toBe('#rings');
 });
 
-test('the worst sampling is looked for by keys, and the best and the worst are kept', async ({ page }) => {
+test('the worst sampling is looked for by keys, and the best and the worst are kept', { tag: '@all' }, async ({
+  page,
+}) => {
   test.setTimeout(120_000);
   const { clean } = await openLesson(page, { hash: '#what-if-fail' });
   const bench = page.locator('#bench');
@@ -442,7 +456,9 @@ test('the worst sampling is looked for by keys, and the best and the worst are k
   clean();
 });
 
-test('a clicker asks, shows the figures and goes through the values of a comparison', async ({ page }) => {
+test('a clicker asks, shows the figures and goes through the values of a comparison', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await openLesson(page, { hash: '#what-if-step&mode=present' });
   const bench = page.locator('#bench');
   await expect(bench.getByRole('columnheader', { name: '0.2 r²' })).toBeHidden();
@@ -463,7 +479,7 @@ test('a clicker asks, shows the figures and goes through the values of a compari
   clean();
 });
 
-test('a damaged assignment is named, and the lesson stays', async ({ page }) => {
+test('a damaged assignment is named, and the lesson stays', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#task=AAAA' });
   await expect(page.locator('#notice')).toContainText('no assignment that can be read');
   await live(page, 'judge-first');
@@ -473,7 +489,7 @@ for (const [kind, other] of [
   ['uniform', 'Witkin and Heckbert'],
   ['adaptive', 'Forces'],
 ])
-  test(`the front races against ${other}, each by its own rules`, async ({ page }) => {
+  test(`the front races against ${other}, each by its own rules`, { tag: '@all' }, async ({ page }) => {
     const { clean } = await openLesson(page, { hash: '#race' });
     const race = page.locator('#race-box');
     const start = race.getByRole('button', { name: 'Start' });

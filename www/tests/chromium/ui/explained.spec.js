@@ -2,9 +2,9 @@
 import { expect, test } from '@playwright/test';
 import { expectDrawn } from './helpers.js';
 
-test('a pressed particle is explained in the lesson, by its own number, and the way back leads to the picture', async ({
-  page,
-}) => {
+test('a pressed particle is explained in the lesson, by its own number, and the way back leads to the picture', {
+  tag: '@all',
+}, async ({ page }) => {
   await page.setViewportSize({ width: 1280, height: 800 });
   await page.goto('./?backend=canvas2d');
   await page.waitForFunction(
@@ -28,7 +28,9 @@ test('a pressed particle is explained in the lesson, by its own number, and the 
   await page.waitForURL((url) => !url.pathname.includes('learn'));
 });
 
-test('of an adaptive picture the lesson explains no single particle, and the card says so', async ({ page }) => {
+test('of an adaptive picture the lesson explains no single particle, and the card says so', { tag: '@all' }, async ({
+  page,
+}) => {
   await page.setViewportSize({ width: 1280, height: 800 });
   await page.goto('./?backend=canvas2d');
   await page.waitForFunction(() => 'marchingParticles' in window);

@@ -192,9 +192,9 @@ test('a formula is typed, and mended', async ({ page }) => {
   await clean();
 });
 
-test('another formula is shown from its widest side, also where the hand has turned the camera, and an edit is not', async ({
-  page,
-}) => {
+test('another formula is shown from its widest side, also where the hand has turned the camera, and an edit is not', {
+  tag: '@all',
+}, async ({ page }) => {
   await page.emulateMedia({ reducedMotion: 'no-preference' });
   const { clean } = await open(page, { hash: '' });
   const engine = (/** @type {string} */ act) =>

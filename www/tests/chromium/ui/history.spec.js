@@ -96,7 +96,7 @@ test('the history', async ({ page }) => {
   await clean();
 });
 
-test('what is undone while it is typed is seen as it was, and can be redone', async ({ page }) => {
+test('what is undone while it is typed is seen as it was, and can be redone', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await page.locator('.tile[data-surface="torus"]').click();
   await settled(page);
@@ -119,7 +119,9 @@ test('what is undone while it is typed is seen as it was, and can be redone', as
   await clean();
 });
 
-test('Back leads from surface to surface, each as it was seen, and at last leaves the page', async ({ page }) => {
+test('Back leads from surface to surface, each as it was seen, and at last leaves the page', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   /** Waits until the address holds the state. */
   const written = () =>
@@ -184,7 +186,7 @@ test('Back leads from surface to surface, each as it was seen, and at last leave
   await clean();
 });
 
-test('a surface that is chosen while the page opens is an entry after the first', async ({ page }) => {
+test('a surface that is chosen while the page opens is an entry after the first', { tag: '@all' }, async ({ page }) => {
   await page.goto('./?backend=canvas2d');
   const first = await page.evaluate(async () => {
     const { engine } = /** @type {any} */ (window).marchingParticles;

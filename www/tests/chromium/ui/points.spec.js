@@ -142,7 +142,7 @@ test('files: dropped, chosen, refused, given up', async ({ page }) => {
   await clean();
 });
 
-test('keys alone open the chooser for files', async ({ page }) => {
+test('keys alone open the chooser for files', { tag: '@all' }, async ({ page }) => {
   // Asked for before there is anything to press, so that the browser knows in time.
   const chosen = page.waitForEvent('filechooser');
   await open(page);
@@ -153,7 +153,9 @@ test('keys alone open the chooser for files', async ({ page }) => {
   expect(await page.locator('input[type=file]').getAttribute('accept')).toContain('.ply');
 });
 
-test('a model is sampled, tells of its points, and one press leads back to the formula', async ({ page }) => {
+test('a model is sampled, tells of its points, and one press leads back to the formula', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   const { formula } = await state(page);
   const [model] = await page.evaluate(
@@ -194,7 +196,7 @@ test('a model is sampled, tells of its points, and one press leads back to the f
   await clean();
 });
 
-test('a formula cuts a model and keeps it as long as it names it', async ({ page }) => {
+test('a formula cuts a model and keeps it as long as it names it', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   const heading = page.getByRole('heading', { name: 'ball.ply' });
   const fault = page.locator('#formula-fault');
@@ -256,7 +258,7 @@ test('a formula cuts a model and keeps it as long as it names it', async ({ page
   await clean();
 });
 
-test('a link holds the formula of a model of the gallery', async ({ page }) => {
+test('a link holds the formula of a model of the gallery', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await page.getByRole('button', { name: 'Points', exact: true }).click();
   await page.locator('.tile[data-surface="bunny"]').click();
@@ -273,7 +275,7 @@ test('a link holds the formula of a model of the gallery', async ({ page }) => {
   await clean();
 });
 
-test('a file and the number of its points', async ({ page }) => {
+test('a file and the number of its points', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await test.step('a dropped file becomes the surface, keeps a tile of its own, and is there again among the points', async () => {
     await dropped(page, { name: 'ball.ply', text: spherePly(300) });
