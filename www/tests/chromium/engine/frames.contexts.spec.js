@@ -15,7 +15,6 @@ test('of more frames than contexts those in view have a live context, and the ot
   tag: '@all',
 }, async ({ page }) => {
   // Six pages open at once.
-  test.slow();
   await page.setViewportSize({ width: 320, height: 2 * HEIGHT });
   const address = askingFor(`./${link({ settings: { radius_share: 0.03, relax_steps: 0 } })}`, 'webgl2');
   const frame = `<iframe src="${address}" style="display:block;border:0;width:300px;height:${HEIGHT}px"></iframe>`;

@@ -352,7 +352,7 @@ test('until the renderer has come the surface is painted without it', { tag: '@a
     await route.continue();
   });
   await page.goto(askingFor(`./${link(coarse)}`, 'webgl2'));
-  await expect.poll(async () => (await status(page))?.progress.phase, { timeout: 20_000 }).toBe('done');
+  await expect.poll(async () => (await status(page))?.progress.phase).toBe('done');
   expect((await status(page)).backend).toBe('starting');
   await expectSurface(page);
   await expect(page.locator('#poster')).toHaveClass(/gone/);

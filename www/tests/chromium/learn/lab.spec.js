@@ -130,23 +130,22 @@ test('a number of the text is a handle of its figure, and follows it', { tag: '@
 test('a choice that was left is as it was: its dials show what is run, and go on from there', { tag: '@all' }, async ({
   page,
 }) => {
-  test.setTimeout(120_000);
   const { clean } = await openLesson(page, { hash: '#what-if-fail' });
   const bench = page.locator('#bench');
   const [relaxation, seed] = ['Relaxation', 'Seed'].map((name) => bench.getByLabel(name, { exact: true }));
   const tolerance = bench.getByRole('slider', { name: 'Match tolerance' });
   const right = bench.locator('figcaption').last();
-  await expect(right).toHaveText(/^Stack, 0\.7/, { timeout: 60_000 });
+  await expect(right).toHaveText(/^Stack, 0\.7/);
   await bench.getByLabel('Who comes next').selectOption('queue');
   await tolerance.press('Home');
   await relaxation.selectOption('0');
   await seed.selectOption('3');
-  await expect(right).toHaveText('Queue, 0.4 · 2r, no steps, seed 3', { timeout: 60_000 });
+  await expect(right).toHaveText('Queue, 0.4 · 2r, no steps, seed 3');
   await bench.getByLabel('What changes').selectOption('order');
-  await expect(right).toHaveText('Stack', { timeout: 60_000 });
+  await expect(right).toHaveText('Stack');
   await bench.getByLabel('What changes').selectOption('fail');
   // The picture is of one of those that are kept, and every dial says which.
-  await expect(right).toHaveText(/^(Queue|Stack), 0/, { timeout: 60_000 });
+  await expect(right).toHaveText(/^(Queue|Stack), 0/);
   const dials = async () => {
     const chosen = await bench
       .locator('.controls select')
@@ -159,7 +158,7 @@ test('a choice that was left is as it was: its dials show what is run, and go on
   const next = Number(await tolerance.textContent()) + 0.05;
   await tolerance.press('ArrowRight');
   await seed.selectOption('2');
-  await expect(right).toHaveText(new RegExp(`, ${Number(next.toFixed(2))} · 2r.*seed 2`), { timeout: 60_000 });
+  await expect(right).toHaveText(new RegExp(`, ${Number(next.toFixed(2))} · 2r.*seed 2`));
   expect(await dials()).toBe(await words());
   clean();
 });
@@ -167,11 +166,11 @@ test('a choice that was left is as it was: its dials show what is run, and go on
 test('while both are run, what stands there is marked as old', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#what-if-fail' });
   const bench = page.locator('#bench');
-  await expect(bench.locator('.outcome')).toBeVisible({ timeout: 60_000 });
+  await expect(bench.locator('.outcome')).toBeVisible();
   await bench.getByLabel('Relaxation', { exact: true }).selectOption('100');
   await expect(bench.locator('.pair-box')).toHaveAttribute('aria-busy', 'true');
   await expect(bench.getByText('Running both')).toBeVisible();
-  await expect(bench.locator('[aria-busy="true"]')).toHaveCount(0, { timeout: 60_000 });
+  await expect(bench.locator('[aria-busy="true"]')).toHaveCount(0);
   await expect(bench.getByRole('columnheader', { name: /a hundred steps/ })).toBeVisible();
 });
 

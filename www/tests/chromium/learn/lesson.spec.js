@@ -117,7 +117,7 @@ test('in a comparison one camera turns both pictures, and a press on one sets th
 }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: `#what-if-fail&surface=${TORUS}` });
   const bench = page.locator('#bench');
-  await expect(bench.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  await expect(bench.locator('.picture[data-drawn]')).toHaveCount(2);
   await expect(bench.getByLabel('What changes')).toHaveValue('fail');
   await expect(bench.getByRole('columnheader', { name: /^Stack/ })).toBeVisible();
   const [left, right] = [bench.locator('.picture').first(), bench.locator('.picture').last()];
@@ -132,11 +132,11 @@ test('in a comparison one camera turns both pictures, and a press on one sets th
   const { width = 0, height = 0 } = (await left.boundingBox()) ?? {};
   await left.click({ position: { x: 0.5 * width, y: 0.62 * height } });
   await expect(bench.getByLabel('Seed', { exact: true })).toHaveValue(/^at( -?[\d.e-]+){3}$/);
-  await expect(bench.getByRole('columnheader', { name: /, at / })).toBeVisible({ timeout: 60_000 });
+  await expect(bench.getByRole('columnheader', { name: /, at / })).toBeVisible();
   await expect.poll(() => fingerprint(right)).not.toBe(before);
   // Elsewhere a press chooses nothing.
   await bench.getByLabel('What changes').selectOption('order');
-  await expect(bench.getByRole('columnheader', { name: 'Stack', exact: true })).toBeVisible({ timeout: 60_000 });
+  await expect(bench.getByRole('columnheader', { name: 'Stack', exact: true })).toBeVisible();
   // The press on a hole turns both pictures to it.
   const turned = await fingerprint(left);
   await bench
@@ -148,7 +148,7 @@ test('in a comparison one camera turns both pictures, and a press on one sets th
   await expect(right).toHaveAttribute('aria-label', /Arrow keys turn it\.$/);
   // The figure that decides stands out beside the ideal.
   await bench.getByLabel('What changes').selectOption('order');
-  await expect(bench.locator('tr.decides')).toContainText('100.0 %', { timeout: 60_000 });
+  await expect(bench.locator('tr.decides')).toContainText('100.0 %');
   await expect(bench.locator('tr.decides')).toContainText('better');
   clean();
 });
@@ -168,12 +168,12 @@ test('the match tolerance is dragged in its sentence, and the figure follows', {
   await page.mouse.move(box.x - 300, box.y + 5, { steps: 20 });
   await page.mouse.up();
   await expect(number).toHaveText('0.40');
-  await expect.poll(count, { timeout: 30_000 }).toBeGreaterThan(1.5 * usual);
+  await expect.poll(count).toBeGreaterThan(1.5 * usual);
   await expect(first.locator('.told')).toContainText('within 0.80 r');
   await number.press('End');
-  await expect.poll(count, { timeout: 30_000 }).toBeLessThan(0.9 * usual);
+  await expect.poll(count).toBeLessThan(0.9 * usual);
   for (let k = 0; k < 5; k += 1) await number.press('ArrowLeft');
-  await expect.poll(count, { timeout: 30_000 }).toBe(usual);
+  await expect.poll(count).toBe(usual);
   clean();
 });
 
@@ -247,7 +247,7 @@ test('a stop far down stays at the top while the figures above it come', { tag: 
   await openLesson(page, { hash: '#judge' });
   const judge = page.locator('#judge');
   const top = () => judge.evaluate((element) => Math.round(element.getBoundingClientRect().top));
-  await expect(page.locator('#bench table.compare')).toBeVisible({ timeout: 60_000 });
+  await expect(page.locator('#bench table.compare')).toBeVisible();
   await expect.poll(top).toBeGreaterThanOrEqual(0);
   expect(await top()).toBeLessThan(80);
 });
@@ -259,7 +259,7 @@ test('what the text claims of the ellipsoid is what its runs say', { tag: '@all'
   const { clean } = await openLesson(page);
   const skip = async (/** @type {string} */ id) => {
     await page.locator(`#${id}`).getByRole('button', { name: 'Skip' }).click();
-    await expect(page.locator(`#${id}`)).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
+    await expect(page.locator(`#${id}`)).toHaveAttribute('data-state', 'open');
   };
   await live(page, 'cost');
   await skip('predict-cost');
@@ -315,7 +315,7 @@ test('the focus goes from the button of a question to its answer', { tag: '@all'
   await openLesson(page, { hash: '#predict-ring' });
   await page.getByLabel('Particles in ring 12').fill('70');
   await page.keyboard.press('Enter');
-  await expect(page.locator('#predict-ring')).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
+  await expect(page.locator('#predict-ring')).toHaveAttribute('data-state', 'open');
   await expect(page.locator('#predict-ring .predict-result')).toBeFocused();
 });
 
@@ -380,12 +380,12 @@ test('every question is answered by the run, or skipped, and on a phone nothing 
   await expect(questions).toHaveCount(12);
   for (const question of await questions.all()) {
     await question.getByRole('button', { name: 'Skip' }).click();
-    await expect(question).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
+    await expect(question).toHaveAttribute('data-state', 'open');
     await expect(question.locator('.predict-result')).toContainText(/\w{4}/);
     await expect(question.locator('.predict-result')).not.toContainText('stopped on an error');
   }
   await page.locator('#what-if').scrollIntoViewIfNeeded();
-  await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2);
   for (const width of [390, 320]) {
     await page.setViewportSize({ width, height: 760 });
     expect(await overflow(page)).toBe(0);
@@ -413,7 +413,7 @@ test('guesses and answers are there again after a reload, and are forgotten on r
   const cost = page.locator('#predict-cost');
   await cost.getByRole('radio', { name: 'Both about the same' }).check();
   await cost.getByRole('button', { name: 'Reveal' }).click();
-  await expect(cost).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
+  await expect(cost).toHaveAttribute('data-state', 'open');
   const words = await cost.getByRole('status').textContent();
   expect(words).toMatch(/^Placing all particles\. You said otherwise\./);
   await page.locator('#predict-ring').getByLabel('Particles in ring 12').fill('71');
@@ -444,16 +444,14 @@ test('the last pairs are judged by eye, then by their figures, and then they hav
   await question.getByRole('radio', { name: 'Sampling A' }).check();
   await question.getByRole('button', { name: 'Show the figures' }).click();
   // The figures have what chance can do, and no verdict.
-  await expect(judge.locator('thead')).toHaveText('IdealABChance', { timeout: 60_000 });
+  await expect(judge.locator('thead')).toHaveText('IdealABChance');
   await expect(judge.getByRole('row', { name: /^Six neighbours/ })).toContainText('5.2 points');
   await expect(judge.locator('.best, .decides, .outcome')).toHaveCount(0);
   expect(await fingerprint(judge.locator('.picture').first())).toBe(plain);
   await expect(question.getByRole('radio', { name: 'Sampling B' })).toBeDisabled();
   await question.getByRole('radio', { name: 'A, by the largest hole' }).check();
   await question.getByRole('button', { name: 'Reveal' }).click();
-  await expect(question.locator('.predict-judged')).toHaveText('B, by six neighbours. You said otherwise.', {
-    timeout: 60_000,
-  });
+  await expect(question.locator('.predict-judged')).toHaveText('B, by six neighbours. You said otherwise.');
   await expect(question.locator('.check[data-right]')).toHaveText(['Sampling Bright', 'B, by six neighboursright']);
   await expect(judge.locator('.decides')).toContainText('Six neighbours');
   await expect(judge.locator('.outcome')).toHaveText(
@@ -470,7 +468,7 @@ test('the last pairs are judged by eye, then by their figures, and then they hav
   await last.getByRole('button', { name: 'Show the figures' }).click();
   await last.getByRole('radio', { name: 'They cannot be told apart' }).last().check();
   await last.getByRole('button', { name: 'Reveal' }).click();
-  await expect(last.locator('.predict-judged')).toContainText('As you said.', { timeout: 60_000 });
+  await expect(last.locator('.predict-judged')).toContainText('As you said.');
   await expect(even.locator('.outcome')).toHaveText('No difference beyond chance: the two cannot be told apart.');
   await expect(even.locator('.best, .decides')).toHaveCount(0);
   // Both guesses are there again after a reload.
@@ -486,7 +484,7 @@ test('in a comparison one switch marks five and seven neighbours in both picture
 }) => {
   const { clean } = await openLesson(page, { hash: '#what-if-order' });
   const bench = page.locator('#bench');
-  await expect(bench.locator('table.compare')).toBeVisible({ timeout: 60_000 });
+  await expect(bench.locator('table.compare')).toBeVisible();
   const both = () => Promise.all([0, 1].map((k) => fingerprint(bench.locator('.picture').nth(k))));
   const plain = await both();
   await bench.getByRole('checkbox', { name: 'Mark five and seven neighbours' }).check();
@@ -505,8 +503,8 @@ test('the cards are a page of their own, each with both sides, on the learner’
   await page.waitForURL(/learn\/cards\/.*#surface=/);
   await page.getByRole('button', { name: 'Show both: Who comes next' }).click();
   const card = page.locator('.card', { hasText: 'Who comes next' });
-  await expect(card.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
-  await expect(card.locator('tr.decides')).toContainText('Six neighbours', { timeout: 60_000 });
+  await expect(card.locator('.picture[data-drawn]')).toHaveCount(2);
+  await expect(card.locator('tr.decides')).toContainText('Six neighbours');
   expect(await overflow(page)).toBe(0);
   expect((await axe(page)).violations.map(({ id, nodes }) => [id, nodes.map(({ target }) => target)])).toEqual([]);
   await page.getByRole('link', { name: 'Lesson', exact: true }).click();

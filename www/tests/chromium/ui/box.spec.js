@@ -6,7 +6,6 @@ import { afresh, atRest, open, report, settled, state, typeFormula } from './hel
 const cut = (/** @type {Page} */ page) => page.locator('.cut');
 
 test('the box around a formula', { tag: '@all' }, async ({ page }) => {
-  test.slow();
   const { clean } = await open(page);
   await test.step('a surface that goes on for ever is said to, and the box can be enlarged and fitted again', async () => {
     await typeFormula(page, 'sin(x)cos(y)+sin(y)cos(z)+sin(z)cos(x)');

@@ -2,7 +2,6 @@ import { expect, test } from '@playwright/test';
 import { afresh, atRest, open, report, settled, state, typeFormula } from './helpers.js';
 
 test('a formula is typed, and mended', async ({ page }) => {
-  test.slow();
   const { clean } = await open(page);
   await test.step('a formula typed while the full editor comes is not taken for one that was left; no name is broken', async () => {
     await page.route('**/code-editor*.js', async (route) => {

@@ -123,7 +123,6 @@ test('the surface is pulled, and the parameters follow', { tag: '@all' }, async 
 });
 
 test('a model is pulled around a place, and what is pinned stays', { tag: '@all' }, async ({ page }) => {
-  test.setTimeout(120_000);
   const { clean } = await open(page);
   await page.evaluate(async () => {
     const bunny = { surface: 'bunny', settings: { size_mode: 'count', count: 1500 } };

@@ -7,7 +7,6 @@ const undo = (/** @type {Page} */ page) => page.getByRole('button', { name: 'Und
 const redo = (/** @type {Page} */ page) => page.getByRole('button', { name: 'Redo', exact: true });
 
 test('the history', async ({ page }) => {
-  test.slow();
   const { clean } = await open(page, { width: 1440, height: 900 });
   await test.step('surface, formula and settings are undone and redone, by buttons and by keys', async () => {
     await expect(undo(page)).toBeHidden();

@@ -27,7 +27,6 @@ const framesLater = (page) =>
   });
 
 test('the timeline of the levels', async ({ page }) => {
-  test.slow();
   const { clean } = await open(page, { width: 1440, height: 900 });
   await test.step('buttons and keys go through the levels, and the caption says how each came about', async () => {
     const made = await fresh(page);

@@ -138,7 +138,6 @@ test('a browser that does not encode the codec of an MP4 film makes a WebM film'
 });
 
 test('the picture and what moves in it', { tag: '@all' }, async ({ page }) => {
-  test.slow();
   const { clean } = await open(page);
   await test.step('a picture is saved in a chosen size, without ground, and with legend and caption', async () => {
     const save = async (/** @type {string} */ size, /** @type {string[]} */ checks) => {
@@ -259,7 +258,6 @@ test('the picture and what moves in it', { tag: '@all' }, async ({ page }) => {
 
 test('a sequence of pictures, and a film', { tag: '@all' }, async ({ page }) => {
   // Each of its 120 pictures is painted in four samples.
-  test.slow();
   const { clean } = await open(page, { width: 480, height: 360 });
   await test.step('a sequence can be given up', async () => {
     const dialog = await openDialog(page);

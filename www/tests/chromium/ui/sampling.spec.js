@@ -5,7 +5,6 @@ import { afresh, atRest, open, openFigures, report, settled, state, typeFormula 
 /** @import { Page } from '@playwright/test' */
 
 test('the settings', async ({ page }) => {
-  test.slow();
   const { clean } = await open(page);
   await test.step('the settings are those that the core describes, each with its help', async () => {
     const settings = await page.evaluate(
@@ -126,7 +125,6 @@ const shownSettings = (page) =>
 const DOUBLE_CLICK_MS = 500;
 
 test('the run and its buttons', { tag: '@all' }, async ({ page }) => {
-  test.slow();
   const { clean } = await open(page);
   await test.step('a double click on Run is one run', async () => {
     const before = await report(page);

@@ -2,7 +2,6 @@ import { expect, test } from '@playwright/test';
 import { afresh, atRest, open, settled, state, typeFormula } from './helpers.js';
 
 test('the view', { tag: '@all' }, async ({ page }) => {
-  test.slow();
   const { clean } = await open(page);
   await test.step('a particle under the pointer tells what it is', async () => {
     const view = await page.locator('#view').boundingBox();
