@@ -2,8 +2,8 @@
  * How much is tested. The usual run is what a contributor waits for. With the variable ALL it is
  * everything, as in `cargo xtask test --all` and in continuous integration.
  *
- * A browser test that runs only then has the tag `@all`, one in Node the tag `all`. A test that goes
- * through a list takes a few of it, and all of it only then.
+ * A browser test that runs only then has the tag `@all`, one in Node `test.runIf(ALL)`. A test that
+ * goes through a list takes a few of it, and all of it only then.
  *
  * @module
  */

@@ -7,7 +7,7 @@ import { open, until } from './engine.js';
 test('a thickness is a number or a formula of the present surface', async () => {
   const p = await open();
   const { engine } = p;
-  await p.set({ surface: 'gyroid', settings: { radius_share: 0.02 } });
+  await p.set({ surface: 'gyroid', settings: { radius_share: 0.04 } });
   const { value: description } = engine.description;
   if (!description) throw new Error('the core has described itself');
   expect(['0.3 + 0.03z', 0.2, -1, ' ', 'z'.repeat(5000)].map((v) => validSetting(description, 'thickness', v))).toEqual(
@@ -22,7 +22,7 @@ test('a thickness is a number or a formula of the present surface', async () => 
   // Below the walls are thin, above they are thick: more of the closed box is inside.
   const { count, positions } = engine.columns;
   const top = Array.from({ length: count }, (_, i) => positions[3 * i + 2]).filter((z) => Math.abs(z - 6.2) < 1e-3);
-  expect(top.length).toBeGreaterThan(100);
+  expect(top.length).toBeGreaterThan(20);
   // Another formula may not have the name.
   await p.set({ settings: { thickness: '0.3 + 0.1t' } });
   engine.setFormula('sin(x) cos(y) + sin(y) cos(z) + sin(z) cos(x)');
