@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { afresh, atRest, open, settled, state, typeFormula } from './helpers.js';
+import { afresh, atRest, COARSE, open, settled, state, typeFormula } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -7,7 +7,7 @@ const undo = (/** @type {Page} */ page) => page.getByRole('button', { name: 'Und
 const redo = (/** @type {Page} */ page) => page.getByRole('button', { name: 'Redo', exact: true });
 
 test('the history', async ({ page }) => {
-  const { clean } = await open(page, { width: 1440, height: 900 });
+  const { clean } = await open(page, { width: 1440, height: 900, hash: COARSE });
   await test.step('surface, formula and settings are undone and redone, by buttons and by keys', async () => {
     await expect(undo(page)).toBeHidden();
     const { formula } = await state(page);
@@ -34,7 +34,7 @@ test('the history', async ({ page }) => {
   });
 
   await test.step('a drag is undone at once, however long it pauses', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     const range = page.locator('.row[data-parameter] input[type=range]').first();
     const { x, y, width, height } = (await range.boundingBox()) ?? { x: 0, y: 0, width: 0, height: 0 };
     const to = (/** @type {number} */ share) => page.mouse.move(x + share * width, y + height / 2, { steps: 3 });
@@ -53,7 +53,7 @@ test('the history', async ({ page }) => {
   });
 
   await test.step('another surface that comes back is seen with all its levels', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     await page.locator('.tile[data-surface="torus"]').click();
     await settled(page);
     await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ level: 3 }));
@@ -63,7 +63,7 @@ test('the history', async ({ page }) => {
   });
 
   await test.step('in a text field the keys undo the typing, not the page', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     await page.locator('.tile[data-surface="sphere"]').click();
     await settled(page);
     const box = page.locator('.setting[data-setting="radius_share"] input[role=spinbutton]');
@@ -73,7 +73,7 @@ test('the history', async ({ page }) => {
   });
 
   await test.step('five hundred steps back end at the first state and harm nothing', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     const first = await state(page);
     await page.evaluate(async () => {
       const { engine } = /** @type {any} */ (window).marchingParticles;

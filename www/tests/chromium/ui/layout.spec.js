@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { afresh, atRest, expectDrawn, open, scan, settled, state, typeFormula } from './helpers.js';
+import { afresh, atRest, COARSE, expectDrawn, open, scan, settled, state, typeFormula } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -103,7 +103,7 @@ async function expectAccessible(page) {
 }
 
 test('axe finds nothing at 390 by 844', async ({ page }) => {
-  await open(page, { width: 390, height: 844 });
+  await open(page, { width: 390, height: 844, hash: COARSE });
   for (const tab of ['Sampling', 'Report', 'Field']) {
     await page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: tab }).click();
     await expectAccessible(page);
@@ -111,7 +111,7 @@ test('axe finds nothing at 390 by 844', async ({ page }) => {
 });
 
 test('axe finds nothing at 1440 by 900', async ({ page }) => {
-  await open(page, { width: 1440, height: 900 });
+  await open(page, { width: 1440, height: 900, hash: COARSE });
   await expectAccessible(page);
   await page.getByRole('radio', { name: 'Adaptive' }).check();
   await page.getByRole('button', { name: 'Advanced' }).click();

@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { afresh, open, report, scan, settled, state, typeFormula } from './helpers.js';
+import { afresh, COARSE, open, report, scan, settled, state, typeFormula } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -45,7 +45,7 @@ const dropped = async (
 };
 
 test('files: dropped, chosen, refused, given up', async ({ page }) => {
-  const { clean } = await open(page, { width: 1440, height: 900 });
+  const { clean } = await open(page, { width: 1440, height: 900, hash: COARSE });
   await test.step('a file dragged over the page is shown where it may be dropped, with the formats and the limit', async () => {
     await page.emulateMedia({ reducedMotion: 'reduce' });
     const overlay = page.locator('.drop');
@@ -64,7 +64,7 @@ test('files: dropped, chosen, refused, given up', async ({ page }) => {
 
   await test.step('a file too large is refused at once, with the reason and what to do, and the surface stays', async () => {
     await page.emulateMedia({ reducedMotion: 'reduce' });
-    await afresh(page, { width: 1440, height: 900 });
+    await afresh(page, { width: 1440, height: 900, hash: COARSE });
     const { digest } = await report(page);
     await dropped(page, { name: 'statue.ply', bytes: 51_000_000 });
     const box = page.locator('.refused');
@@ -84,7 +84,7 @@ test('files: dropped, chosen, refused, given up', async ({ page }) => {
 
   await test.step('what is on its way shows its stage', async () => {
     await page.emulateMedia({ reducedMotion: 'reduce' });
-    await afresh(page, { width: 1440, height: 900 });
+    await afresh(page, { width: 1440, height: 900, hash: COARSE });
     await page.evaluate(() => {
       const { engine } = /** @type {any} */ (window).marchingParticles;
       engine.loading.value = { id: 'bunny', name: 'Bunny', label: 'Solving', fraction: 0.42 };
@@ -100,7 +100,7 @@ test('files: dropped, chosen, refused, given up', async ({ page }) => {
   });
 
   await test.step('a model given up on its way leaves the surface as it was', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     const before = await state(page);
     const { digest } = await report(page);
     await page.evaluate(
@@ -127,7 +127,7 @@ test('files: dropped, chosen, refused, given up', async ({ page }) => {
   });
 
   await test.step('a fault in a file is told with its line, in the open and to a screen reader', async () => {
-    await afresh(page, { width: 390, height: 844 });
+    await afresh(page, { width: 390, height: 844, hash: COARSE });
     const lines = spherePly(300).split('\n');
     lines[20] = '0.1 seven 0.3 0 0 1';
     await dropped(page, { name: 'ball.ply', text: lines.join('\n') });
