@@ -186,7 +186,7 @@ export const until = (signal, isWanted) =>
   });
 
 /** Waits until something holds that no signal tells. @param {() => unknown} isSo */
-export const eventually = (isSo) => expect.poll(isSo, { timeout: 20_000, interval: 20 });
+export const eventually = (isSo) => expect.poll(isSo, { timeout: 60_000, interval: 20 });
 
 /** What is in the picture. @param {Console} p */
 export const picture = async (p) => pictureOf(await p.pixels(160, 120));

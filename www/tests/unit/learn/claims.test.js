@@ -288,7 +288,7 @@ async function spreadOf(/** @type {Lab} */ own, /** @type {object} */ change, pa
 
 test.runIf(ALL)(
   'ten seeds of one method differ by no more than what is called chance, and by nearly as much',
-  { timeout: 120_000 },
+  { timeout: 900_000 },
   async () => {
     says(
       'two seeds differ by up to 200/√<i>n</i> points in the share with six neighbours, so by 10 with 400 particles',

@@ -14,7 +14,7 @@ import { loadWasm, spawn, spawnCore } from './workers.js';
 const WOUND = [...['tanglecube', 'double-torus', 'decocube', 'chmutov', 'ball-lattice', 'barth-sextic', 'gyroid']];
 
 test('nine tenths of the first levels face the viewer, unless they wind around tubes', {
-  timeout: 180_000,
+  timeout: 900_000,
 }, async () => {
   loadWasm();
   const open = async () => new LessonClient({ spawn });
