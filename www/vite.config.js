@@ -206,4 +206,9 @@ export default defineConfig({
     chunkSizeWarningLimit: 4096,
   },
   server: { strictPort: false },
+  optimizeDeps: {
+    // The pages that are served while developing. The examples are for the built site, where the
+    // package that they import stands beside them: the scan for packages would not find it.
+    entries: ['index.html', 'learn/index.html', 'learn/cards/index.html'],
+  },
 });

@@ -288,7 +288,7 @@ impl Album<'_> {
         let plain = caption.replace('*', "");
         writeln!(
             self.out,
-            "\n### Fig. {number}\n\n![{plain}](../paper/fig-{number}.{extension})\n\n{caption}"
+            "\n### Fig. {number}\n\n![{plain}](../images/paper/fig-{number}.{extension})\n\n{caption}"
         )
     }
 }

@@ -1,11 +1,11 @@
 /**
- * Draws the README's pictures with the program itself, from the built site: `npm run pictures:readme`.
+ * Draws the pictures of the documents with the program itself, from the built site:
+ * `npm run pictures:readme`.
  *
- * Writes readme/page-{light,dark}.webp (the whole page), readme/sizes-{light,dark}.webp (adaptive sampling and models
- * from points), readme/meshes-{light,dark}.webp (refined runs as meshes), readme/solids-{light,dark}.webp (sharp edges),
- * readme/sheets-{light,dark}.webp (sheets whose thickness is a formula),
- * readme/moved-{light,dark}.webp (a film of particles that follow a surface) and readme/levels-{light,dark}.webp (generation
- * levels growing).
+ * Writes into docs/images, each with a light and a dark ground: page (the whole page), sizes
+ * (adaptive sampling and models from points), meshes (refined runs as meshes), solids (sharp
+ * edges), sheets (whose thickness is a formula), moved (a film of particles that follow a surface)
+ * and levels (generation levels growing).
  */
 import { mkdir, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
@@ -104,7 +104,7 @@ const LEVELS = [10, 17, 25, 34];
 const LEVEL_CAMERA = { yaw: 0.62, pitch: 0.72, fit: true };
 
 const base = process.argv[2] ?? 'http://localhost:4517/';
-const folder = fileURLToPath(new URL('../readme/', import.meta.url));
+const folder = fileURLToPath(new URL('../../docs/images/', import.meta.url));
 await mkdir(folder, { recursive: true });
 const browser = await launch();
 

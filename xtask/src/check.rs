@@ -212,8 +212,7 @@ impl Checks<'_> {
                 Part::Python => python::test(self.project),
                 Part::Pictures => pictures::test(self.project),
                 Part::Page => self.page(),
-                Part::Chromium if self.purpose == Purpose::Site => self.chromium(&[("ALL", "1")]),
-                Part::Chromium => self.chromium(&[]),
+                Part::Chromium => self.chromium(self.surveyed()),
                 Part::Browsers => self.site().and_then(|()| browsers::test(self.project, self.purpose)),
                 Part::Soak => self.chromium(&[("SOAK", "400")]),
             };
@@ -239,9 +238,15 @@ impl Checks<'_> {
         step::run("page: format and lint", &mut lint, "`npm run format` in www/ puts most of it right.")?;
         bundle::build(project, &Bundle::ALL, self.purpose, Declarations::Hold)?;
         node::script(project, "page: types", "check", &[])?;
-        let tested = node::script(project, "page: unit tests", "test", &[]);
+        let tested = node::script(project, "page: unit tests", "test", self.surveyed());
         times::vitest(&project.www.join("test-results/node.json"));
         tested.map(drop)
+    }
+
+    /// The variables that have the page's tests run everything, also what is marked `@all`: those
+    /// of the published site.
+    fn surveyed(&self) -> &'static [(&'static str, &'static str)] {
+        if self.purpose == Purpose::Site { &[("ALL", "1")] } else { &[] }
     }
 
     /// The browser tests, with variables that choose among them.
@@ -251,12 +256,9 @@ impl Checks<'_> {
         let folder = site::folder(self.project, self.purpose);
         let site = folder.to_string_lossy();
         let variables = [variables, &[("CHROMIUM_PATH", chromium.as_str()), ("SITE", &site)]].concat();
-        let told = node::script(self.project, "page: tests in Chromium", "e2e", &variables);
+        let tested = node::script(self.project, "page: tests in Chromium", "e2e", &variables);
         times::playwright(&self.project.www.join("test-results/chromium.json"));
-        for line in flaky(&told?) {
-            println!("{line}");
-        }
-        Ok(())
+        tested.map(drop)
     }
 }
 
@@ -344,19 +346,4 @@ fn gltf(project: &Project) -> Result<()> {
     let mut command = Command::new(node::node()?);
     command.current_dir(&project.root).arg("tests/gltf/validate.mjs").arg(project.target.join("tmp"));
     step::run("mesh files: Khronos' glTF validator", &mut command, "").map(drop)
-}
-
-/// The part of Playwright's summary that names the tests which passed only when they were repeated.
-fn flaky(told: &str) -> impl Iterator<Item = &str> {
-    told.lines().skip_while(|line| !line.ends_with(" flaky")).take_while(|line| !line.contains(" passed ("))
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn only_repeated_tests_are_told_of() {
-        let told = "  \u{2713} 1 a test\n\n  1 flaky\n    [webgl2] another test\n  2 passed (1.0m)\n";
-        assert_eq!(super::flaky(told).collect::<Vec<_>>(), ["  1 flaky", "    [webgl2] another test"]);
-        assert_eq!(super::flaky("  3 passed (1.0m)\n").count(), 0);
-    }
 }

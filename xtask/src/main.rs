@@ -74,7 +74,8 @@ enum Task {
     /// Halve and double constants of the sampler, and print what changes on random surfaces; a
     /// minute or two each.
     Sensitivity(sensitivity::Options),
-    /// Run the paper's jobs and write its tables (docs/tables/paper.md) and figures (docs/paper).
+    /// Run the paper's jobs and write its tables (docs/tables/paper.md) and figures
+    /// (docs/images/paper).
     Paper(paper::Options),
     /// Build the WebAssembly bundles into www/src/wasm and rewrite their declarations (serve, test
     /// and build do the first by themselves).

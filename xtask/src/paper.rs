@@ -1,5 +1,5 @@
 //! The paper's tables and figures, made again: `docs/tables/paper.md` and the pictures in
-//! `docs/paper`.
+//! `docs/images/paper`.
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -41,11 +41,11 @@ pub(crate) fn paper(project: &Project, options: &Options) -> Result<()> {
         bail!("`{line}` failed ({})", output.status);
     }
     let docs = project.root.join("docs");
-    let pictures = docs.join("paper");
+    let pictures = docs.join("images/paper");
     if pictures.exists() {
         fs::remove_dir_all(&pictures).context("could not replace the pictures of the paper")?;
     }
-    fs::create_dir_all(&pictures).context("could not create docs/paper")?;
+    fs::create_dir_all(&pictures).context("could not create docs/images/paper")?;
     let mut convert = Command::new(node::node()?);
     convert.current_dir(&project.www).arg("pictures/paper.js").args([&drawn, &pictures]);
     step::run("pictures (WebP)", convert.env("CHROMIUM_PATH", chromium), "")?;

@@ -51,9 +51,9 @@ async function sampled(page) {
   await expect.poll(() => on(page, 'shown.view.backend')).toBe('canvas2d');
 }
 
-test('an attribute that was wrong when the element came into sight opens the picture once it is right', async ({
-  page,
-}) => {
+test('an attribute that was wrong when the element came into sight opens the picture once it is right', {
+  tag: '@all',
+}, async ({ page }) => {
   await open(page, 'surface="torus" count="many"');
   await expect.poll(() => on(page, 'told')).toEqual(['count="many": a number.']);
   expect(await on(page, 'shown.view')).toBeNull();
@@ -62,7 +62,7 @@ test('an attribute that was wrong when the element came into sight opens the pic
   expect(Math.abs((await on(page, 'shown.report.count')) - 400)).toBeLessThan(40);
 });
 
-test('parameters that change before the core is there are those of the picture', async ({ page }) => {
+test('parameters that change before the core is there are those of the picture', { tag: '@all' }, async ({ page }) => {
   await open(page, 'formula="x^2 + y^2 + z^2 = a" params="a=2" count="300"', 1500);
   await expect.poll(() => on(page, 'shown.view !== null')).toBe(true);
   await on(page, 'shown.params = "a=0.5"');
@@ -71,7 +71,7 @@ test('parameters that change before the core is there are those of the picture',
   await expect.poll(() => on(page, 'shown.view.state.parameters')).toEqual({ a: 0.5 });
 });
 
-test('an attribute that goes takes back what it said', async ({ page }) => {
+test('an attribute that goes takes back what it said', { tag: '@all' }, async ({ page }) => {
   await open(page, 'surface="torus" params="R=0.9, r=0.3" count="300" draw="mesh" colour="normal" theme="dark"');
   await sampled(page);
   expect(await on(page, 'shown.ariaLabel')).toBe('torus');
@@ -88,7 +88,7 @@ test('an attribute that goes takes back what it said', async ({ page }) => {
   expect(await on(page, 'told.every((what) => what === "report")')).toBe(true);
 });
 
-test('a picture without controls is no stop of the keys, and with them it is', async ({ page }) => {
+test('a picture without controls is no stop of the keys, and with them it is', { tag: '@all' }, async ({ page }) => {
   await open(page, 'surface="torus" count="300"');
   await sampled(page);
   const active = () => on(page, 'document.activeElement === shown');

@@ -14,7 +14,9 @@ function faultsOf(page) {
   return faults;
 }
 
-test('the examples run, under the policy of the page, with their code beside them', async ({ page }) => {
+test('the examples run, under the policy of the page, with their code beside them', { tag: '@all' }, async ({
+  page,
+}) => {
   const faults = faultsOf(page);
   await page.emulateMedia({ reducedMotion: 'reduce' });
   await page.goto('./embed/');

@@ -50,7 +50,9 @@ test('a script of a page samples without a bundler', async ({ page }) => {
   expect(await digestIn(page, '.')).toBe(golden.digest);
 });
 
-test('a page that allows no worker samples by the one file, under a strict policy', async ({ page }) => {
+test('a page that allows no worker samples by the one file, under a strict policy', { tag: '@all' }, async ({
+  page,
+}) => {
   const modules = { imports: { 'marching-particles': './node_modules/marching-particles/inline.js' } };
   const policy = "default-src 'none'; script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval'";
   there.write(
@@ -62,7 +64,7 @@ test('a page that allows no worker samples by the one file, under a strict polic
   expect(await digestIn(page, '.')).toBe(golden.digest);
 });
 
-test('a function of a page leaves it time to draw', async ({ page }) => {
+test('a function of a page leaves it time to draw', { tag: '@all' }, async ({ page }) => {
   const modules = { imports: { 'marching-particles': './node_modules/marching-particles/index.js' } };
   there.write(
     'index.html',
@@ -142,7 +144,9 @@ for (const id of ['a', 'b']) for (const name of ['progress', 'report', 'error'])
   await page.evaluate(() => document.getElementById('b')?.remove());
 });
 
-test('a second version of the element leaves the pictures to the first, and says so', async ({ page }) => {
+test('a second version of the element leaves the pictures to the first, and says so', { tag: '@all' }, async ({
+  page,
+}) => {
   const modules = './node_modules/marching-particles/element.js';
   there.write(
     'index.html',
@@ -165,7 +169,7 @@ document.querySelector('marching-particles').addEventListener('report', ({ targe
   ).toHaveLength(1);
 });
 
-test('without SIMD the sampling is rejected with what has it', async ({ page }) => {
+test('without SIMD the sampling is rejected with what has it', { tag: '@all' }, async ({ page }) => {
   const modules = { imports: { 'marching-particles': './node_modules/marching-particles/inline.js' } };
   there.write(
     'index.html',
@@ -179,7 +183,7 @@ document.title = await sample('x^2 + y^2 + z^2 = 1', { count: 300 }).catch(Strin
   await expect(page).toHaveTitle(/^WorkerError: There is no WebAssembly SIMD here.*Safari from 16\.4/);
 });
 
-test('a view in an element of a page has a state, and rejects what is wrong', async ({ page }) => {
+test('a view in an element of a page has a state, and rejects what is wrong', { tag: '@all' }, async ({ page }) => {
   const modules = { imports: { 'marching-particles/view': './node_modules/marching-particles/view.js' } };
   there.write(
     'index.html',
@@ -212,7 +216,7 @@ function writeProgram() {
   there.write('program.js', programOf('document.title = '));
 }
 
-test('a page that webpack builds samples the same', async ({ page }) => {
+test('a page that webpack builds samples the same', { tag: '@all' }, async ({ page }) => {
   writeProgram();
   const compiler = webpack({
     context: there.project,
@@ -229,7 +233,7 @@ test('a page that webpack builds samples the same', async ({ page }) => {
   expect(await digestIn(page, 'by-webpack')).toBe(golden.digest);
 });
 
-test('a page that esbuild builds samples the same, beside an element', async ({ page }) => {
+test('a page that esbuild builds samples the same, beside an element', { tag: '@all' }, async ({ page }) => {
   writeProgram();
   // esbuild leaves addresses as they are: what lies beside the script is named.
   await esbuild.build({
@@ -279,7 +283,7 @@ test('a page that esbuild builds samples the same, beside an element', async ({ 
     .toEqual(['canvas2d', 1]);
 });
 
-test('a page that Vite builds samples the same', async ({ page }) => {
+test('a page that Vite builds samples the same', { tag: '@all' }, async ({ page }) => {
   writeProgram();
   const how = {
     root: there.project,

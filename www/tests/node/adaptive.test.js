@@ -1,6 +1,6 @@
 /** Adaptive runs, and the colours that belong to them: radius, curvature and component. */
 import { expect, test } from 'vitest';
-import { open, picture, until } from './engine.js';
+import { open, pause, picture, until } from './engine.js';
 
 /** Some 900 particles, of which the largest are several times the smallest. */
 const adaptive = { sampling: 'adaptive', chord_error: 6e-4, radius_min_share: 0.002, radius_max_share: 0.05 };
@@ -21,7 +21,7 @@ test('radius and curvature colour the surface by a ramp that follows it', async 
     formula: '(x^2 + y^2 + z^2 + 1)^2 - 4 x^2 = 1.2',
     bounds: { min: [-1.8, -1, -1], max: [1.8, 1, 1] },
   };
-  await p.set({ ...peanut, settings: { radius_share: 0.012 }, view: { colour: 'curvature' } });
+  await p.set({ ...peanut, settings: { radius_share: 0.02 }, view: { colour: 'curvature' } });
   await until(p.engine.legend, (now) => now?.pending === false);
   const [least, most] = legend()?.range ?? [0, 0];
   expect(legend()?.kind).toBe('diverging');
@@ -34,7 +34,7 @@ test('radius and curvature colour the surface by a ramp that follows it', async 
 
 test('the curvature of a sphere is that of a sphere, also when it is asked for after the run', async () => {
   const p = await open();
-  await p.set({ formula: 'x^2 + y^2 + z^2 = 0.25', settings: { radius_share: 0.02 }, view: { colour: 'level' } });
+  await p.set({ formula: 'x^2 + y^2 + z^2 = 0.25', settings: { radius_share: 0.03 }, view: { colour: 'level' } });
   expect(p.particles().curvature).toBe(null);
   p.engine.setView({ colour: 'curvature' });
   await until(p.engine.legend, (now) => now?.kind === 'diverging' && !now.pending);
@@ -48,7 +48,7 @@ test('components have colours of their own, with their counts', async () => {
   const report = await p.set({
     formula: three,
     bounds: { min: [-2, -1, -1], max: [2, 2, 1] },
-    settings: { radius_share: 0.012 },
+    settings: { radius_share: 0.02 },
     view: { colour: 'component' },
   });
   expect(report?.components).toBe(3);
@@ -67,7 +67,7 @@ test('a setting of an adaptive run dragged at 60 Hz ends at its last value', asy
   await p.set({ settings: adaptive });
   for (let k = 0; k < 60; k += 1) {
     p.engine.setSetting('chord_error', 6e-4 - 9e-6 * k, { live: true });
-    await new Promise((resolve) => setTimeout(resolve, 16));
+    await pause(16);
   }
   p.engine.setSetting('chord_error', 6e-5);
   const report = await until(p.engine.report, (now) => now);

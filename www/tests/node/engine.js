@@ -10,21 +10,24 @@ import { afterEach, expect, vi } from 'vitest';
 import { createEngine } from '../../src/engine/index.js';
 import { createConsole } from '../../src/main/console.js';
 import { pictureOf, spotsOf } from '../pixels.js';
+import { frames } from './clock.js';
 import { fileAt } from './files.js';
+
+export { pause, turn } from './clock.js';
 
 /**
  * @import { Engine, ReadonlySignal } from '../../src/engine/types.js'
  * @import { Console } from '../../src/main/types.js'
  */
 
-/** Size of the picture in pixels. */
-const [WIDTH, HEIGHT] = [480, 360];
+/** Size of the picture in pixels. Most of the time of a test is painting them. */
+const [WIDTH, HEIGHT] = [160, 120];
 
 /** A link to a state. @param {object} state */
 export const link = (state) => `#v1.j.${Buffer.from(JSON.stringify(state)).toString('base64url')}`;
 
-/** A coarse ellipsoid: some 1,100 particles. */
-export const coarse = { settings: { radius_share: 0.01 } };
+/** A coarse ellipsoid: some 280 particles. */
+export const coarse = { settings: { radius_share: 0.02 } };
 
 /** The workers that were started, by name. @type {Record<string, FakeWorker[]>} */
 export let workers = {};
@@ -62,7 +65,11 @@ class FakeWorker {
     this.thread.postMessage({ message, name: message.file?.name }, transfer);
   }
 
+  /** Whether it is gone: nothing will come of it any more. */
+  isEnded = false;
+
   terminate() {
+    this.isEnded = true;
     void this.thread.terminate();
   }
 }
@@ -117,8 +124,8 @@ for (const [name, value] of Object.entries({
   devicePixelRatio: 1,
   navigator: wishes,
   location: { origin: 'http://localhost', pathname: '/' },
-  requestAnimationFrame: (/** @type {() => void} */ draw) => setTimeout(draw, 4),
-  cancelAnimationFrame: clearTimeout,
+  requestAnimationFrame: frames.ask,
+  cancelAnimationFrame: frames.cancel,
 }))
   vi.stubGlobal(name, value);
 
@@ -163,9 +170,6 @@ export async function open(hash) {
   return p;
 }
 
-/** @param {number} ms */
-export const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
-
 /**
  * Waits until a signal has a value that is wanted.
  * @template T
@@ -182,7 +186,7 @@ export const until = (signal, isWanted) =>
   });
 
 /** Waits until something holds that no signal tells. @param {() => unknown} isSo */
-export const eventually = (isSo) => expect.poll(isSo, { timeout: 20_000, interval: 20 });
+export const eventually = (isSo) => expect.poll(isSo, { timeout: 60_000, interval: 20 });
 
 /** What is in the picture. @param {Console} p */
 export const picture = async (p) => pictureOf(await p.pixels(160, 120));

@@ -3,7 +3,7 @@ import { describe, expect, test } from 'vitest';
 import { answers, expectSurface, link, open, pause, spots, strike, until, workers } from './engine.js';
 import { spherePly } from './sphere.js';
 
-const bunny = { surface: 'bunny', settings: { radius_share: 0.015 } };
+const bunny = { surface: 'bunny', settings: { radius_share: 0.02 } };
 /** @param {string} name @param {string} text */
 const file = (name, text) => new File([text], name);
 
@@ -12,7 +12,7 @@ test('the bunny is solved when it is chosen, drawn with its points, and there at
   expect(workers.points).toBe(undefined);
   const report = await p.set({ ...bunny, view: { colour: 'plain' } });
   expect(report).toMatchObject({ stop_reason: 'complete', components: 1 });
-  expect(report?.count).toBeGreaterThan(300);
+  expect(report?.count).toBeGreaterThan(80);
   expect(p.engine.model.value).toMatchObject({
     name: expect.stringContaining('bunny'),
     points: 200,
@@ -65,7 +65,7 @@ test('settings and the clip box of a model are sampled live', async () => {
   p.engine.setBounds(box(0));
   await until(p.engine.report, (report) => report);
   const { positions, count } = p.particles();
-  expect(count).toBeGreaterThan(100);
+  expect(count).toBeGreaterThan(20);
   for (let i = 0; i < count; i += 1) expect(positions[3 * i + 2]).toBeLessThanOrEqual(half + 1e-4);
   expect(p.engine.lastDrag.value?.shown).toBeGreaterThan(0);
 });
@@ -111,7 +111,7 @@ describe('a file', () => {
     await p.open(file('ball.ply', spherePly(200, 1)));
     const other = await open(await p.engine.link());
     expect(other.engine.notice.value).toMatchObject({ id: 'link', text: expect.stringContaining('file') });
-    expect(other.state).toMatchObject({ surface: 'ellipsoid', settings: { radius_share: 0.01 } });
+    expect(other.state).toMatchObject({ surface: 'ellipsoid', settings: { radius_share: 0.02 } });
   });
 
   test('that is broken is refused with its place, and the picture stays', async () => {

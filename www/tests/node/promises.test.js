@@ -1,7 +1,7 @@
 /** Every promise of the console settles, whatever its worker was doing when it died. */
 import { describe, expect, test } from 'vitest';
-import { SILENCE_MS } from '../../src/engine/bundle/load.js';
-import { expectSurface, open, pause, strike, until, workers } from './engine.js';
+import { GRACE_MS, SILENCE_MS } from '../../src/engine/bundle/load.js';
+import { expectSurface, open, pause, strike, turn, until, workers } from './engine.js';
 import { spherePly } from './sphere.js';
 
 /** @import { Console } from '../../src/main/types.js' */
@@ -39,7 +39,12 @@ async function attack(p, { state, worker, death }) {
   const settled = async () => {
     // What a file waits for ends with its worker.
     const isLoading = () => engine.loading.value && worker !== 'points';
-    for (let ms = 0; pending.size > 0 && ms < LONG_MS; ms = isBusy() || isLoading() ? 0 : ms + 20) await pause(20);
+    for (let ms = 0; pending.size > 0 && ms < LONG_MS; ms = isBusy() || isLoading() ? 0 : ms + 20) {
+      // The engine cannot know yet that its worker is gone, and waits for a word of it. The sampler
+      // is let work meanwhile, which would be silent for as long by the same clock.
+      const isSilent = workers[worker].at(-1)?.isEnded && (worker === 'sampler' || !engine.busy.value);
+      await (isSilent ? turn(SILENCE_MS + GRACE_MS) : pause(20));
+    }
   };
 
   engine.setView({ draw: state === 'joining a mesh' ? 'mesh' : 'discs' });
@@ -64,7 +69,7 @@ async function attack(p, { state, worker, death }) {
   call('open', p.open(cloud(30)));
   await settled();
   call('run', p.run());
-  call('set', p.set({ surface: 'ellipsoid', settings: { radius_share: 0.01 } }));
+  call('set', p.set({ surface: 'ellipsoid', settings: { radius_share: 0.02 } }));
   call('stop', p.stop());
   call('run again', p.run());
   await settled();

@@ -1,6 +1,6 @@
 /** Stops at many moments of runs: what is on the page afterwards, and that nothing goes on. */
 import { expect, test } from 'vitest';
-import { link, open, pause, workers } from './engine.js';
+import { link, open, pause, turn, workers } from './engine.js';
 
 /**
  * @import { Vec3 } from '../../src/engine/types.js'
@@ -91,7 +91,8 @@ test('a stop at any moment leaves one surface, and what is said of it, and start
     await p.stop();
     const after = p.status();
     // Longer than a control is waited for that pauses.
-    await pause(done.some((text) => text.startsWith('drag')) ? 300 : 30);
+    await turn(300);
+    await pause(30);
     expect(jobs.slice(sent), what).toEqual([]);
     expect(p.status(), what).toEqual(after);
     expect(after, what).toMatchObject({ busy: false, progress: { phase: 'done' } });

@@ -13,7 +13,9 @@ const adaptive = { sampling: 'adaptive', chord_error: 6e-4, radius_min_share: 0.
 const spindle = { formula: 'x^2/4 + 6 y^2 + 6 z^2 = 1', bounds: { min: [-2.2, -0.6, -0.6], max: [2.2, 0.6, 0.6] } };
 const camera = { target: [0, 0, 0], distance: 6, yaw: Math.PI / 2, pitch: 0, fit: false };
 
-test('an adaptive run draws discs of different size: small where the surface bends', async ({ page }) => {
+test('an adaptive run draws discs of different size: small where the surface bends', { tag: '@all' }, async ({
+  page,
+}) => {
   await open(page);
   // Seen from its side: the discs of its belly, and those on the way to its tips.
   const seen = async (/** @type {object} */ settings) => {

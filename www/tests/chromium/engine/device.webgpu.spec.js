@@ -33,12 +33,14 @@ test('WebGPU draws the surface and the points of a model; a lost device is rebui
   await expect(page.locator('#canvas-host canvas')).toHaveCount(1);
 });
 
-test('a WebGPU of the processor alone is no graphics card: who asks for nothing gets the painter', async ({ page }) => {
+test('a WebGPU of the processor alone is no graphics card: who asks for nothing gets the painter', {
+  tag: '@all',
+}, async ({ page }) => {
   await open(page, undefined, { asks: null, drawnBy: 'canvas2d' });
   await expectSurface(page);
 });
 
-test('without navigator.gpu WebGL2 draws', async ({ page }) => {
+test('without navigator.gpu WebGL2 draws', { tag: '@all' }, async ({ page }) => {
   await page.addInitScript(() => {
     Object.defineProperty(Navigator.prototype, 'gpu', { value: undefined });
   });
@@ -46,9 +48,9 @@ test('without navigator.gpu WebGL2 draws', async ({ page }) => {
   await expectSurface(page);
 });
 
-test('a shader that the driver refuses is no end of the page: WebGL2 takes over, and a notice has what the driver says', async ({
-  page,
-}) => {
+test('a shader that the driver refuses is no end of the page: WebGL2 takes over, and a notice has what the driver says', {
+  tag: '@all',
+}, async ({ page }) => {
   await page.addInitScript(() => {
     const { prototype } = /** @type {any} */ (window).GPUDevice;
     const make = prototype.createShaderModule;
@@ -64,7 +66,7 @@ test('a shader that the driver refuses is no end of the page: WebGL2 takes over,
   expect(errors.filter((text) => /panicked|unreachable/.test(text))).toEqual([]);
 });
 
-test('a call that the device refuses while it draws is no panic either', async ({ page }) => {
+test('a call that the device refuses while it draws is no panic either', { tag: '@all' }, async ({ page }) => {
   await open(page);
   await page.evaluate(() => {
     // A buffer that is too small for what is written into it.

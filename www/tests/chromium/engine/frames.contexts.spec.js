@@ -11,11 +11,10 @@ const FRAMES = CONTEXTS + 2;
 /** Height of a frame: two of them are in view. */
 const HEIGHT = 170;
 
-test('of more frames than contexts those in view have a live context, and the others dots in its place', async ({
-  page,
-}) => {
+test('of more frames than contexts those in view have a live context, and the others dots in its place', {
+  tag: '@all',
+}, async ({ page }) => {
   // Six pages open at once.
-  test.slow();
   await page.setViewportSize({ width: 320, height: 2 * HEIGHT });
   const address = askingFor(`./${link({ settings: { radius_share: 0.03, relax_steps: 0 } })}`, 'webgl2');
   const frame = `<iframe src="${address}" style="display:block;border:0;width:300px;height:${HEIGHT}px"></iframe>`;

@@ -23,7 +23,9 @@ const faceSeed = (page, isNear) =>
   }, isNear);
 
 export const suite = () =>
-  test('a level hides the later ones and mutes the earlier ones, also after the device was lost', async ({ page }) => {
+  test('a level hides the later ones and mutes the earlier ones, also after the device was lost', {
+    tag: '@all',
+  }, async ({ page }) => {
     await open(page);
     await faceSeed(page, false);
     const drawn = [];

@@ -24,7 +24,9 @@ function differing(a, b) {
 }
 
 export const suite = () =>
-  test('a mesh closes the gaps between discs, and comes and goes with its particles', async ({ page }) => {
+  test('a mesh closes the gaps between discs, and comes and goes with its particles', { tag: '@all' }, async ({
+    page,
+  }) => {
     const { errors } = await open(page);
     await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ size: 0.3, body: false }));
     await atRest(page);

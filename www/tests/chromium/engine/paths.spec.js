@@ -34,7 +34,7 @@ for (const place of ['/', '/sub/path/']) {
   });
 }
 
-test('without storage the page works as ever', async ({ page }) => {
+test('without storage the page works as ever', { tag: '@all' }, async ({ page }) => {
   await page.addInitScript(() => {
     for (const name of ['localStorage', 'sessionStorage', 'indexedDB', 'caches']) {
       Object.defineProperty(window, name, {
@@ -268,7 +268,9 @@ test('a visit: what the page forbids itself, input, links, files, and a lost con
   });
 });
 
-test('a picture whose device is lost, or whose renderer traps, while it is read back is refused', async ({ page }) => {
+test('a picture whose device is lost, or whose renderer traps, while it is read back is refused', {
+  tag: '@all',
+}, async ({ page }) => {
   await open(page);
   const ends = await page.evaluate(async () => {
     const p = /** @type {any} */ (window).marchingParticles;
@@ -301,7 +303,7 @@ test('a picture whose device is lost, or whose renderer traps, while it is read 
 
 test.describe('on a screen with four pixels to one', () => {
   test.use({ deviceScaleFactor: 4 });
-  test('two are drawn', async ({ page }) => {
+  test('two are drawn', { tag: '@all' }, async ({ page }) => {
     await open(page);
     const [drawn, seen] = await page.evaluate(() => {
       const canvas = /** @type {HTMLCanvasElement} */ (document.querySelector('#canvas-host canvas'));
@@ -313,9 +315,9 @@ test.describe('on a screen with four pixels to one', () => {
   });
 });
 
-test('the core is fetched once: what the page preloads is what it uses, also for the worker that replaces another', async ({
-  page,
-}) => {
+test('the core is fetched once: what the page preloads is what it uses, also for the worker that replaces another', {
+  tag: '@all',
+}, async ({ page }) => {
   let fetched = 0;
   await page.route('**/core_bg*.wasm', async (route) => {
     fetched += 1;
@@ -330,7 +332,7 @@ test('the core is fetched once: what the page preloads is what it uses, also for
   expect(errors.filter((text) => text.includes('preload'))).toEqual([]);
 });
 
-test('a core that is missing is named, and another try helps', async ({ page }) => {
+test('a core that is missing is named, and another try helps', { tag: '@all' }, async ({ page }) => {
   await page.route('**/core_bg*.wasm', (route) => route.fulfill({ status: 404, body: 'not found' }));
   await page.goto(askingFor('/', 'webgl2'));
   await expect(page.getByText(/is not on the server: it answers 404/)).toBeVisible();
@@ -340,7 +342,7 @@ test('a core that is missing is named, and another try helps', async ({ page }) 
   expect((await status(page)).backend).toBe('webgl2');
 });
 
-test('until the renderer has come the surface is painted without it', async ({ page }) => {
+test('until the renderer has come the surface is painted without it', { tag: '@all' }, async ({ page }) => {
   let send = () => {};
   const asked = new Promise((resolve) => {
     send = () => resolve(null);
@@ -350,7 +352,7 @@ test('until the renderer has come the surface is painted without it', async ({ p
     await route.continue();
   });
   await page.goto(askingFor(`./${link(coarse)}`, 'webgl2'));
-  await expect.poll(async () => (await status(page))?.progress.phase, { timeout: 20_000 }).toBe('done');
+  await expect.poll(async () => (await status(page))?.progress.phase).toBe('done');
   expect((await status(page)).backend).toBe('starting');
   await expectSurface(page);
   await expect(page.locator('#poster')).toHaveClass(/gone/);

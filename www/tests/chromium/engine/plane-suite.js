@@ -24,7 +24,7 @@ async function cut(page, plane) {
 const hasMesh = (/** @type {Page} */ page) => expect.poll(async () => (await status(page)).mesh !== null).toBe(true);
 
 export const suite = () =>
-  test('a cutting plane hides the side of its normal, of discs and of the mesh', async ({ page }) => {
+  test('a cutting plane hides the side of its normal, of discs and of the mesh', { tag: '@all' }, async ({ page }) => {
     const { errors } = await open(page);
     const halves = async () => halvesOf(await pixels(page, 160, 120));
     for (const draw of ['discs', 'mesh']) {

@@ -4,7 +4,9 @@ import { expectCanvasShown, expectSurface, open, spots } from './browser.js';
 
 const bunny = { surface: 'bunny', settings: { radius_share: 0.015 } };
 
-test('the points of a model stay on it when it turns, and keep their size when it comes nearer', async ({ page }) => {
+test('the points of a model stay on it when it turns, and keep their size when it comes nearer', {
+  tag: '@all',
+}, async ({ page }) => {
   const { errors, strangers } = await open(page);
   const set = (/** @type {object} */ patch) =>
     page.evaluate((p) => /** @type {any} */ (window).marchingParticles.set(p), patch);

@@ -15,7 +15,7 @@ const canvas = (page) =>
     return { width: element.width, height: element.height, cssWidth: width, cssHeight: height };
   });
 
-test('a screen that changes is drawn as it is', async ({ page }) => {
+test('a screen that changes is drawn as it is', { tag: '@all' }, async ({ page }) => {
   // The emulated screen changes its pixels but tells no media query: the test does, as a real monitor would.
   await page.addInitScript(() => {
     const ask = window.matchMedia.bind(window);

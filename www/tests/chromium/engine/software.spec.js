@@ -4,7 +4,9 @@ import { atRest, counts, expectCanvasShown, expectSurface, open, status } from '
 
 const PAINTED = { asks: null, drawnBy: 'canvas2d' };
 
-test('the painter that stands in stays, is said in one chip, and the renderers are not fetched', async ({ page }) => {
+test('the painter that stands in stays, is said in one chip, and the renderers are not fetched', {
+  tag: '@all',
+}, async ({ page }) => {
   /** @type {string[]} */
   const renderers = [];
   page.on('request', (request) => {
@@ -31,7 +33,7 @@ test('the page is ready within a number of frames and of painted pixels, and the
   expect((await counts(page)).frames).toBe(frames);
 });
 
-test('a surface that grows is painted with little work a frame', async ({ page }) => {
+test('a surface that grows is painted with little work a frame', { tag: '@all' }, async ({ page }) => {
   await page.emulateMedia({ reducedMotion: 'no-preference' });
   await open(page, './', PAINTED);
   const size = 480 * 360;
@@ -43,7 +45,7 @@ test('a surface that grows is painted with little work a frame', async ({ page }
   expect(work / frames).toBeLessThan(2 * size);
 });
 
-test('what moves is painted once a frame, what stands still in four samples', async ({ page }) => {
+test('what moves is painted once a frame, what stands still in four samples', { tag: '@all' }, async ({ page }) => {
   await open(page, undefined, PAINTED);
   await atRest(page);
   /** Work of a frame after the camera has turned, and of all until the picture stands still. */
@@ -60,7 +62,7 @@ test('what moves is painted once a frame, what stands still in four samples', as
   expect(all - moving).toBeGreaterThan(2 * moving);
 });
 
-test('a mesh and spheres are painted, too', async ({ page }) => {
+test('a mesh and spheres are painted, too', { tag: '@all' }, async ({ page }) => {
   const { errors } = await open(page, undefined, PAINTED);
   for (const draw of ['spheres', 'mesh']) {
     await page.evaluate((d) => /** @type {any} */ (window).marchingParticles.engine.setView({ draw: d }), draw);
@@ -75,7 +77,7 @@ test('a mesh and spheres are painted, too', async ({ page }) => {
 
 test.describe('on a screen with two pixels to one', () => {
   test.use({ deviceScaleFactor: 2 });
-  test('a picture that stands still is painted in its pixels', async ({ page }) => {
+  test('a picture that stands still is painted in its pixels', { tag: '@all' }, async ({ page }) => {
     await open(page, undefined, PAINTED);
     const widths = () =>
       page.evaluate(() => {

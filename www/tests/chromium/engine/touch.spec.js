@@ -70,7 +70,7 @@ async function reset(page) {
   await atRest(page);
 }
 
-test('fingers choose a particle, zoom, carry and turn', async ({ page }) => {
+test('fingers choose a particle, zoom, carry and turn', { tag: '@all' }, async ({ page }) => {
   await open(page);
   await test.step('a tap on a particle tells of it, and a tap on the ground takes that away', async () => {
     const at = await place(page);

@@ -11,9 +11,9 @@ const on = (page, expression) =>
     expression,
   );
 
-test('a second engine in its own element has its own state, run and picture, and leaves nothing when it goes', async ({
-  page,
-}) => {
+test('a second engine in its own element has its own state, run and picture, and leaves nothing when it goes', {
+  tag: '@all',
+}, async ({ page }) => {
   const { errors } = await open(page);
   const address = page.url();
   const before = await on(page, 'p.state');

@@ -38,7 +38,7 @@ export async function openLesson(page, { hash = '', width = 1280, height = 800, 
 export async function settled(page, name) {
   const stage = page.locator(`[data-figure="${name}"]`);
   await stage.scrollIntoViewIfNeeded();
-  await expect(stage).toHaveAttribute('data-state', /live|still/, { timeout: 60_000 });
+  await expect(stage).toHaveAttribute('data-state', /live|still/);
   return stage;
 }
 

@@ -20,9 +20,9 @@ async function drag(page, what, x, y) {
 /** @param {Locator} slider */
 const numberOf = async (slider) => Number(await slider.getAttribute('aria-valuenow'));
 
-test('the surface bends under the finger and by keys, and Newton’s child stays out until it was guessed', async ({
-  page,
-}) => {
+test('the surface bends under the finger and by keys, and Newton’s child stays out until it was guessed', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#circle', width: 1440, height: 900 });
   const figure = await live(page, 'circle');
   const [sentence, told] = [figure.locator('.side > p').first(), figure.locator('.told')];
@@ -65,9 +65,9 @@ test('the surface bends under the finger and by keys, and Newton’s child stays
   clean();
 });
 
-test('the radii of a particle and of those around it are dragged, and φ and τ follow step by step', async ({
-  page,
-}) => {
+test('the radii of a particle and of those around it are dragged, and φ and τ follow step by step', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#angles', width: 390, height: 844 });
   const figure = await live(page, 'angles');
   const [own, other] = ['particle', 'others'].map((of) => figure.getByRole('slider', { name: `Radius of the ${of}` }));
@@ -102,7 +102,7 @@ test('the radii of a particle and of those around it are dragged, and φ and τ 
   clean();
 });
 
-test('a number of the text is a handle of its figure, and follows it', async ({ page }) => {
+test('a number of the text is a handle of its figure, and follows it', { tag: '@all' }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#rings' });
   const figure = await live(page, 'rings');
   const text = page.locator('#rings > p');
@@ -127,24 +127,25 @@ test('a number of the text is a handle of its figure, and follows it', async ({ 
   clean();
 });
 
-test('a choice that was left is as it was: its dials show what is run, and go on from there', async ({ page }) => {
-  test.setTimeout(120_000);
+test('a choice that was left is as it was: its dials show what is run, and go on from there', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await openLesson(page, { hash: '#what-if-fail' });
   const bench = page.locator('#bench');
   const [relaxation, seed] = ['Relaxation', 'Seed'].map((name) => bench.getByLabel(name, { exact: true }));
   const tolerance = bench.getByRole('slider', { name: 'Match tolerance' });
   const right = bench.locator('figcaption').last();
-  await expect(right).toHaveText(/^Stack, 0\.7/, { timeout: 60_000 });
+  await expect(right).toHaveText(/^Stack, 0\.7/);
   await bench.getByLabel('Who comes next').selectOption('queue');
   await tolerance.press('Home');
   await relaxation.selectOption('0');
   await seed.selectOption('3');
-  await expect(right).toHaveText('Queue, 0.4 · 2r, no steps, seed 3', { timeout: 60_000 });
+  await expect(right).toHaveText('Queue, 0.4 · 2r, no steps, seed 3');
   await bench.getByLabel('What changes').selectOption('order');
-  await expect(right).toHaveText('Stack', { timeout: 60_000 });
+  await expect(right).toHaveText('Stack');
   await bench.getByLabel('What changes').selectOption('fail');
   // The picture is of one of those that are kept, and every dial says which.
-  await expect(right).toHaveText(/^(Queue|Stack), 0/, { timeout: 60_000 });
+  await expect(right).toHaveText(/^(Queue|Stack), 0/);
   const dials = async () => {
     const chosen = await bench
       .locator('.controls select')
@@ -157,23 +158,23 @@ test('a choice that was left is as it was: its dials show what is run, and go on
   const next = Number(await tolerance.textContent()) + 0.05;
   await tolerance.press('ArrowRight');
   await seed.selectOption('2');
-  await expect(right).toHaveText(new RegExp(`, ${Number(next.toFixed(2))} · 2r.*seed 2`), { timeout: 60_000 });
+  await expect(right).toHaveText(new RegExp(`, ${Number(next.toFixed(2))} · 2r.*seed 2`));
   expect(await dials()).toBe(await words());
   clean();
 });
 
-test('while both are run, what stands there is marked as old', async ({ page }) => {
+test('while both are run, what stands there is marked as old', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#what-if-fail' });
   const bench = page.locator('#bench');
-  await expect(bench.locator('.outcome')).toBeVisible({ timeout: 60_000 });
+  await expect(bench.locator('.outcome')).toBeVisible();
   await bench.getByLabel('Relaxation', { exact: true }).selectOption('100');
   await expect(bench.locator('.pair-box')).toHaveAttribute('aria-busy', 'true');
   await expect(bench.getByText('Running both')).toBeVisible();
-  await expect(bench.locator('[aria-busy="true"]')).toHaveCount(0, { timeout: 60_000 });
+  await expect(bench.locator('[aria-busy="true"]')).toHaveCount(0);
   await expect(bench.getByRole('columnheader', { name: /a hundred steps/ })).toBeVisible();
 });
 
-test('a picture is pinned while its number is turned, and over no question', async ({ page }) => {
+test('a picture is pinned while its number is turned, and over no question', { tag: '@all' }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#rings', width: 1280, height: 720 });
   const stage = await live(page, 'rings');
   const [number, question] = [

@@ -35,7 +35,7 @@ test('every chapter has a live figure, in a folder of a host, too, and is access
   clean();
 });
 
-test('the learner’s own formula is carried over, and back', async ({ page }) => {
+test('the learner’s own formula is carried over, and back', { tag: '@all' }, async ({ page }) => {
   const formula = 'x^2 + y^2 + z^2 = 0.5';
   const state = Buffer.from(JSON.stringify({ formula })).toString('base64url');
   await page.setViewportSize({ width: 1280, height: 800 });
@@ -57,7 +57,9 @@ test('the learner’s own formula is carried over, and back', async ({ page }) =
   expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.state.formula)).toBe(formula);
 });
 
-test('a surface without a point gives way to the ellipsoid, and the page says so', async ({ page }) => {
+test('a surface without a point gives way to the ellipsoid, and the page says so', { tag: '@all' }, async ({
+  page,
+}) => {
   const none = Buffer.from(
     JSON.stringify({ formula: 'x^2 + y^2 + z^2 + 1 = 0', bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, from: '' }),
   ).toString('base64url');
@@ -66,7 +68,7 @@ test('a surface without a point gives way to the ellipsoid, and the page says so
   await expect(page.locator('#notice')).toContainText('The figures show an ellipsoid.');
 });
 
-test('a figure keeps the answer to itself until the question is revealed', async ({ page }) => {
+test('a figure keeps the answer to itself until the question is revealed', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: `#predict-ring&surface=${TORUS}` });
   const rings = await live(page, 'rings');
   await expect(rings.locator('.chart')).toBeHidden();
@@ -82,7 +84,9 @@ test('a figure keeps the answer to itself until the question is revealed', async
   await expect(rings.locator('.chart')).toContainText(`Level 12: ${told} new particles.`);
 });
 
-test('a question is answered from the keyboard alone, by a press on the picture, too', async ({ page }) => {
+test('a question is answered from the keyboard alone, by a press on the picture, too', { tag: '@all' }, async ({
+  page,
+}) => {
   await openLesson(page);
   await live(page, 'cost');
   const cost = page.locator('#predict-cost');
@@ -108,12 +112,12 @@ test('a question is answered from the keyboard alone, by a press on the picture,
   expect(asked && drawn && drawn.y - asked.y - asked.height).toBeLessThan(60);
 });
 
-test('in a comparison one camera turns both pictures, and a press on one sets the seed of the other', async ({
-  page,
-}) => {
+test('in a comparison one camera turns both pictures, and a press on one sets the seed of the other', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: `#what-if-fail&surface=${TORUS}` });
   const bench = page.locator('#bench');
-  await expect(bench.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  await expect(bench.locator('.picture[data-drawn]')).toHaveCount(2);
   await expect(bench.getByLabel('What changes')).toHaveValue('fail');
   await expect(bench.getByRole('columnheader', { name: /^Stack/ })).toBeVisible();
   const [left, right] = [bench.locator('.picture').first(), bench.locator('.picture').last()];
@@ -128,11 +132,11 @@ test('in a comparison one camera turns both pictures, and a press on one sets th
   const { width = 0, height = 0 } = (await left.boundingBox()) ?? {};
   await left.click({ position: { x: 0.5 * width, y: 0.62 * height } });
   await expect(bench.getByLabel('Seed', { exact: true })).toHaveValue(/^at( -?[\d.e-]+){3}$/);
-  await expect(bench.getByRole('columnheader', { name: /, at / })).toBeVisible({ timeout: 60_000 });
+  await expect(bench.getByRole('columnheader', { name: /, at / })).toBeVisible();
   await expect.poll(() => fingerprint(right)).not.toBe(before);
   // Elsewhere a press chooses nothing.
   await bench.getByLabel('What changes').selectOption('order');
-  await expect(bench.getByRole('columnheader', { name: 'Stack', exact: true })).toBeVisible({ timeout: 60_000 });
+  await expect(bench.getByRole('columnheader', { name: 'Stack', exact: true })).toBeVisible();
   // The press on a hole turns both pictures to it.
   const turned = await fingerprint(left);
   await bench
@@ -144,12 +148,12 @@ test('in a comparison one camera turns both pictures, and a press on one sets th
   await expect(right).toHaveAttribute('aria-label', /Arrow keys turn it\.$/);
   // The figure that decides stands out beside the ideal.
   await bench.getByLabel('What changes').selectOption('order');
-  await expect(bench.locator('tr.decides')).toContainText('100.0 %', { timeout: 60_000 });
+  await expect(bench.locator('tr.decides')).toContainText('100.0 %');
   await expect(bench.locator('tr.decides')).toContainText('better');
   clean();
 });
 
-test('the match tolerance is dragged in its sentence, and the figure follows', async ({ page }) => {
+test('the match tolerance is dragged in its sentence, and the figure follows', { tag: '@all' }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#first' });
   const first = await live(page, 'first');
   const number = page.locator('#first').getByRole('slider', { name: 'Match tolerance' });
@@ -164,16 +168,18 @@ test('the match tolerance is dragged in its sentence, and the figure follows', a
   await page.mouse.move(box.x - 300, box.y + 5, { steps: 20 });
   await page.mouse.up();
   await expect(number).toHaveText('0.40');
-  await expect.poll(count, { timeout: 30_000 }).toBeGreaterThan(1.5 * usual);
+  await expect.poll(count).toBeGreaterThan(1.5 * usual);
   await expect(first.locator('.told')).toContainText('within 0.80 r');
   await number.press('End');
-  await expect.poll(count, { timeout: 30_000 }).toBeLessThan(0.9 * usual);
+  await expect.poll(count).toBeLessThan(0.9 * usual);
   for (let k = 0; k < 5; k += 1) await number.press('ArrowLeft');
-  await expect.poll(count, { timeout: 30_000 }).toBe(usual);
+  await expect.poll(count).toBe(usual);
   clean();
 });
 
-test('the picture of a figure stays in view while a number of the text is dragged far from it', async ({ page }) => {
+test('the picture of a figure stays in view while a number of the text is dragged far from it', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#rings', width: 390, height: 844 });
   const picture = (await live(page, 'rings')).locator('.picture');
   const number = page.locator('#rings').getByRole('slider', { name: 'Ring', exact: true });
@@ -200,9 +206,9 @@ test('the picture of a figure stays in view while a number of the text is dragge
   clean();
 });
 
-test('a particle is followed by events, particles and levels, with its plane, its line and a slot from the side', async ({
-  page,
-}) => {
+test('a particle is followed by events, particles and levels, with its plane, its line and a slot from the side', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#first' });
   const first = await live(page, 'first');
   const [name, told] = [first.getByText(/^Particle \d+ on level/), first.locator('.told')];
@@ -237,11 +243,11 @@ test('a particle is followed by events, particles and levels, with its plane, it
   clean();
 });
 
-test('a stop far down stays at the top while the figures above it come', async ({ page }) => {
+test('a stop far down stays at the top while the figures above it come', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#judge' });
   const judge = page.locator('#judge');
   const top = () => judge.evaluate((element) => Math.round(element.getBoundingClientRect().top));
-  await expect(page.locator('#bench table.compare')).toBeVisible({ timeout: 60_000 });
+  await expect(page.locator('#bench table.compare')).toBeVisible();
   await expect.poll(top).toBeGreaterThanOrEqual(0);
   expect(await top()).toBeLessThan(80);
 });
@@ -249,11 +255,11 @@ test('a stop far down stays at the top while the figures above it come', async (
 /** The number of a cell of a table. @param {Locator} row @param {number} k */
 const numberIn = async (row, k) => Number((await row.getByRole('cell').nth(k).innerText()).replace(/[^\d.]/g, ''));
 
-test('what the text claims of the ellipsoid is what its runs say', async ({ page }) => {
+test('what the text claims of the ellipsoid is what its runs say', { tag: '@all' }, async ({ page }) => {
   const { clean } = await openLesson(page);
   const skip = async (/** @type {string} */ id) => {
     await page.locator(`#${id}`).getByRole('button', { name: 'Skip' }).click();
-    await expect(page.locator(`#${id}`)).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
+    await expect(page.locator(`#${id}`)).toHaveAttribute('data-state', 'open');
   };
   await live(page, 'cost');
   await skip('predict-cost');
@@ -295,7 +301,7 @@ test('what the text claims of the ellipsoid is what its runs say', async ({ page
   clean();
 });
 
-test('an unknown stop leads to the nearest one, and the page says so', async ({ page }) => {
+test('an unknown stop leads to the nearest one, and the page says so', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#ringz' });
   await expect(page.locator('#notice')).toHaveText(
     'There is no stop “ringz” in this lesson. This is the nearest, “Rings”.',
@@ -305,15 +311,15 @@ test('an unknown stop leads to the nearest one, and the page says so', async ({ 
   await expect(page.locator('#notice')).toBeInViewport({ ratio: 1 });
 });
 
-test('the focus goes from the button of a question to its answer', async ({ page }) => {
+test('the focus goes from the button of a question to its answer', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#predict-ring' });
   await page.getByLabel('Particles in ring 12').fill('70');
   await page.keyboard.press('Enter');
-  await expect(page.locator('#predict-ring')).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
+  await expect(page.locator('#predict-ring')).toHaveAttribute('data-state', 'open');
   await expect(page.locator('#predict-ring .predict-result')).toBeFocused();
 });
 
-test('without the bundle the text stays and a figure says what is missing', async ({ page }) => {
+test('without the bundle the text stays and a figure says what is missing', { tag: '@all' }, async ({ page }) => {
   await page.route(/lesson_bg.*\.wasm$/, (route) => route.abort());
   await openLesson(page);
   const why = await settled(page, 'judge-first');
@@ -325,7 +331,7 @@ test('without the bundle the text stays and a figure says what is missing', asyn
 
 test.describe('without JavaScript', () => {
   test.use({ javaScriptEnabled: false });
-  test('the article is complete, with a still for every figure', async ({ page }) => {
+  test('the article is complete, with a still for every figure', { tag: '@all' }, async ({ page }) => {
     await page.goto('./learn/');
     await expect(page.getByText('Particles are such a list')).toBeVisible();
     await expect(page.locator('.opening noscript p')).toBeVisible();
@@ -349,7 +355,7 @@ test.describe('without JavaScript', () => {
 
 test.describe('stored', () => {
   test.use({ serviceWorkers: 'allow' });
-  test('after one visit the lesson needs no network', async ({ page }) => {
+  test('after one visit the lesson needs no network', { tag: '@all' }, async ({ page }) => {
     const server = createSite();
     await new Promise((done) => server.listen(0, 'localhost', () => done(undefined)));
     const { port } = /** @type {AddressInfo} */ (server.address());
@@ -365,21 +371,21 @@ test.describe('stored', () => {
   });
 });
 
-test('every question is answered by the run, or skipped, and on a phone nothing is wider than the page', async ({
-  page,
-}) => {
+test('every question is answered by the run, or skipped, and on a phone nothing is wider than the page', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { width: 390, height: 760 });
   for (const name of FIGURES) await live(page, name);
   const questions = page.locator('.predict');
   await expect(questions).toHaveCount(12);
   for (const question of await questions.all()) {
     await question.getByRole('button', { name: 'Skip' }).click();
-    await expect(question).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
+    await expect(question).toHaveAttribute('data-state', 'open');
     await expect(question.locator('.predict-result')).toContainText(/\w{4}/);
     await expect(question.locator('.predict-result')).not.toContainText('stopped on an error');
   }
   await page.locator('#what-if').scrollIntoViewIfNeeded();
-  await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2);
   for (const width of [390, 320]) {
     await page.setViewportSize({ width, height: 760 });
     expect(await overflow(page)).toBe(0);
@@ -387,7 +393,7 @@ test('every question is answered by the run, or skipped, and on a phone nothing 
   clean();
 });
 
-test('the front grows when it is asked to, at once under reduced motion', async ({ page }) => {
+test('the front grows when it is asked to, at once under reduced motion', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#rings' });
   const rings = await live(page, 'rings');
   const level = rings.getByRole('slider', { name: 'Level' });
@@ -400,12 +406,14 @@ test('the front grows when it is asked to, at once under reduced motion', async 
   await expect(level).toHaveValue(last);
 });
 
-test('guesses and answers are there again after a reload, and are forgotten on request', async ({ page }) => {
+test('guesses and answers are there again after a reload, and are forgotten on request', { tag: '@all' }, async ({
+  page,
+}) => {
   await openLesson(page, { hash: '#predict-cost' });
   const cost = page.locator('#predict-cost');
   await cost.getByRole('radio', { name: 'Both about the same' }).check();
   await cost.getByRole('button', { name: 'Reveal' }).click();
-  await expect(cost).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
+  await expect(cost).toHaveAttribute('data-state', 'open');
   const words = await cost.getByRole('status').textContent();
   expect(words).toMatch(/^Placing all particles\. You said otherwise\./);
   await page.locator('#predict-ring').getByLabel('Particles in ring 12').fill('71');
@@ -422,9 +430,9 @@ test('guesses and answers are there again after a reload, and are forgotten on r
   await expect(page.locator('#predict-ring').getByLabel('Particles in ring 12')).toHaveValue('');
 });
 
-test('the last pairs are judged by eye, then by their figures, and then they have marks and names', async ({
-  page,
-}) => {
+test('the last pairs are judged by eye, then by their figures, and then they have marks and names', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#judge' });
   const judge = await live(page, 'judge-last');
   const question = page.locator('#predict-last');
@@ -436,16 +444,14 @@ test('the last pairs are judged by eye, then by their figures, and then they hav
   await question.getByRole('radio', { name: 'Sampling A' }).check();
   await question.getByRole('button', { name: 'Show the figures' }).click();
   // The figures have what chance can do, and no verdict.
-  await expect(judge.locator('thead')).toHaveText('IdealABChance', { timeout: 60_000 });
+  await expect(judge.locator('thead')).toHaveText('IdealABChance');
   await expect(judge.getByRole('row', { name: /^Six neighbours/ })).toContainText('5.2 points');
   await expect(judge.locator('.best, .decides, .outcome')).toHaveCount(0);
   expect(await fingerprint(judge.locator('.picture').first())).toBe(plain);
   await expect(question.getByRole('radio', { name: 'Sampling B' })).toBeDisabled();
   await question.getByRole('radio', { name: 'A, by the largest hole' }).check();
   await question.getByRole('button', { name: 'Reveal' }).click();
-  await expect(question.locator('.predict-judged')).toHaveText('B, by six neighbours. You said otherwise.', {
-    timeout: 60_000,
-  });
+  await expect(question.locator('.predict-judged')).toHaveText('B, by six neighbours. You said otherwise.');
   await expect(question.locator('.check[data-right]')).toHaveText(['Sampling Bright', 'B, by six neighboursright']);
   await expect(judge.locator('.decides')).toContainText('Six neighbours');
   await expect(judge.locator('.outcome')).toHaveText(
@@ -462,7 +468,7 @@ test('the last pairs are judged by eye, then by their figures, and then they hav
   await last.getByRole('button', { name: 'Show the figures' }).click();
   await last.getByRole('radio', { name: 'They cannot be told apart' }).last().check();
   await last.getByRole('button', { name: 'Reveal' }).click();
-  await expect(last.locator('.predict-judged')).toContainText('As you said.', { timeout: 60_000 });
+  await expect(last.locator('.predict-judged')).toContainText('As you said.');
   await expect(even.locator('.outcome')).toHaveText('No difference beyond chance: the two cannot be told apart.');
   await expect(even.locator('.best, .decides')).toHaveCount(0);
   // Both guesses are there again after a reload.
@@ -473,10 +479,12 @@ test('the last pairs are judged by eye, then by their figures, and then they hav
   clean();
 });
 
-test('in a comparison one switch marks five and seven neighbours in both pictures', async ({ page }) => {
+test('in a comparison one switch marks five and seven neighbours in both pictures', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await openLesson(page, { hash: '#what-if-order' });
   const bench = page.locator('#bench');
-  await expect(bench.locator('table.compare')).toBeVisible({ timeout: 60_000 });
+  await expect(bench.locator('table.compare')).toBeVisible();
   const both = () => Promise.all([0, 1].map((k) => fingerprint(bench.locator('.picture').nth(k))));
   const plain = await both();
   await bench.getByRole('checkbox', { name: 'Mark five and seven neighbours' }).check();
@@ -487,14 +495,16 @@ test('in a comparison one switch marks five and seven neighbours in both picture
   clean();
 });
 
-test('the cards are a page of their own, each with both sides, on the learner’s surface, too', async ({ page }) => {
+test('the cards are a page of their own, each with both sides, on the learner’s surface, too', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await openLesson(page, { hash: `#surface=${TORUS}`, width: 390 });
   await page.getByRole('link', { name: 'Where the program differs from the paper' }).first().click();
   await page.waitForURL(/learn\/cards\/.*#surface=/);
   await page.getByRole('button', { name: 'Show both: Who comes next' }).click();
   const card = page.locator('.card', { hasText: 'Who comes next' });
-  await expect(card.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
-  await expect(card.locator('tr.decides')).toContainText('Six neighbours', { timeout: 60_000 });
+  await expect(card.locator('.picture[data-drawn]')).toHaveCount(2);
+  await expect(card.locator('tr.decides')).toContainText('Six neighbours');
   expect(await overflow(page)).toBe(0);
   expect((await axe(page)).violations.map(({ id, nodes }) => [id, nodes.map(({ target }) => target)])).toEqual([]);
   await page.getByRole('link', { name: 'Lesson', exact: true }).click();

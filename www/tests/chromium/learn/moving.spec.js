@@ -16,13 +16,13 @@ async function answer(page) {
   const question = page.locator('#predict-moving');
   await question.getByRole('radio', { name: 'The order' }).check();
   await question.getByRole('button', { name: 'Reveal' }).click();
-  await expect(question).toHaveAttribute('data-state', 'open', { timeout: 30_000 });
+  await expect(question).toHaveAttribute('data-state', 'open');
   await expect(question).toContainText('As you said.');
 }
 
-test('particles follow the slider, by keyboard and by mouse, back on what was kept, and a front comes at rest', async ({
-  page,
-}) => {
+test('particles follow the slider, by keyboard and by mouse, back on what was kept, and a front comes at rest', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#moving' });
   const figure = await live(page, 'moving');
   const chart = figure.locator('.chart');
@@ -34,7 +34,7 @@ test('particles follow the slider, by keyboard and by mouse, back on what was ke
   await expect(chart).toBeVisible();
   const slider = figure.getByRole('slider', { name: 'Parameter' });
   await expect(slider).toHaveAttribute('aria-valuetext', 'a = 1.60');
-  await expect(figure.locator('.pair figcaption').first()).toContainText('It flows', { timeout: 40_000 });
+  await expect(figure.locator('.pair figcaption').first()).toContainText('It flows');
   await expect.poll(async () => (await counts(figure))[0]).toBeGreaterThan(1.7 * front);
   await expect.poll(async () => (await counts(figure))[1]).toBeGreaterThan(1.5 * system);
   await expect(figure.getByRole('row', { name: /^Largest hole/ })).toBeVisible();
@@ -58,14 +58,14 @@ test('particles follow the slider, by keyboard and by mouse, back on what was ke
   await figure.getByRole('button', { name: 'Replay' }).click();
   await expect(slider).toHaveValue('61');
   // A table is pale until it is that of this place.
-  await expect(figure.locator('[aria-busy="true"]')).toHaveCount(0, { timeout: 40_000 });
+  await expect(figure.locator('[aria-busy="true"]')).toHaveCount(0);
   expect((await axe(page)).violations.map(({ id }) => id)).toEqual([]);
   clean();
 });
 
-test('the lane beside it and the surface are chosen: none is born there, and the tanglecube falls apart', async ({
-  page,
-}) => {
+test('the lane beside it and the surface are chosen: none is born there, and the tanglecube falls apart', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#moving', width: 390 });
   const figure = await live(page, 'moving');
   const slider = figure.getByRole('slider');
@@ -90,26 +90,26 @@ test('the lane beside it and the surface are chosen: none is born there, and the
   clean();
 });
 
-test('the table goes along with its replay', async ({ page }) => {
+test('the table goes along with its replay', { tag: '@all' }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#moving' });
   const figure = await live(page, 'moving');
   await answer(page);
   const caption = figure.locator('.compare caption');
-  await expect(caption).toHaveText('a = 1.60', { timeout: 40_000 });
-  await expect(figure.locator('[aria-busy="true"]')).toHaveCount(0, { timeout: 40_000 });
+  await expect(caption).toHaveText('a = 1.60');
+  await expect(figure.locator('[aria-busy="true"]')).toHaveCount(0);
   await page.emulateMedia({ reducedMotion: 'no-preference' });
   await figure.getByRole('slider').press('Home');
   await expect(caption).toHaveText('a = 0.80');
   await figure.getByRole('button', { name: 'Replay' }).click();
   // It has figures of the moments in between, and of the last one as soon as they are there.
   await expect(caption).toHaveText(/a = (0\.9|1\.[0-4])/);
-  await expect(figure.getByRole('slider')).toHaveValue('61', { timeout: 20_000 });
-  await expect(figure.locator('[aria-busy="true"]')).toHaveCount(0, { timeout: 20_000 });
+  await expect(figure.getByRole('slider')).toHaveValue('61');
+  await expect(figure.locator('[aria-busy="true"]')).toHaveCount(0);
   await expect(caption).toHaveText('a = 1.60, at rest');
   clean();
 });
 
-test('the learner’s own surface moves by its parameter', async ({ page }) => {
+test('the learner’s own surface moves by its parameter', { tag: '@all' }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: `#moving&surface=${TORUS}` });
   const figure = await live(page, 'moving');
   await expect(figure.getByText('if its formula has a parameter')).toHaveCount(0);
@@ -119,14 +119,14 @@ test('the learner’s own surface moves by its parameter', async ({ page }) => {
   const [before] = await counts(figure);
   await slider.fill('60');
   await expect(slider).toHaveAttribute('aria-valuetext', 'R = 0.45');
-  await expect(figure.locator('.pair figcaption').first()).toContainText('It flows', { timeout: 40_000 });
+  await expect(figure.locator('.pair figcaption').first()).toContainText('It flows');
   // The area of a torus goes with R. On surfaces that shrink up to an eighth more particles are left (docs/flow.md).
   await expect.poll(async () => (await counts(figure))[0] / before / (0.45 / 0.7)).toBeLessThan(1.125);
   expect((await counts(figure))[0] / before / (0.45 / 0.7)).toBeGreaterThan(0.95);
   clean();
 });
 
-test('under reduced motion the picture is where the slider is, at once', async ({ page }) => {
+test('under reduced motion the picture is where the slider is, at once', { tag: '@all' }, async ({ page }) => {
   await page.emulateMedia({ reducedMotion: 'reduce' });
   await openLesson(page, { hash: '#moving' });
   const figure = await live(page, 'moving');
@@ -142,7 +142,7 @@ test('under reduced motion the picture is where the slider is, at once', async (
   expect(seen.size).toBe(2);
 });
 
-test('the link to the first page grabs its surface', async ({ page }) => {
+test('the link to the first page grabs its surface', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#moving' });
   await page.getByRole('link', { name: 'Grab the ellipsoid' }).click();
   await page.waitForURL(/\?grab/);

@@ -23,7 +23,9 @@ async function leaveAll(figure) {
   await expect(question).toContainText('Two particles are done.');
 }
 
-test('the run accepts its own decisions, from the keyboard, too, and objects to others', async ({ page }) => {
+test('the run accepts its own decisions, from the keyboard, too, and objects to others', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await openLesson(page, { hash: '#plane', width: 390 });
   const figure = await live(page, 'plane');
   const [told, score] = [figure.locator('.told'), figure.locator('.plane .figure-count')];
@@ -64,7 +66,9 @@ test('the run accepts its own decisions, from the keyboard, too, and objects to 
   clean();
 });
 
-test('after two particles of the plane comes the seam of the cap, where rows are out of step', async ({ page }) => {
+test('after two particles of the plane comes the seam of the cap, where rows are out of step', { tag: '@all' }, async ({
+  page,
+}) => {
   await openLesson(page, { hash: '#plane' });
   const figure = await live(page, 'plane');
   await leaveAll(figure);
@@ -86,7 +90,9 @@ test('after two particles of the plane comes the seam of the cap, where rows are
   await expect(figure.locator('.plane .figure-count')).toHaveText('Particle 1 of 1 · 0 mistakes · 0 slots decided.');
 });
 
-test('the whole disc of a particle counts as the particle, and its number is under nothing', async ({ page }) => {
+test('the whole disc of a particle counts as the particle, and its number is under nothing', { tag: '@all' }, async ({
+  page,
+}) => {
   await openLesson(page, { hash: '#plane' });
   const figure = await live(page, 'plane');
   const question = figure.locator('.plane-question');
@@ -144,7 +150,9 @@ test('the whole disc of a particle counts as the particle, and its number is und
   }
 });
 
-test('the live line is the one that asks, and with the answer to the question the seed is done', async ({ page }) => {
+test('the live line is the one that asks, and with the answer to the question the seed is done', {
+  tag: '@all',
+}, async ({ page }) => {
   await openLesson(page, { hash: '#plane' });
   const figure = await live(page, 'plane');
   const line = figure.locator('.algorithm [aria-current]');
@@ -156,7 +164,7 @@ test('the live line is the one that asks, and with the answer to the question th
   await expect(figure.locator('.plane-question')).toContainText('Particle 1, slot 1');
 });
 
-test('a clicker goes slot by slot, and back', async ({ page }) => {
+test('a clicker goes slot by slot, and back', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#predict-children&mode=present' });
   const question = (await live(page, 'plane')).locator('.plane-question');
   for (const [key, place] of [
@@ -171,7 +179,7 @@ test('a clicker goes slot by slot, and back', async ({ page }) => {
   }
 });
 
-test('mistakes are saved with an assignment, those of the first round, too', async ({ page }) => {
+test('mistakes are saved with an assignment, those of the first round, too', { tag: '@all' }, async ({ page }) => {
   const task = packTask({
     title: 'T',
     setup: { what: 'order', left: 'queue', right: 'stack' },

@@ -8,10 +8,10 @@ async function slideSettled(page) {
   const busy = page.locator('[data-current] .figure-status:visible', { hasText: /\w/ });
   const asked = page.locator('[data-current] .predict-result:visible', { hasText: 'The run is asked.' });
   for (const stage of await page.locator('[data-current] [data-figure]:visible').all())
-    await expect(stage).toHaveAttribute('data-state', 'live', { timeout: 60_000 });
-  await expect(asked).toHaveCount(0, { timeout: 60_000 });
-  await expect(busy).toHaveCount(0, { timeout: 60_000 });
-  await expect(page.locator('[data-current] [aria-busy="true"]:visible')).toHaveCount(0, { timeout: 60_000 });
+    await expect(stage).toHaveAttribute('data-state', 'live');
+  await expect(asked).toHaveCount(0);
+  await expect(busy).toHaveCount(0);
+  await expect(page.locator('[data-current] [aria-busy="true"]:visible')).toHaveCount(0);
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 }
 

@@ -13,9 +13,9 @@ async function teachers(page, name) {
   await page.getByRole('button', { name, exact: true }).click();
 }
 
-test('keys and clickers go from stop to stop and blank the wall, and each stop has its own address', async ({
-  page,
-}) => {
+test('keys and clickers go from stop to stop and blank the wall, and each stop has its own address', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#rings&mode=present' });
   await live(page, 'rings');
   await expect(page.locator('.chapter:visible')).toHaveCount(1);
@@ -50,7 +50,9 @@ test('keys and clickers go from stop to stop and blank the wall, and each stop h
   clean();
 });
 
-test('the notes have a window of their own, with the next stop and a clock, which steers, too', async ({ page }) => {
+test('the notes have a window of their own, with the next stop and a clock, which steers, too', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#rings&mode=present' });
   await live(page, 'rings');
   const [notes] = await Promise.all([page.waitForEvent('popup'), page.keyboard.press('n')]);
@@ -65,7 +67,7 @@ test('the notes have a window of their own, with the next stop and a clock, whic
   await expect(notes.getByRole('heading', { name: 'On a plane, ring 12 has 72' })).toBeVisible();
   await expect(page.locator('#predict-ring')).toBeVisible();
   // The answer is there for the one who asks, and not on the wall.
-  await expect(notes.getByText(/Answer: It is \d+\. Ring 12 of this surface has/)).toBeVisible({ timeout: 60_000 });
+  await expect(notes.getByText(/Answer: It is \d+\. Ring 12 of this surface has/)).toBeVisible();
   await expect(page.locator('#predict-ring')).not.toHaveAttribute('data-state', 'open');
   const [closed] = await Promise.all([notes.waitForEvent('close'), page.keyboard.press('Escape')]);
   expect(closed.isClosed()).toBe(true);
@@ -121,7 +123,9 @@ test(
   },
 );
 
-test('a presentation begins at the chapter that is read, and fits a small window', async ({ page }) => {
+test('a presentation begins at the chapter that is read, and fits a small window', { tag: '@all' }, async ({
+  page,
+}) => {
   await openLesson(page, { hash: `#seams&surface=${TORUS}`, width: 390, height: 700 });
   await live(page, 'seams');
   await teachers(page, 'Present');
@@ -130,8 +134,9 @@ test('a presentation begins at the chapter that is read, and fits a small window
   expect(await overflow(page)).toBe(0);
 });
 
-test('the hand-out has blanks for the predictions, and every answer on its last page', async ({ page }) => {
-  test.setTimeout(180_000);
+test('the hand-out has blanks for the predictions, and every answer on its last page', { tag: '@all' }, async ({
+  page,
+}) => {
   await openLesson(page);
   await page.evaluate(() => {
     window.print = () => {
@@ -171,14 +176,18 @@ test('the hand-out has blanks for the predictions, and every answer on its last 
   expect(sheets.toString('latin1').match(/\/Type\s*\/Page\b/g)?.length).toBeLessThanOrEqual(10);
 });
 
-test('what the browser prints by itself has no answers, and the page says where to find them', async ({ page }) => {
+test('what the browser prints by itself has no answers, and the page says where to find them', { tag: '@all' }, async ({
+  page,
+}) => {
   await openLesson(page, { hash: '#rings' });
   await live(page, 'rings');
   await page.evaluate(() => dispatchEvent(new Event('afterprint')));
   await expect(page.locator('#notice')).toContainText('“Print”, under “For teachers”');
 });
 
-test('where the part for teachers does not load, the article is printed and the page says so', async ({ page }) => {
+test('where the part for teachers does not load, the article is printed and the page says so', { tag: '@all' }, async ({
+  page,
+}) => {
   /** @type {string[]} */
   const faults = [];
   page.on('pageerror', (error) => faults.push(String(error)));
@@ -205,7 +214,7 @@ test('where the part for teachers does not load, the article is printed and the 
   expect(faults).toEqual([]);
 });
 
-test('a reader loads nothing of what is for a class', async ({ page }) => {
+test('a reader loads nothing of what is for a class', { tag: '@all' }, async ({ page }) => {
   /** @type {string[]} */
   const loaded = [];
   page.on('request', (request) => loaded.push(new URL(request.url()).pathname));
@@ -218,10 +227,9 @@ test('a reader loads nothing of what is for a class', async ({ page }) => {
   expect(loaded.filter((path) => /\/teach-/.test(path))).toHaveLength(1);
 });
 
-test('an assignment locks what the teacher chose, and its answers are one file', async ({ page }) => {
-  test.setTimeout(120_000);
+test('an assignment locks what the teacher chose, and its answers are one file', { tag: '@all' }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: `#what-if-fail&surface=${TORUS}` });
-  await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2);
   await teachers(page, 'Assignment');
   const dialog = page.getByRole('dialog');
   await dialog.getByLabel('Title').fill('Seams');
@@ -233,16 +241,16 @@ test('an assignment locks what the teacher chose, and its answers are one file',
   await page.goto('about:blank');
   await page.goto(link);
   const task = page.getByRole('region', { name: 'Seams', exact: true });
-  await expect(task.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  await expect(task.locator('.picture[data-drawn]')).toHaveCount(2);
   // The teacher's own tries, one of which solves it, stay where they were made.
   expect(link).not.toContain('stack');
   await expect(task.locator('figcaption')).toHaveText([/^Queue, 0\.7 · 2r/, /^Queue, 0\.7 · 2r/]);
   await task.getByLabel('Who comes next').selectOption('stack');
-  await expect(task.getByRole('columnheader', { name: /^Stack, 0\.7/ })).toBeVisible({ timeout: 60_000 });
+  await expect(task.getByRole('columnheader', { name: /^Stack, 0\.7/ })).toBeVisible();
   await expect(task.getByLabel('What changes')).toBeDisabled();
   await task.getByRole('slider', { name: 'Match tolerance' }).press('End');
   const header = task.getByRole('columnheader', { name: 'Stack, 0.95 · 2r, ten steps, seed 0' });
-  await expect(header).toBeVisible({ timeout: 60_000 });
+  await expect(header).toBeVisible();
   await task.getByLabel('Which run has closer pairs?').fill('The left one, "clearly".');
   const saved = async (/** @type {string} */ name) => {
     const [file] = await Promise.all([page.waitForEvent('download'), task.getByRole('button', { name }).click()]);
@@ -334,7 +342,9 @@ const classOf = (count) =>
     ),
   }));
 
-test('a lecturer drops thirty files and sees the answers beside what the run says', async ({ page }) => {
+test('a lecturer drops thirty files and sees the answers beside what the run says', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await openLesson(page);
   await teachers(page, 'Assignment');
   await page.getByRole('dialog').getByRole('link', { name: 'Collect answers' }).click();
@@ -389,27 +399,28 @@ test('a lecturer drops thirty files and sees the answers beside what the run say
   clean();
 });
 
-test('the values of a comparison are part of the address', async ({ page }) => {
+test('the values of a comparison are part of the address', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#what-if-step&left=0.2&right=none' });
   const bench = page.locator('#bench');
-  await expect(bench.getByLabel('Left', { exact: true })).toHaveValue('0.2', { timeout: 60_000 });
+  await expect(bench.getByLabel('Left', { exact: true })).toHaveValue('0.2');
   await expect(bench.getByLabel('Right', { exact: true })).toHaveValue('0.2');
   await bench.getByLabel('Right', { exact: true }).selectOption('1');
   await expect.poll(() => page.evaluate(() => location.hash)).toBe('#what-if-step&left=0.2&right=1');
   await page.reload();
-  await expect(bench.getByLabel('Right', { exact: true })).toHaveValue('1', { timeout: 60_000 });
+  await expect(bench.getByLabel('Right', { exact: true })).toHaveValue('1');
   // They do not follow to another stop.
   await page.getByRole('link', { name: 'Rings', exact: true }).click();
   await expect.poll(() => page.evaluate(() => location.hash)).toBe('#rings');
 });
 
-test('the worst sampling is looked for by keys, and the best and the worst are kept', async ({ page }) => {
-  test.setTimeout(120_000);
+test('the worst sampling is looked for by keys, and the best and the worst are kept', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await openLesson(page, { hash: '#what-if-fail' });
   const bench = page.locator('#bench');
   const kept = (/** @type {string} */ name) => bench.getByRole('button', { name });
   const [said, verdict] = [bench.locator('.said'), bench.locator('.verdict')];
-  await expect(kept('Best so far')).toContainText('Queue, 0.7 · 2r, ten steps, seed 0', { timeout: 60_000 });
+  await expect(kept('Best so far')).toContainText('Queue, 0.7 · 2r, ten steps, seed 0');
   await expect(kept('Worst so far')).toContainText('Stack, 0.7');
   await expect(said).toContainText(
     /Worse\. Here 7\d\.\d % have six neighbours, in the sampling of the lesson 89\.\d %\./,
@@ -419,13 +430,13 @@ test('the worst sampling is looked for by keys, and the best and the worst are k
   );
   await bench.getByRole('slider', { name: 'Match tolerance' }).press('Home');
   await bench.getByLabel('Relaxation', { exact: true }).selectOption('0');
-  await expect(kept('Worst so far')).toContainText('Stack, 0.4 · 2r, no steps, seed 0', { timeout: 60_000 });
+  await expect(kept('Worst so far')).toContainText('Stack, 0.4 · 2r, no steps, seed 0');
   await expect(verdict.getByRole('listitem')).toHaveCount(3);
   // A choice that does no harm is named as one.
   await kept('Best so far').click();
   await expect(bench.locator('figcaption')).toHaveText([/^Stack, 0\.4/, /^Queue, 0\.7/]);
   await bench.getByLabel('Relaxation', { exact: true }).selectOption('100');
-  await expect(said).toContainText('No difference beyond chance.', { timeout: 60_000 });
+  await expect(said).toContainText('No difference beyond chance.');
   await expect(verdict).toContainText('A hundred steps. It does no harm beyond chance here.');
   await kept('Worst so far').click();
   await expect(bench.locator('figcaption')).toHaveText([/^Queue, 0\.7 · 2r, ten/, /^Stack, 0\.4/]);
@@ -434,36 +445,36 @@ test('the worst sampling is looked for by keys, and the best and the worst are k
   // They are there again later, and where the address says nothing both are shown.
   await page.goto('about:blank');
   await openLesson(page, { hash: '#what-if-fail' });
-  await expect(bench.locator('figcaption')).toHaveText([/^Queue, 0\.7 · 2r, ten/, /^Stack, 0\.4/], {
-    timeout: 60_000,
-  });
-  await expect(kept('Worst so far')).toContainText('Stack, 0.4 · 2r, no steps, seed 0', { timeout: 60_000 });
+  await expect(bench.locator('figcaption')).toHaveText([/^Queue, 0\.7 · 2r, ten/, /^Stack, 0\.4/]);
+  await expect(kept('Worst so far')).toContainText('Stack, 0.4 · 2r, no steps, seed 0');
   expect((await axe(page)).violations.map(({ id }) => id)).toEqual([]);
   clean();
 });
 
-test('a clicker asks, shows the figures and goes through the values of a comparison', async ({ page }) => {
+test('a clicker asks, shows the figures and goes through the values of a comparison', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await openLesson(page, { hash: '#what-if-step&mode=present' });
   const bench = page.locator('#bench');
   await expect(bench.getByRole('columnheader', { name: '0.2 r²' })).toBeHidden();
   await expect(bench.getByText('Which of the two is better')).toBeVisible();
-  await expect(bench.locator('table.compare')).toHaveCount(1, { timeout: 60_000 });
+  await expect(bench.locator('table.compare')).toHaveCount(1);
   await page.keyboard.press('PageDown');
   await expect(bench.getByRole('columnheader', { name: '0.2 r²' })).toBeVisible();
   await page.keyboard.press('PageDown');
-  await expect(bench.getByRole('columnheader', { name: '1.0 r²' })).toBeVisible({ timeout: 60_000 });
+  await expect(bench.getByRole('columnheader', { name: '1.0 r²' })).toBeVisible();
   await page.keyboard.press('PageUp');
-  await expect(bench.getByRole('columnheader', { name: '0.2 r²' })).toBeVisible({ timeout: 60_000 });
+  await expect(bench.getByRole('columnheader', { name: '0.2 r²' })).toBeVisible();
   for (let k = 0; k < 2; k += 1) await page.keyboard.press('PageDown');
   await expect.poll(() => page.evaluate(() => location.hash)).toContain('#what-if-fail&');
   await expect(page.locator('.challenge')).toBeVisible();
-  await expect(bench.locator('figcaption').last()).toHaveText(/^Stack/, { timeout: 60_000 });
+  await expect(bench.locator('figcaption').last()).toHaveText(/^Stack/);
   for (let k = 0; k < 2; k += 1) await page.keyboard.press('PageDown');
-  await expect(bench.locator('figcaption').last()).toHaveText(/0\.4 · 2r/, { timeout: 60_000 });
+  await expect(bench.locator('figcaption').last()).toHaveText(/0\.4 · 2r/);
   clean();
 });
 
-test('a damaged assignment is named, and the lesson stays', async ({ page }) => {
+test('a damaged assignment is named, and the lesson stays', { tag: '@all' }, async ({ page }) => {
   await openLesson(page, { hash: '#task=AAAA' });
   await expect(page.locator('#notice')).toContainText('no assignment that can be read');
   await live(page, 'judge-first');
@@ -473,7 +484,7 @@ for (const [kind, other] of [
   ['uniform', 'Witkin and Heckbert'],
   ['adaptive', 'Forces'],
 ])
-  test(`the front races against ${other}, each by its own rules`, async ({ page }) => {
+  test(`the front races against ${other}, each by its own rules`, { tag: '@all' }, async ({ page }) => {
     const { clean } = await openLesson(page, { hash: '#race' });
     const race = page.locator('#race-box');
     const start = race.getByRole('button', { name: 'Start' });
@@ -482,7 +493,7 @@ for (const [kind, other] of [
     await start.click();
     await race.getByLabel('Race').selectOption(kind);
     await start.click();
-    await expect(race.getByRole('columnheader', { name: other })).toBeVisible({ timeout: 55_000 });
+    await expect(race.getByRole('columnheader', { name: other })).toBeVisible();
     // Of the two races no worker is left; the figures have one, and the surface that moves, below, two.
     await expect.poll(() => page.workers().length).toBeLessThan(4);
     const rounds = await race.locator('.lane dt', { hasText: 'Rounds' }).locator('+ dd').allTextContents();

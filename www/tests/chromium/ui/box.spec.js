@@ -5,8 +5,7 @@ import { afresh, atRest, open, report, settled, state, typeFormula } from './hel
 
 const cut = (/** @type {Page} */ page) => page.locator('.cut');
 
-test('the box around a formula', async ({ page }) => {
-  test.slow();
+test('the box around a formula', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page);
   await test.step('a surface that goes on for ever is said to, and the box can be enlarged and fitted again', async () => {
     await typeFormula(page, 'sin(x)cos(y)+sin(y)cos(z)+sin(z)cos(x)');

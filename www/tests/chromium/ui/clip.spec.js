@@ -38,7 +38,7 @@ const openPlane = async (page) => {
 const run = (/** @type {Page} */ page) =>
   page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().progress.run);
 
-test('the cutting plane and the faces of the box', async ({ page }) => {
+test('the cutting plane and the faces of the box', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page);
   await test.step('what stays when the formula changes is told in the picture, and ended there', async () => {
     await page.evaluate(() => {
@@ -177,7 +177,7 @@ test('the cutting plane and the faces of the box', async ({ page }) => {
 
 test.describe('by finger', () => {
   test.use({ hasTouch: true });
-  test('a face is dragged on a phone', async ({ page }) => {
+  test('a face is dragged on a phone', { tag: '@all' }, async ({ page }) => {
     await open(page, { width: 390, height: 844 });
     await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ box: true }));
     await atRest(page);

@@ -2,7 +2,7 @@
 import { expect, test } from '@playwright/test';
 import { open } from './helpers.js';
 
-test('a press beyond a dialog closes it, and none that begins or ends in it', async ({ page }) => {
+test('a press beyond a dialog closes it, and none that begins or ends in it', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page);
   await page.keyboard.press('?');
   const help = page.getByRole('dialog', { name: 'Help' });

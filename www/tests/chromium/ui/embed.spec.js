@@ -3,7 +3,10 @@ import { once } from 'node:events';
 import { createServer } from 'node:http';
 import { expect, test } from '@playwright/test';
 
-test('a page with the picture in a frame sets its state, reads it and gets the report', async ({ page, baseURL }) => {
+test('a page with the picture in a frame sets its state, reads it and gets the report', { tag: '@all' }, async ({
+  page,
+  baseURL,
+}) => {
   await page.setViewportSize({ width: 800, height: 600 });
   // Another port, so that the frame has an origin of its own.
   const src = `${baseURL}?backend=canvas2d&embed=caption`;

@@ -2,9 +2,9 @@
 import { expect, test } from '@playwright/test';
 import { expectDrawn } from './helpers.js';
 
-test('a pressed particle is explained in the lesson, by its own number, and the way back leads to the picture', async ({
-  page,
-}) => {
+test('a pressed particle is explained in the lesson, by its own number, and the way back leads to the picture', {
+  tag: '@all',
+}, async ({ page }) => {
   await page.setViewportSize({ width: 1280, height: 800 });
   await page.goto('./?backend=canvas2d');
   await page.waitForFunction(
@@ -21,14 +21,16 @@ test('a pressed particle is explained in the lesson, by its own number, and the 
   await page.keyboard.press('Enter');
   await page.waitForURL(/learn\/#first&surface=.*&particle=/);
   const figure = page.locator('[data-figure="first"]');
-  await expect(figure).toHaveAttribute('data-state', 'live', { timeout: 60_000 });
+  await expect(figure).toHaveAttribute('data-state', 'live');
   await expect(figure.getByText(new RegExp(`^Particle ${number} on level`))).toBeVisible();
   await expect(figure.locator('.algorithm [aria-current]')).toHaveCount(1);
   await page.getByRole('link', { name: 'Marching Particles', exact: true }).click();
   await page.waitForURL((url) => !url.pathname.includes('learn'));
 });
 
-test('of an adaptive picture the lesson explains no single particle, and the card says so', async ({ page }) => {
+test('of an adaptive picture the lesson explains no single particle, and the card says so', { tag: '@all' }, async ({
+  page,
+}) => {
   await page.setViewportSize({ width: 1280, height: 800 });
   await page.goto('./?backend=canvas2d');
   await page.waitForFunction(() => 'marchingParticles' in window);
@@ -44,5 +46,5 @@ test('of an adaptive picture the lesson explains no single particle, and the car
   await expect(card.getByRole('button', { name: 'Explain this particle' })).toHaveCount(0);
   await card.getByRole('button', { name: 'How many sizes find room' }).click();
   await page.waitForURL(/learn\/#angles&surface=/);
-  await expect(page.locator('[data-figure="angles"]')).toHaveAttribute('data-state', 'live', { timeout: 60_000 });
+  await expect(page.locator('[data-figure="angles"]')).toHaveAttribute('data-state', 'live');
 });

@@ -1,9 +1,8 @@
 import { expect, test } from '@playwright/test';
-import { afresh, atRest, open, report, settled, state, typeFormula } from './helpers.js';
+import { afresh, atRest, COARSE, open, report, settled, state, typeFormula } from './helpers.js';
 
 test('a formula is typed, and mended', async ({ page }) => {
-  test.slow();
-  const { clean } = await open(page);
+  const { clean } = await open(page, { hash: COARSE });
   await test.step('a formula typed while the full editor comes is not taken for one that was left; no name is broken', async () => {
     await page.route('**/code-editor*.js', async (route) => {
       await new Promise((go) => setTimeout(go, 1500));
@@ -22,7 +21,7 @@ test('a formula is typed, and mended', async ({ page }) => {
   });
 
   await test.step('a typed formula gets sliders for its unknown names, and dragging one samples anew', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     await typeFormula(page, 'x^2 + y^2 + k z^2 = 1');
     const slider = page.getByRole('slider', { name: /k$/ });
     await expect(slider).toBeVisible();
@@ -43,7 +42,7 @@ test('a formula is typed, and mended', async ({ page }) => {
   });
 
   await test.step('an error names its place, the last surface stays, and a press on the suggestion mends it', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     const before = await report(page);
     await typeFormula(page, 'x^2 + y^2 + sqt(z) = 1');
     const editor = page.getByRole('textbox', { name: 'Formula' });
@@ -58,7 +57,7 @@ test('a formula is typed, and mended', async ({ page }) => {
   });
 
   await test.step('a mistake that is typed over leaves no style behind, which the content security policy forbids', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     await typeFormula(page, 'sqt(z) + x');
     await expect(page.locator('.cm-fault')).toHaveText('sqt');
     await page.keyboard.press('ControlOrMeta+a');
@@ -71,7 +70,7 @@ test('a formula is typed, and mended', async ({ page }) => {
   });
 
   await test.step('beside a mistake the typeset formula is said to be the last one that could be read', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     const said = page.getByText('The last formula that could be read:');
     const preview = page.getByRole('group', { name: 'The formula as mathematics' });
     await expect(said).toBeHidden();
@@ -84,7 +83,7 @@ test('a formula is typed, and mended', async ({ page }) => {
   });
 
   await test.step('in an own formula a parameter is no longer what it was in the surface of the gallery', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     await expect(page.getByRole('slider', { name: 'Semi-axis along x a' })).toBeVisible();
     await typeFormula(page, 'x^2 + y^2 + a z^2 = 1');
     await expect(page.getByRole('slider', { name: 'Parameter a' })).toBeVisible();
@@ -92,7 +91,7 @@ test('a formula is typed, and mended', async ({ page }) => {
   });
 
   await test.step('letter by letter, what is typed shows its mistake after a pause, and its surface at once by Enter', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     await typeFormula(page, 'x^2 + y^2 + z^2 = ');
     const editor = page.getByRole('textbox', { name: 'Formula' });
     await expect(editor).toHaveAttribute('aria-invalid', 'true');
@@ -108,13 +107,13 @@ test('a formula is typed, and mended', async ({ page }) => {
   });
 
   await test.step('a parameter named like the beginning of a function gets its slider', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     await typeFormula(page, 'x^2 + y^2 + z^2 = s');
     await expect(page.locator('.row[data-parameter="s"]').getByRole('slider')).toBeVisible();
   });
 
   await test.step('every unknown name gets a slider, and one like a function on request', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     await typeFormula(page, 'p x^2 + q y^2 + s z^2 + u x y + v y z + sim z x = 1');
     const add = page.getByRole('button', { name: /^Add slider/ });
     await expect(add).toHaveCount(1);
@@ -124,7 +123,7 @@ test('a formula is typed, and mended', async ({ page }) => {
   });
 
   await test.step('an empty formula is met with a hint, not an error, and the surface stays', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     const before = await report(page);
     await typeFormula(page, '');
     const message = page.locator('#formula-fault');
@@ -138,7 +137,7 @@ test('a formula is typed, and mended', async ({ page }) => {
   });
 
   await test.step('markup in a formula stays text', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     await typeFormula(page, '<img src=x onerror=alert(1)>');
     await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'true');
     expect(await page.evaluate(() => document.querySelectorAll('img[onerror], [onerror]').length)).toBe(0);
@@ -148,13 +147,13 @@ test('a formula is typed, and mended', async ({ page }) => {
   });
 
   await test.step('the formula is shown as mathematics', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     await typeFormula(page, 'x^2 + y^2/4 + z^2 = 1');
     await expect(page.locator('.preview math mfrac, .preview math msup').first()).toBeVisible();
   });
 
   await test.step('on a phone a mistake is read and mended without scrolling for it', async () => {
-    await afresh(page, { width: 390, height: 844 });
+    await afresh(page, { width: 390, height: 844, hash: COARSE });
     await typeFormula(page, 'x^2 + y^2 + sqt(z) = 1');
     const repair = page.getByRole('button', { name: 'Change to sqrt' });
     await expect(repair).toBeInViewport({ ratio: 1 });
@@ -163,7 +162,7 @@ test('a formula is typed, and mended', async ({ page }) => {
   });
 
   await test.step('a surface of the gallery is chosen by a press and by the arrow keys', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     await page.locator('.tile[data-surface="torus"]').click();
     await settled(page);
     expect((await state(page)).surface).toBe('torus');
@@ -174,7 +173,7 @@ test('a formula is typed, and mended', async ({ page }) => {
   });
 
   await test.step('the clip box is edited axis by axis and taken back', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     await page.locator('.clip summary', { hasText: 'Clip box' }).click();
     const high = page.getByRole('spinbutton', { name: 'x to' });
     await high.fill('0.25');
@@ -192,9 +191,9 @@ test('a formula is typed, and mended', async ({ page }) => {
   await clean();
 });
 
-test('another formula is shown from its widest side, also where the hand has turned the camera, and an edit is not', async ({
-  page,
-}) => {
+test('another formula is shown from its widest side, also where the hand has turned the camera, and an edit is not', {
+  tag: '@all',
+}, async ({ page }) => {
   await page.emulateMedia({ reducedMotion: 'no-preference' });
   const { clean } = await open(page, { hash: '' });
   const engine = (/** @type {string} */ act) =>

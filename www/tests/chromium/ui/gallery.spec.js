@@ -7,7 +7,7 @@ const tile = (/** @type {Page} */ page, /** @type {string} */ id) => page.locato
 const group = (/** @type {Page} */ page, /** @type {string} */ name) =>
   page.getByRole('group', { name: 'Groups of surfaces' }).getByRole('button', { name, exact: true });
 
-test('the gallery', async ({ page }) => {
+test('the gallery', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await test.step('one group of surfaces is shown, that of the surface on the page, and keys alone choose in another', async () => {
     await expect(group(page, 'Closed')).toHaveAttribute('aria-pressed', 'true');

@@ -46,7 +46,7 @@ async function drag(page, from, to) {
   await atRest(page);
 }
 
-test('the surface is pulled, and the parameters follow', async ({ page }) => {
+test('the surface is pulled, and the parameters follow', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page);
   const start = (await state(page)).parameters;
   const { yaw } = (await state(page)).view.camera;
@@ -122,8 +122,7 @@ test('the surface is pulled, and the parameters follow', async ({ page }) => {
   await clean();
 });
 
-test('a model is pulled around a place, and what is pinned stays', async ({ page }) => {
-  test.setTimeout(120_000);
+test('a model is pulled around a place, and what is pinned stays', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page);
   await page.evaluate(async () => {
     const bunny = { surface: 'bunny', settings: { size_mode: 'count', count: 1500 } };
@@ -209,7 +208,7 @@ test('a model is pulled around a place, and what is pinned stays', async ({ page
   await clean();
 });
 
-test('what cannot be pulled says so, and the picture turns instead', async ({ page }) => {
+test('what cannot be pulled says so, and the picture turns instead', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page);
   const set = (/** @type {object} */ patch) =>
     page.evaluate((patch) => /** @type {any} */ (window).marchingParticles.set(patch), patch);
@@ -251,7 +250,7 @@ test('what cannot be pulled says so, and the picture turns instead', async ({ pa
   await clean();
 });
 
-test('particles that have followed stay, if they are to', async ({ page }) => {
+test('particles that have followed stay, if they are to', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page);
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ flow: true }));
   const right = await outermost(page, [1, 0]);
@@ -269,7 +268,9 @@ test('particles that have followed stay, if they are to', async ({ page }) => {
   await clean();
 });
 
-test('Escape leaves the tools that take the pointer, and the next press pins nothing', async ({ page }) => {
+test('Escape leaves the tools that take the pointer, and the next press pins nothing', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await open(page);
   const card = page.locator('.tool-card:visible');
   await page.getByRole('button', { name: 'Grab' }).click();

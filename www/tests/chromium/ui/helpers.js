@@ -1,11 +1,18 @@
 /** What the interface's browser tests share. */
 import { expect } from '@playwright/test';
 import { axe } from '../../axe.js';
+import { link } from '../engine/browser.js';
 
 /** @import { Page } from '@playwright/test' */
 
 /** The panels are tested without a graphics device: software rendering of large windows is slow. */
 const ADDRESS = './?backend=canvas2d';
+
+/**
+ * A link to the surface of the first page with few particles, for panels that are the same with
+ * many.
+ */
+export const COARSE = link({ settings: { radius_share: 0.03 } });
 
 /**
  * Opens the page and waits for the first run. Violations of the content security policy and errors fail the test.

@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { afresh, atRest, open, settled, state, typeFormula } from './helpers.js';
+import { afresh, atRest, COARSE, open, settled, state, typeFormula } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -7,8 +7,7 @@ const undo = (/** @type {Page} */ page) => page.getByRole('button', { name: 'Und
 const redo = (/** @type {Page} */ page) => page.getByRole('button', { name: 'Redo', exact: true });
 
 test('the history', async ({ page }) => {
-  test.slow();
-  const { clean } = await open(page, { width: 1440, height: 900 });
+  const { clean } = await open(page, { width: 1440, height: 900, hash: COARSE });
   await test.step('surface, formula and settings are undone and redone, by buttons and by keys', async () => {
     await expect(undo(page)).toBeHidden();
     const { formula } = await state(page);
@@ -35,7 +34,7 @@ test('the history', async ({ page }) => {
   });
 
   await test.step('a drag is undone at once, however long it pauses', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     const range = page.locator('.row[data-parameter] input[type=range]').first();
     const { x, y, width, height } = (await range.boundingBox()) ?? { x: 0, y: 0, width: 0, height: 0 };
     const to = (/** @type {number} */ share) => page.mouse.move(x + share * width, y + height / 2, { steps: 3 });
@@ -54,7 +53,7 @@ test('the history', async ({ page }) => {
   });
 
   await test.step('another surface that comes back is seen with all its levels', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     await page.locator('.tile[data-surface="torus"]').click();
     await settled(page);
     await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ level: 3 }));
@@ -64,7 +63,7 @@ test('the history', async ({ page }) => {
   });
 
   await test.step('in a text field the keys undo the typing, not the page', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     await page.locator('.tile[data-surface="sphere"]').click();
     await settled(page);
     const box = page.locator('.setting[data-setting="radius_share"] input[role=spinbutton]');
@@ -74,7 +73,7 @@ test('the history', async ({ page }) => {
   });
 
   await test.step('five hundred steps back end at the first state and harm nothing', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     const first = await state(page);
     await page.evaluate(async () => {
       const { engine } = /** @type {any} */ (window).marchingParticles;
@@ -96,7 +95,7 @@ test('the history', async ({ page }) => {
   await clean();
 });
 
-test('what is undone while it is typed is seen as it was, and can be redone', async ({ page }) => {
+test('what is undone while it is typed is seen as it was, and can be redone', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await page.locator('.tile[data-surface="torus"]').click();
   await settled(page);
@@ -119,7 +118,9 @@ test('what is undone while it is typed is seen as it was, and can be redone', as
   await clean();
 });
 
-test('Back leads from surface to surface, each as it was seen, and at last leaves the page', async ({ page }) => {
+test('Back leads from surface to surface, each as it was seen, and at last leaves the page', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   /** Waits until the address holds the state. */
   const written = () =>
@@ -184,7 +185,7 @@ test('Back leads from surface to surface, each as it was seen, and at last leave
   await clean();
 });
 
-test('a surface that is chosen while the page opens is an entry after the first', async ({ page }) => {
+test('a surface that is chosen while the page opens is an entry after the first', { tag: '@all' }, async ({ page }) => {
   await page.goto('./?backend=canvas2d');
   const first = await page.evaluate(async () => {
     const { engine } = /** @type {any} */ (window).marchingParticles;

@@ -7,7 +7,9 @@ for (const [width, height] of /** @type {const} */ ([
   [2560, 1440],
   [390, 844],
 ])) {
-  test(`with type twice as large nothing lies over anything else at ${width} by ${height}`, async ({ page }) => {
+  test(`with type twice as large nothing lies over anything else at ${width} by ${height}`, { tag: '@all' }, async ({
+    page,
+  }) => {
     const { clean } = await open(page, { width, height });
     expect(
       await page.evaluate(() => parseFloat(getComputedStyle(document.documentElement).fontSize)),

@@ -1,31 +1,39 @@
 import { expect, test } from '@playwright/test';
-import { afresh, atRest, expectDrawn, open, scan, settled, state, typeFormula } from './helpers.js';
+import { afresh, atRest, COARSE, expectDrawn, open, scan, settled, state, typeFormula } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
-/** Windows in which a page is opened, and those to which it is resized. */
-/** @type {[number, number][][]} */
+/**
+ * Windows in which a page is opened, and those to which it is resized; a desk's and a phone's in every run.
+ * @type {{ tag: string[], sizes: [number, number][] }[]}
+ */
 const WINDOWS = [
-  [
-    [1440, 900],
-    [3840, 2160],
-    [2560, 1440],
-  ],
-  [[1280, 720]],
-  [[820, 1180]],
-  [
-    [390, 844],
-    [320, 640],
-    [844, 390],
-    [600, 340],
-  ],
+  { tag: [], sizes: [[1440, 900]] },
+  {
+    tag: [],
+    sizes: [
+      [390, 844],
+      [320, 640],
+      [844, 390],
+      [600, 340],
+    ],
+  },
+  {
+    tag: ['@all'],
+    sizes: [
+      [1280, 720],
+      [3840, 2160],
+      [2560, 1440],
+    ],
+  },
+  { tag: ['@all'], sizes: [[820, 1180]] },
 ];
 
-for (const [[width, height], ...others] of WINDOWS) {
-  test(`from ${width} by ${height} on nothing overflows; the page settles without a jump and asks nobody else for anything`, async ({
-    page,
-    baseURL,
-  }) => {
+for (const { tag, sizes } of WINDOWS) {
+  const [[width, height], ...others] = sizes;
+  test(`from ${width} by ${height} on nothing overflows; the page settles without a jump and asks nobody else for anything`, {
+    tag,
+  }, async ({ page, baseURL }) => {
     /** @type {string[]} */
     const foreign = [];
     page.on('request', (request) => {
@@ -95,7 +103,7 @@ async function expectAccessible(page) {
 }
 
 test('axe finds nothing at 390 by 844', async ({ page }) => {
-  await open(page, { width: 390, height: 844 });
+  await open(page, { width: 390, height: 844, hash: COARSE });
   for (const tab of ['Sampling', 'Report', 'Field']) {
     await page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: tab }).click();
     await expectAccessible(page);
@@ -103,7 +111,7 @@ test('axe finds nothing at 390 by 844', async ({ page }) => {
 });
 
 test('axe finds nothing at 1440 by 900', async ({ page }) => {
-  await open(page, { width: 1440, height: 900 });
+  await open(page, { width: 1440, height: 900, hash: COARSE });
   await expectAccessible(page);
   await page.getByRole('radio', { name: 'Adaptive' }).check();
   await page.getByRole('button', { name: 'Advanced' }).click();
@@ -118,7 +126,7 @@ test('axe finds nothing at 1440 by 900', async ({ page }) => {
   await expectAccessible(page);
 });
 
-test('on a phone the surface stands clear of tools, legend and caption', async ({ page }) => {
+test('on a phone the surface stands clear of tools, legend and caption', { tag: '@all' }, async ({ page }) => {
   await open(page, { width: 390, height: 844 });
   await page.locator('.tile[data-surface="sphere"]').click();
   await page.getByRole('combobox', { name: 'Colour by' }).selectOption('curvature');
@@ -152,9 +160,9 @@ test('on a phone the surface stands clear of tools, legend and caption', async (
   }
 });
 
-test('on a larger window a fit leaves the legend free, and a page that is opened again shows the same', async ({
-  page,
-}) => {
+test('on a larger window a fit leaves the legend free, and a page that is opened again shows the same', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   const isUnderLegend = () =>
     page.evaluate(() => {
@@ -199,7 +207,9 @@ test('on a larger window a fit leaves the legend free, and a page that is opened
   await clean();
 });
 
-test('targets are large, the theme can be switched, and the page says what it is', async ({ page }) => {
+test('targets are large, the theme can be switched, and the page says what it is', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await test.step('targets are at least 24 pixels', async () => {
     const small = await page.evaluate(() =>
@@ -269,7 +279,7 @@ test('targets are large, the theme can be switched, and the page says what it is
   await clean();
 });
 
-test('without its style sheet the page still has all its controls', async ({ page }) => {
+test('without its style sheet the page still has all its controls', { tag: '@all' }, async ({ page }) => {
   await page.route('**/*.css', (route) => route.abort());
   await page.goto('/?backend=canvas2d');
   await settled(page);
@@ -277,7 +287,7 @@ test('without its style sheet the page still has all its controls', async ({ pag
   await expect(page.getByRole('button', { name: 'Generate only' })).toBeAttached();
 });
 
-test('a style sheet that comes after the script finds everything in its place', async ({ page }) => {
+test('a style sheet that comes after the script finds everything in its place', { tag: '@all' }, async ({ page }) => {
   await page.setViewportSize({ width: 1440, height: 900 });
   /** @type {(nothing: void) => void} */
   let send = () => {};
@@ -316,7 +326,7 @@ test('a style sheet that comes after the script finds everything in its place', 
   expect(ground).toBe(await page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor));
 });
 
-test('keys alone reach the formula, a slider, the run and the panels', async ({ page }) => {
+test('keys alone reach the formula, a slider, the run and the panels', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await page.keyboard.press('Tab');
   await page.keyboard.press('Enter');
@@ -350,9 +360,9 @@ test('keys alone reach the formula, a slider, the run and the panels', async ({ 
   await clean();
 });
 
-test('the picture of a dark page is dark from the first frame, also where the sampler does not come', async ({
-  page,
-}) => {
+test('the picture of a dark page is dark from the first frame, also where the sampler does not come', {
+  tag: '@all',
+}, async ({ page }) => {
   await page.emulateMedia({ colorScheme: 'dark' });
   await page.setViewportSize({ width: 390, height: 844 });
   /** @type {() => Promise<void>} */
@@ -376,7 +386,7 @@ test('the picture of a dark page is dark from the first frame, also where the sa
   await expectDrawn(page, 'canvas2d');
 });
 
-test('the page says in one line what it is', async ({ page }) => {
+test('the page says in one line what it is', { tag: '@all' }, async ({ page }) => {
   for (const [width, height] of /** @type {const} */ ([
     [1440, 900],
     [320, 568],
@@ -389,9 +399,9 @@ test('the page says in one line what it is', async ({ page }) => {
   }
 });
 
-test('a theme that was chosen is that of the lesson and of the next visit, and no link changes it', async ({
-  page,
-}) => {
+test('a theme that was chosen is that of the lesson and of the next visit, and no link changes it', {
+  tag: '@all',
+}, async ({ page }) => {
   await page.emulateMedia({ colorScheme: 'light' });
   const { clean } = await open(page);
   const theme = () => page.evaluate(() => getComputedStyle(document.documentElement).colorScheme);

@@ -26,7 +26,6 @@ const framesLater = (page) =>
   });
 
 test('the timeline of the levels', async ({ page }) => {
-  test.slow();
   const { clean } = await open(page, { width: 1440, height: 900 });
   await test.step('buttons and keys go through the levels, and the caption says how each came about', async () => {
     const made = await fresh(page);
@@ -162,7 +161,7 @@ test('the timeline of the levels', async ({ page }) => {
   await clean();
 });
 
-test('nothing plays of itself, whatever the link says', async ({ page }) => {
+test('nothing plays of itself, whatever the link says', { tag: '@all' }, async ({ page }) => {
   await page.emulateMedia({ reducedMotion: 'reduce' });
   await open(page, { hash: `#v1.j.${Buffer.from(JSON.stringify({ view: { level: 3 } })).toString('base64url')}` });
   await expect(slider(page)).toHaveAttribute('aria-valuetext', /^Level 3 of/);
@@ -171,7 +170,7 @@ test('nothing plays of itself, whatever the link says', async ({ page }) => {
   expect(await level(page)).toBe(3);
 });
 
-test('the charts of the levels', async ({ page }) => {
+test('the charts of the levels', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page, { width: 1280, height: 800 });
   await test.step('the charts are places of the timeline, with tables as their twins', async () => {
     const last = (await fresh(page)).length - 1;
@@ -255,7 +254,9 @@ const facing = (page) =>
     return x * Math.cos(yaw) * Math.cos(pitch) + y * Math.sin(yaw) * Math.cos(pitch) + z * Math.sin(pitch);
   });
 
-test('a link to an early level from behind turns to it, and one that goes too far says so', async ({ page }) => {
+test('a link to an early level from behind turns to it, and one that goes too far says so', { tag: '@all' }, async ({
+  page,
+}) => {
   const link = (/** @type {object} */ view) => `#v1.j.${Buffer.from(JSON.stringify({ view })).toString('base64url')}`;
   await open(page, { hash: link({ level: 1 }) });
   await expect.poll(() => facing(page)).toBeGreaterThan(0.3);
@@ -274,7 +275,7 @@ test('a link to an early level from behind turns to it, and one that goes too fa
   await says(/^The link names relaxation step 99\. The last one, 10, is shown\.$/, { step: 99 });
 });
 
-test('the timeline is whole in every window, and axe finds nothing', async ({ page }) => {
+test('the timeline is whole in every window, and axe finds nothing', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   for (const [width, height] of /** @type {const} */ ([
     [1440, 900],

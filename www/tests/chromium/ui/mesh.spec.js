@@ -89,7 +89,7 @@ test('the mesh', async ({ page }) => {
   await clean();
 });
 
-test('the legend says what the dots on the mesh mean, while there are some', async ({ page }) => {
+test('the legend says what the dots on the mesh mean, while there are some', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page);
   // The dots are drawn by the graphics device.
   await page.goto('./?backend=webgl2');

@@ -62,8 +62,11 @@ async function openStored(page, address) {
 /** @param {Page} page */
 const isSecond = (page) => page.locator('meta[name="version"]').count();
 
-for (const place of ['', 'sub/path/']) {
-  test(`after the first load the page needs no network, at /${place}`, async ({ page }) => {
+for (const { place, tag } of [
+  { place: '', tag: [] },
+  { place: 'sub/path/', tag: ['@all'] },
+]) {
+  test(`after the first load the page needs no network, at /${place}`, { tag }, async ({ page }) => {
     const { address, asked, close } = await host();
     await openStored(page, `${address}${place}`);
     const { length } = asked;
@@ -93,7 +96,7 @@ for (const place of ['', 'sub/path/']) {
   });
 }
 
-test('the rest of the site is fetched after the first surface, and once', async ({ page }) => {
+test('the rest of the site is fetched after the first surface, and once', { tag: '@all' }, async ({ page }) => {
   const { address, asked, close } = await host();
   await page.addInitScript(() => {
     const { prototype } = ServiceWorkerContainer;
@@ -113,7 +116,10 @@ test('the rest of the site is fetched after the first surface, and once', async 
   await close();
 });
 
-test('a new version waits until it is asked for, and never mixes with the old one', async ({ page, context }) => {
+test('a new version waits until it is asked for, and never mixes with the old one', { tag: '@all' }, async ({
+  page,
+  context,
+}) => {
   const { address, asked, change, close } = await host();
   await openStored(page, address);
   const other = await context.newPage();

@@ -28,7 +28,9 @@ const watch = (page) =>
     look();
   });
 
-test('the surface grows level by level before a camera that stands still where the picture stays', async ({ page }) => {
+test('the surface grows level by level before a camera that stands still where the picture stays', {
+  tag: '@all',
+}, async ({ page }) => {
   await page.emulateMedia({ reducedMotion: 'no-preference' });
   await watch(page);
   const { clean } = await open(page);
@@ -60,7 +62,9 @@ for (const [width, height, tolerance] of /** @type {const} */ ([
   [390, 844, 0.01],
   [360, 740, 0.01],
 ])) {
-  test(`at ${width} by ${height} the poster has the outline of the picture that takes its place`, async ({ page }) => {
+  test(`at ${width} by ${height} the poster has the outline of the picture that takes its place`, {
+    tag: '@all',
+  }, async ({ page }) => {
     const { clean } = await open(page, { width, height, folded: true });
     const { poster, picture } = await page.evaluate(async () => {
       const image = /** @type {HTMLImageElement} */ (document.querySelector('#poster'));
@@ -95,7 +99,9 @@ for (const [width, height, tolerance] of /** @type {const} */ ([
   });
 }
 
-test('the legend has the colours of the particles from the first frame that shows some', async ({ page }) => {
+test('the legend has the colours of the particles from the first frame that shows some', { tag: '@all' }, async ({
+  page,
+}) => {
   await page.emulateMedia({ reducedMotion: 'no-preference' });
   await page.addInitScript(() => {
     const legends = /** @type {string[]} */ ([]);
@@ -118,7 +124,7 @@ test('the legend has the colours of the particles from the first frame that show
   await clean();
 });
 
-test('stays as it is where motion is reduced', async ({ page }) => {
+test('stays as it is where motion is reduced', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page);
   const { yaw, pitch } = (await state(page)).view.camera;
   expect([yaw, pitch]).toEqual([0.62, 0.42]);
@@ -139,7 +145,9 @@ const seenControls = () =>
     })
     .map((element) => element.getAttribute('aria-label') ?? element.textContent?.trim());
 
-test('at rest there are few controls in view; the others come with the pointer or the focus', async ({ page }) => {
+test('at rest there are few controls in view; the others come with the pointer or the focus', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await open(page, { width: 1440, height: 900, folded: true });
   await atRest(page);
   // Some browsers begin with the pointer over the picture.
@@ -193,7 +201,7 @@ test('at rest there are few controls in view; the others come with the pointer o
   await clean();
 });
 
-test('after the first surface has grown, the first slider moves by itself, once', async ({ page }) => {
+test('after the first surface has grown, the first slider moves by itself, once', { tag: '@all' }, async ({ page }) => {
   await page.emulateMedia({ reducedMotion: 'no-preference' });
   await page.addInitScript(() => {
     const values = /** @type {number[]} */ ([]);

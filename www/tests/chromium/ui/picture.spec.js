@@ -125,7 +125,7 @@ async function recorded(page) {
   return { ...film, ending: name.split('.').pop() };
 }
 
-test('a browser that does not encode the codec of an MP4 film makes a WebM film', async ({ page }) => {
+test('a browser that does not encode the codec of an MP4 film makes a WebM film', { tag: '@all' }, async ({ page }) => {
   await page.addInitScript(() => {
     const ask = VideoEncoder.isConfigSupported.bind(VideoEncoder);
     VideoEncoder.isConfigSupported = (config) =>
@@ -137,8 +137,7 @@ test('a browser that does not encode the codec of an MP4 film makes a WebM film'
   await clean();
 });
 
-test('the picture and what moves in it', async ({ page }) => {
-  test.slow();
+test('the picture and what moves in it', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page);
   await test.step('a picture is saved in a chosen size, without ground, and with legend and caption', async () => {
     const save = async (/** @type {string} */ size, /** @type {string[]} */ checks) => {
@@ -257,9 +256,8 @@ test('the picture and what moves in it', async ({ page }) => {
   await clean();
 });
 
-test('a sequence of pictures, and a film', async ({ page }) => {
+test('a sequence of pictures, and a film', { tag: '@all' }, async ({ page }) => {
   // Each of its 120 pictures is painted in four samples.
-  test.slow();
   const { clean } = await open(page, { width: 480, height: 360 });
   await test.step('a sequence can be given up', async () => {
     const dialog = await openDialog(page);

@@ -7,7 +7,7 @@ import { afresh, atRest, open, openFigures, scan, settled, state } from './helpe
 /** @param {Page} page */
 const places = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.report().places);
 
-test('places that are pointed out', async ({ page }) => {
+test('places that are pointed out', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await test.step('the closest pair, the crowded pairs and the largest hole are brought before the camera', async () => {
     await atRest(page);

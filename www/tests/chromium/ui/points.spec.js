@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { afresh, open, report, scan, settled, state, typeFormula } from './helpers.js';
+import { afresh, COARSE, open, report, scan, settled, state, typeFormula } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -45,7 +45,7 @@ const dropped = async (
 };
 
 test('files: dropped, chosen, refused, given up', async ({ page }) => {
-  const { clean } = await open(page, { width: 1440, height: 900 });
+  const { clean } = await open(page, { width: 1440, height: 900, hash: COARSE });
   await test.step('a file dragged over the page is shown where it may be dropped, with the formats and the limit', async () => {
     await page.emulateMedia({ reducedMotion: 'reduce' });
     const overlay = page.locator('.drop');
@@ -64,7 +64,7 @@ test('files: dropped, chosen, refused, given up', async ({ page }) => {
 
   await test.step('a file too large is refused at once, with the reason and what to do, and the surface stays', async () => {
     await page.emulateMedia({ reducedMotion: 'reduce' });
-    await afresh(page, { width: 1440, height: 900 });
+    await afresh(page, { width: 1440, height: 900, hash: COARSE });
     const { digest } = await report(page);
     await dropped(page, { name: 'statue.ply', bytes: 51_000_000 });
     const box = page.locator('.refused');
@@ -84,7 +84,7 @@ test('files: dropped, chosen, refused, given up', async ({ page }) => {
 
   await test.step('what is on its way shows its stage', async () => {
     await page.emulateMedia({ reducedMotion: 'reduce' });
-    await afresh(page, { width: 1440, height: 900 });
+    await afresh(page, { width: 1440, height: 900, hash: COARSE });
     await page.evaluate(() => {
       const { engine } = /** @type {any} */ (window).marchingParticles;
       engine.loading.value = { id: 'bunny', name: 'Bunny', label: 'Solving', fraction: 0.42 };
@@ -100,7 +100,7 @@ test('files: dropped, chosen, refused, given up', async ({ page }) => {
   });
 
   await test.step('a model given up on its way leaves the surface as it was', async () => {
-    await afresh(page);
+    await afresh(page, { hash: COARSE });
     const before = await state(page);
     const { digest } = await report(page);
     await page.evaluate(
@@ -127,7 +127,7 @@ test('files: dropped, chosen, refused, given up', async ({ page }) => {
   });
 
   await test.step('a fault in a file is told with its line, in the open and to a screen reader', async () => {
-    await afresh(page, { width: 390, height: 844 });
+    await afresh(page, { width: 390, height: 844, hash: COARSE });
     const lines = spherePly(300).split('\n');
     lines[20] = '0.1 seven 0.3 0 0 1';
     await dropped(page, { name: 'ball.ply', text: lines.join('\n') });
@@ -142,7 +142,7 @@ test('files: dropped, chosen, refused, given up', async ({ page }) => {
   await clean();
 });
 
-test('keys alone open the chooser for files', async ({ page }) => {
+test('keys alone open the chooser for files', { tag: '@all' }, async ({ page }) => {
   // Asked for before there is anything to press, so that the browser knows in time.
   const chosen = page.waitForEvent('filechooser');
   await open(page);
@@ -153,7 +153,9 @@ test('keys alone open the chooser for files', async ({ page }) => {
   expect(await page.locator('input[type=file]').getAttribute('accept')).toContain('.ply');
 });
 
-test('a model is sampled, tells of its points, and one press leads back to the formula', async ({ page }) => {
+test('a model is sampled, tells of its points, and one press leads back to the formula', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   const { formula } = await state(page);
   const [model] = await page.evaluate(
@@ -194,7 +196,7 @@ test('a model is sampled, tells of its points, and one press leads back to the f
   await clean();
 });
 
-test('a formula cuts a model and keeps it as long as it names it', async ({ page }) => {
+test('a formula cuts a model and keeps it as long as it names it', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   const heading = page.getByRole('heading', { name: 'ball.ply' });
   const fault = page.locator('#formula-fault');
@@ -256,7 +258,7 @@ test('a formula cuts a model and keeps it as long as it names it', async ({ page
   await clean();
 });
 
-test('a link holds the formula of a model of the gallery', async ({ page }) => {
+test('a link holds the formula of a model of the gallery', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await page.getByRole('button', { name: 'Points', exact: true }).click();
   await page.locator('.tile[data-surface="bunny"]').click();
@@ -273,7 +275,7 @@ test('a link holds the formula of a model of the gallery', async ({ page }) => {
   await clean();
 });
 
-test('a file and the number of its points', async ({ page }) => {
+test('a file and the number of its points', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await test.step('a dropped file becomes the surface, keeps a tile of its own, and is there again among the points', async () => {
     await dropped(page, { name: 'ball.ply', text: spherePly(300) });

@@ -5,7 +5,6 @@ import { afresh, atRest, open, openFigures, report, settled, state, typeFormula 
 /** @import { Page } from '@playwright/test' */
 
 test('the settings', async ({ page }) => {
-  test.slow();
   const { clean } = await open(page);
   await test.step('the settings are those that the core describes, each with its help', async () => {
     const settings = await page.evaluate(
@@ -125,8 +124,7 @@ const shownSettings = (page) =>
 /** Time in which a second press of a button counts as part of a double click. */
 const DOUBLE_CLICK_MS = 500;
 
-test('the run and its buttons', async ({ page }) => {
-  test.slow();
+test('the run and its buttons', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page);
   await test.step('a double click on Run is one run', async () => {
     const before = await report(page);
@@ -238,7 +236,9 @@ test('the run and its buttons', async ({ page }) => {
   await clean();
 });
 
-test('the report, what can be taken away, and what is said where there is no surface', async ({ page }) => {
+test('the report, what can be taken away, and what is said where there is no surface', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await test.step('the report explains its figures and shows them before and after relaxation', async () => {
     const rows = await page.evaluate(
@@ -369,7 +369,7 @@ test('the report, what can be taken away, and what is said where there is no sur
   await clean();
 });
 
-test('a link to a formula without a surface in its box shows that box, whole', async ({ page }) => {
+test('a link to a formula without a surface in its box shows that box, whole', { tag: '@all' }, async ({ page }) => {
   const wanted = { formula: 'x^2 + (y - 30)^2 + z^2 = 1', settings: { box_mode: 'fixed' } };
   await open(page, { hash: link(wanted) });
   const said = page.locator('.empty');

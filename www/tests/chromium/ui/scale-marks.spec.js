@@ -10,7 +10,9 @@ async function look(page, view) {
   await atRest(page);
 }
 
-test('axes, lengths and scale bar are switched on in the view options and hold in the picture', async ({ page }) => {
+test('axes, lengths and scale bar are switched on in the view options and hold in the picture', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await expect(page.locator('.marks text')).toHaveCount(0);
   await page.getByRole('button', { name: 'View options' }).click();
@@ -42,7 +44,9 @@ test('axes, lengths and scale bar are switched on in the view options and hold i
   await clean();
 });
 
-test('two particles are measured by pointer and by keyboard, and a link keeps them', async ({ page }) => {
+test('two particles are measured by pointer and by keyboard, and a link keeps them', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await atRest(page);
   await page.getByRole('button', { name: 'View options' }).click();

@@ -2,7 +2,7 @@
 import { expect, test } from '@playwright/test';
 import { afresh, open, report, settled, state } from './helpers.js';
 
-test('a periodic surface becomes a closed part, and a surface again', async ({ page }) => {
+test('a periodic surface becomes a closed part, and a surface again', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page);
   await page.evaluate(() =>
     /** @type {any} */ (window).marchingParticles.set({ surface: 'schwarz-p', settings: { radius_share: 0.012 } }),
@@ -53,7 +53,7 @@ test('a periodic surface becomes a closed part, and a surface again', async ({ p
   await clean();
 });
 
-test('a unit cell has the same particles on opposite faces', async ({ page }) => {
+test('a unit cell has the same particles on opposite faces', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page);
   const [closed, periodic] = ['Closed', 'Periodic'].map((name) => page.getByRole('checkbox', { name }));
   await expect(periodic).toBeHidden();

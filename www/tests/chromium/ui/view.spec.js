@@ -1,8 +1,7 @@
 import { expect, test } from '@playwright/test';
 import { afresh, atRest, open, settled, state, typeFormula } from './helpers.js';
 
-test('the view', async ({ page }) => {
-  test.slow();
+test('the view', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page);
   await test.step('a particle under the pointer tells what it is', async () => {
     const view = await page.locator('#view').boundingBox();
@@ -111,7 +110,7 @@ test('the view', async ({ page }) => {
 });
 
 for (const width of [1280, 320]) {
-  test(`the name of every colouring can be read in full at ${width} pixels`, async ({ page }) => {
+  test(`the name of every colouring can be read in full at ${width} pixels`, { tag: '@all' }, async ({ page }) => {
     await open(page, { width, height: 640 });
     const choose = page.getByRole('combobox', { name: 'Colour by' });
     const ids = await choose
@@ -135,7 +134,9 @@ for (const width of [1280, 320]) {
   });
 }
 
-test('on a first visit sampling and report take a line each; what is unfolded stays so', async ({ page }) => {
+test('on a first visit sampling and report take a line each; what is unfolded stays so', { tag: '@all' }, async ({
+  page,
+}) => {
   const { clean } = await open(page, { width: 1440, height: 900, folded: true });
   await expect(page.locator('#report-body')).toBeHidden();
   await expect(page.locator('.panel-report .panel-head')).toContainText('4,286 particles');
@@ -149,7 +150,7 @@ test('on a first visit sampling and report take a line each; what is unfolded st
   await clean();
 });
 
-test('on a phone the sheets are as wide as the window on a first visit, too', async ({ page }) => {
+test('on a phone the sheets are as wide as the window on a first visit, too', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page, { width: 390, height: 844, folded: true });
   for (const name of ['Report', 'Sampling']) {
     await page.locator('.tabs').getByRole('button', { name }).click();
@@ -159,9 +160,9 @@ test('on a phone the sheets are as wide as the window on a first visit, too', as
   await clean();
 });
 
-test('on a phone the message that there is no surface leaves the tools free, and a constant has no box', async ({
-  page,
-}) => {
+test('on a phone the message that there is no surface leaves the tools free, and a constant has no box', {
+  tag: '@all',
+}, async ({ page }) => {
   const { clean } = await open(page, { width: 390, height: 844 });
   await typeFormula(page, 'hello world');
   await expect(page.locator('.empty')).toContainText('constant');

@@ -1,6 +1,8 @@
 /**
- * The numbers that the lesson's text states, each with where it comes from: a run on the ellipsoid, the paper's tables as
- * `docs/tables/paper.md` prints them, or a constant of the core. A claim names its words, so that a changed text fails, too.
+ * The numbers that the lesson's text states, each with where it comes from: a run on the ellipsoid,
+ * the paper's tables as `docs/tables/paper.md` prints them, or a constant of the core. A claim names
+ * its words, so that a changed text fails, too. The usual run holds what the lesson begins with; the
+ * statistics of what follows take minutes.
  */
 import { readFileSync } from 'node:fs';
 import { beforeAll, expect, test } from 'vitest';
@@ -30,6 +32,7 @@ import { blame, isWorse, tryOut } from '../../../src/learn/verdict.js';
 import { turned as knobTurned, projected, SEED, TANGLECUBE, USUAL, whatIfOf } from '../../../src/learn/whatifs.js';
 import { between, createGrid, spread } from '../../../src/ui/neighbours.js';
 import { Core } from '../../../src/wasm/core/core.js';
+import { ALL } from '../../all.js';
 import { loadWasm, spawn, spawnCore } from './workers.js';
 
 /** @param {string} path  from `www` */
@@ -187,7 +190,7 @@ test('what the text states of rings, tolerance and rest is so in the run', async
   expect(Number(before.six)).toBeGreaterThan(0.88);
 });
 
-test('what is said of a choice is so where it is made', async () => {
+test.runIf(ALL)('what is said of a choice is so where it is made', async () => {
   const usual = await lab.run({ relax_steps: 0 });
   says('a start where the parent’s curvature expects the surface needs fewer steps');
   const curved = await lab.run({ start: 'curvature', relax_steps: 0 });
@@ -201,34 +204,37 @@ test('what is said of a choice is so where it is made', async () => {
   );
 });
 
-test('at the same r Newton’s method places more; at equal count the circle is better where the surface bends much', async () => {
-  const usual = await lab.run({ relax_steps: 0 });
-  for (const far of parentDistances(usual.placed, usual.radius)) expect(far).toBeCloseTo(1, 3);
-  says('With the same <i>r</i> Newton’s children land nearer, so more particles fit: some 1 % here.');
-  const newton = await lab.run({ projection: 'newton', relax_steps: 0 });
-  const more = newton.end.radii.length / usual.end.radii.length - 1;
-  expect(more).toBeGreaterThan(0.002);
-  expect(more).toBeLessThan(0.02);
-  says('no figure differs by more than chance where the surface bends little');
-  const asMany = await lab.runAsMany({ projection: 'newton', relax_steps: 0 }, usual);
-  expect(verdictOf([await scoreAtEnd(usual), await scoreAtEnd(asMany)])).toBe(null);
-  says(
-    'tanglecube with 400 particles</a>, Newton’s largest hole is wider, and its closest pair is 0.43 instead of 0.68.',
-  );
-  says('and the numbers differ by 2 %');
-  const [circle, few] = [await projected(lab, 'circle'), await projected(lab, 'newton')];
-  expect(Math.abs(circle.end.radii.length / 400 - 1)).toBeLessThan(0.05);
-  expect(Math.round(100 * (1 - few.end.radii.length / circle.end.radii.length))).toBe(2);
-  const [a, b] = [await scoreAtEnd(circle), await scoreAtEnd(few)];
-  expect(verdictOf([a, b])).toEqual({ key: 'hole', side: 0 });
-  expect([a, b].map(({ pair }) => Number(pair).toFixed(2))).toEqual(['0.68', '0.43']);
-  says('Relaxation mends most of that.');
-  const rested = await circle.lab.run({ projection: 'newton', radius: few.radius });
-  const after = await scoreAtEnd(rested);
-  expect(Number(after.pair) - Number(b.pair)).toBeGreaterThan(0.5 * (Number(a.pair) - Number(b.pair)));
-});
+test.runIf(ALL)(
+  'at the same r Newton’s method places more; at equal count the circle is better where the surface bends much',
+  async () => {
+    const usual = await lab.run({ relax_steps: 0 });
+    for (const far of parentDistances(usual.placed, usual.radius)) expect(far).toBeCloseTo(1, 3);
+    says('With the same <i>r</i> Newton’s children land nearer, so more particles fit: some 1 % here.');
+    const newton = await lab.run({ projection: 'newton', relax_steps: 0 });
+    const more = newton.end.radii.length / usual.end.radii.length - 1;
+    expect(more).toBeGreaterThan(0.002);
+    expect(more).toBeLessThan(0.02);
+    says('no figure differs by more than chance where the surface bends little');
+    const asMany = await lab.runAsMany({ projection: 'newton', relax_steps: 0 }, usual);
+    expect(verdictOf([await scoreAtEnd(usual), await scoreAtEnd(asMany)])).toBe(null);
+    says(
+      'tanglecube with 400 particles</a>, Newton’s largest hole is wider, and its closest pair is 0.43 instead of 0.68.',
+    );
+    says('and the numbers differ by 2 %');
+    const [circle, few] = [await projected(lab, 'circle'), await projected(lab, 'newton')];
+    expect(Math.abs(circle.end.radii.length / 400 - 1)).toBeLessThan(0.05);
+    expect(Math.round(100 * (1 - few.end.radii.length / circle.end.radii.length))).toBe(2);
+    const [a, b] = [await scoreAtEnd(circle), await scoreAtEnd(few)];
+    expect(verdictOf([a, b])).toEqual({ key: 'hole', side: 0 });
+    expect([a, b].map(({ pair }) => Number(pair).toFixed(2))).toEqual(['0.68', '0.43']);
+    says('Relaxation mends most of that.');
+    const rested = await circle.lab.run({ projection: 'newton', radius: few.radius });
+    const after = await scoreAtEnd(rested);
+    expect(Number(after.pair) - Number(b.pair)).toBeGreaterThan(0.5 * (Number(a.pair) - Number(b.pair)));
+  },
+);
 
-test('the learner judges four pairs, and the runs say which is better for what, or neither', async () => {
+test.runIf(ALL)('the learner judges four pairs, and the runs say which is better for what, or neither', async () => {
   const first = await PREDICTIONS['predict-first'].answer(lab, null);
   expect(first.right).toBe('b');
   expect(first.words).toContain('Of the particles of B 89.4 % have six neighbours, of those of A 73.9 %');
@@ -280,24 +286,31 @@ async function spreadOf(/** @type {Lab} */ own, /** @type {object} */ change, pa
   });
 }
 
-test('ten seeds of one method differ by no more than what is called chance, and by nearly as much', async () => {
-  says('two seeds differ by up to 200/√<i>n</i> points in the share with six neighbours, so by 10 with 400 particles');
-  says('and by 5 with 1,600; by 0.15 in the largest hole and 0.08 in the closest pair, more on strong bends.');
-  const [tanglecube, torus] = [lab.on(TANGLECUBE), lab.on(TORUS)];
-  const all = [
-    await spreadOf(lab, {}),
-    await spreadOf(lab, { relax_steps: 0 }),
-    await spreadOf(lab, { order: 'stack' }),
-    await spreadOf(torus, {}),
-    await spreadOf(tanglecube, { relax_steps: 0 }, 400),
-    await spreadOf(lab, {}, 200),
-    await spreadOf(torus, { relax_steps: 0 }, 400),
-  ];
-  for (const spread of all) for (const { key, range, chance } of spread) expect(range, key).toBeLessThanOrEqual(chance);
-  for (const k of DECIDING.keys())
-    expect(Math.max(...all.map((spread) => spread[k].range / spread[k].chance)), DECIDING[k]).toBeGreaterThan(0.8);
-  expect(all[4][0].range).toBeGreaterThan(0.05);
-}, 120_000);
+test.runIf(ALL)(
+  'ten seeds of one method differ by no more than what is called chance, and by nearly as much',
+  { timeout: 900_000 },
+  async () => {
+    says(
+      'two seeds differ by up to 200/√<i>n</i> points in the share with six neighbours, so by 10 with 400 particles',
+    );
+    says('and by 5 with 1,600; by 0.15 in the largest hole and 0.08 in the closest pair, more on strong bends.');
+    const [tanglecube, torus] = [lab.on(TANGLECUBE), lab.on(TORUS)];
+    const all = [
+      await spreadOf(lab, {}),
+      await spreadOf(lab, { relax_steps: 0 }),
+      await spreadOf(lab, { order: 'stack' }),
+      await spreadOf(torus, {}),
+      await spreadOf(tanglecube, { relax_steps: 0 }, 400),
+      await spreadOf(lab, {}, 200),
+      await spreadOf(torus, { relax_steps: 0 }, 400),
+    ];
+    for (const spread of all)
+      for (const { key, range, chance } of spread) expect(range, key).toBeLessThanOrEqual(chance);
+    for (const k of DECIDING.keys())
+      expect(Math.max(...all.map((spread) => spread[k].range / spread[k].chance)), DECIDING[k]).toBeGreaterThan(0.8);
+    expect(all[4][0].range).toBeGreaterThan(0.05);
+  },
+);
 
 test('every chapter says the same of what placing costs', async () => {
   const { rows, particles } = await costOf(lab);
@@ -309,7 +322,7 @@ test('every chapter says the same of what placing costs', async () => {
   expect(rows.map(({ evaluations }) => Math.round(evaluations))).toEqual([15, 11, 73]);
 });
 
-test('what limits a sampling is so in the runs of the lesson', async () => {
+test.runIf(ALL)('what limits a sampling is so in the runs of the lesson', async () => {
   says(
     'with 1,526 particles and ten steps, 89.4 % have six neighbours, the largest hole is 1.23 and the closest pair 0.75',
   );
@@ -340,27 +353,30 @@ test('what limits a sampling is so in the runs of the lesson', async () => {
   expect(Number(torus.six)).toBeLessThan(Number(rested.six));
 });
 
-test('the patch of the three figures has the cells that its marks count, its hole and a close pair', async () => {
-  const run = await lab.run({ relax_steps: 0 });
-  const patch = patchOf(run, await scoreAtEnd(run));
-  if (!patch) throw new Error('There is no patch.');
-  const inner = patch.seen.filter(({ at }) => Math.abs(at[0]) < HALF.width && Math.abs(at[1]) < HALF.height);
-  expect(inner.length).toBeGreaterThan(15);
-  for (const { particle, cell, valence } of inner) {
-    // Corners that coincide are one.
-    const corners = cell.filter(([x, y], k) => {
-      const [u, v] = cell[(k + 1) % cell.length];
-      return Math.hypot(x - u, y - v) > 1e-3;
-    });
-    expect(corners.length, `particle ${particle}`).toBe(valence);
-  }
-  expect(new Set(inner.map(({ valence }) => valence)).size).toBeGreaterThan(2);
-  // The circle around the hole is empty, and touches particles.
-  const near = Math.min(...patch.seen.map(({ at }) => Math.hypot(...at)));
-  expect(near).toBeCloseTo(patch.hole, 2);
-});
+test.runIf(ALL)(
+  'the patch of the three figures has the cells that its marks count, its hole and a close pair',
+  async () => {
+    const run = await lab.run({ relax_steps: 0 });
+    const patch = patchOf(run, await scoreAtEnd(run));
+    if (!patch) throw new Error('There is no patch.');
+    const inner = patch.seen.filter(({ at }) => Math.abs(at[0]) < HALF.width && Math.abs(at[1]) < HALF.height);
+    expect(inner.length).toBeGreaterThan(15);
+    for (const { particle, cell, valence } of inner) {
+      // Corners that coincide are one.
+      const corners = cell.filter(([x, y], k) => {
+        const [u, v] = cell[(k + 1) % cell.length];
+        return Math.hypot(x - u, y - v) > 1e-3;
+      });
+      expect(corners.length, `particle ${particle}`).toBe(valence);
+    }
+    expect(new Set(inner.map(({ valence }) => valence)).size).toBeGreaterThan(2);
+    // The circle around the hole is empty, and touches particles.
+    const near = Math.min(...patch.seen.map(({ at }) => Math.hypot(...at)));
+    expect(near).toBeCloseTo(patch.hole, 2);
+  },
+);
 
-test('what the card says of the match tolerance is so on either side of it', async () => {
+test.runIf(ALL)('what the card says of the match tolerance is so on either side of it', async () => {
   const at = async (/** @type {number} */ tolerance) => scoreAtEnd(await lab.run({ match_tolerance: tolerance }));
   const [small, usual, large] = [await at(0.6), await at(0.7), await at(0.95)];
   says('Below it pairs come nearer and particles crowd.');
@@ -371,7 +387,7 @@ test('what the card says of the match tolerance is so on either side of it', asy
     expect(verdictOf([usual, large], [key]), key).toEqual({ key, side: 0 });
 });
 
-test('the figure that decides a comparison is better on the side that its words say', async () => {
+test.runIf(ALL)('the figure that decides a comparison is better on the side that its words say', async () => {
   /** By the choice: the figure, and the side that is better; null where the two cannot be told apart. */
   const told = {
     order: ['six', 0],
@@ -415,49 +431,52 @@ function met({ positions, radii, levels }) {
   return apart / pairs;
 }
 
-test.each(['ellipsoid', 'torus'])('the reasons why a sampling fails are so in its runs, on the %s', async (name) => {
-  const own = name === 'torus' ? lab.beside(TORUS) : lab;
-  const usual = await tryOut(own, USUAL);
-  const [stack, small, large, still, seed, all] = await Promise.all(
-    [
-      knobTurned(USUAL, 0, 'stack'),
-      ...['0.4', '0.95'].map((tolerance) => knobTurned(USUAL, 1, tolerance)),
-      ...[knobTurned(USUAL, 2, '0'), knobTurned(USUAL, SEED, '1'), 'stack~0.4~0~0'],
-    ].map((value) => tryOut(own, value)),
-  );
-  const figures = (/** @type {{ score: object }} */ { score }) => /** @type {Record<string, number>} */ (score);
-  says('Threads meet far more often than rings do');
-  expect(met(stack.run.placed)).toBeGreaterThan(4 * met(usual.run.placed));
-  says('every meeting is a seam');
-  expect(figures(stack).six).toBeLessThan(figures(usual).six - 0.05);
-  expect(figures(stack).uncovered).toBeGreaterThan(figures(usual).uncovered);
-  says('A second one is put beside it, and the particles crowd.');
-  expect(small.run.end.radii.length).toBeGreaterThan(1.5 * usual.run.end.radii.length);
-  expect(figures(small).pair).toBeLessThan(figures(usual).pair);
-  says('Nothing is put there, and the hole stays open.');
-  expect(large.run.end.radii.length).toBeLessThan(0.9 * usual.run.end.radii.length);
-  expect(figures(large).uncovered).toBeGreaterThan(1.5 * figures(usual).uncovered);
-  says('Nothing is pushed into the holes that placing leaves beside its seams, and pairs stay too near.');
-  expect(figures(still).hole).toBeGreaterThan(figures(usual).hole + 0.1);
-  expect(figures(still).pair).toBeLessThan(figures(usual).pair);
-  says('Another seed moves the rings, and the seams with them. Their number hardly changes.');
-  expect(seed.run.end.positions).not.toEqual(usual.run.end.positions);
-  expect(Math.abs(figures(seed).six - figures(usual).six)).toBeLessThan(0.05);
-  // Which of them alone does most harm.
-  says('Not the stack.');
-  for (const other of [stack, large, seed, still]) expect(isWorse(small.score, other.score)).toBe(true);
-  says('The ellipsoid can be brought below a half with six neighbours.');
-  expect(figures(all).six).toBeLessThan(0.5);
-  // Put back alone, each of the three makes it better; that of the torus hardly meets itself more often by the stack.
-  const blamed = await blame(own, all);
-  expect(blamed.map(({ part, harm }) => [part, harm !== null])).toEqual([
-    ['stack', name !== 'torus'],
-    ['0.4', true],
-    ['0', true],
-  ]);
-});
+test.runIf(ALL).each(['ellipsoid', 'torus'])(
+  'the reasons why a sampling fails are so in its runs, on the %s',
+  async (name) => {
+    const own = name === 'torus' ? lab.beside(TORUS) : lab;
+    const usual = await tryOut(own, USUAL);
+    const [stack, small, large, still, seed, all] = await Promise.all(
+      [
+        knobTurned(USUAL, 0, 'stack'),
+        ...['0.4', '0.95'].map((tolerance) => knobTurned(USUAL, 1, tolerance)),
+        ...[knobTurned(USUAL, 2, '0'), knobTurned(USUAL, SEED, '1'), 'stack~0.4~0~0'],
+      ].map((value) => tryOut(own, value)),
+    );
+    const figures = (/** @type {{ score: object }} */ { score }) => /** @type {Record<string, number>} */ (score);
+    says('Threads meet far more often than rings do');
+    expect(met(stack.run.placed)).toBeGreaterThan(4 * met(usual.run.placed));
+    says('every meeting is a seam');
+    expect(figures(stack).six).toBeLessThan(figures(usual).six - 0.05);
+    expect(figures(stack).uncovered).toBeGreaterThan(figures(usual).uncovered);
+    says('A second one is put beside it, and the particles crowd.');
+    expect(small.run.end.radii.length).toBeGreaterThan(1.5 * usual.run.end.radii.length);
+    expect(figures(small).pair).toBeLessThan(figures(usual).pair);
+    says('Nothing is put there, and the hole stays open.');
+    expect(large.run.end.radii.length).toBeLessThan(0.9 * usual.run.end.radii.length);
+    expect(figures(large).uncovered).toBeGreaterThan(1.5 * figures(usual).uncovered);
+    says('Nothing is pushed into the holes that placing leaves beside its seams, and pairs stay too near.');
+    expect(figures(still).hole).toBeGreaterThan(figures(usual).hole + 0.1);
+    expect(figures(still).pair).toBeLessThan(figures(usual).pair);
+    says('Another seed moves the rings, and the seams with them. Their number hardly changes.');
+    expect(seed.run.end.positions).not.toEqual(usual.run.end.positions);
+    expect(Math.abs(figures(seed).six - figures(usual).six)).toBeLessThan(0.05);
+    // Which of them alone does most harm.
+    says('Not the stack.');
+    for (const other of [stack, large, seed, still]) expect(isWorse(small.score, other.score)).toBe(true);
+    says('The ellipsoid can be brought below a half with six neighbours.');
+    expect(figures(all).six).toBeLessThan(0.5);
+    // Put back alone, each of the three makes it better; that of the torus hardly meets itself more often by the stack.
+    const blamed = await blame(own, all);
+    expect(blamed.map(({ part, harm }) => [part, harm !== null])).toEqual([
+      ['stack', name !== 'torus'],
+      ['0.4', true],
+      ['0', true],
+    ]);
+  },
+);
 
-test.each([
+test.runIf(ALL).each([
   ['of one size', false],
   ['by curvature', true],
 ])('the scorecard of a run of the first page has the figures of its report, %s', async (_name, isAdaptive) => {
@@ -476,7 +495,7 @@ test.each([
   }
 });
 
-test('pushed for a hundred steps, particles go farther from where the front has put them', async () => {
+test.runIf(ALL)('pushed for a hundred steps, particles go farther from where the front has put them', async () => {
   says('Pushed that long, particles go farther from where the front has put them.');
   const farOf = async (/** @type {string} */ steps) => {
     const { placed, end } = (await tryOut(lab, knobTurned(USUAL, 2, steps))).run;
@@ -504,7 +523,7 @@ async function driven(lane, motion = MOTIONS[0]) {
   return scores.map(({ six, hole, count }) => ({ six: Number(six), hole: Number(hole), count: Number(count) }));
 }
 
-test('what the text states of a surface that moves is so in its lanes', async () => {
+test.runIf(ALL)('what the text states of a surface that moves is so in its lanes', async () => {
   says('is drawn out to twice its length');
   expect(MOTIONS[0].range[1] / MOTIONS[0].range[0]).toBe(2);
   says('What flows keeps its number and nearly its cover');
@@ -526,27 +545,30 @@ test('what the text states of a surface that moves is so in its lanes', async ()
   expect(closed.six).toBeGreaterThan(before.six - 0.06);
   expect(closed.hole).toBeGreaterThan(4);
   expect(still).toEqual(closed);
-}, 60_000);
+});
 
-test('the question about a surface that moves has the answer of its run', async () => {
+test.runIf(ALL)('the question about a surface that moves has the answer of its run', async () => {
   const { right, words } = await lossOf(lab, frontOn());
   expect(right).toBe('order');
   expect(words).toMatch(/^There are 1,8\d\d particles, and a new front has 1,9\d\d\. .* born where there is room/);
-}, 60_000);
+});
 
-test('a tanglecube falls into eight and joins again, and Witkin and Heckbert’s particles with it', async () => {
-  const [, motion] = MOTIONS;
-  const lane = new SystemLane(motion, { client: new LessonClient({ spawn }) });
-  await lane.begin(0);
-  for (let step = 1; step <= STEPS; step += 1) await lane.follow(step);
-  // In eight pieces none is near a plane of symmetry.
-  for (const x of lane.particles.positions) expect(Math.abs(x)).toBeGreaterThan(0.5);
-  for (let step = STEPS - 1; step >= 0; step -= 1) await lane.follow(step);
-  expect((await scoreAt(lab, motion, 0, lane)).hole).toBeLessThan(1.6);
-  lane.close();
-}, 60_000);
+test.runIf(ALL)(
+  'a tanglecube falls into eight and joins again, and Witkin and Heckbert’s particles with it',
+  async () => {
+    const [, motion] = MOTIONS;
+    const lane = new SystemLane(motion, { client: new LessonClient({ spawn }) });
+    await lane.begin(0);
+    for (let step = 1; step <= STEPS; step += 1) await lane.follow(step);
+    // In eight pieces none is near a plane of symmetry.
+    for (const x of lane.particles.positions) expect(Math.abs(x)).toBeGreaterThan(0.5);
+    for (let step = STEPS - 1; step >= 0; step -= 1) await lane.follow(step);
+    expect((await scoreAt(lab, motion, 0, lane)).hole).toBeLessThan(1.6);
+    lane.close();
+  },
+);
 
-test('what the text states of Newton’s method is so on a sphere, by formula and in a run', async () => {
+test.runIf(ALL)('what the text states of Newton’s method is so on a sphere, by formula and in a run', async () => {
   expect((100 * (1 - newtonShare(0.1))).toFixed(1)).toBe('1.5');
   expect(Math.round(100 * (1 - newtonShare(0.5)))).toBe(23);
   const formula = 'x^2 + y^2 + z^2 - 1';
@@ -586,20 +608,23 @@ function asidesOf(events, positions, radius) {
   return asides;
 }
 
-test('the figure of the circle has the child where the run landed it, and bends as a sphere through a place', async () => {
-  const opened = await openBend(lab);
-  const { child, bend, radius, landing } = await slotOf(opened);
-  expect(Math.hypot(...child) / radius).toBeCloseTo(2, 3);
-  const sphere = slotOn(bend, radius);
-  expect(sphere.child[0]).toBeCloseTo(child[0], 6);
-  expect(sphere.child[1]).toBeCloseTo(child[1], 6);
-  // On an ellipsoid the bend changes on the way: Newton's method lands elsewhere than on the sphere of this bend.
-  const apart = Math.abs(Number(landing) - Number(sphere.landing)) / radius;
-  expect(apart).toBeGreaterThan(0.01);
-  expect(apart).toBeLessThan(0.1);
-});
+test.runIf(ALL)(
+  'the figure of the circle has the child where the run landed it, and bends as a sphere through a place',
+  async () => {
+    const opened = await openBend(lab);
+    const { child, bend, radius, landing } = await slotOf(opened);
+    expect(Math.hypot(...child) / radius).toBeCloseTo(2, 3);
+    const sphere = slotOn(bend, radius);
+    expect(sphere.child[0]).toBeCloseTo(child[0], 6);
+    expect(sphere.child[1]).toBeCloseTo(child[1], 6);
+    // On an ellipsoid the bend changes on the way: Newton's method lands elsewhere than on the sphere of this bend.
+    const apart = Math.abs(Number(landing) - Number(sphere.landing)) / radius;
+    expect(apart).toBeGreaterThan(0.01);
+    expect(apart).toBeLessThan(0.1);
+  },
+);
 
-test('the drawing of φ and τ decides as the run does in a plane', async () => {
+test.runIf(ALL)('the drawing of φ and τ decides as the run does in a plane', async () => {
   says('With equal radii six fit exactly.');
   const bounds = { min: [-1, -1, -0.5], max: [1, 1, 0.5] };
   const plane = lab.beside(/** @type {any} */ ({ formula: 'z', parameters: [], bounds }));
