@@ -4,7 +4,7 @@
 //! jumps. Beside such an end f is 0 on one side and not on the other, so that its sign changes
 //! across the jump, and no halving of the way across makes the change smaller.
 
-use super::Run;
+use super::RunState;
 use crate::field::{Enclosure, Evaluator, Field};
 use crate::math::Bounds;
 use glam::DVec3;
@@ -30,12 +30,12 @@ pub(super) struct Ends {
     pub(super) others: Option<DVec3>,
 }
 
-impl<F: Field> Run<F> {
+impl RunState {
     /// Where the triangles of the particles end, from a selection of the places.
-    pub(super) fn ends(&self) -> Ends {
+    pub(super) fn ends(&self, field: &dyn Field) -> Ends {
         let mut ends = Ends::default();
         let Some(opening) = &self.measuring.measured.opening else { return ends };
-        let (field, reach) = (&mut *self.evaluator(), 2.0 * self.sampler.radius());
+        let (field, reach) = (&mut *self.evaluator(field), 2.0 * self.sampler.radius());
         let step = opening.places.len().div_ceil(LOOKED_AT);
         for place in opening.places.iter().step_by(step).map(|place| place.as_dvec3()) {
             let kind = if jumps_near(field, place, reach) { &mut ends.at_jump } else { &mut ends.others };

@@ -1,14 +1,14 @@
 //! The mesh over the particles of a run: joined when it is asked for, in slices, and dropped when
 //! they change.
 
-use super::Run;
+use super::{Run, RunState};
 use crate::export::{File, FileContent, MeshFile};
 use crate::field::Field;
 use crate::field::crossing::is_passed;
 use crate::math::{Bounds, sort_few};
-use crate::mesh::build::{self, Middle, Triangulation};
 use crate::mesh::facing::Inside;
 use crate::mesh::stars::Sheets;
+use crate::mesh::triangulation::{self, Middle, Triangulation};
 use crate::particles::Particles;
 use crate::slices::{self, Estimated, MEDIUM};
 use crate::topology::Component;
@@ -110,8 +110,8 @@ pub(super) async fn joined(
 ) -> Triangulation {
     match sheets {
         _ if !known.is_empty() => Triangulation::known(known.to_vec(), particles).await,
-        Some(sheets) => build::join(particles, sheets, Some(bounds)).await,
-        None => build::in_slices(particles, Some(bounds)).await,
+        Some(sheets) => triangulation::join(particles, sheets, Some(bounds)).await,
+        None => triangulation::in_slices(particles, Some(bounds)).await,
     }
 }
 
@@ -155,19 +155,53 @@ impl<F: Field> Run<F> {
     /// each; what it adds up to, once it is complete. A refined run has led to a mesh, which is
     /// taken as it is. Call it when the run has ended. The mesh stays until the particles change.
     pub fn join(&mut self, budget: u32) -> Option<MeshAnswer> {
+        self.state.join(&self.field, budget)
+    }
+
+    /// The mesh; none before [`Run::join`] is done.
+    #[must_use]
+    pub fn mesh(&self) -> Option<&Triangulation> {
+        self.state.mesh()
+    }
+
+    /// The triangles of the [mesh](Run::mesh): triples of particles, counter-clockwise seen from
+    /// outside. There are none before [`Run::join`] is done.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        self.mesh().map_or(&[], |mesh| &mesh.triangles)
+    }
+
+    /// The mesh as a file, with what was measured of the particles: up to `budget` slices of the
+    /// work, of [`MEDIUM`] rows each; the file, once it is complete. Another wish, or a change of
+    /// the particles, begins a file anew. Before [`Run::join`] is done it has no triangles.
+    ///
+    /// # Errors
+    ///
+    /// An error if the 32-bit counters of the format are too small.
+    pub fn mesh_file(&mut self, wish: &MeshFile, budget: u32) -> io::Result<Option<Vec<u8>>> {
+        self.state.mesh_file(wish, budget)
+    }
+}
+
+impl RunState {
+    /// [`Run::join`].
+    pub(super) fn join(&mut self, field: &dyn Field, budget: u32) -> Option<MeshAnswer> {
         if let MeshState::None = self.meshing.state {
             let (mut particles, bounds) = (self.particles().clone(), self.local_bounds());
             particles.truncate(self.rows());
             let known = self.sampler.triangles().to_vec();
             let sheets = self.measuring.sheets.clone();
-            let expected =
-                if known.is_empty() { build::expected_slices(particles.len(), sheets.is_some()) } else { 0 };
+            let expected = if known.is_empty() {
+                triangulation::expected_slices(particles.len(), sheets.is_some())
+            } else {
+                0
+            };
             let work = async move { joined(&particles, &known, &bounds, sheets.as_deref()).await };
             self.meshing.state = MeshState::Joining(Estimated::new(Box::pin(work), expected));
         }
         if let MeshState::Joining(work) = &mut self.meshing.state {
             let mesh = work.advance(budget)?;
-            self.meshing.state = MeshState::Joined(Box::new(self.judged(mesh)));
+            self.meshing.state = MeshState::Joined(Box::new(self.judged(field, mesh)));
             self.take_topology();
         }
         self.meshing.joined().map(|mesh| MeshAnswer::new(mesh, self.particles()))
@@ -175,18 +209,18 @@ impl<F: Field> Run<F> {
 
     /// The mesh, without what fills holes where the field has no surface, and facing outward where
     /// the field is larger inside.
-    fn judged(&self, mesh: Triangulation) -> Triangulation {
-        let field = &mut *self.evaluator();
-        let has_surface = |Middle { place, up, reach }: Middle| is_passed(field, place, up, reach);
+    fn judged(&self, field: &dyn Field, mesh: Triangulation) -> Triangulation {
+        let evaluator = &mut *self.evaluator(field);
+        let has_surface = |Middle { place, up, reach }: Middle| is_passed(evaluator, place, up, reach);
         let mesh = slices::complete(mesh.judged(self.particles(), has_surface));
-        if self.is_negative_outside() { mesh.facing_outward() } else { mesh }
+        if self.is_negative_outside(field) { mesh.facing_outward() } else { mesh }
     }
 
     /// Whether the box cuts nothing of the surface, and f is negative at all of its corners.
-    fn is_negative_outside(&self) -> bool {
+    fn is_negative_outside(&self, field: &dyn Field) -> bool {
         let Bounds { min, max } = self.local_bounds();
         let corners = (0..8).map(|k| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { min } else { max }[axis]));
-        let field = &mut *self.evaluator();
+        let field = &mut *self.evaluator(field);
         self.at_border() == 0 && corners.map(DVec3::from).all(|p| field.value_and_gradient(p).0 < 0.0)
     }
 
@@ -217,32 +251,17 @@ impl<F: Field> Run<F> {
         mesh.topology.is_manifold() && mesh.topology.lone_edges.iter().all(|edge| edge.iter().all(is_at_box))
     }
 
-    /// The mesh; none before [`Run::join`] is done.
-    #[must_use]
-    pub fn mesh(&self) -> Option<&Triangulation> {
+    fn mesh(&self) -> Option<&Triangulation> {
         self.meshing.joined()
     }
 
-    /// The triangles of the [mesh](Run::mesh): triples of particles, counter-clockwise seen from
-    /// outside. There are none before [`Run::join`] is done.
-    #[must_use]
-    pub fn triangles(&self) -> &[[u32; 3]] {
-        self.mesh().map_or(&[], |mesh| &mesh.triangles)
-    }
-
-    /// The mesh as a file, with what was measured of the particles: up to `budget` slices of the
-    /// work, of [`MEDIUM`] rows each; the file, once it is complete. Another wish, or a change of
-    /// the particles, begins a file anew. Before [`Run::join`] is done it has no triangles.
-    ///
-    /// # Errors
-    ///
-    /// An error if the 32-bit counters of the format are too small.
-    pub fn mesh_file(&mut self, wish: &MeshFile, budget: u32) -> io::Result<Option<Vec<u8>>> {
+    /// [`Run::mesh_file`].
+    fn mesh_file(&mut self, wish: &MeshFile, budget: u32) -> io::Result<Option<Vec<u8>>> {
         if budget == 0 {
             return Ok(None);
         }
         let begun = self.meshing.file.take().filter(|begun| begun.wish == *wish);
-        let (particles, measured) = (self.particles(), self.measured());
+        let (particles, measured) = (self.particles(), &self.measuring.measured);
         let mut begun = begun.unwrap_or_else(|| {
             let none = Triangulation::default();
             let content = FileContent::new(wish, particles, measured, self.mesh().unwrap_or(&none));

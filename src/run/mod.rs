@@ -12,6 +12,7 @@ mod plan;
 mod report;
 mod sample;
 mod severity;
+mod state;
 mod warning;
 
 pub use measuring::Measured;
@@ -22,22 +23,22 @@ pub use severity::Severity;
 pub use warning::Warning;
 
 use crate::differential::{self, Curvature};
-use crate::extent::{self, Reach};
-use crate::field::{Creased, Evaluator, Field, FieldError, Frame, IntoField};
+use crate::extent::Reach;
+use crate::field::{Creased, Evaluator, Field, FieldError, IntoField};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::quality;
 use crate::sampler::{
-    self, FollowError, FoundCreases, Phase, Progress, Sampler, Settings, SettingsError, StopReason,
+    self, FollowError, FoundCreases, Progress, Sampler, Settings, SettingsError, StopReason,
     bytes_per_particle,
 };
-use crate::slices::{self, Work};
+use crate::slices::Work;
 use core::fmt::{self, Debug, Formatter};
-use glam::DVec3;
 use measuring::Measuring;
 use mesh::Meshing;
-use plan::{Plan, Shares};
+use plan::Plan;
 use serde::Serialize;
+use state::failure_of;
 use std::sync::Arc;
 
 /// Bytes of a particle that is kept after the front: its position, normal and radius.
@@ -130,6 +131,38 @@ enum Known {
     Survey,
 }
 
+/// What a run knows and does. Every call lends it the field of the run, whatever type that has, so
+/// that it is compiled once.
+struct RunState {
+    field: FieldState,
+    /// The clip box, in the coordinates of the field.
+    bounds: Bounds,
+    /// Whether the surface is bounded, if its box was fitted; none if the box was given.
+    reach: Option<Reach>,
+    sampler: Sampler,
+    known: Known,
+    /// The creases of the surface in the box, if they were found before the start.
+    creases: Option<FoundCreases>,
+    /// Limit on the number of particles: a run that expects more is refused.
+    most_particles: usize,
+    /// The report on the start.
+    start: Start,
+    last: Option<Progress>,
+    /// The plan that fractions are shares of.
+    plan: Plan,
+    measuring: Measuring,
+    meshing: Meshing,
+}
+
+/// What a run knows of its field.
+#[derive(Clone, Default)]
+struct FieldState {
+    /// Calls of its functions before this run.
+    calls: u64,
+    /// The function that is sampled in its place, see [`FoundCreases::function`].
+    creased: Option<Arc<dyn Creased>>,
+}
+
 /// The sampling of one surface, in steps.
 ///
 /// A run owns its field, or borrows it where `F` is a reference. A budget is a count of work, never
@@ -150,61 +183,17 @@ enum Known {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Run<F> {
-    field: RunField<F>,
-    /// The clip box, in the coordinates of the field.
-    bounds: Bounds,
-    /// Whether the surface is bounded, if its box was fitted; none if the box was given.
-    reach: Option<Reach>,
-    sampler: Sampler,
-    known: Known,
-    /// The creases of the surface in the box, if they were found before the start.
-    creases: Option<FoundCreases>,
-    /// Limit on the number of particles: a run that expects more is refused.
-    most_particles: usize,
-    /// The report on the start.
-    start: Start,
-    last: Option<Progress>,
-    /// The plan that fractions are shares of.
-    plan: Plan,
-    measuring: Measuring,
-    meshing: Meshing,
-}
-
-/// The field of a run.
-struct RunField<F> {
-    given: F,
-    /// Calls of its functions before this run.
-    calls: u64,
-    /// The function that is sampled in its place, see [`FoundCreases::function`].
-    creased: Option<Arc<dyn Creased>>,
-}
-
-impl<F: Field> RunField<F> {
-    fn new(given: F) -> Self {
-        Self { calls: given.calls().unwrap_or(0), given, creased: None }
-    }
-
-    /// Calls of its functions by this run.
-    fn calls(&self) -> Option<u64> {
-        self.given.calls().map(|calls| calls - self.calls)
-    }
-
-    fn function(&self) -> &dyn Field {
-        self.creased.as_ref().map_or(&self.given, |creased| creased)
-    }
-
-    /// This field with another one in its place, of whose branches is known what is known of those
-    /// of this one.
-    fn followed_by(&self, given: F) -> Self {
-        let both = given.creased().zip(self.creased.as_deref());
-        let creased = both.map(|(given, known)| given.with_branches_of(known));
-        Self { creased, ..Self::new(given) }
-    }
+    /// The field, as it was given.
+    field: F,
+    state: RunState,
 }
 
 impl<F> Debug for Run<F> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Run").field("bounds", &self.bounds).field("last", &self.last).finish_non_exhaustive()
+        f.debug_struct("Run")
+            .field("bounds", &self.state.bounds)
+            .field("last", &self.state.last)
+            .finish_non_exhaustive()
     }
 }
 
@@ -222,71 +211,20 @@ impl<F: Field> Run<F> {
     /// expect, or a function of the program fails.
     pub fn start<Kind>(field: impl IntoField<Kind, Field = F>, settings: &Settings) -> Result<Self, Error> {
         settings.validate()?;
-        let field = RunField::new(field.into_field());
-        let (bounds, reach) = match settings.bounds {
-            Some(bounds) => (bounds, None),
-            None => {
-                let extent = extent::find(&field.given);
-                (extent.with_room(|bounds| settings.largest_share(bounds)), Some(extent.reach))
-            }
-        };
-        let mut run = Self { reach, ..Self::of(field, bounds) };
-        let begun = run.begin(settings);
-        run.check_field()?;
-        begun?;
-        Ok(run)
+        let field = field.into_field();
+        let state = RunState::started(&field, settings)?;
+        Ok(Self { field, state })
     }
 
     /// A run that has not begun.
     pub(crate) fn idle(field: F, bounds: Bounds) -> Self {
-        Self::of(RunField::new(field), bounds)
-    }
-
-    fn of(field: RunField<F>, bounds: Bounds) -> Self {
-        Self {
-            field,
-            bounds,
-            reach: None,
-            sampler: Sampler::default(),
-            known: Known::Nothing,
-            creases: None,
-            most_particles: usize::MAX,
-            start: Start::default(),
-            last: None,
-            plan: Plan::default(),
-            measuring: Measuring::default(),
-            meshing: Meshing::default(),
-        }
+        Self { state: RunState::new(&field, bounds), field }
     }
 
     /// Begins a run in the present box; the survey is kept if field and box are those of the last
     /// start.
     pub(crate) fn begin(&mut self, settings: &Settings) -> Result<Start, SettingsError> {
-        settings.validate()?;
-        self.bounds.check()?;
-        let settings = &settings.in_shares_of(&self.bounds)?;
-        self.sampler.limit_memory(self.most_particles.saturating_mul(bytes_per_particle(settings)));
-        self.sampler.set_box_given(self.reach.is_none());
-        let origin = self.bounds.local_origin();
-        let bounds = self.bounds.relative_to(origin);
-        let is_surveyed =
-            self.known == Known::Survey && self.sampler.settings().survey_cells == settings.survey_cells;
-        let creases = (!is_surveyed).then(|| {
-            let known = self.creases.take();
-            let search = || slices::complete(sampler::find_creases(&self.field.given, origin, &bounds));
-            let FoundCreases { creases, function } = known.unwrap_or_else(search);
-            self.field.creased = function;
-            creases
-        });
-        let start = self.sampler.begin(self.field.function(), origin, &bounds, settings, creases)?;
-        self.known = Known::Survey;
-        self.last = None;
-        self.measuring = Measuring::default();
-        self.meshing = Meshing::default();
-        let sampler::Forecast { radius, predicted_count, area } = start;
-        let warnings = self.known_at_start(predicted_count, settings.max_particles);
-        self.start = Start { radius, predicted_count, area, warnings };
-        Ok(self.start.clone())
+        self.state.begin(&self.field, settings)
     }
 
     /// Starts anew with other settings. The survey is kept, unless the settings name another box.
@@ -295,7 +233,7 @@ impl<F: Field> Run<F> {
     ///
     /// The errors of [`Run::start`].
     pub fn restart(&mut self, settings: &Settings) -> Result<Start, Error> {
-        if let Some(bounds) = settings.bounds.filter(|bounds| *bounds != self.bounds) {
+        if let Some(bounds) = settings.bounds.filter(|bounds| *bounds != self.bounds()) {
             self.set_bounds(bounds, None);
         }
         Ok(self.begin(settings)?)
@@ -305,20 +243,13 @@ impl<F: Field> Run<F> {
     /// the particles, so that [`Progress::fraction`], [`Run::fraction`] and [`Reporting::fraction`]
     /// are shares of all of it. Without a plan they are shares of the run alone.
     pub fn plan(&mut self, measured: Measured, is_joined: bool) {
-        self.plan = Plan { measured, is_joined };
+        self.state.plan = Plan { measured, is_joined };
     }
 
     /// Estimated share of the work that is done: of the run and of what is [planned](Run::plan).
     #[must_use]
     pub fn fraction(&self) -> f64 {
-        let shares = self.shares();
-        let run = self.last.as_ref().map_or(0.0, |progress| progress.fraction);
-        run + shares.measuring * self.measuring.fraction() + shares.mesh * self.meshing.fraction()
-    }
-
-    /// The shares of a call by the plan.
-    fn shares(&self) -> Shares {
-        self.plan.shares(self.sampler.settings().method)
+        self.state.fraction()
     }
 
     /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's
@@ -327,14 +258,7 @@ impl<F: Field> Run<F> {
     /// [cancelled](StopReason::Cancelled) where a function of the program [has
     /// failed](Run::check_field).
     pub fn step(&mut self, budget: u32) -> Progress {
-        let progress = self.sampler.step(self.field.function(), budget);
-        if self.field.given.failure().is_some() && progress.stop_reason.is_none() {
-            return self.cancel();
-        }
-        if progress.phase == Phase::Relaxation && progress.relax_step == 0 && progress.relax_steps > 0 {
-            self.measuring.keep_front(self.sampler.particles(), progress.rows);
-        }
-        self.remember(progress)
+        self.state.step(&self.field, budget)
     }
 
     /// Has the particles of a finished run follow its surface to that of `field`, in the same box,
@@ -369,11 +293,12 @@ impl<F: Field> Run<F> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn follow(&mut self, field: F) -> Result<(), FollowError> {
-        let next = self.field.followed_by(field);
-        let before = core::mem::replace(&mut self.field, next);
+        let next = self.state.field.followed_by(&field);
+        let (given, known) =
+            (core::mem::replace(&mut self.field, field), core::mem::replace(&mut self.state.field, next));
         let followed = self.follow_field(false);
         if followed.is_err() {
-            self.field = before;
+            (self.field, self.state.field) = (given, known);
         }
         followed
     }
@@ -382,12 +307,7 @@ impl<F: Field> Run<F> {
     /// changed since the last step. `is_closed`: no particle is born, and none dies but where it
     /// does not come to the surface.
     pub(crate) fn follow_field(&mut self, is_closed: bool) -> Result<(), FollowError> {
-        let bounds = self.local_bounds();
-        self.sampler.follow(self.field.function(), &bounds, is_closed)?;
-        self.known = Known::Particles;
-        self.creases = None;
-        self.remember(self.sampler.progress());
-        Ok(())
+        self.state.follow(&self.field, is_closed)
     }
 
     /// Asks for more relaxation steps on the particles of a run that has ended; [`Run::step`] does
@@ -395,40 +315,12 @@ impl<F: Field> Run<F> {
     /// none, and its steps are those of its [settings](Settings::relax_steps).
     #[must_use]
     pub fn relax(&mut self, steps: u32) -> bool {
-        let can_relax = self.known != Known::Nothing && self.sampler.relax(steps);
-        if can_relax {
-            let progress = self.sampler.progress();
-            self.remember(progress);
-        }
-        can_relax
+        self.state.relax(&self.field, steps)
     }
 
     /// Ends the run where it is; the particles placed so far stay.
     pub fn cancel(&mut self) -> Progress {
-        self.sampler.cancel();
-        // Marks the particles next to singular points.
-        let progress = self.sampler.step(self.field.function(), 0);
-        self.remember(progress)
-    }
-
-    fn remember(&mut self, mut progress: Progress) -> Progress {
-        self.forget_results();
-        progress.fraction *= self.shares().run;
-        if progress.stop_reason == Some(StopReason::Constant)
-            && let (Some(message), Some(cause)) =
-                (&mut progress.message, self.field.given.facts().why_constant)
-        {
-            *message = format!("{message} {cause}");
-        }
-        self.last = Some(progress.clone());
-        progress
-    }
-
-    /// Drops a measurement under way and the mesh: they are of other particles, or of another
-    /// field.
-    fn forget_results(&mut self) {
-        self.measuring.stop();
-        self.meshing = Meshing::default();
+        self.state.cancel(&self.field)
     }
 
     /// Measures the particles and makes a [`Sample`] of the run, where it stands.
@@ -447,16 +339,8 @@ impl<F: Field> Run<F> {
     /// # Errors
     ///
     /// The error of [`Run::finish`].
-    pub fn finish_with(mut self, measured: Measured) -> Result<Sample, Error> {
-        self.check_not_empty()?;
-        let mut report = self.report_with(measured);
-        if self.measuring.measured.opening.is_some() {
-            // Only the field can say which of the gaps are surface.
-            slices::in_pool(|| while self.join(u32::MAX).is_none() {});
-            report = self.reported();
-        }
-        self.check_field()?;
-        Ok(Sample::new(self, report))
+    pub fn finish_with(self, measured: Measured) -> Result<Sample, Error> {
+        self.state.finished(&self.field, measured)
     }
 
     /// The error of a function of the program that has failed. The run has ended then, and its
@@ -466,93 +350,80 @@ impl<F: Field> Run<F> {
     ///
     /// [`Error::Field`], if it has.
     pub fn check_field(&self) -> Result<(), Error> {
-        self.field.given.failure().map_or(Ok(()), |error| Err(Error::Field(error)))
+        failure_of(&self.field)
     }
 
     /// Returns the reason if there is no particle, or its field has failed.
     pub(crate) fn check_not_empty(&mut self) -> Result<(), Error> {
-        self.check_field()?;
-        if self.count() > 0 {
-            return Ok(());
-        }
-        let progress = self.last.clone().unwrap_or_else(|| self.sampler.progress());
-        let Some(reason) = progress.stop_reason.filter(|reason| *reason != StopReason::Cancelled) else {
-            return Err(Error::Cancelled);
-        };
-        if self.reach == Some(Reach::Unknown) && self.sampler.shows_nothing() {
-            let defined = extent::defined_share(&mut *self.field.given.evaluator(Frame::default()));
-            return Err(Error::NoBox { halves: &extent::HALVES, cells: extent::CELLS, defined });
-        }
-        let mut message = progress.message.unwrap_or_else(|| "no particle could be placed".to_owned());
-        if let Some(cause) =
-            self.start.warnings.iter().find(|warning| matches!(warning, Warning::Gradient { .. }))
-        {
-            message = format!("{message} {cause}");
-        }
-        Err(Error::Nothing { reason, message })
+        self.state.check_not_empty(&self.field)
+    }
+
+    /// The sample of a run that has ended, with this report on it.
+    pub(crate) fn into_sample(self, report: Report) -> Sample {
+        Sample::new(self.state, report)
     }
 
     /// The particles so far; of a generation level under way, the columns may hold provisional rows
     /// beyond [`Run::rows`].
     #[must_use]
     pub fn particles(&self) -> &Particles {
-        self.sampler.particles()
+        self.state.sampler.particles()
     }
 
     /// Number of particles that will stay.
     #[must_use]
     pub fn count(&self) -> usize {
-        self.last.as_ref().map_or(0, |progress| progress.particles)
+        self.state.count()
     }
 
     /// Rows of the columns that will stay: more than there are particles where some lie on creases,
     /// with a row on each side.
     #[must_use]
     pub fn rows(&self) -> usize {
-        self.last.as_ref().map_or(0, |progress| progress.rows)
+        self.state.rows()
     }
 
     /// The clip box, in the coordinates of the field as it was given.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
-        self.bounds
+        self.state.bounds
     }
 
     /// Returns whether the surface is bounded, if its box was fitted; none if the box was given.
     #[must_use]
     pub fn reach(&self) -> Option<Reach> {
-        self.reach
+        self.state.reach
     }
 
     /// The report on the start of the run.
     #[must_use]
     pub fn start_report(&self) -> &Start {
-        &self.start
+        &self.state.start
     }
 
     /// The state after the last step; none before the first.
     #[must_use]
     pub fn progress(&self) -> Option<&Progress> {
-        self.last.as_ref()
+        self.state.last.as_ref()
     }
 
     /// The field, as it was given.
     #[must_use]
     pub fn field(&self) -> &F {
-        &self.field.given
+        &self.field
     }
 
     /// An evaluator of the field in the frame of the particles: places are counted from their
     /// origin. It knows the patches of the surface.
     #[must_use]
     pub fn evaluator(&self) -> Box<dyn Evaluator + '_> {
-        self.field.function().evaluator(self.sampler.frame())
+        self.state.evaluator(&self.field)
     }
 
     /// Ends the run and returns the field.
     #[must_use]
     pub fn into_field(self) -> F {
-        self.field.given
+        self.field
     }
 
     /// Refuses, from now on, runs that need more than about `bytes` with the report on them.
@@ -560,14 +431,14 @@ impl<F: Field> Run<F> {
         // A refined run takes more than a front does, but before the report is made it has given
         // most of that back.
         let with_report = bytes_per_particle(&Settings::DEFAULT) + KEPT_BYTES + REPORT_BYTES;
-        self.most_particles = bytes / with_report;
+        self.state.most_particles = bytes / with_report;
     }
 
     /// Principal curvatures (κ₁, κ₂) at the particles from `from` on, in inverse units of length;
     /// NaN where the surface has none.
     pub fn curvatures(&self, from: usize) -> Vec<[f32; 2]> {
         let count = self.rows();
-        let positions = &self.sampler.particles().local[from.min(count)..count];
+        let positions = &self.particles().local[from.min(count)..count];
         let mut curvatures = vec![Curvature::default(); positions.len()];
         let field = &mut *self.evaluator();
         differential::curvatures(field, positions, &mut curvatures);
@@ -577,52 +448,38 @@ impl<F: Field> Run<F> {
     /// The measurements of the last report, in columns with a value for each particle.
     #[must_use]
     pub fn measured(&self) -> &quality::Measurements {
-        &self.measuring.measured
+        &self.state.measuring.measured
     }
 
     /// The sampler, for what the report leaves out.
     #[doc(hidden)]
     #[must_use]
     pub fn sampler(&self) -> &Sampler {
-        &self.sampler
+        &self.state.sampler
     }
 
     /// Ends the run and returns its sampler, with the method where it is.
     #[doc(hidden)]
     #[must_use]
     pub fn into_sampler(self) -> Sampler {
-        self.sampler
-    }
-
-    /// The clip box, counted from the origin of the particles.
-    pub(crate) fn local_bounds(&self) -> Bounds {
-        self.bounds.relative_to(self.particles().origin)
+        self.state.sampler
     }
 
     /// Takes another box for the next start, which ends a run in the one before.
     pub(crate) fn set_bounds(&mut self, bounds: Bounds, reach: Option<Reach>) {
-        self.reach = reach;
-        if bounds != self.bounds {
-            self.bounds = bounds;
-            self.creases = None;
-            self.end();
-        }
+        self.state.set_bounds(&self.field, bounds, reach);
     }
 
     /// Takes another field for the next start. The particles stay until then. A field that
     /// `is_same` gives the same surface: the survey stays good.
     pub(crate) fn set_field(&mut self, field: F, is_same: bool) {
-        if !is_same {
-            self.end();
-        }
-        self.field = self.field.followed_by(field);
-        self.measuring.stop();
-        self.creases = None;
+        self.state.leave_field(&self.field, &field, is_same);
+        self.field = field;
     }
 
     /// Whether the next start has nothing to find out about the creases of the surface.
     pub(crate) fn knows_creases(&self) -> bool {
-        self.known == Known::Survey || self.creases.is_some()
+        self.state.knows_creases()
     }
 
     /// Finds the creases of the surface in the box, in slices, for [`Run::know_creases`].
@@ -630,27 +487,13 @@ impl<F: Field> Run<F> {
     where
         F: Clone + 'static,
     {
-        let (field, origin) = (self.field.given.clone(), self.bounds.local_origin());
-        let bounds = self.bounds.relative_to(origin);
+        let (field, origin) = (self.field.clone(), self.bounds().local_origin());
+        let bounds = self.bounds().relative_to(origin);
         Box::pin(async move { sampler::find_creases(&field, origin, &bounds).await })
     }
 
     /// Takes the creases of the surface for the next start.
     pub(crate) fn know_creases(&mut self, found: FoundCreases) {
-        self.creases = Some(found);
-    }
-
-    /// Ends the run on a field or a box that is about to change: nothing that the sampler knows of
-    /// them holds any more.
-    fn end(&mut self) {
-        if self.known != Known::Nothing {
-            self.known = Known::Nothing;
-            self.cancel();
-        }
-    }
-
-    /// The place of a point that is counted from the origin of the particles.
-    fn place(&self, position: [f64; 3]) -> [f64; 3] {
-        (self.particles().origin + DVec3::from_array(position)).to_array()
+        self.state.creases = Some(found);
     }
 }

@@ -4,7 +4,7 @@
 use super::measuring::{
     Measured, Measuring, MeasuringInput, MeasuringResult, expected_slices, measure, measured_columns,
 };
-use super::{Run, Warning, check};
+use super::{Run, RunState, Warning, check};
 use crate::extent::Reach;
 use crate::field::{Creased, Field};
 use crate::math::Forest;
@@ -243,6 +243,41 @@ impl Reporting<'_> {
 }
 
 impl<F: Field> Run<F> {
+    /// Measures the particles and reports. Call it when the run has ended. What was measured since
+    /// the particles last changed is not measured again.
+    pub fn report(&mut self) -> Report {
+        self.report_with(Measured::Particles)
+    }
+
+    /// [`Run::report`], with other particles measured, or none.
+    pub fn report_with(&mut self, measured: Measured) -> Report {
+        self.state.report_with(&self.field, measured)
+    }
+
+    /// [`Run::report_with`] in slices, with [`Reporting::step`].
+    pub fn measure(&mut self, measured: Measured) -> Reporting<'_> {
+        self.state.measure(&self.field, measured)
+    }
+
+    /// [`Run::report_with`] in slices, up to `budget` of them, with the run free between them: the
+    /// report, once it is complete. A measurement that anything comes between is given up, and the
+    /// next call begins anew.
+    pub(crate) fn measure_copy(&mut self, measured: Measured, budget: u32) -> Option<Report>
+    where
+        F: Clone + 'static,
+    {
+        self.state.measure_copy(&self.field, || Arc::new(self.field.clone()), measured, budget)
+    }
+
+    /// Measures particles that something else has placed on the surface, one row each, and keeps
+    /// that as the last measurement. Sizes are what [`Sampling`] says; positions are counted from
+    /// the origin of the run's own particles.
+    pub fn measure_placed(&mut self, placed: &Particles, sampling: Sampling) -> Measures {
+        self.state.measure_placed(&self.field, placed, sampling)
+    }
+}
+
+impl RunState {
     /// The particles of the front that are to be measured, if they are wanted.
     fn wanted_front(&self, measured: Measured) -> Option<Arc<Particles>> {
         self.measuring.open_front().filter(|_| measured == Measured::FrontToo)
@@ -264,19 +299,13 @@ impl<F: Field> Run<F> {
         }
     }
 
-    /// Measures the particles and reports. Call it when the run has ended. What was measured since
-    /// the particles last changed is not measured again.
-    pub fn report(&mut self) -> Report {
-        self.report_with(Measured::Particles)
+    /// [`Run::report_with`].
+    pub(super) fn report_with(&mut self, field: &dyn Field, measured: Measured) -> Report {
+        slices::in_pool(|| self.measure(field, measured).work.complete())
     }
 
-    /// [`Run::report`], with other particles measured, or none.
-    pub fn report_with(&mut self, measured: Measured) -> Report {
-        slices::in_pool(|| self.measure(measured).work.complete())
-    }
-
-    /// [`Run::report_with`] in slices, with [`Reporting::step`].
-    pub fn measure(&mut self, measured: Measured) -> Reporting<'_> {
+    /// [`Run::measure`].
+    fn measure<'a>(&'a mut self, field: &'a dyn Field, measured: Measured) -> Reporting<'a> {
         let is_due = self.is_due(measured);
         let (mut expected, mut share) = (0, 0.0);
         if is_due {
@@ -290,45 +319,50 @@ impl<F: Field> Run<F> {
                 self.measuring = Measuring::default();
             } else if is_due {
                 let input = self.measuring_input(measured);
-                let result = input.in_slices(self.field.function(), self.sampler.frame()).await;
-                self.keep(result);
+                let result = input.in_slices(self.field.function(field), self.sampler.frame()).await;
+                self.keep(field, result);
             }
-            self.reported()
+            self.reported(field)
         });
         Reporting { work: Estimated::new(work, expected), before, share }
     }
 
-    /// [`Run::report_with`] in slices, up to `budget` of them, with the run free between them: the
-    /// report, once it is complete. A measurement that anything comes between is given up, and the
-    /// next call begins anew.
-    pub(crate) fn measure_copy(&mut self, measured: Measured, budget: u32) -> Option<Report>
-    where
-        F: Clone + 'static,
-    {
+    /// [`Run::measure_copy`]; `copy` makes a copy of the field.
+    fn measure_copy(
+        &mut self,
+        field: &dyn Field,
+        copy: impl FnOnce() -> Arc<dyn Field>,
+        measured: Measured,
+        budget: u32,
+    ) -> Option<Report> {
         if self.is_due(measured) {
             let begun = self.measuring.work.take();
             let work = begun.unwrap_or_else(|| {
                 let field: Arc<dyn Field> = match &self.field.creased {
                     Some(creased) => Arc::<dyn Creased>::clone(creased),
-                    None => Arc::new(self.field.given.clone()),
+                    None => copy(),
                 };
                 self.measuring_input(measured).work(field, self.sampler.frame())
             });
             let measured = self.measuring.work.insert(work).advance(budget)?;
             self.measuring.work = None;
-            self.keep(measured);
+            self.keep(field, measured);
         }
-        Some(self.reported())
+        Some(self.reported(field))
     }
 
-    /// Measures particles that something else has placed on the surface, one row each, and keeps
-    /// that as the last measurement. Sizes are what [`Sampling`] says; positions are counted from
-    /// the origin of the run's own particles.
-    pub fn measure_placed(&mut self, placed: &Particles, sampling: Sampling) -> Measures {
+    /// [`Run::measure_placed`].
+    fn measure_placed(&mut self, field: &dyn Field, placed: &Particles, sampling: Sampling) -> Measures {
         self.measuring.stop();
         let bounds = self.local_bounds();
-        let measured =
-            slices::complete(measure(placed, &mut *self.evaluator(), &bounds, sampling, &mut None, None));
+        let measured = slices::complete(measure(
+            placed,
+            &mut *self.evaluator(field),
+            &bounds,
+            sampling,
+            &mut None,
+            None,
+        ));
         self.measuring.measured = measured;
         Measures { quality_before: None, ..self.measures() }
     }
@@ -348,7 +382,7 @@ impl<F: Field> Run<F> {
         }
     }
 
-    fn keep(&mut self, MeasuringResult { front, now, facing, sheets }: MeasuringResult) {
+    fn keep(&mut self, field: &dyn Field, MeasuringResult { front, now, facing, sheets }: MeasuringResult) {
         if front.is_some() {
             (self.measuring.front, self.measuring.front_figures) = (None, front);
         }
@@ -356,21 +390,21 @@ impl<F: Field> Run<F> {
             (now, Some(facing), Some(sheets));
         // A refined run has led to its mesh.
         if self.measuring.measured.opening.is_some() && !self.sampler.triangles().is_empty() {
-            while self.join(u32::MAX).is_none() {}
+            while self.join(field, u32::MAX).is_none() {}
         }
         self.take_topology();
     }
 
     /// The report, with the measurements that are there.
-    pub(super) fn reported(&mut self) -> Report {
-        let is_overflowing = self.sampler.is_open_by_overflow(self.field.function());
-        let blur = self.sampler.blur(self.field.function());
+    pub(super) fn reported(&mut self, field: &dyn Field) -> Report {
+        let is_overflowing = self.sampler.is_open_by_overflow(self.field.function(field));
+        let blur = self.sampler.blur(self.field.function(field));
         let particles = self.sampler.particles();
         let count = particles.count();
         let measured = &self.measuring.measured;
         let proof = self.proof(measured.figures.connectivity.components);
         let border = self.at_border();
-        let mut warnings = self.warnings_of_run(&proof.sampled, self.measuring.facing.unwrap_or(0));
+        let mut warnings = self.warnings_of_run(field, &proof.sampled, self.measuring.facing.unwrap_or(0));
         warnings.extend(blur.map(|Blur { particle, distance }| Warning::Digits {
             position: particles.place(particle).to_array(),
             distance,
@@ -387,7 +421,7 @@ impl<F: Field> Run<F> {
         Report {
             count,
             sizes: self.sizes(),
-            growth: self.growth(),
+            growth: self.growth(field),
             warnings,
             proof,
             measures: self.measures(),
@@ -396,7 +430,7 @@ impl<F: Field> Run<F> {
             smallest_angle: self.meshing.joined().and_then(|mesh| mesh.smallest_angle(particles)),
             pairs: particles.pairs(),
             border,
-            cut: if border > 0 { self.cut() } else { None },
+            cut: if border > 0 { self.cut(field) } else { None },
             stop_reason: self.last.as_ref().and_then(|progress| progress.stop_reason),
             digest: format!("{:016x}", particles.digest()),
         }
@@ -428,20 +462,20 @@ impl<F: Field> Run<F> {
     }
 
     /// The reason why particles lie at the border of the box, if some do.
-    fn cut(&self) -> Option<Cut> {
+    fn cut(&self, field: &dyn Field) -> Option<Cut> {
         match self.reach {
             Some(Reach::Bounded) if self.has_moved() => Some(Cut::Outgrown),
             // Particles that are large against the surface may have a child outside of a box that
             // holds it.
-            Some(Reach::Bounded) => self.passes_faces().then_some(Cut::Endless),
+            Some(Reach::Bounded) => self.passes_faces(field).then_some(Cut::Endless),
             Some(Reach::Endless | Reach::Nowhere | Reach::Unknown) => Some(Cut::Endless),
             None => Some(Cut::Fixed),
         }
     }
 
     /// Whether the surface passes through the faces of the box beside a particle.
-    fn passes_faces(&self) -> bool {
-        let (particles, bounds, field) = (self.particles(), self.local_bounds(), &mut *self.evaluator());
+    fn passes_faces(&self, field: &dyn Field) -> bool {
+        let (particles, bounds, field) = (self.particles(), self.local_bounds(), &mut *self.evaluator(field));
         (0..particles.len()).any(|i| {
             let (p, reach) = (particles.local[i].as_dvec3(), 2.0 * f64::from(particles.radius[i]));
             (0..3).any(|axis| {
@@ -464,7 +498,7 @@ impl<F: Field> Run<F> {
         Radii { radius: self.sampler.radius(), radius_min: sizes.fold(radius_max, f64::min), radius_max }
     }
 
-    fn growth(&self) -> Growth {
+    fn growth(&self, field: &dyn Field) -> Growth {
         let particles = self.particles();
         let mut level_counts = Vec::new();
         for (i, &level) in particles.level.iter().enumerate() {
@@ -486,7 +520,7 @@ impl<F: Field> Run<F> {
             gaps_filled: counts.gaps_filled,
             fates: counts.fates,
             evaluations,
-            calls: self.field.calls(),
+            calls: self.field.calls(field),
             evaluations_per_particle: counts.front_evaluations as f64 / particles.count().max(1) as f64,
             refined_levels: counts.refined_levels,
             energy: Some(self.sampler.energy()).filter(|energy| !energy.is_empty()).map(<[f64]>::to_vec),

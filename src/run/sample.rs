@@ -1,12 +1,12 @@
 //! The whole job in one call, and its result.
 
 use super::mesh::joined;
-use super::{Error, Report, Run, Warning};
+use super::{Error, Report, Run, RunState, Warning};
 use crate::export::{self, Format, MeshBuffers, MeshFile, MeshFormat, ParticleFile, Vertices};
-use crate::field::{Field, IntoField};
+use crate::field::IntoField;
 use crate::math::Bounds;
-use crate::mesh::build::Triangulation;
 use crate::mesh::stars::Sheets;
+use crate::mesh::triangulation::Triangulation;
 use crate::particles::Particles;
 use crate::quality;
 use crate::sampler::Settings;
@@ -66,9 +66,9 @@ pub struct Sample {
 }
 
 impl Sample {
-    pub(crate) fn new<F: Field>(run: Run<F>, report: Report) -> Self {
+    pub(super) fn new(run: RunState, report: Report) -> Self {
         Self {
-            bounds: run.bounds(),
+            bounds: run.bounds,
             known: run.sampler.triangles().to_vec(),
             particles: run.sampler.into_particles(),
             measured: run.measuring.measured,

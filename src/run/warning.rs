@@ -5,12 +5,12 @@ mod missing;
 
 use super::jumps::breaks_in;
 use super::report::creases_and_seams;
-use super::{Report, Run, Severity, check};
+use super::{Report, RunState, Severity, check};
 use crate::field::Field;
 use crate::field::model::{GivenMesh, GivenTopology, ModelInfo};
 use crate::math::{Bounds, counted, place_text};
-use crate::mesh::build::Triangulation;
 use crate::mesh::facing::Inside;
+use crate::mesh::triangulation::Triangulation;
 use crate::particles::Particles;
 use crate::quality::Measurements;
 use crate::quality::figures::Connectivity;
@@ -375,10 +375,10 @@ impl Warning {
     }
 }
 
-impl<F: Field> Run<F> {
+impl RunState {
     /// Returns the warnings that are known at the start: `predicted` particles are expected, and
     /// `limit` are allowed.
-    pub(super) fn known_at_start(&mut self, predicted: u64, limit: u32) -> Vec<Warning> {
+    pub(super) fn known_at_start(&mut self, field: &dyn Field, predicted: u64, limit: u32) -> Vec<Warning> {
         let mut warnings = Vec::new();
         if predicted > u64::from(limit) {
             warnings.push(Warning::Limit { predicted, limit });
@@ -388,14 +388,14 @@ impl<F: Field> Run<F> {
         }
         // Derivatives of a field that has bounds are derived, not given.
         let bounds = self.local_bounds();
-        let field = &mut *self.evaluator();
-        if field.bounded().is_none()
-            && let Some(at) = check::wrong_gradient(field, &bounds)
+        let evaluator = &mut *self.evaluator(field);
+        if evaluator.bounded().is_none()
+            && let Some(at) = check::wrong_gradient(evaluator, &bounds)
         {
             let position = self.place(at.to_array());
             warnings.push(Warning::Gradient { position, length: self.bounds.diagonal() });
         }
-        let facts = self.field.given.facts();
+        let facts = field.facts();
         warnings.extend(facts.sampled_as.map(|equation| Warning::SampledAs { equation }));
         if !facts.unused.is_empty() {
             warnings.push(Warning::Unused { names: facts.unused });
@@ -408,8 +408,8 @@ impl<F: Field> Run<F> {
 
     /// The warning about the faces of a cell across an axis, if particles lie on them, and not the
     /// same ones.
-    fn unpaired(&self, axis: usize) -> Option<Warning> {
-        let cell = self.field.given.facts().unit_cell?.relative_to(self.particles().origin);
+    fn unpaired(&self, field: &dyn Field, axis: usize) -> Option<Warning> {
+        let cell = field.facts().unit_cell?.relative_to(self.particles().origin);
         let Particles { local: position, opposite, .. } = self.particles();
         let faces = [cell.bounds.min[axis], cell.bounds.max[axis]].map(|at| at as f32);
         let is_paired = opposite.iter().any(|faces| usize::from(faces.axis) == axis);
@@ -419,7 +419,12 @@ impl<F: Field> Run<F> {
 
     /// The warnings about the run. The places in `sampled` are coordinates of the field; `facing`
     /// is the number of particles that face another sheet.
-    pub(super) fn warnings_of_run(&self, sampled: &Sampled, facing: usize) -> Vec<Warning> {
+    pub(super) fn warnings_of_run(
+        &self,
+        field: &dyn Field,
+        sampled: &Sampled,
+        facing: usize,
+    ) -> Vec<Warning> {
         let total = self.particles().count();
         let (length, settings, counts) =
             (self.sampler.radius(), self.sampler.settings(), self.sampler.counts());
@@ -438,12 +443,12 @@ impl<F: Field> Run<F> {
         let is_unresolved = doubts.iter().any(|doubt| matches!(doubt, Doubt::Unresolved { .. }));
         let origin = self.particles().origin;
         warnings.extend(counts.refusal.map(|refusal| Warning::NotRefined(refusal.counted_from_zero(origin))));
-        let unpaired = [0, 1, 2].map(|axis| self.unpaired(axis));
+        let unpaired = [0, 1, 2].map(|axis| self.unpaired(field, axis));
         warnings.extend(unpaired.into_iter().flatten().filter(|_| stop_reason == Some(StopReason::Complete)));
         // Children of a coarse front are no trouble once its mesh has been checked and refined.
         let FateCounts { not_converged, undefined, .. } =
             if counts.refined_levels.is_some() { FateCounts::default() } else { counts.fates };
-        let ends = self.ends();
+        let ends = self.ends(field);
         // New particles find no surface beyond its ends.
         let is_told = ends.at_jump.is_some() && ends.others.is_none();
         if (not_converged > 0 || undefined > 0) && !is_told {
@@ -454,7 +459,7 @@ impl<F: Field> Run<F> {
         if self.has_moved() {
             warnings.push(Warning::Moved);
         }
-        let [meets, rims] = self.singular_warnings();
+        let [meets, rims] = self.singular_warnings(field);
         let meets = [rims, meets, self.crossing()];
         // A smaller radius takes no sheets apart that meet.
         let is_close = !is_unresolved && meets.iter().all(Option::is_none) && facing >= CLOSE_COUNT;
@@ -493,7 +498,7 @@ impl<F: Field> Run<F> {
             // A cell at a jump stays open at any radius and in any box.
             Doubt::Cells { position, size, .. } => {
                 let place = DVec3::from_array(*position);
-                ends.at_jump.is_none() || !breaks_in(&mut *self.evaluator(), place, *size)
+                ends.at_jump.is_none() || !breaks_in(&mut *self.evaluator(field), place, *size)
             }
             Doubt::Unresolved { .. } => true,
         };
@@ -512,9 +517,9 @@ impl<F: Field> Run<F> {
 
     /// The warnings about places where the gradient vanishes: where the surface crosses or touches
     /// itself, and where it ends in a cusp.
-    fn singular_warnings(&self) -> [Option<Warning>; 2] {
+    fn singular_warnings(&self, field: &dyn Field) -> [Option<Warning>; 2] {
         let length = self.sampler.radius();
-        let field = &mut *self.evaluator();
+        let field = &mut *self.evaluator(field);
         let places = self.sampler.singular_places();
         let kinds: Vec<SingularKind> = places.iter().map(|place| place.kind_by_signs(field)).collect();
         let found = |wanted: &[SingularKind]| {

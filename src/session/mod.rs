@@ -564,7 +564,7 @@ impl Session {
         };
         drop(reporting);
         let report = self.completed(report);
-        Ok(Sample::new(self.run, report))
+        Ok(self.run.into_sample(report))
     }
 }
 
