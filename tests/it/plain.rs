@@ -260,3 +260,35 @@ fn no_gap_is_told_of_a_mesh_that_is_closed() {
     }
     assert!(gaps < 8, "no mesh was closed");
 }
+
+/// Value noise: random numbers at the points of a lattice, blended smoothly in its cells.
+fn value_noise(random: &mut Pcg32) -> String {
+    let scale = between(random, 2.0, 4.0);
+    let [a, b, c] = [0, 1, 2].map(|_| between(random, 10.0, 90.0));
+    let hash = |corner: [usize; 3]| {
+        let [i, j, k] =
+            [0, 1, 2].map(|axis| format!("floor({scale}{})+{}", ["x", "y", "z"][axis], corner[axis]));
+        format!("fract(sin(({i})*{a}+({j})*{b}+({k})*{c})*43758.5453)")
+    };
+    let blend = ["x", "y", "z"].map(|axis| {
+        let t = format!("fract({scale}{axis})");
+        format!("({t}^2*(3-2*{t}))")
+    });
+    let [u, v, w] = &blend;
+    let along_x = |j, k| format!("mix({},{},{u})", hash([0, j, k]), hash([1, j, k]));
+    let along_y = |k| format!("mix({},{},{v})", along_x(0, k), along_x(1, k));
+    format!("mix({},{},{w})", along_y(0), along_y(1))
+}
+
+#[test]
+fn a_planet_of_value_noise_has_no_edge() {
+    for seed in cases::seeds(20) {
+        let mut random = Pcg32::seed_from_u64(seed);
+        let noise = value_noise(&mut random);
+        let formula = format!("hypot(x,y,z)-1-{}*({noise})", between(&mut random, 0.05, 0.2));
+        let sample = sampled(&formula, &Settings::with_count(2_000).seeded(seed).refined());
+        assert_eq!(sample.report().proof.creases, None, "seed {seed}: {formula}");
+        let Counted { components, euler, open, faults, .. } = Counted::of(&sample);
+        assert_eq!((components, euler, open, faults), (1, 2, 0, 0), "seed {seed}: {formula}");
+    }
+}

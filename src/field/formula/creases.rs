@@ -25,17 +25,22 @@ use std::sync::Arc;
 /// leave more edges open.
 const DEPTH: u32 = 15;
 
-/// Number of halvings after which a choice counts that can be neither excluded nor tested: 256
-/// cells on every axis. Fewer leave more edges open; more take longer.
+/// Number of halvings after which a choice that can be neither excluded nor tested is left at what
+/// is known of it elsewhere; where that is nothing, it counts: 256 cells on every axis. Fewer leave
+/// more edges open; more take longer.
 const DEEPEST: u32 = 24;
 
-/// Maximum number of cells of a search, as many as there are after [`DEPTH`] halvings. The choices
-/// in question at its end count.
+/// Maximum number of cells of a search, as many as there are after [`DEPTH`] halvings. As many more
+/// are searched for the choices of which nothing is known by then.
 const MAX_CELLS: usize = 1 << DEPTH;
 
 /// Maximum number of cells that are visited to narrow creases down: those of a gyroid in its box
 /// take 50,000.
 const MOST_VISITED: usize = 1 << 18;
+
+/// Maximum number of steps in a cell whose sides are looked at one by one: those of the three
+/// coordinates at a corner of a lattice, and of one more.
+const MOST_OPEN_STEPS: usize = 4;
 
 /// Distance from the tie at which the gradients are taken, and a hundred times the error of its
 /// place; as a share of the diagonal of the box.
@@ -157,12 +162,14 @@ impl Branches {
         let is_choice = |id: &Id| matches!(self.base.roles[*id as usize], NodeRole::Choice(_));
         let choices: Vec<Id> = part.nodes.iter().copied().filter(is_choice).collect();
         let ties = ties_of(&mut self.base, part, &choices, values);
+        let steps: Vec<Id> = choices.iter().copied().filter(|&id| self.base.is_step(id)).collect();
         let around = bounds.enlarged(2.0 * MARGIN * bounds.size().max_element());
         let search = |bounds| TieSearch {
             base: &self.base,
             products: &self.products,
             part,
             ties: &ties,
+            steps: &steps,
             values,
             bounds,
         };
@@ -276,6 +283,8 @@ impl Base {
 #[derive(Default)]
 struct TieScratch {
     ranges: Vec<interval::Row<1>>,
+    /// The bounds with each step that is open in the cell taken on one side.
+    stepped: Vec<interval::Row<1>>,
     reaches: Vec<TieReach>,
 }
 
@@ -286,6 +295,8 @@ struct TieSearch<'a> {
     products: &'a [Id],
     part: &'a BranchPart,
     ties: &'a [Tie],
+    /// The choices between whole numbers.
+    steps: &'a [Id],
     values: &'a [f64],
     bounds: &'a Bounds,
 }
@@ -296,15 +307,29 @@ impl TieSearch<'_> {
     async fn kinds(&self, choices: &[Id]) -> Vec<Option<TieKind>> {
         let mut kinds = vec![None; self.part.root as usize + 1];
         let mut open = vec![TieCell { bounds: *self.bounds, depth: 0, choices: choices.to_vec() }];
-        let (mut scratch, mut jets, mut left) = (TieScratch::default(), Vec::new(), MAX_CELLS);
+        let (mut scratch, mut jets) = (TieScratch::default(), Vec::new());
+        let (mut left, mut is_extended) = (MAX_CELLS, false);
+        // Those of which nothing can be said in some cell.
+        let mut doubted = Vec::new();
         while let Some(mut cell) = open.pop() {
             cell.choices.retain(|&id| kinds[id as usize] != Some(TieKind::Crease));
             if cell.choices.is_empty() {
                 continue;
             }
             if left == 0 {
-                cell.choices.iter().for_each(|&id| kinds[id as usize] = Some(self.kind_in_doubt(id)));
-                continue;
+                // What is known by now is taken for all of the surface; the rest of the box is
+                // searched for the others.
+                if is_extended {
+                    doubted.append(&mut cell.choices);
+                    continue;
+                }
+                (is_extended, left) = (true, MAX_CELLS);
+            }
+            if is_extended {
+                cell.choices.retain(|&id| kinds[id as usize].is_none());
+                if cell.choices.is_empty() {
+                    continue;
+                }
             }
             left -= 1;
             pause().await;
@@ -322,7 +347,8 @@ impl TieSearch<'_> {
                     return true;
                 }
                 let known = &mut kinds[*id as usize];
-                *known = (*known).max(kind.or_else(|| Some(self.kind_in_doubt(*id))));
+                *known = (*known).max(kind);
+                doubted.extend(kind.is_none().then_some(*id));
                 false
             });
             if !cell.choices.is_empty() {
@@ -331,11 +357,14 @@ impl TieSearch<'_> {
                 }
             }
         }
+        for id in doubted {
+            kinds[id as usize].get_or_insert_with(|| self.kind_in_doubt(id));
+        }
         kinds
     }
 
-    /// Kind where nothing can be said. A product stays one unless its factors cross: as one it
-    /// shows where they touch.
+    /// Kind of a choice for which no place is found anywhere. A product stays one unless its factors
+    /// cross: as one it shows where they touch.
     fn kind_in_doubt(&self, id: Id) -> TieKind {
         if self.products.contains(&id) { TieKind::Seam } else { TieKind::Crease }
     }
@@ -354,9 +383,8 @@ impl TieSearch<'_> {
             left -= 1;
             pause().await;
             let open_to = self.open_to(&cell, choices, &mut scratch);
-            let is_tied = |&(id, reach): &(Id, TieReach)| {
-                reach >= least && self.may_be_tied(id, &cell, &mut scratch.ranges)
-            };
+            let is_tied =
+                |&(id, reach): &(Id, TieReach)| reach >= least && self.may_be_tied(id, &cell, &mut scratch);
             if open_to.iter().any(is_tied) {
                 if cell.size().max_element() > width {
                     let [low, high] = cell.halves();
@@ -373,16 +401,44 @@ impl TieSearch<'_> {
     /// none if f has no zero in it.
     fn tied(&self, cell: &Bounds, choices: &[Id], scratch: &mut TieScratch) -> Vec<(Id, TieReach)> {
         let mut open_to = self.open_to(cell, choices, scratch);
-        open_to.retain(|&(id, _)| self.may_be_tied(id, cell, &mut scratch.ranges));
+        open_to.retain(|&(id, _)| self.may_be_tied(id, cell, scratch));
         open_to
     }
 
     /// Whether f may be zero in the cell where a choice is tied, which the cell is
     /// [open to](Self::open_to).
-    fn may_be_tied(&self, id: Id, cell: &Bounds, ranges: &mut Vec<interval::Row<1>>) -> bool {
+    ///
+    /// A function of a whole number that differs between two steps has wide bounds over a cell that
+    /// both steps reach, however small the cell is: a hash, for one, jumps from any value to any
+    /// other. So the bounds are computed anew for either side of each step.
+    fn may_be_tied(&self, id: Id, cell: &Bounds, scratch: &mut TieScratch) -> bool {
         let Tie { roots, nodes, .. } = &self.ties[self.ties.partition_point(|tie| tie.choice < id)];
-        interval::bounds(&self.base.graph, nodes, self.values, cell, ranges);
-        !roots.iter().any(|&root| ranges[root as usize].at(0).is_nonzero())
+        let TieScratch { ranges, stepped, .. } = scratch;
+        let graph = &self.base.graph;
+        let may_vanish =
+            |ranges: &[interval::Row<1>]| !roots.iter().any(|&root| ranges[root as usize].at(0).is_nonzero());
+        interval::bounds(graph, nodes, self.values, cell, ranges);
+        if !may_vanish(ranges) {
+            return false;
+        }
+        let is_open = |&step: &Id| {
+            let NodeRole::Choice(condition) = self.base.roles[step as usize] else { return false };
+            step != id && condition.in_box(|id| ranges[id as usize].at(0)) == Holds::Somewhere
+        };
+        let open: Vec<Id> = self.steps.iter().copied().filter(is_open).collect();
+        if open.is_empty() || open.len() > MOST_OPEN_STEPS {
+            return true;
+        }
+        (0..1_u32 << open.len()).any(|sides| {
+            let side_of = |node: Id| {
+                let k = open.iter().position(|&step| step == node)?;
+                taken(graph.node(node), sides >> k & 1 == 1)
+            };
+            for nodes in [&self.part.nodes, nodes] {
+                interval::bounds_with(graph, nodes, self.values, cell, side_of, stepped);
+            }
+            may_vanish(stepped)
+        })
     }
 
     /// The choices, out of `choices`, whose operands may be equal somewhere in the cell and on

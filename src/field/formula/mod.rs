@@ -256,6 +256,9 @@ impl Formula {
         check_declared(declared)?;
         let known: Vec<&str> = declared.iter().map(|parameter| &*parameter.name).collect();
         let (parsed, automatic) = syntax(text, &known).map_err(|error| {
+            if error.kind == FormulaErrorKind::TooLong {
+                return error;
+            }
             wrapped::error(text, &known).unwrap_or_else(|| repair::throughout(text, &known, error))
         })?;
         let used = |parameter: &&Parameter| parsed.names.iter().any(|(name, _)| *name == parameter.name);

@@ -229,20 +229,20 @@ fn plain(text: &str) -> String {
     };
     while let Some(c) = text[at..].chars().next() {
         let rest = &text[at..];
-        let line = rest.find('\n').unwrap_or(rest.len());
+        let line = || rest.find('\n').unwrap_or(rest.len());
         let before = text[..at].trim_end_matches([' ', '\t']);
         let begins = before.is_empty() || before.ends_with(['\n', ';']);
         let length = if rest.starts_with("//") && !before.ends_with([')', ']'])
             || c == '#'
             || c == '%' && begins && !rest[1..].starts_with(|c: char| c.is_ascii_alphabetic())
         {
-            line
+            line()
         } else if rest.starts_with("(*") || rest.starts_with("/*") {
             let end = if c == '(' { "*)" } else { "*/" };
             rest[2..].find(end).map_or(rest.len(), |end| end + 4)
         } else if matches!(c, '"' | '\'') && (begins || before.ends_with(['(', '[', '{', ',', '=', ':', '>']))
         {
-            rest[1..line.max(1)].find(c).map_or(0, |end| end + 2)
+            rest[1..line().max(1)].find(c).map_or(0, |end| end + 2)
         } else {
             0
         };

@@ -184,10 +184,25 @@ pub(super) fn bounds(
     bounds: &Bounds,
     rows: &mut Vec<Row<1>>,
 ) {
+    bounds_with(graph, nodes, parameters, bounds, |_| None, rows);
+}
+
+/// [`bounds`], with other nodes in the place of those for which `instead_of` names one.
+pub(super) fn bounds_with(
+    graph: &Graph,
+    nodes: &[Id],
+    parameters: &[f64],
+    bounds: &Bounds,
+    instead_of: impl Fn(Id) -> Option<Id>,
+    rows: &mut Vec<Row<1>>,
+) {
     rows.resize(graph.len().max(rows.len()), Row::ZERO);
     for &id in nodes {
         let coordinate = |axis: u8| Row::fill(Range::of_coordinate(bounds, axis));
-        rows[id as usize] = row_of(graph.node(id), 1, parameters, coordinate, |id| &rows[id as usize]);
+        rows[id as usize] = match instead_of(id) {
+            Some(other) => rows[other as usize],
+            None => row_of(graph.node(id), 1, parameters, coordinate, |id| &rows[id as usize]),
+        };
     }
 }
 
