@@ -1,6 +1,6 @@
 //! Benchmark of formula evaluation, by formula and kind of result, in points per second.
 //!
-//! `cargo bench --bench formula`
+//! `cargo bench -p benches --bench formula`
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;

@@ -1,7 +1,7 @@
 //! The front and the refined method over the gallery and the models: the table of
 //! `docs/methods.md`.
 //!
-//! `cargo bench --bench methods > docs/tables/methods.md` measures every surface with 4,000 and
+//! `cargo bench -p benches --bench methods > docs/tables/methods.md` measures every surface with 4,000 and
 //! with 20,000 particles. `--count N` takes another number, `--seeds K` reports the worst of the
 //! seeds 0 to K − 1 in each column, `--adaptive` lets sizes follow the curvature, and names of
 //! surfaces restrict the run to these. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes
@@ -28,7 +28,7 @@ const RUNS: u32 = 3;
 
 /// Text above the tables.
 const HEAD: &str = "\
-Written by `cargo bench --bench methods > docs/tables/methods.md`. [methods.md](../methods.md) explains
+Written by `cargo bench -p benches --bench methods > docs/tables/methods.md`. [methods.md](../methods.md) explains
 the columns.";
 
 /// Plan of a measurement.

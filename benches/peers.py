@@ -2,7 +2,7 @@
 
 python3 -m venv target/peers
 target/peers/bin/pip install numpy scipy scikit-image pyvista pyacvd trimesh
-cargo build --release --features cli
+cargo build --release --package marching-particles-cli
 target/peers/bin/python benches/peers.py 20000
 
 Every program gets the same f and about as many points. Seconds are those of this process, once, on

@@ -1,6 +1,6 @@
 //! Solids with sharp edges by both methods: the table of `docs/solids.md`.
 //!
-//! `cargo bench --bench solids --profile dev > docs/tables/solids.md` measures every solid with
+//! `cargo bench -p benches --bench solids --profile dev > docs/tables/solids.md` measures every solid with
 //! 1,500, 6,000 and 24,000 particles. With `-- FOLDER` it also writes every mesh to that folder,
 //! for `benches/tetrahedra.py`. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes the
 //! summary in `docs/solids.md`.
@@ -26,7 +26,7 @@ const RUNS: u32 = 3;
 
 /// Text above the tables.
 const HEAD: &str = "\
-Written by `cargo bench --bench solids --profile dev > docs/tables/solids.md`.
+Written by `cargo bench -p benches --bench solids --profile dev > docs/tables/solids.md`.
 [solids.md](../solids.md) explains the columns.";
 
 /// A solid: its name, its field, and its exact volume, Euler number and numbers of creases and

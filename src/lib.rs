@@ -44,8 +44,7 @@
 //! current [rayon](https://docs.rs/rayon) pool share measuring, fits to points and parts of the
 //! mesh, natively; the results are the same. Functions of the program are then called from several
 //! threads at once. A program that does such work in [steps](Reporting::step) takes them in a
-//! thread of the pool, as within `rayon::scope`: another thread would wait for each share. `cli` is
-//! the command-line tool, with both of them.
+//! thread of the pool, as within `rayon::scope`: another thread would wait for each share.
 //!
 //! # Glossary
 //!
@@ -134,8 +133,6 @@ pub mod particles;
 pub mod pointcloud;
 #[doc(hidden)]
 pub mod quality;
-#[doc(hidden)]
-pub mod render;
 mod run;
 #[doc(hidden)]
 pub mod sampler;
@@ -147,9 +144,6 @@ pub mod slices;
 pub mod spatial;
 #[doc(hidden)]
 pub mod topology;
-#[cfg(all(target_arch = "wasm32", feature = "bindings"))]
-#[doc(hidden)]
-pub mod web;
 
 pub use export::{
     Format, MeshBuffers, MeshFile, MeshFormat, ParticleFile, Placement, RecordText, Unit, UpAxis, Vertices,
@@ -168,8 +162,8 @@ pub use field::{
 };
 pub use glam;
 pub use math::{Bounds, BoxError, Interval, Sym3};
-pub use mesh::build::Triangulation;
 pub use mesh::facing::Inside;
+pub use mesh::triangulation::Triangulation;
 pub use particles::{OppositeFaces, Particles, SlotFate, Slots};
 #[cfg(feature = "points")]
 pub use pointcloud::CloudError;

@@ -62,14 +62,6 @@ const ROOMS: [Room; 4] = [
             ("paper", &["math", "field", "differential", "particles"]),
             // The lesson shares some words and numbers with the sampler, no algorithm.
             ("lesson", &["math", "field", "differential", "particles", "paper", "sampler"]),
-            // The renderer sees slices and camera numbers; the two sides meet in JavaScript only.
-            ("render", &["math"]),
-            // Each half of the bindings is compiled without the others' modules.
-            ("web/values", &["session"]),
-            ("web/core", &["field", "particles", "export", "sampler", "session"]),
-            ("web/points", &["field", "pointcloud"]),
-            ("web/lesson", &["math", "field", "paper", "lesson", "session"]),
-            ("web/render", &["render"]),
         ],
     ),
     (
@@ -255,6 +247,39 @@ fn no_file_is_longer_than_can_be_read_in_one_go() {
     assert!(faults.is_empty(), "longer than {MAX_LINES} lines:\n{}\n", faults.join("\n"));
 }
 
+/// The value of a line `key = "value"` of a manifest.
+fn quoted<'a>(line: &'a str, key: &str) -> Option<&'a str> {
+    line.strip_prefix(key)?.trim_start().strip_prefix("= \"")?.strip_suffix('"')
+}
+
+/// The names of the packages in a folder, however deep.
+fn packages_in(folder: &str) -> BTreeSet<String> {
+    let manifests = files_under(&root().join(folder), &["toml"]);
+    let name = |manifest: PathBuf| {
+        let text = fs::read_to_string(&manifest).expect("a listed file can be read");
+        text.lines().find_map(|line| quoted(line, "name").map(str::to_owned))
+    };
+    manifests.into_iter().filter_map(name).collect()
+}
+
+/// A package that a profile does not name is compiled without optimisation, and nothing says so.
+#[test]
+fn every_package_of_a_bundle_is_optimised_while_developing() {
+    let manifest = fs::read_to_string(root().join("Cargo.toml")).expect("the manifest of the workspace");
+    let named: BTreeSet<String> = manifest
+        .lines()
+        .filter_map(|line| line.strip_prefix("[profile.wasm-dev.package.")?.strip_suffix(']'))
+        .map(str::to_owned)
+        .collect();
+    let mut wanted = packages_in("src");
+    // What these do is done by others.
+    for thin in ["cli", "values", "webgl", "webgpu"] {
+        assert!(wanted.remove(&format!("marching-particles-{thin}")), "{thin}");
+    }
+    wanted.extend(["libm", "marching-particles"].map(str::to_owned));
+    assert_eq!(named, wanted);
+}
+
 #[test]
 fn uses_are_found_in_every_form() {
     let source = r#"
@@ -295,14 +320,18 @@ mod tests { use crate::tested; }
 }
 
 fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package is in the checkout").to_owned()
 }
 
-/// Every module of the library with its source, comments and tests taken out. The command-line tool
-/// is a crate of its own.
+/// Every module of the library with its source, comments and tests taken out. What has a package of
+/// its own is left to cargo, which lets it use nothing but its dependencies.
 fn sources() -> Vec<(Vec<String>, String)> {
     let src = root().join("src");
-    let files = files_under(&src, &["rs"]).into_iter().filter(|file| !file.starts_with(src.join("bin")));
+    let is_of_library = |file: &PathBuf| {
+        let above = file.ancestors().take_while(|folder| *folder != src);
+        above.into_iter().all(|folder| !folder.join("Cargo.toml").is_file())
+    };
+    let files = files_under(&src, &["rs"]).into_iter().filter(is_of_library);
     let sources: Vec<(Vec<String>, String)> = files
         .map(|file| {
             let source = fs::read_to_string(&file).expect("a listed file can be read");

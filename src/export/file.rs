@@ -2,7 +2,7 @@
 
 use super::vertices::{Indexed, Vertices, outward_normals};
 use super::{MeshFile, MeshFormat, glb, mesh, ply_columns, ply_mesh, three_mf};
-use crate::mesh::build::Triangulation;
+use crate::mesh::triangulation::Triangulation;
 use crate::particles::Particles;
 use crate::quality::Measurements;
 use core::ops::Range;

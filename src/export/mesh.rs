@@ -2,7 +2,7 @@
 
 use super::vertices::{Indexed, Vertices};
 use super::{File, FileContent, Placement, RecordText};
-use crate::mesh::build::Triangulation;
+use crate::mesh::triangulation::Triangulation;
 use crate::particles::Particles;
 use crate::quality;
 use core::ops::Range;

@@ -1,6 +1,6 @@
 //! The vertices of a mesh in a file, and the triangles over them.
 
-use crate::mesh::build::Triangulation;
+use crate::mesh::triangulation::Triangulation;
 use crate::particles::Particles;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};

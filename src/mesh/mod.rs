@@ -12,7 +12,7 @@
 //!
 //! [`topology`](crate::topology) counts the components, borders and Euler number of such a list.
 
-pub mod build;
 pub mod facing;
 pub mod half_edge;
 pub(crate) mod stars;
+pub mod triangulation;

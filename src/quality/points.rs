@@ -6,8 +6,8 @@ use super::sheets::ByField;
 use crate::field::Evaluator;
 use crate::field::crossing::is_passed;
 use crate::math::{Bounds, NONE};
-use crate::mesh::build::{self, Middle};
 use crate::mesh::stars::{Sheets, StarPoints, Stars};
+use crate::mesh::triangulation::{self, Middle};
 use crate::particles::Particles;
 use crate::slices::{self, HEAVY, MEDIUM};
 use crate::spatial::tree::Tree;
@@ -152,7 +152,7 @@ impl MeasuredPoints {
         let Some(sheets) = &self.sheets else { return Vec::new() };
         let placed = self.creases.placed(&self.tree, &self.normal, rows);
         let has_surface = |Middle { place, up, reach }: Middle| is_passed(field, place, up, reach);
-        let mesh = build::join(&placed, sheets, bounds).await.judged(&placed, has_surface).await;
+        let mesh = triangulation::join(&placed, sheets, bounds).await.judged(&placed, has_surface).await;
         let mut place = vec![NONE; placed.len()];
         (0..).zip(&self.tree.origin).for_each(|(k, &row)| place[row as usize] = k);
         mesh.into_corners().into_iter().map(|triangle| triangle.map(|row| place[row as usize])).collect()

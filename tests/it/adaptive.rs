@@ -6,7 +6,7 @@ use crate::smooth::smooth;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
-use marching_particles::mesh::build::triangulate;
+use marching_particles::mesh::triangulation::triangulate;
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{GapPolicy, LawKind, Phase, Sampling, Settings, SizeMode, StopReason};
 use marching_particles::spatial::CellGrid;
@@ -126,7 +126,6 @@ fn ten_steps_even_the_sizes_out() {
     }
 }
 
-#[cfg(feature = "points")]
 #[test]
 fn the_bunny_is_even_after_ten_steps() {
     use marching_particles::field::{model, rbf::RbfField};

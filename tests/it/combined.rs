@@ -75,6 +75,7 @@ fn a_formula_keeps_its_own_edges() {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn fields_that_meet_without_an_edge_are_closed_as_their_formula_is() {
     let capped = || formula("max(hypot(x, y) - 0.5, abs(z) - 1)");
     // A sheet that rises from the plane without an edge where y < 0, and at an angle elsewhere.
@@ -194,7 +195,6 @@ fn calls_are_counted_and_limited() {
     assert!(field.failure().is_some());
 }
 
-#[cfg(feature = "points")]
 mod with_a_model {
     use super::*;
     use marching_particles::field::formula::MODEL;
@@ -216,6 +216,7 @@ mod with_a_model {
     }
 
     #[test]
+    #[ignore = "slow: for cargo xtask test --all"]
     fn a_formula_cuts_hollows_and_fills_it() {
         let (bunny, bounds) = bunny();
         let waves = "k = 8; abs(sin(k x)cos(k y) + sin(k y)cos(k z) + sin(k z)cos(k x)) - 0.3";

@@ -74,6 +74,7 @@ fn rounded_box(half: [f64; 3], round: f64) -> String {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn the_sheets_of_thin_shells_are_proven_to_be_found() {
     let ball = "hypot(x, y, z)";
     let torus = "hypot(hypot(x, y) - 1, z) - 0.35";
@@ -256,6 +257,7 @@ fn a_clipped_gyroid_is_proven_to_be_found_whole() {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() {
     // Thin parts, long blends and a high degree keep the search for further components from a
     // proof.
@@ -350,6 +352,7 @@ fn cone_points_leave_nothing_undecided() {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn a_small_component_beside_a_cone_point_is_found() {
     // Small spheres inside and outside of the cone, so near to its apex that the cells around the
     // apex must shrink.
@@ -521,6 +524,7 @@ fn cutting_a_run_into_steps_changes_nothing() {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn sheets_that_face_the_same_way_hold_particles_each_however_near() {
     // A thousandth of a radius apart on spheres, and a hundredth on planes.
     let formula = "(x^2+y^2+z^2-1)*(x^2+y^2+z^2-1.0002)*(x^2+y^2+z^2-1.0004)";
@@ -554,6 +558,7 @@ fn sheets_that_face_the_same_way_hold_particles_each_however_near() {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn sheets_that_face_the_same_way_are_counted_apart_at_any_distance() {
     let spheres = |gap: f64| balls(&[0.0, 1.0, 2.0].map(|k| ([0.0; 3], 1.0 + k * gap)));
     for gap in [3e-2, 1e-3, 1e-4, 3e-5] {

@@ -19,6 +19,7 @@ fn has_count_warning(sample: &Sample) -> bool {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn a_box_of_thousands_of_periods_gets_the_wanted_number() {
     let mut misses = Vec::new();
     for (formula, half, count) in [
@@ -69,6 +70,7 @@ fn a_lattice_without_a_defect_stands_and_its_count_is_told() {
 
 /// The search ends where no radius leads to the count, with the nearest that it has met.
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn a_count_that_no_radius_leads_to_is_told() {
     let settings = Settings::with_count(1_500).in_box(Bounds::cube(30.0));
     let sample = sampled(GYROID, &settings);

@@ -180,6 +180,7 @@ fn random_roofs_are_refined_up_to_the_box() {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn where_creases_beyond_the_box_are_of_no_use_the_front_stands_on_those_within() {
     let (ball, cone) = ("x^2 + (y - 0.5)^2 + (z - 0.5)^2 - 1", "max(hypot(x, y) - (1.5 - z), -(z - 0.5))");
     let cut = "smin(max(hypot(x + 0.5, y + 0.5) - (1.5 - z), -(z - 0.5)), 1 - x + y, 0.25)";

@@ -47,6 +47,7 @@ fn figures(name: &str, solid: Creased, euler: i64, flatness: f64) -> Measurement
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn edges_of_a_solid_are_no_defects() {
     for (name, solid) in [("cube", cuboid([1.0; 3], 0.07)), ("plate", cuboid([2.0, 1.5, 0.03], 0.05))] {
         let figures = figures(name, solid, 2, 1e-5).figures;

@@ -4,6 +4,7 @@
 //!
 //! `UPDATE_GOLDEN=1 cargo test --test it docs::` writes what differs.
 
+use crate::golden::checkout;
 use marching_particles::math::shortest_text;
 use marching_particles::session::{Condition, Setting, SettingKind, SettingValue, settings};
 use std::path::{Path, PathBuf};
@@ -11,12 +12,8 @@ use std::{env, fs};
 
 const END: &str = "<!-- End of the table. -->\n";
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
 fn read(name: &str) -> String {
-    fs::read_to_string(root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    fs::read_to_string(checkout().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// Holds the table between the marks of a page to `wanted`, or writes it there.
@@ -26,7 +23,7 @@ fn check_table(page: &str, wanted: &str) {
     let (before, rest) = text.split_once(begin).unwrap_or_else(|| panic!("{page} has a begin mark"));
     let (written, after) = rest.split_once(END).unwrap_or_else(|| panic!("{page} has an end mark"));
     if env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1") {
-        fs::write(root().join(page), [before, begin, wanted, END, after].concat()).expect("a page");
+        fs::write(checkout().join(page), [before, begin, wanted, END, after].concat()).expect("a page");
         return;
     }
     assert_eq!(written, wanted, "{page}: UPDATE_GOLDEN=1 cargo test --test it docs:: puts it right");
@@ -256,7 +253,7 @@ fn the_summaries_are_those_of_the_tables() {
 fn documents() -> Vec<PathBuf> {
     let mut documents = Vec::new();
     for folder in ["", "docs"] {
-        let entries = fs::read_dir(root().join(folder)).expect("a folder of documents");
+        let entries = fs::read_dir(checkout().join(folder)).expect("a folder of documents");
         let paths = entries.map(|entry| entry.expect("an entry of the folder").path());
         documents.extend(paths.filter(|path| path.extension().is_some_and(|extension| extension == "md")));
     }
@@ -325,7 +322,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 #[test]
 fn comments_wrap_at_100_columns() {
     let folders = ["src", "tests", "benches", "examples", "xtask/src", "fuzz/targets"];
-    let files: Vec<PathBuf> = folders.iter().flat_map(|folder| sources(&root().join(folder))).collect();
+    let files: Vec<PathBuf> = folders.iter().flat_map(|folder| sources(&checkout().join(folder))).collect();
     assert!(files.len() > 300, "{} files were found", files.len());
     for file in files {
         let mut is_code = false;

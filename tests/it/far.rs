@@ -29,6 +29,7 @@ fn sampled(centre: DVec3, formula: &str, half: f64, settings: &Settings) -> (Ses
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn far_from_the_origin_the_figures_are_those_at_the_origin() {
     let uniform = settings!(radius_share: 0.008; ..Settings::default());
     let adaptive = settings!(sampling: Sampling::Adaptive; ..uniform);

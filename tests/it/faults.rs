@@ -478,6 +478,7 @@ fn sheets_nearer_than_a_spacing_are_kept_apart() {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn every_run_ends_whatever_the_field() {
     let formulas = [
         // Planes that cross along 500 lines, and more surface than there may be particles for.

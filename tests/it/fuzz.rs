@@ -2,6 +2,7 @@
 //! whole runs on damaged formulas of the gallery.
 
 use crate::cases;
+use crate::golden::checkout;
 use marching_particles::field::formula::MAX_FORMULA_BYTES;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
@@ -10,7 +11,6 @@ use marching_particles::session::{FieldRequest, Session};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 use std::fs;
-use std::path::Path;
 
 #[path = "../../fuzz/harness.rs"]
 #[expect(unreachable_pub, reason = "it is a library of its own for libFuzzer")]
@@ -22,7 +22,7 @@ pub(crate) fn below(random: &mut Pcg32, count: usize) -> usize {
 
 /// The files of a folder of `fuzz/seeds`, in the order of their names.
 fn seeds(folder: &str) -> Vec<Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds").join(folder);
+    let folder = checkout().join("fuzz/seeds").join(folder);
     let entries = fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let mut paths: Vec<_> = entries.map(|entry| entry.expect("a file").path()).collect();
     paths.sort();

@@ -1,6 +1,7 @@
 //! Tests of every surface of the gallery.
 
 use crate::crease_box::euler_on_grid;
+use crate::golden::checkout;
 use glam::{DVec3, Vec3};
 use marching_particles::field::Frame;
 use marching_particles::field::formula::Formula;
@@ -10,7 +11,6 @@ use marching_particles::field::{Enclosure, Field, Jet};
 use marching_particles::math::{Bounds, Sym3};
 use rand_core::Rng;
 use std::collections::BTreeSet;
-use std::path::Path;
 
 /// Pseudo-random points in the surface's box, the same in every run.
 fn points(surface: &Surface, count: usize) -> Vec<DVec3> {
@@ -225,6 +225,7 @@ fn closed_surfaces_lie_inside_their_boxes_over_the_whole_range_of_every_paramete
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn closed_surfaces_have_the_genus_they_claim() {
     for surface in SURFACES.iter() {
         let Some(genus) = surface.genus else { continue };
@@ -290,7 +291,7 @@ fn smooth_surfaces_have_a_gradient_everywhere_and_the_others_do_not() {
 
 #[test]
 fn every_surface_and_model_has_its_picture_and_every_picture_its_surface() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("www/public/gallery");
+    let folder = checkout().join("www/public/gallery");
     let files =
         std::fs::read_dir(&folder).expect("the folder of the pictures").map(|entry| entry.expect("an entry"));
     let pictures: BTreeSet<String> =

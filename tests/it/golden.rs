@@ -6,10 +6,19 @@
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fmt::Debug;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+/// The folder of the checkout.
+pub(crate) fn checkout() -> &'static Path {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    package
+        .ancestors()
+        .find(|folder| folder.join("Cargo.lock").is_file())
+        .expect("a workspace has a lock file")
+}
 
 fn path(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name)
+    checkout().join("tests/golden").join(name)
 }
 
 /// The content of the golden file `name`.
@@ -45,7 +54,7 @@ pub(crate) fn finish<T: Serialize>(name: &str, content: &T, faults: &[String], m
     }
     assert!(
         faults.is_empty(),
-        "\n{}\nIf this was meant to change: UPDATE_GOLDEN=1 cargo test --test it {module}::\n",
+        "\n{}\nIf this was meant to change: UPDATE_GOLDEN=1 cargo test {module}::\n",
         faults.join("\n")
     );
 }

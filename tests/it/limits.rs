@@ -18,6 +18,7 @@ struct Limited {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn a_surface_ends_at_its_limits_with_particles_on_the_rim() {
     let cases = [
         Limited {

@@ -6,7 +6,7 @@ use crate::runs::of_gallery;
 use glam::{DVec3, Vec3};
 use marching_particles::field::gallery::{self, Surface};
 use marching_particles::math::Bounds;
-use marching_particles::mesh::build::{Triangulation, triangulate};
+use marching_particles::mesh::triangulation::{Triangulation, triangulate};
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{Settings, SizeMode};
 use marching_particles::topology::Component;

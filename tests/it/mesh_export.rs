@@ -5,7 +5,7 @@ use crate::runs::of_gallery;
 use glam::Vec3;
 use marching_particles::export::{MeshFile, MeshFormat, Placement, Unit, UpAxis, Vertices, write_mesh};
 use marching_particles::field::gallery;
-use marching_particles::mesh::build::{Triangulation, triangulate};
+use marching_particles::mesh::triangulation::{Triangulation, triangulate};
 use marching_particles::particles::Particles;
 use marching_particles::quality;
 use marching_particles::sampler::Settings;

@@ -9,6 +9,7 @@
 //! UPDATE_MODELS=1 BUNNY=package/index.js cargo test --test it models:: -- --include-ignored
 //! ```
 
+use crate::golden::checkout;
 use glam::{DVec2, DVec3, Vec3};
 use marching_particles::field::Field;
 use marching_particles::field::Frame;
@@ -17,7 +18,6 @@ use marching_particles::field::model::MODELS;
 use marching_particles::pointcloud::Cloud;
 use marching_particles::pointcloud::models;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
 
 /// Number of points per model.
 const COUNT: usize = 200;
@@ -49,7 +49,7 @@ fn octahedral_encode(n: DVec3) -> DVec2 {
 
 fn check(id: &str, made: &Cloud) {
     let bytes = encode(&centred(made));
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("src/pointcloud/data/{id}.bin"));
+    let path = checkout().join(format!("src/pointcloud/data/{id}.bin"));
     if std::env::var_os("UPDATE_MODELS").is_some_and(|value| value == "1") {
         std::fs::write(&path, &bytes).expect("the data file can be written");
     }
@@ -91,8 +91,7 @@ fn every_model_has_two_hundred_points_of_its_own() {
         assert!(cloud.normal.iter().all(|n| (n.length() - 1.0).abs() < 1e-12), "{}", model.id);
         // Encoding a decoded cloud gives the same bytes.
         let again = encode(&cloud);
-        let path =
-            PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("src/pointcloud/data/{}.bin", model.id));
+        let path = checkout().join(format!("src/pointcloud/data/{}.bin", model.id));
         assert!(std::fs::read(path).expect("the data file can be read") == again, "{}", model.id);
     }
     assert_eq!(models::cloud("ellipsoid"), None);

@@ -38,6 +38,7 @@ fn layers(gap: f64) -> [(String, usize, i64); 4] {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn sheets_as_near_as_single_precision_tells_apart_are_sampled_each() {
     for (gap, settings) in [
         (1e-5, of_radius(0.1, 1.5)),

@@ -101,6 +101,7 @@ fn check_mesh(sample: &Sample, what: &str) {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn unit_cells_have_the_same_opposite_faces_and_join_across_them() {
     // Of genus 3 in the cell that repeats (Schwarz; Schoen 1970), of which the box of 2π holds two,
     // one and four.

@@ -104,6 +104,7 @@ fn systems_have_the_digests_that_other_platforms_give() {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn the_system_does_not_depend_on_the_budget_per_step() {
     let text = ellipsoid(7, false);
     let of = |budget| {
@@ -153,6 +154,7 @@ fn normals_that_all_point_inward_are_told() {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn flipped_normals_are_turned_round_and_an_outlier_is_left_out() {
     let right = ellipsoid(8, true);
     let fit = file(&right, 200).expect("a good cloud");
@@ -339,6 +341,7 @@ fn said_of_mesh(fit: Fit) -> Vec<String> {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn a_mesh_of_another_form_than_its_surface_is_told() {
     // Its edges are rounded.
     let [rounded] = said_of_mesh(fit_of("washer.obj", washer(0.4))).try_into().expect("one warning");
@@ -385,6 +388,7 @@ fn grid_mesh(place: impl Fn(f64, f64) -> DVec3) -> String {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn rounded_edges_of_a_mesh_are_told_where_they_take_a_hundredth_of_its_area() {
     let mut random = Pcg64Mcg::new(29);
     let mut number = || f64::from(random.next_u32()) / f64::from(u32::MAX);
@@ -485,6 +489,7 @@ fn distance_of(fit: Fit, distance: impl Fn(DVec3) -> f64) -> (usize, i64, f64) {
 
 /// Interpolated at 200 of 5,000 points, the surfaces with noise of 1 % and 2 % fell apart.
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn noise_is_smoothed_by_all_points() {
     for (name, is_torus, size) in [("sphere", false, 2.0), ("torus", true, 2.8)] {
         for (noise, has_normals) in
@@ -519,6 +524,7 @@ fn noise_is_smoothed_by_all_points() {
 /// With noise of 1 % and no normals, what the 200 points gave had 3 components and the Euler number
 /// −65.
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn a_noisy_bunny_keeps_its_form() {
     let bunny = marching_particles::pointcloud::fit_model(&MODELS[0]);
     let field = bunny.field();

@@ -70,6 +70,7 @@ fn energies(surface: &gallery::Surface, settings: &Settings) -> (Vec<f64>, Vec<f
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn the_energy_falls_at_every_step_on_every_smooth_surface_at_every_radius() {
     for surface in gallery::SURFACES.iter().filter(|surface| surface.smooth) {
         for radius_share in [0.01, 0.015, 0.03, 0.05] {

@@ -23,6 +23,7 @@ fn volume(field: &Formula, half: f64) -> f64 {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn a_solid_is_closed_where_an_edge_of_it_fades_out() {
     for text in [
         // A fillet between two planes, whose width falls to 0 and stays so.
@@ -69,6 +70,7 @@ fn check_closed(text: &str, half: f64, counts: &[u32]) {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn a_solid_is_closed_where_a_fillet_begins_on_an_edge() {
     // There the fillet has two normals.
     let text = "max(smin(z, hypot(x, y, z) - 0.5, max(0, -y)), hypot(x, y, z) - 1.2)";
@@ -76,6 +78,7 @@ fn a_solid_is_closed_where_a_fillet_begins_on_an_edge() {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn a_solid_is_closed_where_a_fillet_becomes_narrower_than_a_particle() {
     // Where it does so, its parts meet at an angle; beside it the same patches meet without one.
     for width in [0.005, 0.01, 0.02] {
@@ -129,6 +132,7 @@ fn a_piece_of_a_curve_has_an_edge_where_the_normals_of_its_patches_differ() {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn creases_are_counted_without_the_seams_that_prolong_them() {
     let count = |text: &str, count, bounds: Option<Bounds>| {
         let field = Formula::parse(text).expect("a formula");

@@ -293,6 +293,7 @@ fn cancelling_keeps_the_particles() {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn another_field_ends_the_run_and_keeps_its_particles() {
     let changes = [
         r#"{"formula":"x y z"}"#,
@@ -608,6 +609,7 @@ mod solids {
     }
 
     #[test]
+    #[ignore = "slow: for cargo xtask test --all"]
     fn a_periodic_cell_is_one_period_unless_the_box_is_given() {
         let settings = sized(2000);
         let mut session = Session::new();
@@ -631,6 +633,7 @@ mod solids {
     }
 
     #[test]
+    #[ignore = "slow: for cargo xtask test --all"]
     fn a_gyroid_becomes_a_part_and_a_surface_again() {
         let settings = sized(3000);
         let mut session = Session::new();

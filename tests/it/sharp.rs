@@ -50,11 +50,13 @@ fn the_mesh_of_a_solid_of_few_particles_is_closed_and_keeps_its_edges() {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn the_mesh_of_a_solid_is_closed_and_keeps_its_edges_and_refined_it_has_fewer_defects() {
     check(Settings::with_count(6_000));
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn the_mesh_of_a_solid_whose_sizes_differ_is_closed_and_keeps_its_edges() {
     check(Settings::with_count(6_000).adaptive());
 }
@@ -128,6 +130,7 @@ fn floors_and_folded_angles_bend_a_solid_at_edges() {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn a_power_below_two_has_its_ridges_as_creases() {
     // The volume is 8 Γ(1 + 1/p)³ / Γ(1 + 3/p).
     let cases = [

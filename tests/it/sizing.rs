@@ -61,6 +61,7 @@ fn assert_graded(particles: &Particles, grading: f64, context: &str) {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn neighbours_never_differ_by_more_than_the_grading_allows() {
     for surface in SURFACES.iter().filter(|surface| surface.smooth) {
         for (radius_law, grading, relax_steps) in [(LAWS[1], 0.1, 3), (LAWS[2], 0.2, 3), (LAWS[0], 0.1, 0)] {
@@ -99,6 +100,7 @@ fn no_particle_is_larger_than_its_law_and_most_are_as_large() {
 }
 
 #[test]
+#[ignore = "slow: for cargo xtask test --all"]
 fn the_energy_of_the_overlaps_falls_at_every_step_on_every_smooth_surface_and_the_sizes_end_graded() {
     for surface in SURFACES.iter().filter(|surface| surface.smooth) {
         for radius_law in LAWS {

@@ -35,11 +35,18 @@ pub(crate) fn bench(project: &Project, options: &Options) -> Result<()> {
         );
     }
     let mut formula = Command::new(cargo());
-    show(
-        formula.current_dir(&project.root).args(["bench", "--locked", "--bench", "formula", "--", "--quick"]),
-    )?;
+    show(formula.current_dir(&project.root).args([
+        "bench",
+        "--package",
+        "benches",
+        "--locked",
+        "--bench",
+        "formula",
+        "--",
+        "--quick",
+    ]))?;
     let mut whole = Command::new(cargo());
-    whole.current_dir(&project.root).args(["bench", "--locked", "--bench", "whole"]);
+    whole.current_dir(&project.root).args(["bench", "--package", "benches", "--locked", "--bench", "whole"]);
     if !options.full {
         whole.args(["--", "quick"]);
     }

@@ -11,14 +11,14 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::thread;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use serde_json::{Value, json};
-use wasm_bindgen_cli_support::Bindgen;
 
 use crate::fingerprint::{Fingerprint, files_under, sha256_of};
 use crate::node;
-use crate::project::Project;
+use crate::project::{Project, cargo};
 use crate::step;
 use crate::wasm_target::WasmTarget;
 
@@ -108,14 +108,14 @@ impl Bundle {
         }
     }
 
-    /// The features that cargo builds it with.
-    pub(crate) fn features(self) -> &'static str {
+    /// The package that it is made of.
+    pub(crate) fn package(self) -> &'static str {
         match self {
-            Self::Core => "page-core",
-            Self::Points => "page-points",
-            Self::Lesson => "page-lesson",
-            Self::Webgpu => "webgpu",
-            Self::Webgl => "webgl",
+            Self::Core => "marching-particles-core",
+            Self::Points => "marching-particles-points",
+            Self::Lesson => "marching-particles-lesson",
+            Self::Webgpu => "marching-particles-webgpu",
+            Self::Webgl => "marching-particles-webgl",
         }
     }
 
@@ -133,22 +133,40 @@ impl Bundle {
     /// Flags of the compiler for this bundle alone. A function of more than this cost is called
     /// where LLVM's own limit, 250, would still copy it into its callers: the core weighs 7 % less.
     /// Those that run often ask for it by `#[inline]`, so that sampling takes as many instructions
-    /// as before; at 40 it weighs 9 % less and takes 1 to 4 % more.
-    fn flags(self) -> &'static [&'static str] {
-        match self {
-            Self::Core | Self::Points => &["-Cllvm-args=-inline-threshold=100"],
-            Self::Lesson | Self::Webgpu | Self::Webgl => &[],
+    /// as before; at 40 it weighs 9 % less and takes 1 to 4 % more. While developing all have the
+    /// same flags, so that the library is compiled once.
+    fn flags(self, purpose: Purpose) -> &'static [&'static str] {
+        match (self, purpose) {
+            (Self::Core | Self::Points, _) | (Self::Lesson, Purpose::Development) => {
+                &["-Cllvm-args=-inline-threshold=100"]
+            }
+            _ => &[],
         }
     }
 
-    /// The sources that the bundle is made of, under the root. The renderers share the crate with
-    /// the sampler but use nothing of it (`tests/architecture.rs` holds them to that), so that a
-    /// change to the sampler leaves them alone.
-    fn sources(self) -> &'static [&'static str] {
-        match self {
-            Self::Core | Self::Points | Self::Lesson => &["src"],
-            Self::Webgpu | Self::Webgl => &["src/math", "src/render", "src/web", "shaders"],
+    /// The folders under the root with the sources that the bundle is made of: what is in its
+    /// package and in those that this depends on.
+    fn sources(self, project: &Project) -> Result<Vec<PathBuf>> {
+        let (own, is_of_library) = match self {
+            Self::Core => ("src/web/core", true),
+            Self::Points => ("src/web/points", true),
+            Self::Lesson => ("src/web/lesson", true),
+            Self::Webgpu => ("src/web/webgpu", false),
+            Self::Webgl => ("src/web/webgl", false),
+        };
+        if !is_of_library {
+            return Ok([own, "src/render", "shaders"].map(PathBuf::from).to_vec());
         }
+        let mut folders = vec![own.into(), "src/web/values".into()];
+        // The folders of the library are those without a package of their own.
+        for entry in fs::read_dir(project.root.join("src"))? {
+            let path = entry?.path();
+            if path.is_dir() && !path.join("Cargo.toml").is_file() && !path.ends_with("web") {
+                folders.push(project.relative(&path).to_owned());
+            }
+        }
+        folders.sort();
+        Ok(folders)
     }
 
     fn wasm_opt(self) -> &'static [&'static str] {
@@ -207,14 +225,19 @@ fn build_one(
     if intact && stamp["inputs"] == inputs.as_str() {
         return Ok(false);
     }
-    let module = compile(project, target, bundle, purpose)?;
+    // Both are cargo's work, in folders of their own.
+    let (module, binder) = thread::scope(|scope| {
+        let binder = scope.spawn(|| binder(project));
+        (compile(project, target, bundle, purpose), binder.join())
+    });
+    let (module, binder) = (module?, binder.map_err(|_| anyhow!("compiling `bind` ended with a panic"))??);
     let process =
         Fingerprint::default().file(&module)?.text("process", &process_version(project, bundle)?).finish();
     if !(intact && stamp["process"] == process.as_str()) {
         if folder.exists() {
             fs::remove_dir_all(folder)?;
         }
-        bind(bundle, &module, folder)?;
+        bind(bundle, &binder, &module, folder)?;
         if purpose == Purpose::Site {
             optimise(project, bundle, folder)?;
         }
@@ -236,14 +259,13 @@ fn inputs(project: &Project, target: &WasmTarget, bundle: Bundle, purpose: Purpo
     let root = &project.root;
     let mut fingerprint = Fingerprint::default()
         .text("compiler", &target.version)
-        .text("flags", &rust_flags(project, bundle).join(" "))
+        .text("flags", &rust_flags(project, bundle, purpose).join(" "))
         .text("profile", purpose.profile())
         .text("opt-level", bundle.opt_level())
-        .text("features", bundle.features())
         .text("process", &process_version(project, bundle)?)
         .file(&root.join("Cargo.toml"))?
         .file(&root.join("src/lib.rs"))?;
-    for folder in bundle.sources() {
+    for folder in bundle.sources(project)? {
         fingerprint = fingerprint.tree(&root.join(folder))?;
     }
     Ok(fingerprint.finish())
@@ -261,9 +283,9 @@ fn process_version(project: &Project, bundle: Bundle) -> Result<String> {
 
 /// The flags for the wasm target. They are set here in full, so that `RUSTFLAGS` in the environment
 /// does not change what is published; paths of this machine are kept out of the panic messages.
-fn rust_flags(project: &Project, bundle: Bundle) -> Vec<String> {
+fn rust_flags(project: &Project, bundle: Bundle, purpose: Purpose) -> Vec<String> {
     let mut flags = vec!["-Ctarget-feature=+simd128".to_owned()];
-    flags.extend(bundle.flags().iter().map(|&flag| flag.to_owned()));
+    flags.extend(bundle.flags(purpose).iter().map(|&flag| flag.to_owned()));
     let cargo_home = std::env::var_os("CARGO_HOME")
         .map(PathBuf::from)
         .or_else(|| std::env::home_dir().map(|home| home.join(".cargo")));
@@ -274,61 +296,50 @@ fn rust_flags(project: &Project, bundle: Bundle) -> Vec<String> {
     flags
 }
 
-/// Compiles the library for a bundle and returns the module.
+/// Compiles the package of a bundle and returns the module.
 fn compile(project: &Project, target: &WasmTarget, bundle: Bundle, purpose: Purpose) -> Result<PathBuf> {
-    let mut command = target.cargo(project, "rustc");
+    let mut command = target.cargo(project, "build");
     command
-        .args(["--package", "marching-particles", "--lib", "--crate-type", "cdylib", "--locked"])
-        .args(["--profile", purpose.profile()])
-        .args(["--no-default-features", "--features", bundle.features()])
+        .args(["--package", bundle.package(), "--locked", "--profile", purpose.profile()])
         .arg("--message-format=json-render-diagnostics")
         // Cargo lets one build at a time into a folder. This one is apart so that the native checks
         // can run meanwhile.
         .env("CARGO_TARGET_DIR", project.target.join("wasm"))
         .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", bundle.opt_level())
-        .env("CARGO_ENCODED_RUSTFLAGS", rust_flags(project, bundle).join("\u{1f}"))
-        // Without this the builds would write one file of the same name, and cargo would take one
-        // bundle's module for another's. With it the name carries a hash of the features and the
-        // profile.
-        .env("__CARGO_DEFAULT_LIB_METADATA", bundle.folder());
+        .env("CARGO_ENCODED_RUSTFLAGS", rust_flags(project, bundle, purpose).join("\u{1f}"));
     let messages = step::run(&format!("{}: compile", bundle.folder()), &mut command, "")?;
     let module = messages
         .lines()
         .filter_map(|line| serde_json::from_str::<Value>(line).ok())
-        .filter(|message| {
-            message["reason"] == "compiler-artifact" && message["target"]["name"] == "marching_particles"
-        })
-        .filter_map(|message| {
-            message["filenames"]
-                .as_array()?
-                .iter()
-                .find_map(|name| name.as_str().filter(|name| name.ends_with(".wasm")).map(PathBuf::from))
-        })
+        .filter(|message| message["reason"] == "compiler-artifact")
+        .flat_map(|message| message["filenames"].as_array().cloned().unwrap_or_default())
+        .filter_map(|name| name.as_str().filter(|name| name.ends_with(".wasm")).map(PathBuf::from))
         .next_back();
     module.context("cargo named no wasm module among its results")
 }
 
-/// Writes the module and its JavaScript to `stage`. This is the work of the `wasm-bindgen` command
-/// with `--target web`, as a library: the lock file pins its version, and nobody has to install a
-/// tool.
-fn bind(bundle: Bundle, module: &Path, stage: &Path) -> Result<()> {
-    step::task(&format!("{}: bind", bundle.folder()), || {
-        Bindgen::new()
-            .input_path(module)
-            .out_name(bundle.out_name())
-            .typescript(true)
-            // Keeps `new URL('…_bg.wasm', import.meta.url)` in the module, which is how bundlers
-            // find the wasm file.
-            .omit_default_module_path(false)
-            .remove_producers_section(true)
-            .web(true)?
-            .generate(stage)
-            .with_context(|| format!("could not bind {}", module.display()))
-    })?;
+/// The program that writes the JavaScript of a module, compiled if need be.
+fn binder(project: &Project) -> Result<PathBuf> {
+    let mut command = Command::new(cargo());
+    command.current_dir(&project.root).args(["build", "--quiet", "--package", "bind", "--locked"]);
+    step::capture(&mut command, "")?;
+    Ok(project.target.join("debug").join(format!("bind{}", std::env::consts::EXE_SUFFIX)))
+}
+
+/// Writes the module and its JavaScript to `stage`.
+fn bind(bundle: Bundle, binder: &Path, module: &Path, stage: &Path) -> Result<()> {
+    let mut command = Command::new(binder);
+    command.arg(module).arg(bundle.out_name()).arg(stage);
+    step::run(&format!("{}: bind", bundle.folder()), &mut command, "")?;
     let script = stage.join(format!("{}.js", bundle.out_name()));
     let text = fs::read_to_string(&script).with_context(|| format!("could not read {}", script.display()))?;
     if !text.contains(&format!("export class {} ", bundle.class())) {
-        bail!("{} exports no class `{}`: is it still in src/web/?", script.display(), bundle.class());
+        bail!(
+            "{} exports no class `{}`: is it still in src/web/{}?",
+            script.display(),
+            bundle.class(),
+            bundle.folder()
+        );
     }
     declare(bundle, stage)
 }
@@ -348,8 +359,29 @@ fn declare(bundle: Bundle, stage: &Path) -> Result<()> {
             text += "\n";
         }
     }
-    fs::write(&file, &text)?;
+    fs::write(&file, in_order(&text, bundle.class()))?;
     Ok(fs::remove_file(stage.join(format!("{}_bg.wasm.d.ts", bundle.out_name())))?)
+}
+
+/// The declarations with the members of the class in the order of their names: the module's own
+/// order changes from build to build.
+fn in_order(text: &str, class: &str) -> String {
+    let begin = format!("export class {class} {{\n");
+    let Some((before, rest)) = text.split_once(&begin) else { return text.to_owned() };
+    let Some((body, after)) = rest.split_once("\n}\n") else { return text.to_owned() };
+    let mut members = Vec::new();
+    let mut member = String::new();
+    for line in body.lines() {
+        member += line;
+        member += "\n";
+        if !line.trim_start().starts_with(['/', '*']) {
+            members
+                .push((line.trim_start_matches("    static").trim().to_owned(), std::mem::take(&mut member)));
+        }
+    }
+    members.sort();
+    let members: String = members.into_iter().map(|(_, member)| member).collect();
+    format!("{before}{begin}{members}}}\n{after}")
 }
 
 /// Fails if the page's declarations of a bundle are not those of the bundle in `folder`.

@@ -29,8 +29,10 @@ use crate::wasm_target::{self, WasmTarget};
 pub(crate) enum Part {
     /// rustfmt.
     Format,
-    /// Clippy on everything that is compiled natively, warnings denied.
+    /// Clippy on everything that is compiled natively for every change, warnings denied.
     Lint,
+    /// Clippy on the benches and on the renderer on Vulkan, warnings denied.
+    LintRest,
     /// Clippy on the library as WebAssembly, with what JavaScript sees of it, warnings denied.
     LintWasm,
     /// Unit, integration and documentation tests, and every example.
@@ -73,10 +75,11 @@ const USUAL: [Part; 7] =
     [Part::Format, Part::Lint, Part::Native, Part::LintWasm, Part::Parity, Part::Page, Part::Chromium];
 
 /// Everything.
-const ALL: [Part; 16] = [
+const ALL: [Part; 17] = [
     Part::Format,
     Part::Deny,
     Part::Lint,
+    Part::LintRest,
     Part::Native,
     Part::Docs,
     Part::LintWasm,
@@ -172,7 +175,7 @@ pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
         failures
     });
     failures.extend(checks.run(&browsers));
-    times::print(started.elapsed());
+    times::print(started.elapsed(), &project.scratch("times")?.join("tests.txt"));
     if !failures.is_empty() {
         bail!("failed: {}", failures.join(", "));
     }
@@ -202,9 +205,10 @@ impl Checks<'_> {
                 Part::Format => format(self.project),
                 Part::Deny => deny::test(self.project),
                 Part::Lint => lint(self.project),
+                Part::LintRest => lint_rest(self.project),
                 Part::LintWasm => lint_wasm(self.project),
                 Part::Docs => docs(self.project),
-                Part::Native => native::test(self.project, &self.cases),
+                Part::Native => native::test(self.project, &self.cases, self.purpose == Purpose::Site),
                 Part::Parity => parity(self.project, Purpose::Development),
                 Part::Release => release(self.project),
                 Part::Gltf => gltf(self.project),
@@ -283,26 +287,35 @@ fn format(project: &Project) -> Result<()> {
 
 fn lint(project: &Project) -> Result<()> {
     let mut command = cargo_at_root(project, &["clippy", "--all-targets"]);
-    command.args(native::TESTED).args(["--features", "marching-particles/vulkan", "--package", "xtask"]);
-    command.args(["--", "--deny", "warnings"]);
+    command.args(native::TESTED).args(["--package", "xtask", "--", "--deny", "warnings"]);
     step::run("lint (native)", &mut command, "").map(drop)
 }
 
-/// One pass for all bundles: their features can be had together. That for WebGL2 is left out,
-/// because no line of the sources depends on which back end the renderer has.
+/// What is compiled natively and not for every change: the benches, and the renderer on Vulkan with
+/// its pictures.
+fn lint_rest(project: &Project) -> Result<()> {
+    let mut command = cargo_at_root(project, &["clippy", "--all-targets", "--locked"]);
+    command.args(["--package", "benches", "--package", "marching-particles-render", "--features"]);
+    command.args(["marching-particles-render/vulkan", "--", "--deny", "warnings"]);
+    step::run("lint (benches, Vulkan)", &mut command, "").map(drop)
+}
+
+/// One pass for all bundles but that for WebGL2: no line of the sources depends on which back end
+/// the renderer has.
 fn lint_wasm(project: &Project) -> Result<()> {
-    let features =
-        [Bundle::Core, Bundle::Points, Bundle::Lesson, Bundle::Webgpu].map(Bundle::features).join(",");
     let mut command = WasmTarget::prepare(project)?.cargo(project, "clippy");
-    command.args([
-        "--package",
+    for package in [
         "marching-particles",
-        "--lib",
-        "--no-default-features",
-        "--features",
-        &features,
-    ]);
-    command.args(["--locked", "--", "--deny", "warnings"]);
+        Bundle::Core.package(),
+        Bundle::Points.package(),
+        Bundle::Lesson.package(),
+        Bundle::Webgpu.package(),
+        "marching-particles-render",
+        "marching-particles-values",
+    ] {
+        command.args(["--package", package]);
+    }
+    command.args(["--lib", "--locked", "--", "--deny", "warnings"]);
     step::run("lint (wasm32)", &mut command, "").map(drop)
 }
 
@@ -311,7 +324,7 @@ fn docs(project: &Project) -> Result<()> {
     command.args(native::TESTED).args(["--package", "xtask"]).env("RUSTDOCFLAGS", "--deny warnings");
     step::run("documentation", &mut command, "")?;
     let mut command = cargo_at_root(project, &["package", "--package", "marching-particles"]);
-    command.args(["--no-verify", "--allow-dirty", "--locked"]);
+    command.args(["--package", "marching-particles-cli", "--no-verify", "--allow-dirty", "--locked"]);
     step::run("package", &mut command, "")?;
     dependent(project)
 }

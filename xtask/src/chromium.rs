@@ -28,8 +28,8 @@ const PLACES: [&str; 3] = [
     r"C:\Program Files\Google\Chrome\Application\chrome.exe",
 ];
 
-/// Finds a Chromium that starts, or installs one: Debian's package without windows when root, else
-/// Playwright's own.
+/// Finds a Chromium that starts, or gets one: Debian's package without windows where the system may
+/// be changed, else Playwright's own, which goes into the user's cache.
 pub(crate) fn find(project: &Project) -> Result<PathBuf> {
     for variable in VARIABLES {
         if let Some(path) = env::var_os(variable).map(PathBuf::from) {

@@ -9,17 +9,23 @@ use anyhow::{Result, bail};
 use crate::project::on_path;
 use crate::step;
 
-/// Installs packages, which bring what is called `what`.
+/// Installs packages, which bring what is called `what`, where the variable `CI` says that the
+/// machine is there for these checks: a system that belongs to somebody is not changed unasked.
 ///
 /// # Errors
 ///
-/// If this is no such system, this process may not install packages, or the packages cannot be had.
+/// If it is not set, this is no such system, this process may not install packages, or the packages
+/// cannot be had. The error says which command installs them.
 pub(crate) fn install(what: &str, packages: &[&str]) -> Result<()> {
     /// Whether the index of packages has been fetched. It is fetched once.
     static INDEX: OnceLock<()> = OnceLock::new();
 
+    let line = format!("apt-get install {}", packages.join(" "));
+    if std::env::var_os("CI").is_none_or(|value| value.is_empty()) {
+        bail!("{what} is missing: `{line}` installs it on Debian; with CI=1 this task does that itself");
+    }
     if on_path("apt-get").is_none() || !is_root() {
-        bail!("packages can be installed only by root and with apt-get");
+        bail!("{what} is missing, and `{line}` can be run only by root and where there is apt-get");
     }
     if INDEX.set(()).is_ok() {
         step::run("Debian's package index (apt-get update)", Command::new("apt-get").arg("update"), "")?;

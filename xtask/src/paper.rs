@@ -31,7 +31,15 @@ pub(crate) fn paper(project: &Project, options: &Options) -> Result<()> {
     println!("  {machine}");
     let drawn = project.scratch("paper")?;
     let mut bench = Command::new(cargo());
-    bench.current_dir(&project.root).args(["bench", "--locked", "--bench", "paper", "--"]);
+    bench.current_dir(&project.root).args([
+        "bench",
+        "--package",
+        "benches",
+        "--locked",
+        "--bench",
+        "paper",
+        "--",
+    ]);
     bench.args(["--limit", &options.limit.to_string(), "--threads", &options.threads.to_string()]);
     bench.args(["--machine", &machine, "--pictures"]).arg(&drawn);
     let line = step::command_line(&bench);

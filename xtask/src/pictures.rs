@@ -21,8 +21,8 @@ pub(crate) fn test(project: &Project) -> Result<()> {
     // Without a driver the test says what to install.
     let advice = driver().err().map(|error| format!("{error:#}")).unwrap_or_default();
     let mut tests = Command::new(cargo());
-    tests.current_dir(&project.root).args(["test", "--package", "marching-particles", "--locked"]);
-    tests.args(["--features", "marching-particles/vulkan", "--test", "pictures"]);
+    tests.current_dir(&project.root).args(["test", "--package", "marching-particles-render", "--locked"]);
+    tests.args(["--features", "vulkan", "--test", "pictures"]);
     step::run("pictures, drawn natively", &mut tests, &advice).map(drop)
 }
 

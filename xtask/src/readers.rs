@@ -35,7 +35,7 @@ pub(crate) fn test(project: &Project) -> Result<()> {
     let environment = environment(project, &python)?;
     let mut build = Command::new(cargo());
     // The executable that the native tests run.
-    build.current_dir(&project.root).args(["build", "--profile", "test"]).args(native::TESTED);
+    build.current_dir(&project.root).arg("build").args(native::TESTED);
     step::run("command line: compile", build.args(["--bin", "marching-particles"]), "")?;
     let mut read = Command::new(environment);
     read.current_dir(&project.root)

@@ -122,7 +122,15 @@ fn varied(tree: &Path, constant: &str, factor: f64) -> Result<(PathBuf, String, 
 
 fn bench(tree: &Path) -> Result<Outcome> {
     let mut command = Command::new(cargo());
-    command.current_dir(tree).args(["bench", "--locked", "--quiet", "--profile", "test"]);
+    command.current_dir(tree).args([
+        "bench",
+        "--package",
+        "benches",
+        "--locked",
+        "--quiet",
+        "--profile",
+        "test",
+    ]);
     command.args(["--bench", "sensitivity"]).env("CARGO_TARGET_DIR", tree.join("target"));
     let line = step::command_line(&command);
     let output = command.output().with_context(|| format!("could not start `{line}`"))?;

@@ -66,8 +66,9 @@ fn array(value: &Value) -> &[Value] {
     value.as_array().map_or(&[], Vec::as_slice)
 }
 
-/// Prints the parts in the order in which they ended, and the slowest tests.
-pub(crate) fn print(whole: Duration) {
+/// Prints the parts in the order in which they ended, and the slowest tests; writes all tests to
+/// `file`, the slowest first.
+pub(crate) fn print(whole: Duration, file: &Path) {
     let take = |list: &Mutex<Vec<(String, f64)>>| {
         std::mem::take(&mut *list.lock().unwrap_or_else(std::sync::PoisonError::into_inner))
     };
@@ -78,11 +79,15 @@ pub(crate) fn print(whole: Duration) {
     println!("  {:>7.1}  the whole, two parts at a time", whole.as_secs_f64());
     let mut tests = take(&TESTS);
     tests.sort_by(|a, b| b.1.total_cmp(&a.1));
-    if !tests.is_empty() {
-        println!("\n  {:>7}  the slowest of {} tests", "s", tests.len());
-    }
-    for (name, seconds) in tests.into_iter().take(SLOWEST) {
-        println!("  {seconds:>7.1}  {name}");
+    let lines: Vec<String> =
+        tests.iter().map(|(name, seconds)| format!("  {seconds:>7.1}  {name}")).collect();
+    if !lines.is_empty() {
+        println!("\n  {:>7}  the slowest of {} tests", "s", lines.len());
+        println!("{}", lines[..SLOWEST.min(lines.len())].join("\n"));
+        match fs::write(file, lines.join("\n") + "\n") {
+            Ok(()) => println!("  all of them: {}", file.display()),
+            Err(error) => println!("  {} could not be written: {error}", file.display()),
+        }
     }
     println!();
 }

@@ -13,7 +13,7 @@ use super::coarse::{self, FrontPart, halvings, largest_curvatures};
 use super::refusal::Refusal;
 use super::{Count, Refinement, Rings, Target};
 use crate::math::{Bounds, Forest, NONE};
-use crate::mesh::build::triangulate;
+use crate::mesh::triangulation::triangulate;
 use crate::particles::Particles;
 use crate::sampler::constraint::CreaseLadder;
 use crate::sampler::probe::Probe;

@@ -105,7 +105,7 @@ test('what moves is drawn while it is in view, and the page can be photographed'
   expect(faults).toEqual([]);
 });
 
-test('where frames take long, what turns by itself comes to rest', async ({ page }) => {
+test('where frames take long, what turns by itself comes to rest', { tag: '@all' }, async ({ page }) => {
   await page.emulateMedia({ reducedMotion: 'no-preference' });
   await countDrawing(page);
   await page.addInitScript(() => {

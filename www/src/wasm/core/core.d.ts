@@ -24,7 +24,6 @@ import type {
  * vector.
  */
 export class Core {
-    free(): void;
     [Symbol.dispose](): void;
     /**
      * Ends the run and keeps the particles: `Progress`.
@@ -39,6 +38,10 @@ export class Core {
      * Component of each particle, 0 the largest, from the last report; 0xffffffff for none.
      */
     component(): Uint32Array<ArrayBuffer>;
+    /**
+     * A session on the default surface, with nothing sampled.
+     */
+    constructor();
     /**
      * Rows of the columns: particles, those on creases and seams once on each side.
      */
@@ -81,6 +84,7 @@ export class Core {
      * Estimated share of the work that is done: of the run and of what is planned.
      */
     fraction(): number;
+    free(): void;
     /**
      * Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is
      * complete, nothing before.
@@ -114,10 +118,6 @@ export class Core {
      * Distance to the nearest particle, as of the last report.
      */
     nearest(): Float32Array<ArrayBuffer>;
-    /**
-     * A session on the default surface, with nothing sampled.
-     */
-    constructor();
     /**
      * Unit normals from particle `from` on.
      */

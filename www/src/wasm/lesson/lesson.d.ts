@@ -21,12 +21,15 @@ import type {
  * copies.
  */
 export class Lesson {
-    free(): void;
     [Symbol.dispose](): void;
     /**
      * The chapters from number `first` on: an array of `LessonChapter`.
      */
     chapters(first: number): LessonChapter[];
+    /**
+     * A lesson without a run.
+     */
+    constructor();
     /**
      * Digest of the particles at the moment that was sought, 16 hexadecimal digits.
      */
@@ -45,6 +48,7 @@ export class Lesson {
      * run.
      */
     follow(field: LessonField): Answer<LessonProgress, Fault> | null;
+    free(): void;
     /**
      * Numbers of the fronts.
      */
@@ -58,10 +62,6 @@ export class Lesson {
      * no such particle.
      */
     life(particle: number): LessonLife | null;
-    /**
-     * A lesson without a run.
-     */
-    constructor();
     /**
      * The steps of Newton's method in space from a point: an array of `LessonIterate`.
      */

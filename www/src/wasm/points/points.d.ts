@@ -11,12 +11,15 @@ import type {
  * Solver that makes a field from a built-in model or a file of points. Answers are plain objects.
  */
 export class Points {
-    free(): void;
     [Symbol.dispose](): void;
     /**
      * Positions of the centres, three floats each; none before they are chosen.
      */
     centres(): Float32Array<ArrayBuffer>;
+    /**
+     * A solver without a job.
+     */
+    constructor();
     /**
      * The field as `Core.set_points` takes it; nothing before it is there.
      */
@@ -26,6 +29,7 @@ export class Points {
      * is for reports. 0 centres are the default number of them.
      */
     file(name: string, bytes: Uint8Array | number[], centres: number): Answer<PointsProgress, string>;
+    free(): void;
     /**
      * The report on the model: an `Answer` with `SolvedModel`.
      */
@@ -35,10 +39,6 @@ export class Points {
      * `PointsProgress`. 0 centres are the default number of them.
      */
     model(id: string, centres: number): Answer<PointsProgress, string>;
-    /**
-     * A solver without a job.
-     */
-    constructor();
     /**
      * Does up to `budget` slices of work: an `Answer` with `PointsProgress`.
      */

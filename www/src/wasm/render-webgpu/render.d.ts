@@ -6,8 +6,6 @@
  * canvas.
  */
 export class Renderer {
-    private constructor();
-    free(): void;
     [Symbol.dispose](): void;
     /**
      * Name of the graphics adapter as the driver gives it; may be empty, since browsers hide it.
@@ -38,6 +36,7 @@ export class Renderer {
      * a new renderer).
      */
     draw(time_s: number): string;
+    free(): void;
     /**
      * Largest number of faces that `write_faces` takes.
      */
@@ -51,6 +50,7 @@ export class Renderer {
      * device cannot.
      */
     picture_size(width_px: number, height_px: number): Uint32Array<ArrayBuffer>;
+    private constructor();
     /**
      * Draws the picture into a texture of `picture_size(width_px, height_px)`, with every particle
      * fully shown, and resolves to its pixels: rows from top to bottom, red, green, blue, opacity

@@ -233,12 +233,16 @@ test('a visit: what the page forbids itself, input, links, files, and a lost con
 
   await test.step('a lost WebGL context is replaced, with the same picture', async () => {
     const before = await picture(page);
+    // The notice goes after a while: it is looked for from the beginning.
+    const isTold = page.waitForFunction(() =>
+      /** @type {any} */ (window).marchingParticles.status().notice?.text.includes('is back'),
+    );
     await page.evaluate(() => {
       const canvas = /** @type {HTMLCanvasElement} */ (document.querySelector('#canvas-host canvas'));
       canvas.getContext('webgl2')?.getExtension('WEBGL_lose_context')?.loseContext();
     });
-    await expect.poll(async () => (await counts(page)).opened).toBe(2);
-    await expect.poll(async () => (await status(page)).notice?.text).toContain('is back');
+    await isTold;
+    expect((await counts(page)).opened).toBe(2);
     const after = await picture(page);
     expect(after.drawn).toBeCloseTo(before.drawn, 2);
     await expect(page.locator('#canvas-host canvas')).toHaveCount(1);

@@ -23,7 +23,9 @@ const slowDown = (page, frameMs = 100) =>
 /** Widths of the canvas since the last call. @param {Page} page @returns {Promise<number[]>} */
 const widths = (page) => page.evaluate(() => /** @type {any} */ (window).widths.splice(0));
 
-test('it draws what moves with half the pixels of a side, and what stands still with all', async ({ page }) => {
+test('it draws what moves with half the pixels of a side, and what stands still with all', { tag: '@all' }, async ({
+  page,
+}) => {
   await page.emulateMedia({ reducedMotion: 'no-preference' });
   await slowDown(page);
   const { errors } = await open(page);

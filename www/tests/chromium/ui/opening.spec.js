@@ -236,7 +236,9 @@ test('after the first surface has grown, the first slider moves by itself, once'
   await clean();
 });
 
-test('another surface is not invited to by the name of a parameter that it has not', async ({ page }) => {
+test('another surface is not invited to by the name of a parameter that it has not', { tag: '@all' }, async ({
+  page,
+}) => {
   await page.emulateMedia({ reducedMotion: 'no-preference' });
   const { clean } = await open(page, { invites: true });
   await expect(page.locator('.invite')).toHaveText('Drag a');

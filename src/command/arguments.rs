@@ -1,0 +1,606 @@
+//! The command line's arguments, as clap reads and explains them.
+
+use crate::options::{SamplingOptions, list, number, whole};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use marching_particles::export::VERTICES;
+use marching_particles::field::{model, rbf::Pull};
+use marching_particles::math::{Bounds, BoxError, shortest_text};
+use marching_particles::pointcloud::job::CENTRES;
+use marching_particles::session::{
+    BeyondPoints, BoxCell, BoxFaces, BoxMode, FileRecord, Language, SolidSettings,
+};
+use marching_particles::{
+    Format, Measured, MeshFormat, Placement, Thickness, Unit, UpAxis, Vertices, gallery,
+};
+use std::collections::BTreeMap;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+/// Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles
+#[derive(Debug, Parser)]
+#[command(name = "marching-particles", version, arg_required_else_help = true, long_about = LONG_ABOUT, after_long_help = AFTER, max_term_width = 100)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+
+    /// Number of threads, one for each processor by default; it does not change the result
+    #[arg(long, value_name = "N", global = true)]
+    pub(crate) threads: Option<NonZeroUsize>,
+}
+
+const LONG_ABOUT: &str = "\
+Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles.
+
+A front of particles grows over the surface, each one placing its neighbours around it in a hexagon, until the fronts \
+meet; then the particles push each other apart. The result is points with normals, almost all with six neighbours at \
+the same distance.";
+
+const AFTER: &str = "\
+Examples:
+  marching-particles surfaces
+  marching-particles sample --surface torus --out torus.ply
+  marching-particles sample --surface ellipsoid --count 55748 --json
+  marching-particles sample --surface ellipsoid --adaptive --chord-error 0.01%
+  marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --box 1.2 --radius 1%";
+
+/// The particles that the report measures.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum ReportKind {
+    /// Nothing: no figures of quality, no components and Euler number of the sample, no warnings
+    /// that come from these, and no columns valence, nearest and residual in the files
+    None,
+    /// The particles
+    Short,
+    /// The particles and, for comparison, those of the front before its relaxation
+    Full,
+}
+
+impl ReportKind {
+    pub(crate) fn measured(self) -> Measured {
+        match self {
+            Self::None => Measured::Nothing,
+            Self::Short => Measured::Particles,
+            Self::Full => Measured::FrontToo,
+        }
+    }
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Sample a surface, write it to files and say how good it is
+    #[command(long_about = SAMPLE_LONG, after_long_help = SAMPLE_AFTER)]
+    Sample(Box<SampleArguments>),
+    /// List the named surfaces
+    Surfaces(Surfaces),
+    /// Print a script that completes commands and options in a shell
+    #[command(after_help = COMPLETIONS_AFTER)]
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Write manual pages, one for each command
+    Man {
+        /// Directory for the pages, such as ~/.local/share/man/man1
+        directory: PathBuf,
+    },
+    /// Move a surface by a parameter, and write the particles that follow it to numbered files
+    #[command(long_about = SWEEP_LONG)]
+    Sweep(Box<SweepArguments>),
+}
+
+const COMPLETIONS_AFTER: &str = "\
+Example:
+  marching-particles completions bash > ~/.local/share/bash-completion/completions/marching-particles";
+
+const SWEEP_LONG: &str = "\
+Move a surface by a parameter, and write the particles that follow it to numbered files.
+
+The particles of the first frame are those of `sample`. From frame to frame they are brought to the new surface; they die where they \
+crowd, and are born where it tears, grows or comes into the box. A particle keeps its number, the column `identity` of ply and csv, as long \
+as it lives. Where the surface moves too far for that, has sharp edges or is gone, a new run begins: give more frames.
+
+Example:
+  marching-particles sweep --formula \"x^4 + y^4 + z^4 - 5(x^2 + y^2 + z^2) + q\" --sweep q=11..14 --frames 90 --count 8000 --out frames";
+
+/// Arguments of `sweep`.
+#[derive(Debug, Args)]
+pub(crate) struct SweepArguments {
+    #[command(flatten)]
+    pub(crate) surface: SurfaceArguments,
+
+    /// The parameter that moves the surface, with its first and its last value
+    #[arg(long, value_name = "NAME=FROM..TO", value_parser = sweep, allow_hyphen_values = true, help_heading = "Surface")]
+    pub(crate) sweep: Sweep,
+
+    /// Steps from the first to the last value: there is one more file
+    #[arg(long, value_name = "N", default_value_t = 120, value_parser = frames, help_heading = "Surface")]
+    pub(crate) frames: u32,
+
+    #[command(flatten)]
+    pub(crate) sampling: SamplingOptions,
+
+    /// Directory for the files, which is made if it is not there; files of the same names are
+    /// replaced
+    #[arg(long, value_name = "DIRECTORY", help_heading = "Output")]
+    pub(crate) out: PathBuf,
+
+    /// Format of the files
+    #[arg(long, value_name = "WORD", value_parser = one_of(&Format::ALL), default_value = "ply", help_heading = "Output")]
+    pub(crate) format: (&'static str, Format),
+
+    /// Print nothing but errors, and show no progress bar (there is none without a terminal)
+    #[arg(long, short, help_heading = "Output")]
+    pub(crate) quiet: bool,
+}
+
+/// A parameter and the range through which it goes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Sweep {
+    pub(crate) name: String,
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+}
+
+const SAMPLE_LONG: &str = "\
+Sample a surface, write it to files and say how good it is.
+
+Name a surface, give a formula, or give a file of points, with or without normals. Say how fine: by the radius of the particles (neighbours sit two radii apart) or by \
+their number. Without --out and --mesh nothing is written, only measured.";
+
+const SAMPLE_AFTER: &str = "\
+Formulas:
+  x y z, numbers, + - * / ^ %, brackets, and f = g. A product needs no sign where it is clear: 2x, x y, 3(x+1); 1/2x is (1/2)x.
+  pi e tau phi; sqrt cbrt abs sign min max floor ceil round fract mod exp ln log10 log2 sin cos tan sec csc cot asin acos atan
+  atan2 sinh cosh tanh sech csch coth asinh acosh atanh erf hypot clamp mix step smoothstep; smin(a,b,k) and smax(a,b,k) join
+  smoothly by a cubic polynomial, smin2 and smax2 by a quadratic one. Negative is inside. Other names are parameters: --param a=2.
+  Choices: if(x < 1 and not y > 0, a, b), or c ? a : b. Definitions come first: \"r = hypot(x,y); (r - 1)^2 + z^2 = 0.1\", and
+  functions: \"f(a,b) = a^2 + b^2; f(x,y) = z\". Comments: // # /* */.
+  Also read: |x|, x**2, sin 2x, f(x,y,z) = ..., LaTeX such as \\frac{x^{2}}{4}, and what MATLAB, Python, GLSL and Mathematica write.
+  Every number of an option may be written so: --box pi, --radius sqrt(2)/50, --count 2*10^4.
+
+Examples:
+  marching-particles sample --surface ellipsoid --count 55748 --out points.ply --json
+  marching-particles sample --surface torus --param r=0.25 --radius 1% --out torus.xyz --out torus.npy
+  marching-particles sample --formula \"x^4 - 5x^2 + y^4 - 5y^2 + z^4 - 5z^2 + 11.8\"
+  marching-particles sample --formula \"sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)\" --box 5 --radius 0.05
+  marching-particles sample --surface gyroid --thickness 0.3 --closed --mesh part.stl
+  marching-particles sample --surface gyroid --thickness \"1 + 0.1z\" --closed --porosity 70% --mesh graded.stl
+  marching-particles sample --formula \"x^2 + y^2 + z^2 = 1\" --mesh ball.3mf --scale 25 --unit mm
+  marching-particles sample --like part.glb --radius 0.3% --mesh finer.glb
+  marching-particles sample --points scan.ply --centres 400 --out even.ply --mesh even.glb
+  marching-particles sample --points scan.ply --formula \"max(model, abs(z) - 0.1)\" --mesh slice.stl
+  marching-particles sample --surface torus --mesh - --format glb --quiet | viewer
+  marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --count 5000 --print python
+  marching-particles sample --formula \"(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3\" --relax 0
+
+Exit codes:
+  0  done
+  1  a file could not be read or written
+  2  the command, the formula, a setting or a file of points cannot be understood
+  3  there is nothing to sample: no surface in the box, a constant or undefined formula
+  4  more particles than the limit; what was placed before it was reached is written";
+
+/// Arguments of `sample`.
+#[derive(Debug, Args)]
+pub(crate) struct SampleArguments {
+    /// Make again what a PLY, OBJ, GLB or 3MF file holds that this program or its page has written:
+    /// its surface, box and settings. A CSV file has its record beside it, in a file whose name
+    /// goes on with .json. What else is given takes the place of the file's; with another surface,
+    /// its settings alone are taken
+    #[arg(long, value_name = "FILE", help_heading = "Surface")]
+    pub(crate) like: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) surface: SurfaceArguments,
+
+    /// Share of the box of --closed that the sheet leaves empty, by the volume of the mesh: 70% or
+    /// 0.7. Finds the thickness; a --thickness by a formula is scaled. Corrected by up to two more
+    /// runs. For formulas
+    #[arg(long, value_name = "SHARE%", value_parser = porosity, requires = "closed", conflicts_with = "points", help_heading = "Surface")]
+    pub(crate) porosity: Option<f64>,
+
+    #[command(flatten)]
+    pub(crate) sampling: SamplingOptions,
+
+    /// File to write; its extension is its format: ply (position, normal, radius, level, parent,
+    /// valence, distance to the nearest particle, residual, and whether a singular point is near),
+    /// csv (the same, and what it was made from in a file of JSON beside it), xyz or npy (position,
+    /// normal). Normals follow the gradient of f: they point inward where f is larger inside. May
+    /// be given again; replaces what is there
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) out: Vec<PathBuf>,
+
+    /// File for the triangle mesh over the particles; its extension is its format: glb (with
+    /// normals, generation levels as colours), 3mf (with its unit), stl, obj or ply (with normals).
+    /// Closed surfaces face outward. May be given again; replaces what is there. The method is
+    /// refined, whose triangles are better, unless --method, --relax or a file of --like chooses
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) mesh: Vec<PathBuf>,
+
+    /// Format of what goes to standard output, whose name in --out or --mesh is `-`. The report
+    /// then goes to standard error
+    #[arg(long, value_name = "WORD", value_parser = file_formats(), help_heading = "Output")]
+    pub(crate) format: Option<String>,
+
+    /// Vertices of the files of --mesh on sharp edges, where the sides have normals of their own:
+    /// in glb, obj and ply. stl and 3mf have no normals
+    #[arg(long, value_name = "WORD", value_parser = vertices(), default_value = "joined", help_heading = "Output")]
+    pub(crate) vertices: Vertices,
+
+    /// Length of a unit of the formula in the files of --mesh, in the unit of --unit
+    #[arg(long, value_name = "NUMBER", value_parser = scale, default_value_t = 1.0, help_heading = "Output")]
+    pub(crate) scale: f64,
+
+    /// Unit of the files of --mesh: 3mf names it, and glb is in metres, to which lengths are
+    /// converted. Without it numbers stay what they are: metres in glb, millimetres in 3mf
+    #[arg(long, value_name = "WORD", value_parser = one_of(&Unit::ALL), help_heading = "Output")]
+    pub(crate) unit: Option<(&'static str, Unit)>,
+
+    /// Axis of the formula that points up in the files of --mesh: along z there, but in glb along y
+    #[arg(long, value_name = "AXIS", value_parser = one_of(&UpAxis::ALL), default_value = "z", help_heading = "Output")]
+    pub(crate) up: (&'static str, UpAxis),
+
+    /// The particles that the report measures, which can take longer than sampling
+    #[arg(long, value_name = "WORD", value_enum, default_value_t = ReportKind::Short, help_heading = "Output")]
+    pub(crate) report: ReportKind,
+
+    /// Print one line of JSON instead of text
+    #[arg(long, help_heading = "Output")]
+    pub(crate) json: bool,
+
+    /// Print the program that makes these particles, in place of making them: on the library in
+    /// Rust, on the package for npm (js), on the Python package, or as a command (shell). No file
+    /// is written; --mesh chooses the method as usual. For formulas
+    #[arg(long, value_name = "LANGUAGE", value_parser = one_of(&Language::ALL), conflicts_with_all = ["json", "porosity"], help_heading = "Output")]
+    pub(crate) print: Option<(&'static str, Language)>,
+
+    /// Print nothing but errors, and the line of --json; show no progress bar (there is none
+    /// without a terminal)
+    #[arg(long, short, help_heading = "Output")]
+    pub(crate) quiet: bool,
+}
+
+/// Arguments that choose the surface.
+#[derive(Debug, Args)]
+pub(crate) struct SurfaceArguments {
+    /// Named surface (see `surfaces`); the first one of them by default
+    #[arg(long, value_name = "ID", help_heading = "Surface")]
+    pub(crate) surface: Option<String>,
+
+    /// Formula of the surface; with --surface, it replaces the formula of that surface. Beside
+    /// --points or a model, `model` stands for their function, as an operand of max, min, smin,
+    /// smax or abs, or with a number that is added: "max(model, z)" cuts it
+    #[arg(long, value_name = "TEXT", allow_hyphen_values = true, help_heading = "Surface")]
+    pub(crate) formula: Option<String>,
+
+    /// File of points or of a mesh: PLY, OBJ, STL, OFF, PCD, or text with a point a line (XYZ, PTS,
+    /// CSV), up to 50 MB; `-` is standard input. A smooth surface is fitted to all of them. Normals
+    /// come from the file, else from its faces, else they are estimated
+    #[arg(long, value_name = "FILE", conflicts_with = "surface", help_heading = "Surface")]
+    pub(crate) points: Option<PathBuf>,
+
+    /// Centres of the surface among the points of --points or of a model, 100 to 800: more follow
+    /// finer details and take longer [default: 200]
+    #[arg(long, value_name = "N", help_heading = "Surface", value_parser = centres)]
+    pub(crate) centres: Option<u32>,
+
+    /// Where the surface of --points ends: `cut` at the border of the points, where it would go on
+    /// beyond them; `kept` goes on. Gaps of a few spacings of the points are bridged [default: cut]
+    #[arg(long, value_name = "WORD", value_parser = beyond_points, help_heading = "Surface")]
+    pub(crate) beyond_points: Option<BeyondPoints>,
+
+    /// Value of a parameter; once for each
+    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter, help_heading = "Surface")]
+    pub(crate) parameters: Vec<(String, f64)>,
+
+    /// Box to sample in: `fit` for one around the surface of a formula, found up to ±10,000, in
+    /// which what goes on for ever is cut; `fixed` for a surface's own, ±2 for a formula; or H for
+    /// -H..H on each axis, three half-widths, or the two corners (six numbers), separated by
+    /// commas. A named surface keeps its own box [default: fit]
+    #[arg(
+        long = "box", value_name = "fit|fixed|NUMBERS", value_parser = choice_of_box, allow_hyphen_values = true,
+        help_heading = "Surface"
+    )]
+    pub(crate) bounds: Option<BoxChoice>,
+
+    /// Close with the faces of the box what they cut: the solid f ≤ 0 in the box, whose edges are
+    /// sharp. For formulas
+    #[arg(long, conflicts_with = "points", help_heading = "Surface")]
+    pub(crate) closed: bool,
+
+    /// Give opposite faces of the box of --closed the same particles and triangles, bit for bit but
+    /// for the shift, along every axis on which it is a whole number of periods wide. Without
+    /// --box, it is one period wide. The column `periodic` of ply and csv has the pairs
+    #[arg(long, requires = "closed", help_heading = "Surface")]
+    pub(crate) periodic: bool,
+
+    /// The box that is sampled around a solid that a box closes, read from a file.
+    #[arg(skip)]
+    pub(crate) sampled: Option<Bounds>,
+
+    /// Pulls on the surface of a model, read from a file.
+    #[arg(skip)]
+    pub(crate) pulls: Vec<Pull>,
+
+    /// Sheet of this thickness around the surface, |f| ≤ T/2 |∇f|, in place of the surface: a
+    /// number, or a formula of x, y, z and the parameters, such as "0.1 + 0.05z". There is no sheet
+    /// where it is negative. For formulas
+    #[arg(
+        long, value_name = "T", conflicts_with = "points", value_parser = thickness, allow_hyphen_values = true,
+        help_heading = "Surface"
+    )]
+    pub(crate) thickness: Option<Thickness>,
+}
+
+impl SurfaceArguments {
+    /// Adds the values of those parameters that have none.
+    fn add_parameters(&mut self, values: BTreeMap<String, f64>) {
+        for (name, value) in values {
+            if !self.parameters.iter().any(|(given, _)| *given == name) {
+                self.parameters.push((name, value));
+            }
+        }
+    }
+}
+
+impl SampleArguments {
+    /// Size and orientation of the mesh in its files.
+    pub(crate) fn placement(&self) -> Placement {
+        Placement { scale: self.scale, unit: self.unit.map(|(_, unit)| unit), up: self.up.1 }
+    }
+
+    /// Takes from the record of a file what is not given.
+    pub(crate) fn complete(&mut self, record: FileRecord) {
+        let surface = &mut self.surface;
+        let is_model = surface.points.is_some()
+            || surface.surface.as_deref().is_some_and(|id| model::find(id).is_some());
+        if record.model.is_some() && is_model {
+            surface.bounds = surface.bounds.or(Some(BoxChoice::Given(record.bounds)));
+            surface.pulls = record.pulls;
+            surface.formula = surface.formula.take().or(Some(record.formula).filter(|text| !text.is_empty()));
+            surface.add_parameters(record.parameters);
+            return self.sampling.complete(&record.settings);
+        }
+        if surface.surface.is_none() && surface.formula.is_none() && surface.points.is_none() {
+            let own = record.surface.as_deref().and_then(gallery::find).map(|own| record.solid.own_box(own));
+            if surface.bounds.is_none() && own != Some(record.bounds) {
+                surface.bounds = Some(BoxChoice::Given(record.faces.unwrap_or(record.bounds)));
+                surface.sampled = record.faces.map(|_| record.bounds);
+            }
+            surface.surface = record.surface;
+            surface.formula = Some(record.formula);
+            surface.add_parameters(record.parameters);
+            surface.closed |= record.solid.box_faces == BoxFaces::Closed;
+            surface.periodic |= record.solid.box_cell == BoxCell::Periodic;
+            // A porosity asks for another thickness than that of the file.
+            let kept = record
+                .solid
+                .sheet()
+                .filter(|thickness| self.porosity.is_none() || matches!(thickness, Thickness::Formula(_)));
+            surface.thickness = surface.thickness.take().or(kept.cloned());
+        }
+        self.sampling.complete(&record.settings);
+    }
+}
+
+/// One of the names of a table, with its value.
+fn one_of<T: Copy + Send + Sync>(
+    table: &'static [(&'static str, T)],
+) -> impl TypedValueParser<Value = (&'static str, T)> {
+    PossibleValuesParser::new(table.iter().map(|(name, _)| *name)).try_map(|given| {
+        table.iter().find(|(name, _)| *name == given).copied().ok_or("there is no such name")
+    })
+}
+
+/// Extensions of all formats of files.
+fn file_formats() -> PossibleValuesParser {
+    let particles = Format::ALL.iter().map(|(name, _)| *name);
+    let meshes =
+        MeshFormat::ALL.iter().map(|(name, _)| *name).filter(|name| Format::of_extension(name).is_none());
+    PossibleValuesParser::new(particles.chain(meshes))
+}
+
+/// One of the ways to write vertices, with what it does.
+fn vertices() -> impl TypedValueParser<Value = Vertices> {
+    let words = VERTICES.iter().map(|choice| PossibleValue::new(choice.value.name()).help(choice.help));
+    PossibleValuesParser::new(words).try_map(|given| {
+        let found = VERTICES.iter().find(|choice| choice.value.name() == given);
+        found.map(|choice| choice.value).ok_or("there is no such way")
+    })
+}
+
+/// Where the surface of points ends.
+fn beyond_points(text: &str) -> Result<BeyondPoints, String> {
+    match text {
+        "cut" => Ok(BeyondPoints::Cut),
+        "kept" => Ok(BeyondPoints::Kept),
+        _ => Err("it is `cut` or `kept`".to_owned()),
+    }
+}
+
+impl SurfaceArguments {
+    /// The solid that is to be made of the surface.
+    pub(crate) fn solid(&self) -> SolidSettings {
+        let is_fixed = self.bounds == Some(BoxChoice::Fixed);
+        SolidSettings {
+            box_mode: if is_fixed { BoxMode::Fixed } else { BoxMode::Fit },
+            box_faces: if self.closed { BoxFaces::Closed } else { BoxFaces::Open },
+            box_cell: if self.periodic { BoxCell::Periodic } else { BoxCell::Lone },
+            thickness: self.thickness.clone().unwrap_or_default(),
+            beyond_points: self.beyond_points.unwrap_or_default(),
+        }
+    }
+}
+
+/// Choice of the box that is sampled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum BoxChoice {
+    Fit,
+    Fixed,
+    Given(Bounds),
+}
+
+impl BoxChoice {
+    pub(crate) fn given(self) -> Option<Bounds> {
+        match self {
+            Self::Given(bounds) => Some(bounds),
+            Self::Fit | Self::Fixed => None,
+        }
+    }
+}
+
+/// Arguments of `surfaces`.
+#[derive(Debug, Args)]
+pub(crate) struct Surfaces {
+    /// Print one line of JSON instead of text
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// A length that a sheet can have, or a formula.
+fn thickness(text: &str) -> Result<Thickness, String> {
+    let solid = SolidSettings { thickness: text.into(), ..SolidSettings::default() };
+    solid.validate().map_err(|error| error.to_string())?;
+    Ok(solid.thickness)
+}
+
+/// A share between 0 and 1.
+fn porosity(text: &str) -> Result<f64, String> {
+    let share = match text.strip_suffix('%') {
+        Some(percent) => number(percent)? / 100.0,
+        None => number(text)?,
+    };
+    if share > 0.0 && share < 1.0 {
+        return Ok(share);
+    }
+    Err("a porosity is a share between 0 and 1, such as 70% or 0.7".to_owned())
+}
+
+/// A positive factor, with which every box stays within single precision.
+fn scale(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        scale if (1e-12..=1e12).contains(&scale) => Ok(scale),
+        scale => Err(format!("{} is not between 1e-12 and 1e12", shortest_text(scale))),
+    }
+}
+
+fn frames(text: &str) -> Result<u32, String> {
+    Ok(whole(text, &(1..=100_000))? as u32)
+}
+
+fn centres(text: &str) -> Result<u32, String> {
+    Ok(whole(text, &(u64::from(*CENTRES.start())..=u64::from(*CENTRES.end())))? as u32)
+}
+
+fn parameter(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("a parameter is given as NAME=VALUE, like a=2")?;
+    Ok((name.trim().to_owned(), number(value)?))
+}
+
+fn sweep(text: &str) -> Result<Sweep, String> {
+    let how = "a sweep is given as NAME=FROM..TO, like a=0.2..1.5";
+    let (name, range) = text.split_once('=').ok_or(how)?;
+    let (from, to) = range.split_once("..").ok_or(how)?;
+    Ok(Sweep { name: name.trim().to_owned(), from: number(from)?, to: number(to)? })
+}
+
+fn choice_of_box(text: &str) -> Result<BoxChoice, String> {
+    match text.trim() {
+        "fit" => Ok(BoxChoice::Fit),
+        "fixed" => Ok(BoxChoice::Fixed),
+        numbers => bounds(numbers).map(BoxChoice::Given),
+    }
+}
+
+fn bounds(text: &str) -> Result<Bounds, String> {
+    let numbers = list(text).into_iter().map(number).collect::<Result<Vec<f64>, String>>();
+    let numbers = numbers
+        .map_err(|error| format!("a box takes one, three or six numbers, separated by commas: {error}"))?;
+    let bounds = match numbers[..] {
+        [half] => Bounds::cube(half),
+        [x, y, z] => Bounds::symmetric([x, y, z]),
+        [x0, y0, z0, x1, y1, z1] => Bounds { min: [x0, y0, z0], max: [x1, y1, z1] },
+        _ => return Err(format!("a box takes one, three or six numbers, not {}", numbers.len())),
+    };
+    let how = "give half-widths, or the smallest corner and then the largest, as x0,y0,z0,x1,y1,z1";
+    bounds.check().map_err(|error| match error {
+        BoxError::Far => error.to_string(),
+        _ => format!("{error}: {how}"),
+    })?;
+    Ok(bounds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn command_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn sweep_takes_a_name_and_two_numbers() {
+        let range = |from, to| Ok(Sweep { name: "a".to_owned(), from, to });
+        assert_eq!(sweep("a=0.2..1.5"), range(0.2, 1.5));
+        assert_eq!(sweep("a = -1 .. -2e-1"), range(-1.0, -0.2));
+        assert_eq!(sweep("a=0..2pi"), range(0.0, std::f64::consts::TAU));
+        for bad in ["a", "a=1", "a=1..", "1..2", "a=..2", "a=1..b", "a=nan..1"] {
+            assert!(sweep(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn porosity_is_a_share_between_0_and_1() {
+        assert_eq!(porosity("70%"), Ok(0.7));
+        assert_eq!(porosity("2/3"), Ok(2.0 / 3.0));
+        for bad in ["70", "0", "1", "-1%", "100%", "nan", "x", "", "%"] {
+            assert!(porosity(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn thickness_is_a_length_or_a_formula() {
+        assert_eq!(thickness("pi/10"), Ok(Thickness::Number(std::f64::consts::PI / 10.0)));
+        assert_eq!(thickness("-z"), Ok(Thickness::Formula("-z".to_owned())));
+        assert!(thickness("-0.1").is_err());
+    }
+
+    #[test]
+    fn box_is_fitted_fixed_or_given() {
+        assert_eq!(choice_of_box("fit"), Ok(BoxChoice::Fit));
+        assert_eq!(choice_of_box("fixed"), Ok(BoxChoice::Fixed));
+        assert_eq!(choice_of_box("2"), Ok(BoxChoice::Given(Bounds::cube(2.0))));
+        assert!(choice_of_box("tight").is_err());
+    }
+
+    #[test]
+    fn box_takes_one_three_or_six_numbers() {
+        assert_eq!(bounds("1.5"), Ok(Bounds::cube(1.5)));
+        assert_eq!(bounds("pi"), Ok(Bounds::cube(std::f64::consts::PI)));
+        assert_eq!(
+            bounds("-pi,-1,-sqrt(4),max(1, 3),1,2e0"),
+            Ok(Bounds { min: [-std::f64::consts::PI, -1.0, -2.0], max: [3.0, 1.0, 2.0] })
+        );
+        assert_eq!(bounds("1, 2,3"), Ok(Bounds::symmetric([1.0, 2.0, 3.0])));
+        assert_eq!(bounds("-1,0,0,1,2,3"), Ok(Bounds { min: [-1.0, 0.0, 0.0], max: [1.0, 2.0, 3.0] }));
+        for bad in [
+            "",
+            "1,2",
+            "0",
+            "-1",
+            "1,0,1",
+            "0,0,0,1,1,0",
+            "a",
+            "nan",
+            "1e39",
+            "1e-30",
+            "1e9,0,0,1000000001,1,1",
+        ] {
+            assert!(bounds(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! Errors of the tool, with their messages and exit codes.
+
+use marching_particles::field::formula::Mended;
+use marching_particles::math::{shortest_text, significant};
+use marching_particles::session::{Fault, FaultKind, settings};
+use marching_particles::{FormulaErrorKind, SettingsError};
+use std::fmt;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Exit code: a file could not be read or written.
+pub(crate) const FILE: u8 = 1;
+/// Exit code: an argument, the formula, a setting or a file of points is invalid. clap uses the
+/// same code.
+pub(crate) const USAGE: u8 = 2;
+/// Exit code: no particle could be placed.
+pub(crate) const NOTHING: u8 = 3;
+/// Exit code: the limit of particles was reached.
+pub(crate) const LIMIT: u8 = 4;
+
+/// Why the tool stops with an error.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The formula is invalid.
+    Formula { text: String, fault: Box<Fault> },
+    /// An argument other than the formula is invalid.
+    Usage(String),
+    /// No particle could be placed.
+    Nothing(String),
+    /// A file could not be opened or read.
+    Unreadable { path: PathBuf, error: std::io::Error },
+    /// A file could not be written.
+    File { path: PathBuf, error: std::io::Error },
+    /// Standard output was closed by its reader, which is no error.
+    Output,
+}
+
+impl Failure {
+    pub(crate) fn code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Formula { .. } | Self::Usage(_) => USAGE,
+            Self::Nothing(_) => NOTHING,
+            Self::File { .. } | Self::Unreadable { .. } => FILE,
+            Self::Output => 0,
+        })
+    }
+}
+
+impl From<SettingsError> for Failure {
+    /// By the names of the options.
+    fn from(error: SettingsError) -> Self {
+        Self::Usage(refusal(&error))
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Self {
+        if error.kind() == std::io::ErrorKind::BrokenPipe {
+            Self::Output
+        } else {
+            Self::File { path: PathBuf::from("standard output"), error }
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Formula { text, fault } => formula(f, text, fault),
+            Self::Usage(message) | Self::Nothing(message) => write!(f, "error: {message}"),
+            Self::Unreadable { path, error } => {
+                write!(f, "error: {} could not be read: {error}", path.display())
+            }
+            Self::File { path, error } => {
+                write!(f, "error: {} could not be written: {error}", path.display())
+            }
+            Self::Output => Ok(()),
+        }
+    }
+}
+
+/// Writes the message, the formula with carets under the span, and suggestions.
+fn formula(f: &mut fmt::Formatter<'_>, text: &str, fault: &Fault) -> fmt::Result {
+    write!(f, "error: {}", fault.message)?;
+    // A formula of more than three lines of a terminal breaks, and the carets are not below it; an
+    // error in --param has no span.
+    const LONGEST: usize = 240;
+    let has_span = fault.kind != FaultKind::Formula(FormulaErrorKind::BadParameter);
+    if has_span && !text.is_empty() && text.len() <= LONGEST {
+        // The span counts in UTF-16 code units, columns are characters.
+        let units: Vec<u16> = text.encode_utf16().collect();
+        let [before, end] =
+            [fault.start, fault.end].map(|unit| String::from_utf16_lossy(&units[..unit as usize]));
+        let first = before.rfind('\n').map_or(0, |at| at + 1);
+        let last = text[before.len()..].find('\n').map_or(text.len(), |at| before.len() + at);
+        // Tabs would shift the carets, so each takes one column.
+        let line: String = text[first..last].chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        let column = before[first..].chars().count();
+        let marked = end.len().min(last).saturating_sub(before.len());
+        let marked = text[before.len()..before.len() + marked].chars().count().max(1);
+        write!(f, "\n\n  {line}\n  {:column$}{}", "", "^".repeat(marked))?;
+    }
+    if let Some(suggestion) = &fault.suggestion {
+        match suggestion.as_str() {
+            "" => write!(f, "\n\nhelp: leave that out")?,
+            _ => write!(f, "\n\nhelp: try `{suggestion}` there")?,
+        }
+    }
+    if !fault.choices.is_empty() {
+        let choices: Vec<String> = fault
+            .choices
+            .iter()
+            .map(|choice| if choice.is_empty() { "nothing".to_owned() } else { format!("`{choice}`") })
+            .collect();
+        write!(f, "\n\nhelp: try {} there", choices.join(" or "))?;
+    }
+    if let Some(Mended { text, places }) = fault.mended.as_deref() {
+        write!(f, "\n\nhelp: mended in all {places} places: {text}")?;
+    }
+    if let Some(name) = &fault.name {
+        write!(f, "\n\nhelp: to make it a parameter, add --param {name}=1")?;
+    }
+    Ok(())
+}
+
+/// Why settings are refused, by the name of the option and with shares as they are typed.
+fn refusal(error: &SettingsError) -> String {
+    let SettingsError::OutOfRange { name, value, min, max } = error else { return error.to_string() };
+    let setting = settings().into_iter().find(|setting| setting.name == *name);
+    let option = match setting {
+        Some(setting) => setting.option(),
+        // Of the other method's settings only two have an option.
+        None => name.trim_start_matches("max_").replace('_', "-"),
+    };
+    if setting.is_some_and(|setting| setting.is_share()) {
+        let [value, min, max] = [*value, *min, *max].map(percent);
+        return format!("--{option} is {value} of the box diagonal, but must lie between {min} and {max}");
+    }
+    let [value, min, max] = [*value, *min, *max].map(shortest_text);
+    format!("--{option} is {value}, but must lie between {min} and {max}")
+}
+
+/// A share as it is typed.
+pub(crate) fn percent(share: f64) -> String {
+    format!("{}%", significant(100.0 * share))
+}

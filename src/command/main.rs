@@ -1,0 +1,70 @@
+//! Command-line tool that samples a surface, writes particles to files and reports their quality.
+
+mod arguments;
+mod bar;
+mod code;
+mod failure;
+mod options;
+mod outcome;
+mod output;
+mod points;
+mod porosity;
+mod sample;
+mod summary;
+mod surface;
+mod surfaces;
+mod sweep;
+
+use arguments::{Arguments, Command};
+use clap::{CommandFactory, Parser};
+use clap_complete::Shell;
+use failure::Failure;
+use std::io;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let Arguments { command, threads } = Arguments::parse();
+    let result = start_threads(threads).and_then(|()| match command {
+        Command::Sample(arguments) => sample::run(*arguments),
+        Command::Surfaces(arguments) => surfaces::run(&arguments),
+        Command::Sweep(arguments) => sweep::run(*arguments),
+        Command::Completions { shell } => completions(shell),
+        Command::Man { directory } => man(&directory),
+    });
+    match result {
+        Ok(code) => code,
+        Err(failure) => {
+            eprintln!("{failure}");
+            failure.code()
+        }
+    }
+}
+
+/// Starts threads, this one and others, to share the work: so many, or one for each processor.
+fn start_threads(threads: Option<NonZeroUsize>) -> Result<(), Failure> {
+    // Another thread would have to be woken, and this one to wait, each time work is shared.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, NonZeroUsize::get));
+    let started = pool.use_current_thread().build_global();
+    started.map_err(|error| Failure::Usage(format!("cannot start threads: {error}")))
+}
+
+/// Prints the script with which a shell completes the arguments.
+fn completions(shell: Shell) -> Result<ExitCode, Failure> {
+    let mut command = Arguments::command();
+    let name = command.get_name().to_owned();
+    // It is made at once, since the generator panics when its reader goes.
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut command, name, &mut script);
+    io::Write::write_all(&mut io::stdout(), &script)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes the manual pages of all commands.
+fn man(directory: &Path) -> Result<ExitCode, Failure> {
+    let failed = |error| Failure::File { path: PathBuf::from(directory), error };
+    std::fs::create_dir_all(directory).map_err(failed)?;
+    clap_mangen::generate_to(Arguments::command(), directory).map_err(failed)?;
+    Ok(ExitCode::SUCCESS)
+}

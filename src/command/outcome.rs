@@ -1,0 +1,111 @@
+//! Result of a run.
+
+use marching_particles::field::model::ModelInfo;
+use marching_particles::math::Bounds;
+use marching_particles::sampler::Settings;
+use marching_particles::{Inside, Report, Sample, Thickness, Triangulation};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Wall times of the phases in seconds.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(crate) struct Seconds {
+    /// Time to read points and to fit a field to them.
+    pub(crate) points: f64,
+    pub(crate) seeding: f64,
+    pub(crate) generation: f64,
+    pub(crate) refinement: f64,
+    pub(crate) relaxation: f64,
+    pub(crate) quality: f64,
+    /// Time to join the particles to triangles.
+    pub(crate) mesh: f64,
+    pub(crate) writing: f64,
+}
+
+impl Seconds {
+    /// The time of all phases.
+    pub(crate) fn all(&self) -> f64 {
+        let Self { points, seeding, generation, refinement, relaxation, quality, mesh, writing } = *self;
+        points + seeding + generation + refinement + relaxation + quality + mesh + writing
+    }
+}
+
+/// Result of a run, as `--json` prints it.
+#[derive(Debug, Serialize)]
+pub(crate) struct Outcome {
+    pub(crate) version: &'static str,
+    pub(crate) surface: Option<String>,
+    /// Report of the fit, for a surface near points.
+    pub(crate) model: Option<ModelInfo>,
+    pub(crate) formula: String,
+    pub(crate) parameters: BTreeMap<String, f64>,
+    pub(crate) bounds: Bounds,
+    pub(crate) settings: Settings,
+    /// Thickness of the sheet, if one is sampled.
+    pub(crate) thickness: Option<Thickness>,
+    /// The porosity, if one is requested.
+    pub(crate) porosity: Option<Porosity>,
+    pub(crate) predicted_count: u64,
+    #[serde(flatten)]
+    pub(crate) report: Report,
+    /// The triangles over the particles, if a mesh file is requested.
+    pub(crate) mesh: Option<MeshCounts>,
+    pub(crate) seconds: Seconds,
+    /// Peak resident memory of the process in 10⁶ bytes; null if the system does not report it.
+    pub(crate) peak_mb: Option<f64>,
+    /// Peak resident memory at the end of the sampling, before quality is measured and files are
+    /// written.
+    pub(crate) peak_sampling_mb: Option<f64>,
+    /// Names of the files written, with replacement characters for invalid Unicode.
+    pub(crate) files: Vec<String>,
+    /// Whether one of the files is of a format that is printed in.
+    #[serde(skip)]
+    pub(crate) is_printed: bool,
+}
+
+/// Share of the box that the solid leaves empty.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Porosity {
+    pub(crate) wanted: f64,
+    /// The porosity by the volume of the mesh; none if the mesh is open.
+    pub(crate) reached: Option<f64>,
+}
+
+/// Counts of a mesh, as the output gives them.
+#[derive(Debug, Serialize)]
+pub(crate) struct MeshCounts {
+    pub(crate) triangles: usize,
+    pub(crate) components: usize,
+    /// Sum over the components.
+    pub(crate) euler: i64,
+    /// Border loops where the surface ends.
+    pub(crate) borders: usize,
+    /// Border loops where no manifold could be had.
+    pub(crate) holes: usize,
+    /// Particles in no triangle.
+    pub(crate) left_out: usize,
+    /// Volume that it encloses; none where it is open.
+    pub(crate) volume: Option<f64>,
+    /// Sign of f inside of the closed parts, which face outward whatever it is.
+    pub(crate) inside: Option<Inside>,
+    /// Smallest angle of any triangle in degrees, those at borders among them.
+    pub(crate) smallest_angle: Option<f64>,
+}
+
+impl MeshCounts {
+    pub(crate) fn new(sample: &Sample) -> Self {
+        let (Triangulation { triangles, topology, unfilled, left_out, inside, .. }, report) =
+            (sample.mesh(), sample.report());
+        Self {
+            triangles: triangles.len(),
+            components: topology.components.len(),
+            euler: topology.euler(),
+            borders: topology.borders.len() - unfilled.len(),
+            holes: unfilled.len(),
+            left_out: left_out.len(),
+            volume: report.joined_volume,
+            inside: *inside,
+            smallest_angle: report.smallest_angle,
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! The option `--porosity`: the thickness of a sheet is found, its run is made, and where the mesh
+//! leaves another share of the box empty than is wanted, the thickness is corrected for it.
+
+use crate::failure::Failure;
+use crate::outcome::Porosity;
+use crate::surface::{fit, refused_solid};
+use marching_particles::session::{FieldRequest, Session, SolidSettings, Source};
+use marching_particles::{Bounds, Settings, Thickness};
+
+/// Largest difference from the wanted share that is not corrected.
+const CLOSE: f64 = 1e-3;
+/// Runs in which the share is corrected. The difference depends little on the thickness, so that
+/// one is enough but for coarse particles.
+const CORRECTIONS: u32 = 2;
+
+/// A porosity on the way to what is wanted.
+pub(crate) struct Wish {
+    wanted: f64,
+    /// The share at which the thickness is aimed: the mesh is another body than the sheet.
+    aim: f64,
+    /// The solid; its thickness is a formula that is to be scaled, or none.
+    solid: SolidSettings,
+    /// The box that closes it.
+    bounds: Bounds,
+    corrections: u32,
+    reached: Option<f64>,
+}
+
+impl Wish {
+    /// Has the session close the surface by its box, and take the thickness for the wanted share.
+    /// The box is that of the surface without a sheet.
+    pub(crate) fn begin(
+        session: &mut Session,
+        solid: SolidSettings,
+        wanted: f64,
+        settings_in: &dyn Fn(&Bounds) -> Settings,
+    ) -> Result<Self, Failure> {
+        if let Some(Thickness::Number(_)) = solid.sheet() {
+            return Err(Failure::Usage(
+                "--porosity finds the thickness: leave --thickness out, or give a formula such as \
+                 \"0.1 + 0.05z\", which is scaled"
+                    .into(),
+            ));
+        }
+        let alone = SolidSettings { thickness: Thickness::default(), ..solid.clone() };
+        session.choose(alone).map_err(|fault| refused_solid(&solid, fault))?;
+        fit(session, settings_in, false)?;
+        let bounds = session.answer().bounds;
+        let request = FieldRequest { bounds: Some(bounds), ..FieldRequest::default() };
+        session.set_field(&request).map_err(|fault| Failure::Usage(fault.message))?;
+        let wish = Self { wanted, aim: wanted, solid, bounds, corrections: 0, reached: None };
+        wish.take_thickness(session)?;
+        Ok(wish)
+    }
+
+    /// Has the session take the thickness for the share at which it is aimed.
+    fn take_thickness(&self, session: &mut Session) -> Result<(), Failure> {
+        let Source::Formula(surface) = session.run.field() else { return Ok(()) };
+        let shape = self.solid.made_of(surface.clone(), None);
+        let sheet = shape.with_porosity(self.aim, &self.bounds);
+        let sheet = sheet.map_err(|error| Failure::Usage(error.to_string()))?;
+        let thickness = sheet.thickness().cloned().unwrap_or_default();
+        let solid = SolidSettings { thickness, ..self.solid.clone() };
+        session.choose(solid).map_err(|fault| refused_solid(&self.solid, fault))
+    }
+
+    /// Takes the volume of the mesh, if it is closed. Returns whether another run is to be made,
+    /// for which the session then has the thickness.
+    pub(crate) fn corrects(&mut self, session: &mut Session, volume: Option<f64>) -> Result<bool, Failure> {
+        self.reached = volume.map(|volume| 1.0 - volume / self.bounds.size().element_product());
+        let Some(reached) = self.reached else { return Ok(false) };
+        let aim = self.aim + self.wanted - reached;
+        let is_possible = aim > 0.0 && aim < 1.0;
+        if (reached - self.wanted).abs() <= CLOSE || self.corrections == CORRECTIONS || !is_possible {
+            return Ok(false);
+        }
+        (self.aim, self.corrections) = (aim, self.corrections + 1);
+        self.take_thickness(session)?;
+        Ok(true)
+    }
+
+    /// The wanted porosity, and that of the last mesh.
+    pub(crate) fn outcome(&self) -> Porosity {
+        Porosity { wanted: self.wanted, reached: self.reached }
+    }
+}

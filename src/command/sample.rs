@@ -1,0 +1,372 @@
+//! Subcommand `sample`: a run with its files and its report.
+
+use crate::arguments::{SampleArguments, SurfaceArguments};
+use crate::bar::bar;
+use crate::failure::{Failure, LIMIT};
+use crate::outcome::{MeshCounts, Outcome, Seconds};
+use crate::output::{OutputFile, STANDARD, record_path};
+use crate::porosity::Wish;
+use crate::surface::{choose, fit};
+use crate::{code, summary};
+use indicatif::ProgressBar;
+use marching_particles::export::VERTICES;
+use marching_particles::math::grouped;
+use marching_particles::sampler::{COUNT_ROOM, SizeMode};
+use marching_particles::session::{FileRecord, Session, Source};
+use marching_particles::{
+    Bounds, Error, Format, MeshFile, MeshFormat, ParticleFile, Phase, Placement, Reach, RecordText, Run,
+    Settings, StopReason, Vertices,
+};
+use std::borrow::Cow;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Units of work between two readings of the clock. They take about 0.1 ms, which is the accuracy
+/// of the phases' times.
+const BUDGET: u32 = 256;
+/// Slices of joining between two updates of the progress bar: some 6 ms.
+const SLICES: u32 = 256;
+
+/// The record of what a file was made from: in it, or in the file beside it.
+fn read_record(path: &Path, surface: &SurfaceArguments) -> Result<FileRecord, Failure> {
+    let unreadable = |error| Failure::Unreadable { path: path.to_owned(), error };
+    let bytes = std::fs::read(path).map_err(unreadable)?;
+    let no_record = || {
+        let name = path.display();
+        Failure::Usage(format!(
+            "{name} does not say what it was made from: it holds no record of this program, and there is no {name}.json beside it"
+        ))
+    };
+    let beside = || RecordText::find(&std::fs::read(record_path(path)).ok()?);
+    let json = RecordText::find(&bytes).or_else(beside).ok_or_else(no_record)?;
+    let record: FileRecord = serde_json::from_str(&json).map_err(|error| {
+        Failure::Usage(format!("the record in {} could not be read: {error}", path.display()))
+    })?;
+    match &record.model {
+        Some(model) if surface.surface.is_none() && surface.points.is_none() => Err(Failure::Usage(format!(
+            "{} was made from points, {model}: name them with --surface or --points, beside --like",
+            path.display()
+        ))),
+        _ => Ok(record),
+    }
+}
+
+pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
+    if let Some(path) = &arguments.like {
+        let record = read_record(path, &arguments.surface)?;
+        arguments.complete(record);
+    }
+    arguments.sampling.check()?;
+    if !arguments.mesh.is_empty() || arguments.porosity.is_some() {
+        arguments.sampling.prefer_refined();
+    }
+    let arguments = &arguments;
+    if let Some((_, language)) = arguments.print {
+        return code::print(arguments, language);
+    }
+    let is_mesh =
+        |extension: &str| MeshFormat::of_extension(extension).map(|_| "--mesh, which has triangles");
+    let is_points = |extension: &str| Format::of_extension(extension).map(|_| "--out, which has points");
+    let formats = formats(arguments, &arguments.out, Format::of_extension, &Format::ALL, is_mesh)?;
+    let mesh_formats =
+        self::formats(arguments, &arguments.mesh, MeshFormat::of_extension, &MeshFormat::ALL, is_points)?;
+    let is_piped = arguments.out.iter().chain(&arguments.mesh).any(|path| is_standard(path));
+    if arguments.format.is_some() && !is_piped {
+        return Err(Failure::Usage("--format is for standard output: --out - or --mesh -".to_owned()));
+    }
+    check_vertices(arguments)?;
+    check_placement(arguments)?;
+    let records: Vec<PathBuf> = (arguments.out.iter().zip(&formats))
+        .filter(|(path, format)| **format == Format::Csv && !is_standard(path))
+        .map(|(path, _)| record_path(path))
+        .collect();
+    let paths: Vec<&PathBuf> = arguments.out.iter().chain(&arguments.mesh).chain(&records).collect();
+    let mut outputs = OutputFile::beside(&paths)?.into_iter();
+    let mut seconds = Seconds::default();
+    let mut session = Session::without_surface();
+    let model = timed(&mut seconds.points, || choose(&mut session, &arguments.surface, arguments.quiet))?;
+    if model.is_none() {
+        seconds.points = 0.0;
+    }
+    let settings_in = |bounds: &Bounds| {
+        let mut settings = arguments.sampling.settings(bounds);
+        settings.bounds = arguments.surface.sampled;
+        settings
+    };
+    let mut wish = match arguments.porosity {
+        Some(wanted) => {
+            let solid = arguments.surface.solid();
+            let begin = || Wish::begin(&mut session, solid, wanted, &settings_in);
+            Some(timed(&mut seconds.seeding, begin)?)
+        }
+        None => None,
+    };
+    let bar = bar(arguments.quiet);
+    let measured = arguments.report.measured();
+    let is_mesh = !mesh_formats.is_empty() || wish.is_some();
+    let (settings, predicted_count, is_joined, peak_sampling_mb) = loop {
+        bar.set_message("looking for the box and the edges");
+        let (settings, start) = timed(&mut seconds.seeding, || {
+            let settings = fit(&mut session, &settings_in, false)?;
+            Ok::<_, Failure>((settings, session.start(&settings)?))
+        })?;
+        session.run.plan(measured, is_mesh);
+        step_to_end(&mut session.run, &mut seconds, &bar);
+        let peak = peak_mb();
+        let is_joined = is_mesh && session.run.count() > 0;
+        let volume = if is_joined { join(&mut session.run, &mut seconds, &bar) } else { None };
+        let is_corrected = match &mut wish {
+            Some(wish) => timed(&mut seconds.seeding, || wish.corrects(&mut session, volume))?,
+            None => false,
+        };
+        if !is_corrected {
+            break (settings, start.predicted_count, is_joined, peak);
+        }
+    };
+    let reach = session.run.reach();
+    let mut made = session.record(None).expect("a run that has started has a record");
+    // The steps that were asked for, though an even surface takes fewer.
+    made.settings.relax_steps = settings.relax_steps;
+    if model.is_some() {
+        made.surface.clone_from(&arguments.surface.surface);
+    }
+    bar.set_message("measuring");
+    let sample =
+        timed(&mut seconds.quality, || session.finish(measured, |fraction| set_fraction(&bar, fraction)));
+    bar.finish_and_clear();
+    let sample = sample.map_err(|error| match error {
+        Error::Nothing { reason: StopReason::NoSurface, .. } if reach == Some(Reach::Nowhere) => {
+            Failure::Nothing("there is no surface within ±10,000".to_owned())
+        }
+        error => Failure::Nothing(refusal_of_run(&error)),
+    })?;
+    let mesh = is_joined.then(|| MeshCounts::new(&sample));
+    let is_printed =
+        mesh_formats.iter().any(|format| matches!(format, MeshFormat::Stl | MeshFormat::ThreeMf));
+    let record = RecordText::new(&serde_json::to_string(&made).map_err(std::io::Error::other)?);
+    timed(&mut seconds.writing, || {
+        for (format, output) in formats.into_iter().zip(outputs.by_ref()) {
+            let file = ParticleFile { format, record: record.clone() };
+            output.write(|out| sample.write(file, out))?;
+        }
+        for (format, output) in mesh_formats.into_iter().zip(outputs.by_ref()) {
+            let (placement, vertices) = (arguments.placement(), arguments.vertices);
+            let file = MeshFile { format, placement, vertices, record: record.clone() };
+            output.write(|out| sample.write_mesh(file, out))?;
+        }
+        let document = record.document().unwrap_or_default();
+        for output in outputs {
+            output.write(|out| out.write_all(document.as_bytes()))?;
+        }
+        Ok::<_, Failure>(())
+    })?;
+
+    let report = sample.report().clone();
+    let capped = report.stop_reason == Some(StopReason::Cap);
+    let outcome = Outcome {
+        version: env!("CARGO_PKG_VERSION"),
+        surface: made.surface,
+        model,
+        formula: made.formula,
+        parameters: made.parameters,
+        bounds: made.bounds,
+        settings: made.settings,
+        thickness: made.solid.sheet().cloned(),
+        porosity: wish.map(|wish| wish.outcome()),
+        predicted_count,
+        report,
+        mesh,
+        seconds,
+        peak_mb: peak_mb(),
+        peak_sampling_mb,
+        files: paths.iter().map(|path| path.display().to_string()).collect(),
+        is_printed,
+    };
+    let mut out: Box<dyn Write> =
+        if is_piped { Box::new(std::io::stderr()) } else { Box::new(std::io::stdout()) };
+    if arguments.json {
+        writeln!(out, "{}", serde_json::to_string(&outcome).map_err(std::io::Error::other)?)?;
+    } else if !arguments.quiet {
+        summary::write(&mut out, &outcome)?;
+    }
+    if capped {
+        eprintln!("warning: stopped: {}", over_limit(predicted_count, &settings));
+        return Ok(ExitCode::from(LIMIT));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Why there is no sample, by the names of the options.
+fn refusal_of_run(error: &Error) -> String {
+    let message = error.to_string();
+    match error {
+        Error::NoBox { .. } => message.replace("`Settings::in_box`", "--box"),
+        _ => message,
+    }
+}
+
+/// Warning about a run that meets the limit on particles.
+fn over_limit(predicted_count: u64, settings: &Settings) -> String {
+    let limit = settings.max_particles;
+    if settings.size_mode == SizeMode::Count && settings.count > limit {
+        let (wanted, room) = (settings.count, (f64::from(settings.count) * COUNT_ROOM).ceil());
+        return format!(
+            "the {wanted} particles that are wanted are more than the limit of {limit}; ask for a smaller --count, or allow them with \
+             --max-particles {room}"
+        );
+    }
+    // The prediction may be a little too low.
+    let count = predicted_count.max(u64::from(limit) + 1);
+    format!(
+        "about {count} particles of this radius would fit on the surface, more than the limit of {limit}; \
+         choose a larger --radius, or allow them with --max-particles {}",
+        (count as f64 * COUNT_ROOM).ceil()
+    )
+}
+
+/// Refuses a way to write vertices that makes no difference in any of the files.
+fn check_vertices(arguments: &SampleArguments) -> Result<(), Failure> {
+    let choice = VERTICES.iter().find(|choice| choice.value == arguments.vertices);
+    let known = choice.map_or(&[][..], |choice| choice.formats);
+    let is_of = |path: &PathBuf| {
+        let extension = extension(arguments, path);
+        known.iter().any(|known| extension.eq_ignore_ascii_case(known))
+    };
+    if arguments.vertices == Vertices::default() || arguments.mesh.iter().any(is_of) {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!(
+        "--vertices {} is for files of --mesh with the extension {}",
+        arguments.vertices.name(),
+        known.join(" or ")
+    )))
+}
+
+/// Refuses a scale, a unit or an axis without a file that it is for.
+fn check_placement(arguments: &SampleArguments) -> Result<(), Failure> {
+    let usual = Placement::default();
+    let Placement { scale, unit, up } = arguments.placement();
+    let given = [("--scale", scale != usual.scale), ("--unit", unit != usual.unit), ("--up", up != usual.up)];
+    match given.into_iter().find(|(_, is_given)| *is_given) {
+        Some((option, _)) if arguments.mesh.is_empty() => Err(Failure::Usage(format!(
+            "{option} is for the files of --mesh: the points of --out keep the units of the formula"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Format of each file, which another `option` may know. It is checked before any work is done.
+fn formats<T>(
+    arguments: &SampleArguments,
+    paths: &[PathBuf],
+    of_extension: impl Fn(&str) -> Option<T>,
+    all: &[(&str, T)],
+    of_other: impl Fn(&str) -> Option<&'static str>,
+) -> Result<Vec<T>, Failure> {
+    paths
+        .iter()
+        .map(|path| {
+            of_extension(&extension(arguments, path)).ok_or_else(|| {
+                let known: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
+                let known = known.join(", ");
+                let name = path.display();
+                Failure::Usage(if let Some(option) = of_other(&extension(arguments, path)) {
+                    format!("{name} is a file of {option}: known here are {known}")
+                } else if is_standard(path) {
+                    format!("standard output takes its format from --format; known here are {known}")
+                } else {
+                    format!("{name} has no extension that names a format; known are {known}")
+                })
+            })
+        })
+        .collect()
+}
+
+/// Whether a file to write is standard output.
+fn is_standard(path: &Path) -> bool {
+    path == Path::new(STANDARD)
+}
+
+/// The extension that names the format of a file.
+fn extension<'a>(arguments: &'a SampleArguments, path: &'a Path) -> Cow<'a, str> {
+    match &arguments.format {
+        Some(format) if is_standard(path) => format.into(),
+        _ => path.extension().unwrap_or_default().to_string_lossy(),
+    }
+}
+
+/// Steps a run to its end and adds the times of the phases to `seconds`.
+fn step_to_end(run: &mut Run<Source>, seconds: &mut Seconds, bar: &ProgressBar) {
+    /// Steps of [`BUDGET`] units between two updates of the progress bar: some 6 ms.
+    const UPDATE: u32 = 64;
+    let mut phase = Phase::Seeding;
+    let mut steps = 0_u32;
+    loop {
+        let of_phase = match phase {
+            Phase::Relaxation => &mut seconds.relaxation,
+            Phase::Generation => &mut seconds.generation,
+            Phase::Refinement => &mut seconds.refinement,
+            _ => &mut seconds.seeding,
+        };
+        let progress = timed(of_phase, || run.step(BUDGET));
+        if progress.stop_reason.is_some() || progress.phase == Phase::Done {
+            return;
+        }
+        phase = progress.phase;
+        if steps.is_multiple_of(UPDATE) {
+            set_fraction(bar, progress.fraction);
+            bar.set_message(match phase {
+                Phase::Relaxation => {
+                    format!("relaxation {}/{}", progress.relax_step, progress.relax_steps)
+                }
+                Phase::Refinement => format!("refining {} particles", grouped(progress.particles)),
+                _ => {
+                    let attempt = match progress.attempt {
+                        1 => String::new(),
+                        attempt => format!("attempt {attempt}, "),
+                    };
+                    let particles = grouped(progress.particles);
+                    format!("{attempt}level {}, {particles} particles", progress.level)
+                }
+            });
+        }
+        steps = steps.wrapping_add(1);
+    }
+}
+
+/// Joins the particles of a run, and adds the time to `seconds`. Returns the volume of the mesh, if
+/// it is closed.
+fn join(run: &mut Run<Source>, seconds: &mut Seconds, bar: &ProgressBar) -> Option<f64> {
+    bar.set_message("joining the particles");
+    timed(&mut seconds.mesh, || {
+        loop {
+            match run.join(SLICES) {
+                Some(mesh) => break mesh.volume,
+                None => set_fraction(bar, run.fraction()),
+            }
+        }
+    })
+}
+
+fn set_fraction(bar: &ProgressBar, fraction: f64) {
+    bar.set_position((fraction * 1000.0) as u64);
+}
+
+/// Does `work`, and adds the time that it takes to `seconds`.
+#[allow(clippy::disallowed_methods, reason = "the tool is the core's caller, and owns the clock")]
+fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let result = work();
+    *seconds += start.elapsed().as_secs_f64();
+    result
+}
+
+/// Peak resident memory so far in 10⁶ bytes, from /proc.
+fn peak_mb() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kib: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib * 1024.0 / 1e6)
+}

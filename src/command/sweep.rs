@@ -1,0 +1,162 @@
+//! Subcommand `sweep`: a surface that moves, as numbered files of the particles that follow it.
+
+use crate::arguments::{Sweep, SweepArguments};
+use crate::bar::bar;
+use crate::failure::{Failure, LIMIT};
+use crate::output::OutputFile;
+use crate::surface::{choose, fit};
+use marching_particles::quality::Measurements;
+use marching_particles::session::{FieldRequest, Session};
+use marching_particles::{Bounds, FollowError, Particles, StopReason, export};
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Values of the parameter, spread over its range, at which a box is fitted. In between the surface
+/// may be larger: where its size grows and shrinks as a parabola, by (1/8)² of the growth, 1.6 %,
+/// at most, and a fitted box has 5 % of its size as room on every side.
+const FITTED: u32 = 9;
+
+pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
+    let (sweep, frames) = (arguments.sweep.clone(), arguments.frames);
+    let (extension, format) = arguments.format;
+    let in_directory = |error| Failure::File { path: arguments.out.clone(), error };
+    std::fs::create_dir_all(&arguments.out).map_err(in_directory)?;
+    arguments.sampling.check()?;
+    let settings_in = |bounds: &Bounds| arguments.sampling.settings(bounds);
+    let mut session = Session::without_surface();
+    // The parameter has to be there.
+    arguments.surface.parameters.retain(|(name, _)| *name != sweep.name);
+    arguments.surface.parameters.push((sweep.name.clone(), sweep.from));
+    choose(&mut session, &arguments.surface, arguments.quiet)?;
+    for k in 0..FITTED {
+        set_at(&mut session, &sweep, f64::from(k) / f64::from(FITTED - 1), None)?;
+        fit(&mut session, &settings_in, k > 0)?;
+        if session.answer().reach.is_none() {
+            // The box is given, or the surface's own.
+            break;
+        }
+    }
+    // A solid is closed anew in every frame.
+    let bounds = Some(session.run.bounds()).filter(|_| !arguments.surface.closed);
+    let bar = bar(arguments.quiet);
+    bar.set_length(u64::from(frames) + 1);
+    let digits = frames.to_string().len();
+    let mut counted = Counted { least: usize::MAX, ..Counted::default() };
+    for frame in 0..=frames {
+        set_at(&mut session, &sweep, f64::from(frame) / f64::from(frames), bounds)?;
+        let settings = fit(&mut session, &settings_in, false)?;
+        if let Err(error) = session.follow(&settings, false) {
+            session.start(&settings)?;
+            counted.begin_anew(frame, error);
+        }
+        let run = &mut session.run;
+        let stop_reason = loop {
+            if let Some(reason) = run.step(u32::MAX).stop_reason {
+                break reason;
+            }
+        };
+        let mut particles = run.particles().clone();
+        counted.number(&mut particles);
+        let path = arguments.out.join(format!("{frame:0digits$}.{extension}"));
+        for output in OutputFile::beside(&[&path])? {
+            output.write(|out| export::write(&format.into(), &particles, &Measurements::default(), out))?;
+        }
+        counted.note(run.count(), stop_reason);
+        bar.set_position(u64::from(frame) + 1);
+    }
+    bar.finish_and_clear();
+    let Counted { least, most, next, anew, empty, capped, .. } = counted;
+    if most == 0 {
+        return Err(Failure::Nothing("there is no surface in any frame".to_owned()));
+    }
+    let again = match anew.as_slice() {
+        // What this error says is for programs that use the library.
+        [_, (frame, FollowError::NotCovered), ..] => {
+            let why = "the frame before has too few particles, or was stopped";
+            format!(", of {} runs; in frame {frame} the second begins: {why}", anew.len())
+        }
+        [_, (frame, error), ..] => {
+            format!(", of {} runs; in frame {frame} the second begins: {error}", anew.len())
+        }
+        _ => String::new(),
+    };
+    if !arguments.quiet {
+        let mut out = std::io::stdout().lock();
+        let directory = arguments.out.display();
+        writeln!(
+            out,
+            "{} files in {directory}: {least} to {most} particles, {next} in all{again}",
+            frames + 1
+        )?;
+    }
+    if empty > 0 {
+        eprintln!("warning: there is no surface in {empty} of {} frames", frames + 1);
+    }
+    if capped > 0 {
+        eprintln!(
+            "warning: {capped} of {} frames stopped at the limit of particles: choose larger ones, or raise --max-particles",
+            frames + 1
+        );
+        return Ok(ExitCode::from(LIMIT));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The numbers of particles in the frames so far, and of their identities.
+#[derive(Default)]
+struct Counted {
+    least: usize,
+    most: usize,
+    /// Identities before those of the present run.
+    before: u32,
+    /// The identity after all so far.
+    next: u32,
+    /// The frames in which runs begin, and why the particles before could not follow.
+    anew: Vec<(u32, FollowError)>,
+    /// Frames without particles.
+    empty: u32,
+    /// Frames that stopped at the limit of particles.
+    capped: u32,
+}
+
+impl Counted {
+    /// Notes that another run begins: none of its particles was there before.
+    fn begin_anew(&mut self, frame: u32, error: FollowError) {
+        self.before = self.next;
+        self.anew.push((frame, error));
+    }
+
+    /// Numbers the particles of a frame, so that no two of all runs have the same.
+    fn number(&mut self, particles: &mut Particles) {
+        if particles.identity.is_empty() {
+            let mut numbers: Vec<u32> = Vec::with_capacity(particles.len());
+            let mut next = 0;
+            for row in 0..particles.len() {
+                // One on an edge has a row for each patch.
+                let first = particles.first_row(row);
+                let number = if first == row { next } else { numbers[first] };
+                next = next.max(number + 1);
+                numbers.push(number);
+            }
+            particles.identity = numbers;
+        }
+        for number in &mut particles.identity {
+            *number += self.before;
+            self.next = self.next.max(*number + 1);
+        }
+    }
+
+    fn note(&mut self, count: usize, stop_reason: StopReason) {
+        (self.least, self.most) = (self.least.min(count), self.most.max(count));
+        self.empty += u32::from(count == 0);
+        self.capped += u32::from(stop_reason == StopReason::Cap);
+    }
+}
+
+/// Has the session take the surface at a share of the way of the sweep.
+fn set_at(session: &mut Session, sweep: &Sweep, share: f64, bounds: Option<Bounds>) -> Result<(), Failure> {
+    let value = sweep.from + (sweep.to - sweep.from) * share;
+    let parameters = [(sweep.name.clone(), value)].into();
+    let request = FieldRequest { parameters, bounds, ..FieldRequest::default() };
+    session.set_field(&request).map(drop).map_err(|fault| Failure::Usage(fault.message))
+}

@@ -1,0 +1,11 @@
+//! Tests of the command-line tool, which run the binary. They are one binary themselves: `cargo test
+//! --test cli sweeps::` runs one module.
+
+mod cli;
+mod code;
+#[path = "../../../../tests/it/golden.rs"]
+#[expect(dead_code, reason = "no bytes are digested here")]
+mod golden;
+mod sweeps;
+mod thickness;
+mod threads;

@@ -1,0 +1,442 @@
+//! The core bundle: a [`Session`] behind plain objects and copies of the particle columns.
+#![cfg(target_arch = "wasm32")]
+
+use glam::{DVec3, Vec3};
+use js_sys::{Float64Array, Function};
+use marching_particles::field::BatchField;
+use marching_particles::field::formula::number;
+use marching_particles::field::model::SolvedModel;
+use marching_particles::field::rbf::RbfData;
+use marching_particles::particles::Particles;
+use marching_particles::sampler::{Sampling, Settings};
+use marching_particles::session::{
+    Fault, FaultKind, FieldRequest, FileRecord, FileRequest, Language, Session, SolidSettings, describe,
+};
+use marching_particles_values::{answer, read, to_js};
+use std::sync::Arc;
+use wasm_bindgen::prelude::wasm_bindgen;
+use wasm_bindgen::{JsCast, JsValue};
+
+/// Where the declarations of the bundle find the types of the values.
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = r"import type {
+  Answer,
+  Code,
+  Description,
+  Fault,
+  FieldAnswer,
+  FieldRequest,
+  FileRequest,
+  MeshAnswer,
+  Progress,
+  FileRecord,
+  Measured,
+  Measures,
+  Report,
+  SolvedModel,
+  Start,
+} from '../../engine/core-types.js';";
+
+/// A sampling session. Requests and answers are plain objects; columns are copies, three floats a
+/// vector.
+#[wasm_bindgen]
+pub struct Core {
+    session: Session,
+}
+
+#[wasm_bindgen]
+impl Core {
+    /// A session on the default surface, with nothing sampled.
+    #[wasm_bindgen(constructor)]
+    #[expect(clippy::new_without_default, reason = "a constructor for JavaScript")]
+    pub fn new() -> Self {
+        console_error_panic_hook::set_once();
+        Self { session: Session::new() }
+    }
+
+    /// A session whose first formula is that of no surface of the gallery, whatever its text.
+    pub fn without_surface() -> Self {
+        console_error_panic_hook::set_once();
+        Self { session: Session::without_surface() }
+    }
+
+    /// The description of all settings, surfaces and figures: `Description`.
+    #[wasm_bindgen(unchecked_return_type = "Description")]
+    pub fn describe(&self) -> JsValue {
+        to_js(&describe())
+    }
+
+    /// Changes the field: `FieldRequest` to an `Answer` with `FieldAnswer`. After an error the last
+    /// good field stays.
+    #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
+    pub fn set_field(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Partial<FieldRequest>")] request: JsValue,
+    ) -> JsValue {
+        let request = read::<FieldRequest>(request, FaultKind::Request);
+        answer(request.and_then(|request| self.session.set_field(&request)))
+    }
+
+    /// The number that a text without names stands for in the language of formulas; nothing for any
+    /// other text.
+    pub fn number(&self, text: &str) -> Option<f64> {
+        number(text).ok()
+    }
+
+    /// Why the present surface cannot have the thickness of this text; nothing if it can.
+    pub fn thickness_fault(&self, text: &str) -> Option<String> {
+        self.session.check_thickness(&text.into()).err().map(|fault| fault.message)
+    }
+
+    /// Refuses runs that need more than about `megabytes` with their report.
+    pub fn limit_memory(&mut self, megabytes: usize) {
+        self.session.run.limit_memory(megabytes << 20);
+    }
+
+    /// Changes the field to a model from points: the solved system as `Points.field` gives it, what
+    /// `Points.info` says of it, `SolvedModel`, and a `FieldRequest`, of which the box, the pulls
+    /// and a formula with the model as an operand count; to an `Answer` with `FieldAnswer`. After
+    /// an error the last good field stays.
+    #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
+    pub fn set_points(
+        &mut self,
+        system: &[u8],
+        #[wasm_bindgen(unchecked_param_type = "SolvedModel")] about: JsValue,
+        #[wasm_bindgen(unchecked_param_type = "Partial<FieldRequest>")] request: JsValue,
+    ) -> JsValue {
+        answer(read::<SolvedModel>(about, FaultKind::Request).and_then(|SolvedModel { info, bounds }| {
+            let request = read::<FieldRequest>(request, FaultKind::Request)?;
+            let data = RbfData::from_bytes(system).map_err(|error| Fault::new(FaultKind::Points, &error))?;
+            self.session.set_points(data, info, bounds, &request)
+        }))
+    }
+
+    /// Changes the field to a function that takes the coordinates of up to 512 points and an array
+    /// for f at each of them, to an `Answer` with `FieldAnswer`. Of the `FieldRequest` the box
+    /// counts. Once the function has thrown it is not called again, and the run ends.
+    #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
+    pub fn set_function(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "(points: Float64Array, out: Float64Array) => void")]
+        function: Function,
+        #[wasm_bindgen(unchecked_param_type = "Partial<FieldRequest>")] request: JsValue,
+    ) -> JsValue {
+        let values = move |points: &[DVec3], f: &mut [f64]| {
+            let coordinates = Float64Array::from(bytemuck::cast_slice::<_, f64>(points));
+            let out = Float64Array::new_with_length(f.len() as u32);
+            function.call2(&JsValue::NULL, &coordinates, &out).map_err(|_| "the function has thrown")?;
+            out.copy_to(f);
+            Ok(())
+        };
+        #[expect(clippy::arc_with_non_send_sync, reason = "a function of JavaScript is sent nowhere")]
+        let field = Arc::new(BatchField::<_, &str>::new(values));
+        answer(
+            read::<FieldRequest>(request, FaultKind::Request)
+                .and_then(|request| self.session.set_function(field, request.bounds)),
+        )
+    }
+
+    /// Finds the box of the next run with these `Settings` and the creases in it, up to `budget`
+    /// slices of the work: an `Answer` with `FieldAnswer` once it is known, nothing before. While a
+    /// slider moves the box `only_grows`.
+    #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault> | undefined")]
+    pub fn fit(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Record<string, number | string>")] settings: JsValue,
+        only_grows: bool,
+        budget: u32,
+    ) -> Option<JsValue> {
+        let field = match self.read_settings(settings) {
+            Ok(settings) => Ok(self.session.fit(&|_| settings, only_grows, budget)?),
+            Err(fault) => Err(fault),
+        };
+        Some(answer(field))
+    }
+
+    /// Starts a run: `Settings`, of which what is missing has its default; to an `Answer` with
+    /// `Start`.
+    #[wasm_bindgen(unchecked_return_type = "Answer<Start, Fault>")]
+    pub fn start(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Record<string, number | string>")] settings: JsValue,
+    ) -> JsValue {
+        answer(self.read_settings(settings).and_then(|settings| {
+            self.session.start(&settings).map_err(|error| Fault::new(FaultKind::Settings, &error))
+        }))
+    }
+
+    /// Has the particles of the last run follow its surface to the present field, in the box that
+    /// [`Core::fit`] has found: whether they can, and the run had these `Settings`. `is_closed`: no
+    /// particle is born, and none dies but where it does not come to the surface.
+    pub fn follow(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Record<string, number | string>")] settings: JsValue,
+        is_closed: bool,
+    ) -> bool {
+        self.read_settings(settings).is_ok_and(|settings| self.session.follow(&settings, is_closed).is_ok())
+    }
+
+    /// Does up to `budget` units of work: `Progress`.
+    #[wasm_bindgen(unchecked_return_type = "Progress")]
+    pub fn step(&mut self, budget: u32) -> JsValue {
+        to_js(&self.session.run.step(budget))
+    }
+
+    /// Queues relaxation steps on the present particles.
+    pub fn relax(&mut self, steps: u32) {
+        let _ = self.session.run.relax(steps);
+    }
+
+    /// Ends the run and keeps the particles: `Progress`.
+    #[wasm_bindgen(unchecked_return_type = "Progress")]
+    pub fn cancel(&mut self) -> JsValue {
+        to_js(&self.session.run.cancel())
+    }
+
+    /// Rows of the columns: particles, those on creases and seams once on each side.
+    pub fn count(&self) -> usize {
+        self.session.run.rows()
+    }
+
+    /// Positions from particle `from` on, rounded to single precision.
+    pub fn positions(&self, from: usize) -> Vec<f32> {
+        let particles = self.session.run.particles();
+        if particles.origin == DVec3::ZERO {
+            return self.vectors(&particles.local, from);
+        }
+        self.exact_positions(from).into_iter().map(|coordinate| coordinate as f32).collect()
+    }
+
+    /// Positions from particle `from` on, where single precision does not hold them: in a box far
+    /// from the origin. Elsewhere nothing.
+    pub fn exact_positions(&self, from: usize) -> Vec<f64> {
+        let particles = self.session.run.particles();
+        if particles.origin == DVec3::ZERO {
+            return Vec::new();
+        }
+        (from..self.session.run.rows()).flat_map(|i| particles.place(i).to_array()).collect()
+    }
+
+    /// For the rows of particles on creases, seams and tips, which come first, the first row of the
+    /// same particle; nothing without any.
+    pub fn twins(&self) -> Vec<u32> {
+        self.column(&self.session.run.particles().twins, 0)
+    }
+
+    /// The pairs of rows between which a crease goes on, two each; none without creases.
+    pub fn segments(&self) -> Vec<u32> {
+        self.pairs_along(true)
+    }
+
+    /// The pairs of rows between which a seam without an edge goes on, two each; none without
+    /// seams.
+    pub fn seams(&self) -> Vec<u32> {
+        self.pairs_along(false)
+    }
+
+    /// Unit normals from particle `from` on.
+    pub fn normals(&self, from: usize) -> Vec<f32> {
+        self.vectors(&self.session.run.particles().normal, from)
+    }
+
+    /// Repulsion radii from particle `from` on.
+    pub fn radii(&self, from: usize) -> Vec<f32> {
+        self.column(&self.session.run.particles().radius, from)
+    }
+
+    /// Generation levels from particle `from` on.
+    pub fn levels(&self, from: usize) -> Vec<u32> {
+        self.column(&self.session.run.particles().level, from)
+    }
+
+    /// Parents from particle `from` on; 0xffffffff for a seed.
+    pub fn parents(&self, from: usize) -> Vec<u32> {
+        self.column(&self.session.run.particles().parent, from)
+    }
+
+    /// The fates of the slots, three bits each, from particle `from` on: six, or up to ten of an
+    /// adaptive particle. Bit 30 marks a singular point nearby.
+    pub fn slots(&self, from: usize) -> Vec<u32> {
+        self.column(&self.session.run.particles().slots, from).into_iter().map(|slots| slots.0).collect()
+    }
+
+    /// Says what follows on the run, for the share of the work that is told: which particles will
+    /// be measured, and whether they will be joined.
+    pub fn plan(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Measured")] measured: JsValue,
+        is_joined: bool,
+    ) {
+        self.session.run.plan(read(measured, FaultKind::Request).unwrap_or_default(), is_joined);
+    }
+
+    /// Estimated share of the work that is done: of the run and of what is planned.
+    pub fn fraction(&self) -> f64 {
+        self.session.run.fraction()
+    }
+
+    /// Measures these particles, up to `budget` slices of the work: `Report` once it is complete,
+    /// nothing before.
+    #[wasm_bindgen(unchecked_return_type = "Report | undefined")]
+    pub fn measure(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Measured")] measured: JsValue,
+        budget: u32,
+    ) -> Option<JsValue> {
+        let measured = read(measured, FaultKind::Request).unwrap_or_default();
+        self.session.measure(measured, budget).map(|report| to_js(&report))
+    }
+
+    /// Measures particles that something else has placed on the present surface, vectors of three
+    /// floats: `Measures`. The columns of the last report are then theirs.
+    #[wasm_bindgen(unchecked_return_type = "Measures")]
+    pub fn measure_placed(
+        &mut self,
+        positions: &[f32],
+        normals: &[f32],
+        radii: &[f32],
+        is_adaptive: bool,
+    ) -> JsValue {
+        let vectors = |floats: &[f32]| floats.as_chunks().0.iter().copied().map(Vec3::from_array).collect();
+        let placed = Particles {
+            local: vectors(positions),
+            normal: vectors(normals),
+            radius: radii.to_vec(),
+            ..Particles::default()
+        };
+        let sampling = if is_adaptive { Sampling::Adaptive } else { Sampling::Uniform };
+        to_js(&self.session.run.measure_placed(&placed, sampling))
+    }
+
+    /// Natural neighbours per particle, as of the last report.
+    pub fn valence(&self) -> Vec<u8> {
+        self.session.run.measured().valence.clone()
+    }
+
+    /// Distance to the nearest particle, as of the last report.
+    pub fn nearest(&self) -> Vec<f32> {
+        self.session.run.measured().nearest.clone()
+    }
+
+    /// Patch of each particle, by the number of its branch; empty without creases.
+    pub fn patch(&self) -> Vec<u32> {
+        self.column(&self.session.run.particles().patch, 0)
+    }
+
+    /// The column [`Particles::periodic`].
+    pub fn periodic(&self) -> Vec<u32> {
+        self.column(&self.session.run.particles().periodic, 0)
+    }
+
+    /// For each row, the first row of the same particle: one on a crease has a row on each side.
+    /// Empty without creases.
+    pub fn particle(&self) -> Vec<u32> {
+        let particles = self.session.run.particles();
+        let rows = self.session.run.rows().min(particles.patch.len());
+        (0..rows).map(|row| particles.first_row(row) as u32).collect()
+    }
+
+    /// |f|/|∇f| per particle, as of the last report.
+    pub fn residual(&self) -> Vec<f32> {
+        self.session.run.measured().residual.clone()
+    }
+
+    /// Energy of each particle among its natural neighbours, over that of six at the ideal
+    /// distance, as of the last report.
+    pub fn energy(&self) -> Vec<f32> {
+        self.session.run.measured().energy.clone()
+    }
+
+    /// Component of each particle, 0 the largest, from the last report; 0xffffffff for none.
+    pub fn component(&self) -> Vec<u32> {
+        self.session.run.measured().component.clone()
+    }
+
+    /// Principal curvatures of particles from `from` on, two each, worked out now.
+    pub fn curvature(&mut self, from: usize) -> Vec<f32> {
+        self.session.run.curvatures(from).into_flattened()
+    }
+
+    /// Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is
+    /// complete, nothing before.
+    #[wasm_bindgen(unchecked_return_type = "MeshAnswer | undefined")]
+    pub fn join(&mut self, budget: u32) -> Option<JsValue> {
+        self.session.run.join(budget).map(|answer| to_js(&answer))
+    }
+
+    /// The triangles of the mesh, three rows each, counter-clockwise round their normals; none
+    /// before it is complete.
+    pub fn triangles(&self) -> Vec<u32> {
+        self.session.run.mesh().map_or_else(Vec::new, |mesh| mesh.corners().as_flattened().to_vec())
+    }
+
+    /// The mesh as a file, with the record of what it was made from: `FileRequest`, up to `budget`
+    /// slices of the work; its bytes once it is complete, undefined before; null for another
+    /// extension or if it is too large.
+    #[expect(clippy::missing_panics_doc, reason = "a record is an object without cycles")]
+    #[wasm_bindgen(unchecked_return_type = "Uint8Array<ArrayBuffer> | null | undefined")]
+    pub fn mesh_file(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Partial<FileRequest>")] request: JsValue,
+        budget: u32,
+    ) -> JsValue {
+        let Ok(request) = read::<FileRequest>(request, FaultKind::Request) else { return JsValue::NULL };
+        let json = |record: &FileRecord| {
+            js_sys::JSON::stringify(&to_js(record)).expect("a record is an object without cycles").into()
+        };
+        match self.session.mesh_file(&request, json, budget) {
+            Some(Some(bytes)) => js_sys::Uint8Array::from(&bytes[..]).into(),
+            Some(None) => JsValue::NULL,
+            None => JsValue::UNDEFINED,
+        }
+    }
+
+    /// The record of what the particles were made from, for their files: `FileRecord`; null before
+    /// the first run.
+    #[wasm_bindgen(unchecked_return_type = "FileRecord | null")]
+    pub fn record(&self) -> JsValue {
+        to_js(&self.session.record(None))
+    }
+
+    /// The program that makes the particles of the last run, in the language of this word (`rust`,
+    /// `js`, `python` or `shell`): an `Answer` with `Code`.
+    #[wasm_bindgen(unchecked_return_type = "Answer<Code, string>")]
+    pub fn code(&self, language: &str) -> JsValue {
+        let language = Language::named(language).ok_or_else(|| format!("there is no language `{language}`"));
+        answer(language.and_then(|language| self.session.code(language)))
+    }
+
+    /// Digest of the particle columns, 16 hexadecimal digits.
+    pub fn digest(&self) -> String {
+        format!("{:016x}", self.session.run.particles().digest())
+    }
+
+    /// The settings of a run, and with them those of the box and the solid, which the session
+    /// takes.
+    fn read_settings(&mut self, settings: JsValue) -> Result<Settings, Fault> {
+        let solid: SolidSettings = read(settings.clone(), FaultKind::Settings)?;
+        self.session.choose(solid)?;
+        let of_run = js_sys::Object::assign(&js_sys::Object::new(), settings.unchecked_ref());
+        for name in SolidSettings::NAMES {
+            // Nothing is deleted where it is not there; a copy can be changed.
+            let _ = js_sys::Reflect::delete_property(&of_run, &name.into());
+        }
+        read(of_run.into(), FaultKind::Settings)
+    }
+
+    fn column<T: Copy>(&self, column: &[T], from: usize) -> Vec<T> {
+        let count = self.session.run.rows().min(column.len());
+        column[from.min(count)..count].to_vec()
+    }
+
+    fn pairs_along(&self, is_edge: bool) -> Vec<u32> {
+        let particles = self.session.run.particles();
+        let segments = particles.segments.iter().zip(particles.edges());
+        segments.filter(|&(_, edge)| edge == is_edge).flat_map(|(rows, _)| *rows).collect()
+    }
+
+    fn vectors(&self, column: &[Vec3], from: usize) -> Vec<f32> {
+        let count = self.session.run.rows().min(column.len());
+        bytemuck::cast_slice(&column[from.min(count)..count]).to_vec()
+    }
+}
