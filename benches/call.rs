@@ -1,12 +1,12 @@
 //! What a whole call of `sample` spends: the run, the report on it and the mesh over its particles,
 //! each in processor time of one thread.
 //!
-//! `cargo bench -p benches --bench call -- 50000 9` samples an ellipsoid and a gyroid with 50,000 particles
-//! nine times and prints the medians, among them that of the ratio of the whole call to the run
-//! alone. The feature `parallel` must be off, since only this thread is timed. Parts of one round
-//! are timed one after the other in one process, so that other work on the machine disturbs all
-//! alike. Without numbers it does 50,000 and a million; `ellipsoid` or `gyroid` among the arguments
-//! chooses one of them.
+//! `cargo bench -p benches --bench call -- 50000 9` samples an ellipsoid and a gyroid with 50,000
+//! particles nine times and prints the medians, among them that of the ratio of the whole call to
+//! the run alone. The feature `parallel` must be off, since only this thread is timed. Parts of one
+//! round are timed one after the other in one process, so that other work on the machine disturbs
+//! all alike. Without numbers it does 50,000 and a million; `ellipsoid` or `gyroid` among the
+//! arguments chooses one of them.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 use marching_particles::field::gallery;

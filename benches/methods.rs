@@ -1,10 +1,10 @@
 //! The front and the refined method over the gallery and the models: the table of
 //! `docs/methods.md`.
 //!
-//! `cargo bench -p benches --bench methods > docs/tables/methods.md` measures every surface with 4,000 and
-//! with 20,000 particles. `--count N` takes another number, `--seeds K` reports the worst of the
-//! seeds 0 to K − 1 in each column, `--adaptive` lets sizes follow the curvature, and names of
-//! surfaces restrict the run to these. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes
+//! `cargo bench -p benches --bench methods > docs/tables/methods.md` measures every surface with
+//! 4,000 and with 20,000 particles. `--count N` takes another number, `--seeds K` reports the worst
+//! of the seeds 0 to K − 1 in each column, `--adaptive` lets sizes follow the curvature, and names
+//! of surfaces restrict the run to these. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes
 //! the summary in `docs/methods.md`.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 

@@ -1,9 +1,9 @@
 //! Solids with sharp edges by both methods: the table of `docs/solids.md`.
 //!
-//! `cargo bench -p benches --bench solids --profile dev > docs/tables/solids.md` measures every solid with
-//! 1,500, 6,000 and 24,000 particles. With `-- FOLDER` it also writes every mesh to that folder,
-//! for `benches/tetrahedra.py`. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes the
-//! summary in `docs/solids.md`.
+//! `cargo bench -p benches --bench solids --profile dev > docs/tables/solids.md` measures every
+//! solid with 1,500, 6,000 and 24,000 particles. With `-- FOLDER` it also writes every mesh to that
+//! folder, for `benches/tetrahedra.py`. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes
+//! the summary in `docs/solids.md`.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 #[path = "../tests/it/solid_table.rs"]

@@ -1,9 +1,9 @@
 //! What more threads save.
 //!
-//! `cargo bench -p benches --features parallel --bench threads -- 2 5` does a few whole calls with one thread
-//! and with two, five times each, and prints the medians of the seconds and how many times as fast
-//! the call was. Without numbers it does 1, 2, 4, … threads up to the processors of the machine,
-//! three times each. Other work on the machine disturbs it: it is wall time.
+//! `cargo bench -p benches --features parallel --bench threads -- 2 5` does a few whole calls with
+//! one thread and with two, five times each, and prints the medians of the seconds and how many
+//! times as fast the call was. Without numbers it does 1, 2, 4, … threads up to the processors of
+//! the machine, three times each. Other work on the machine disturbs it: it is wall time.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 use marching_particles::field::gallery;

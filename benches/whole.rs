@@ -1,8 +1,9 @@
 //! Benchmark of whole runs and their phases on the ellipsoid with semi-axes 1, 0.7 and 0.5, beside
 //! a mesher.
 //!
-//! `cargo bench -p benches --bench whole -- quick` runs the sizes of the paper's smaller tables, `-- full`
-//! runs a million particles, and without an argument both run. Each ends with three measurements:
+//! `cargo bench -p benches --bench whole -- quick` runs the sizes of the paper's smaller tables,
+//! `-- full` runs a million particles, and without an argument both run. Each ends with three
+//! measurements:
 //!
 //! * the ratio of the whole run to naive surface nets (`fast-surface-nets`) with as many vertices
 //!   on the same field, timed alternately so that a busy machine disturbs both alike;

@@ -8,10 +8,10 @@
 //! *Natural neighbours* are defined in the tangent plane. The points of the same sheet are rotated
 //! into the tangent plane of a point, at their true distances, and its natural neighbours are those
 //! whose Voronoi cells share an edge with its own: its star, by which particles are
-//! [joined](crate::mesh::triangulation), too. Two points are on the same sheet if their normals are within
-//! 90° and the line between them leaves one tangent plane about as it arrives at the other, which
-//! separates sheets that face the same way; where those are near, the field between the points
-//! decides.
+//! [joined](crate::mesh::triangulation), too. Two points are on the same sheet if their normals are
+//! within 90° and the line between them leaves one tangent plane about as it arrives at the other,
+//! which separates sheets that face the same way; where those are near, the field between the
+//! points decides.
 //!
 //! A mesh fills the places in on which stars disagree. The figures do without: their triangles are
 //! those that stars see, so that nothing that was filled in says that a surface is closed. A run

@@ -1,7 +1,8 @@
 //! Triangles of natural neighbours that their corners agree on, and the figures of their angles.
 //!
-//! Triangles that are in doubt are left out. [`crate::mesh::triangulation`] makes one manifold of the same
-//! stars, and fills such places in: what it has filled must not say that the surface is closed.
+//! Triangles that are in doubt are left out. [`crate::mesh::triangulation`] makes one manifold of
+//! the same stars, and fills such places in: what it has filled must not say that the surface is
+//! closed.
 
 use super::figures::Angles;
 use super::moments::{Moments, share};

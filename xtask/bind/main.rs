@@ -1,8 +1,9 @@
 //! Writes a module and its JavaScript to a folder: `bind MODULE NAME FOLDER`.
 //!
 //! This is the work of the `wasm-bindgen` command with `--target web`, as a library: the lock file
-//! pins its version, and nobody has to install a tool. It is a program of its own, which is compiled
-//! while the modules are, because it takes longer to compile than all other tasks together.
+//! pins its version, and nobody has to install a tool. It is a program of its own, which is
+//! compiled while the modules are, because it takes longer to compile than all other tasks
+//! together.
 
 use anyhow::{Result, bail};
 use wasm_bindgen_cli_support::Bindgen;

@@ -363,8 +363,8 @@ impl TieSearch<'_> {
         kinds
     }
 
-    /// Kind of a choice for which no place is found anywhere. A product stays one unless its factors
-    /// cross: as one it shows where they touch.
+    /// Kind of a choice for which no place is found anywhere. A product stays one unless its
+    /// factors cross: as one it shows where they touch.
     fn kind_in_doubt(&self, id: Id) -> TieKind {
         if self.products.contains(&id) { TieKind::Seam } else { TieKind::Crease }
     }

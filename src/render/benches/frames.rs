@@ -1,7 +1,8 @@
 //! Times of a frame of the page's first surface, natively: discs, spheres and the mesh.
 //!
-//! `cargo bench -p marching-particles-render --features vulkan --bench frames` draws 100,000 particles and a million;
-//! `-- COUNT…` draws other numbers. The executable needs nothing but a Vulkan driver.
+//! `cargo bench -p marching-particles-render --features vulkan --bench frames` draws 100,000
+//! particles and a million; `-- COUNT…` draws other numbers. The executable needs nothing but a
+//! Vulkan driver.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 #[path = "../tests/pictures/stage.rs"]

@@ -1,4 +1,5 @@
-//! Tests of the command-line tool, which run the binary. They are one binary themselves: `cargo test
+//! Tests of the command-line tool, which run the binary. They are one binary themselves: `cargo
+//! test
 //! --test cli sweeps::` runs one module.
 
 mod cli;

@@ -1,9 +1,10 @@
 //! Pictures of the renderer, drawn natively and compared with kept ones.
 //!
-//! `cargo test -p marching-particles-render --features vulkan --test pictures -- --nocapture` prints how far each is from the
-//! one that is kept, and writes what was drawn to `target/tmp/pictures`. `UPDATE_GOLDEN=1` keeps
-//! what is drawn, after a change that is meant to alter it. Where the executable runs without its
-//! sources, `PICTURES_KEPT` and `PICTURES_DRAWN` name the two folders.
+//! `cargo test -p marching-particles-render --features vulkan --test pictures -- --nocapture`
+//! prints how far each is from the one that is kept, and writes what was drawn to
+//! `target/tmp/pictures`. `UPDATE_GOLDEN=1` keeps what is drawn, after a change that is meant to
+//! alter it. Where the executable runs without its sources, `PICTURES_KEPT` and `PICTURES_DRAWN`
+//! name the two folders.
 
 mod shapes;
 mod stage;
