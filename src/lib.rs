@@ -70,6 +70,7 @@
 //! | residual | \|f\|/\|∇f\|, the distance to the surface to first order. |
 //! | witness | A point of the surface that interval arithmetic found, at least one on each component. |
 //! | crease, corner, patch | A curve along which two smooth parts of the surface meet at an angle; a point where creases meet; such a part. |
+//! | piece | A smooth function that gives f in a part of space, as each operand of a maximum does. |
 //! | row | An entry of the particle columns. A particle on a crease or a seam has one for each patch. |
 //! | seam | Of patches: a curve along which two meet without an edge. Of fronts: a line along which they meet out of step. |
 //! | gap | A hole between fronts that is wide enough for a particle. |
@@ -85,7 +86,7 @@
 //! | the job | [`sample`], [`Sample`], [`Run`], [`Start`], [`Progress`], [`Phase`], [`StopReason`], [`Reporting`] |
 //! | its settings | [`Settings`], [`Sampling`], [`Radius`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Bounds`], [`Reach`] |
 //! | formulas | [`Formula`], [`Expr`], [`Parameter`], [`Thickness`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [`PorosityError`], [gallery] |
-//! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [glam] |
+//! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`PiecewiseFn`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Pieces`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [glam] |
 //! | solids of two fields | [`union`], [`intersection`], [`difference`], [`smooth_union`], [`offset`], [`Combined`] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
 //! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
@@ -158,7 +159,8 @@ pub use field::model::{CENTRES, GivenMesh, GivenTopology, ModelInfo, NormalSourc
 pub use field::rbf::RbfField;
 pub use field::{
     BatchField, Bounded, Combined, Enclosure, Evaluator, Facts, Field, FieldError, FnField, Frame, IntoField,
-    Jet, SharedError, UnitCell, difference, gallery, intersection, offset, smooth_union, union,
+    Jet, Pieces, PiecewiseFn, SharedError, UnitCell, difference, gallery, intersection, offset, smooth_union,
+    union,
 };
 pub use glam;
 pub use math::{Bounds, BoxError, Interval, Sym3};

@@ -46,9 +46,9 @@ pub struct Particles {
     /// Fates of the slots around the particle: see [`SlotFate`].
     pub slots: Vec<Slots>,
     /// For each row, the patch of the surface on which it lies, by the number of its branch: see
-    /// [`Patches::branch_at`]. Empty if the surface has a single patch and no particles at tips.
+    /// [`Pieces::label`]. Empty if the surface has a single patch and no particles at tips.
     ///
-    /// [`Patches::branch_at`]: crate::field::Patches::branch_at
+    /// [`Pieces::label`]: crate::field::Pieces::label
     pub patch: Vec<u32>,
     /// For each of the first rows, the first row of the same particle. A particle on a crease has a
     /// row for each patch that meets there: all with its position, each with the normal of its

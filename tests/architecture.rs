@@ -146,7 +146,10 @@ const ROOMS: [Room; 4] = [
             ("formula", &[]),
             // The one part of a formula in which another field is an operand.
             ("formula/operand", &["combined"]),
-            ("combined", &[]),
+            // What its operands do not know of their pieces is found out.
+            ("combined", &["edges"]),
+            ("edges", &[]),
+            ("piecewise", &["differences", "edges"]),
             ("descent", &[]),
             ("crossing", &["descent"]),
             ("evaluator", &[]),

@@ -37,6 +37,17 @@ def test_two_functions_meet_in_an_edge():
     assert lens.report["creases"] == 1 and abs(lens.points[:, 0]).max() < 0.51
 
 
+def test_the_edges_of_a_function_are_found():
+    def ball_in_a_box_less_three_tubes(p):
+        ball = np.linalg.norm(p, axis=1) - 1
+        box = np.max(np.abs(p), axis=1) - 0.75
+        tubes = [np.hypot(p[:, a], p[:, b]) - 0.5 for a, b in [(0, 1), (1, 2), (0, 2)]]
+        return np.maximum(np.maximum(ball, box), -np.minimum.reduce(tubes))
+
+    part = mp.sample(ball_in_a_box_less_three_tubes, count=4_000)
+    assert (part.report["creases"], part.report["corners"], euler(part)) == (24, 8, -8)
+
+
 def test_a_function_is_taken_from_a_formula():
     drilled = mp.sample(mp.difference(BLOCK, rod), count=3000, bounds=BOX)
     assert euler(drilled) == 0

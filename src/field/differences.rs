@@ -21,12 +21,18 @@ pub(super) trait Functions: MaybeSend + MaybeSync {
     /// Whether there is a function of the gradient.
     fn has_gradient(&self) -> bool;
 
-    /// Writes f at each point.
+    /// The label of the piece that gives f at a point.
+    fn label(&self, p: DVec3) -> u32 {
+        let _ = p;
+        0
+    }
+
+    /// Writes f, or a piece of it, at each point. Functions that know of no pieces write f.
     ///
     /// # Errors
     ///
     /// If the function fails.
-    fn write_values(&self, points: &[DVec3], f: &mut [f64]) -> Result<(), FieldError>;
+    fn write_values(&self, piece: Option<u32>, points: &[DVec3], f: &mut [f64]) -> Result<(), FieldError>;
 
     /// Writes ∇f at each point, if it is given.
     ///
@@ -118,6 +124,8 @@ impl std::error::Error for TooManyCalls {}
 /// The evaluator of functions of the program.
 pub(super) struct Differences<'a> {
     functions: &'a dyn Functions,
+    /// The piece that is evaluated; none for f.
+    pub(super) piece: Option<u32>,
     frame: Frame,
     /// The points of a batch, in the coordinates of the field.
     points: Vec<DVec3>,
@@ -130,14 +138,15 @@ pub(super) struct Differences<'a> {
 impl<'a> Differences<'a> {
     pub(super) fn new(functions: &'a dyn Functions, frame: Frame) -> Self {
         let (points, places, value, gradient) = Default::default();
-        Self { functions, frame, points, places, value, gradient }
+        Self { functions, piece: None, frame, points, places, value, gradient }
     }
 
     /// f at a point in the coordinates of the field.
     pub(super) fn value(&mut self, p: DVec3) -> f64 {
         self.points.clear();
         self.points.push(p);
-        write_values(self.functions, &self.points, &mut self.value);
+        self.value.resize(self.points.len(), 0.0);
+        write_values(self.functions, self.piece, &self.points, &mut self.value);
         self.value[0]
     }
 
@@ -150,15 +159,17 @@ impl<'a> Differences<'a> {
 
     /// f and ∇f at the points of the batch.
     fn slopes(&mut self) -> impl Iterator<Item = (f64, DVec3)> + '_ {
-        let Self { functions, frame, points, places, value, gradient } = self;
+        let Self { functions, piece, frame, points, places, value, gradient } = self;
         let is_given = functions.has_gradient();
         if is_given {
-            write_values(*functions, points, value);
+            value.resize(points.len(), 0.0);
+            write_values(*functions, *piece, points, value);
             write_gradients(*functions, points, gradient);
         } else {
             places.clear();
             places.extend(points.iter().flat_map(|&p| [0, 1, 2, 3].map(|k| at_slope(p, k, frame.step(p)))));
-            write_values(*functions, places, value);
+            value.resize(places.len(), 0.0);
+            write_values(*functions, *piece, places, value);
         }
         points.iter().enumerate().map(move |(k, &p)| {
             if is_given {
@@ -171,7 +182,7 @@ impl<'a> Differences<'a> {
 
     /// f, ∇f and ∇∇f at the points of the batch.
     fn jets(&mut self) -> impl Iterator<Item = Jet> + '_ {
-        let Self { functions, frame, points, places, value, gradient } = self;
+        let Self { functions, piece, frame, points, places, value, gradient } = self;
         let is_given = functions.has_gradient();
         places.clear();
         if is_given {
@@ -181,13 +192,15 @@ impl<'a> Differences<'a> {
                     .flat_map(|&p| (0..AROUND).map(move |k| (p, k)))
                     .map(|(p, k)| at_jet(p, k, frame.step(p))),
             );
-            write_values(*functions, points, value);
+            value.resize(points.len(), 0.0);
+            write_values(*functions, *piece, points, value);
             write_gradients(*functions, places, gradient);
         } else {
             let places_of = |&p: &DVec3| (0..JET).map(move |k| (p, k));
             places
                 .extend(points.iter().flat_map(places_of).map(|(p, k)| at_jet(p, k, SECOND * frame.step(p))));
-            write_values(*functions, places, value);
+            value.resize(places.len(), 0.0);
+            write_values(*functions, *piece, places, value);
         }
         points.iter().enumerate().map(move |(k, &p)| {
             let h = frame.step(p);
@@ -204,11 +217,10 @@ impl<'a> Differences<'a> {
 /// Number of points for which a function is asked at a time, at most.
 const AT_ONCE: usize = SLOPE * BATCH;
 
-/// f at each point; NaN once a function has failed.
-fn write_values(functions: &dyn Functions, points: &[DVec3], f: &mut Vec<f64>) {
-    f.resize(points.len(), 0.0);
+/// f, or a piece of it, at each point; NaN once a function has failed.
+pub(super) fn write_values(functions: &dyn Functions, piece: Option<u32>, points: &[DVec3], f: &mut [f64]) {
     for (points, f) in points.chunks(AT_ONCE).zip(f.chunks_mut(AT_ONCE)) {
-        if !functions.calls().call(points.len(), || functions.write_values(points, f)) {
+        if !functions.calls().call(points.len(), || functions.write_values(piece, points, f)) {
             f.fill(f64::NAN);
         }
     }
@@ -230,12 +242,13 @@ impl Evaluator for Differences<'_> {
     }
 
     fn another(&self) -> Box<dyn Evaluator + '_> {
-        Box::new(Differences::new(self.functions, self.frame))
+        Box::new(Differences { piece: self.piece, ..Differences::new(self.functions, self.frame) })
     }
 
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
         self.take(points);
-        write_values(self.functions, &self.points, &mut self.value);
+        self.value.resize(self.points.len(), 0.0);
+        write_values(self.functions, self.piece, &self.points, &mut self.value);
         value.iter_mut().zip(&self.value).for_each(|(value, &f)| *value = self.frame.value(f));
     }
 

@@ -47,6 +47,11 @@ impl Frame {
         Self { origin, ..Self::default() }
     }
 
+    /// The default frame, for differences in a box.
+    pub(crate) fn for_box(bounds: &Bounds) -> Self {
+        Self { length: bounds.diagonal(), ..Self::default() }
+    }
+
     /// This frame with the power of two that brings the median magnitude of the gradient near 1, or
     /// with 1 if that is not needed. The gradient is sampled at no more than one batch of `points`:
     /// because only the exponent of the median counts, nearly all choices of points give the same
@@ -223,10 +228,9 @@ pub trait Evaluator: super::MaybeSend + super::MaybeSync {
         None
     }
 
-    /// This evaluator as one of a function that is put together of smooth [patches](Patches). By
-    /// default f is smooth.
-    #[doc(hidden)]
-    fn patches(&mut self) -> Option<&mut dyn Patches> {
+    /// This evaluator as one of a function that is put together of smooth [pieces](Pieces). By
+    /// default it tells of none.
+    fn pieces(&mut self) -> Option<&mut dyn Pieces> {
         None
     }
 }
@@ -274,93 +278,97 @@ pub trait Bounded: Evaluator {
     fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]);
 }
 
-/// An evaluator of a function that is one of several smooth functions at each point, its
-/// *branches*. Where two of them meet, the surface may have a crease. The part of the surface on
-/// which one branch gives f is a *patch*.
-#[doc(hidden)]
-pub trait Patches {
-    /// The number of the branch that gives f at `p`: it says which operand every maximum, minimum
-    /// and absolute value takes there on which f depends. Equal numbers are equal functions. Where
-    /// f is smooth there is branch 0 alone.
-    fn branch_at(&mut self, p: DVec3) -> u32;
+/// An evaluator of a function that is one of several smooth functions at each point, its *pieces*:
+/// max(a, b) is a here and b there. Where two of them meet on the surface it may have an edge, a
+/// *crease*. The part of the surface on which one piece gives f is a *patch*.
+///
+/// A piece has a label. Equal labels are equal functions, and they do not depend on what was asked
+/// before. Places and boxes are counted in the [frame](Evaluator::frame).
+///
+/// Formulas with maxima, minima and absolute values, and solids that are [put
+/// together](crate::union), bring their pieces; [`PiecewiseFn`](crate::PiecewiseFn) makes them of
+/// functions of the program, and of other functions they are found in the values of f.
+pub trait Pieces {
+    /// The label of the piece that gives f at `p`; 0 where f is smooth everywhere.
+    fn label(&mut self, p: DVec3) -> u32;
 
-    /// Whether there are branches that [limit](Patches::is_limit) the surface.
-    fn has_limits(&mut self) -> bool {
-        false
-    }
+    /// The evaluator of a piece, also where another one gives f. Its bounds are those of the piece,
+    /// its pieces still those of f.
+    ///
+    /// # Panics
+    ///
+    /// May panic if there is no such piece.
+    fn piece(&mut self, label: u32) -> &mut dyn Evaluator;
 
-    /// Whether the zeros of a branch limit the surface and are no part of it: it ends at them.
-    fn is_limit(&mut self, branch: u32) -> bool {
-        let _ = branch;
-        false
-    }
+    /// The labels of the pieces that may give a point of the surface in a box, each once; none if
+    /// they are more than can be listed.
+    fn labels_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>>;
 
-    /// The branches that may give a point of the surface in the box, each once; none if they are
-    /// more than can be listed.
-    fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>>;
+    /// Cells of a box with which a search for edges can begin: in or beside one of them each edge
+    /// in the box has a point. They are no wider than `width` but where that would take too long.
+    fn seams_in(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds>;
 
     /// Pairs of patches that meet without an edge somewhere and yet are no single patch, since they
-    /// or their neighbours meet at an angle elsewhere; the smaller number first.
+    /// or their neighbours meet at an angle elsewhere; the smaller label first.
     fn tangent_pairs(&mut self) -> Vec<[u32; 2]> {
         Vec::new()
     }
 
-    /// The evaluator of the smooth function of `branch`, wherever that gives f or not. Its bounds
-    /// are those of the branch, its patches still those of f.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such branch.
-    fn branch(&mut self, branch: u32) -> &mut dyn Evaluator;
+    /// Whether there are pieces that [limit](Pieces::is_limit) the surface.
+    fn has_limits(&mut self) -> bool {
+        false
+    }
 
-    /// Cells of another box outside of which the surface has no crease: no wider than `width` but
-    /// where that would take too long.
-    fn crease_cells(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds>;
+    /// Whether the zeros of a piece limit the surface and are no part of it: it ends at them.
+    fn is_limit(&mut self, label: u32) -> bool {
+        let _ = label;
+        false
+    }
 }
 
 impl<'a> dyn Evaluator + 'a {
-    /// [`Patches::branch_at`], or 0 of a smooth function.
+    /// [`Pieces::label`], or 0 of a smooth function.
     #[doc(hidden)]
-    pub fn branch_at(&mut self, p: DVec3) -> u32 {
-        self.patches().map_or(0, |patches| patches.branch_at(p))
+    pub fn label(&mut self, p: DVec3) -> u32 {
+        self.pieces().map_or(0, |patches| patches.label(p))
     }
 
     /// The evaluator of the smooth function of a patch; of f itself where there is no patch.
     #[doc(hidden)]
     pub fn on(&mut self, patch: Option<u32>) -> &mut dyn Evaluator {
         match patch {
-            Some(patch) => self.patches().expect("a surface with patches").branch(patch),
+            Some(patch) => self.pieces().expect("a surface with patches").piece(patch),
             None => self,
         }
     }
 
-    /// [`Patches::has_limits`]; a smooth function has none.
+    /// [`Pieces::has_limits`]; a smooth function has none.
     pub(crate) fn has_limits(&mut self) -> bool {
-        self.patches().is_some_and(|patches| patches.has_limits())
+        self.pieces().is_some_and(|patches| patches.has_limits())
     }
 
-    /// [`Patches::is_limit`].
+    /// [`Pieces::is_limit`].
     pub(crate) fn is_limit(&mut self, branch: u32) -> bool {
-        self.patches().is_some_and(|patches| patches.is_limit(branch))
+        self.pieces().is_some_and(|patches| patches.is_limit(branch))
     }
 
     /// Whether a zero of f is no point of the surface: it is one of a branch that limits it.
     pub(crate) fn is_beyond_limits(&mut self, p: DVec3) -> bool {
         self.has_limits() && {
-            let branch = self.branch_at(p);
+            let branch = self.label(p);
             self.is_limit(branch)
         }
     }
 
-    /// [`Patches::tangent_pairs`]; none of a smooth function.
+    /// [`Pieces::tangent_pairs`]; none of a smooth function.
     pub(crate) fn tangent_pairs(&mut self) -> Vec<[u32; 2]> {
-        self.patches().map_or_else(Vec::new, |patches| patches.tangent_pairs())
+        self.pieces().map_or_else(Vec::new, |patches| patches.tangent_pairs())
     }
 
-    /// [`Patches::branches_in`]; none of a smooth function.
+    /// [`Pieces::labels_in`]; none of a smooth function.
     #[doc(hidden)]
-    pub fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
-        self.patches().and_then(|patches| patches.branches_in(bounds))
+    pub fn labels_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
+        self.pieces().and_then(|patches| patches.labels_in(bounds))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Fields given by functions of the program: of a point, or of a batch of points.
 
-use super::differences::{Calls, Differences, Functions};
+use super::differences::{self, Calls, Differences, Functions};
 use super::{Evaluator, Field, FieldError, Frame, Jet, MaybeSend, MaybeSync};
 use core::fmt::{self, Debug, Formatter};
 use core::marker::PhantomData;
@@ -11,10 +11,14 @@ use glam::DVec3;
 /// f is negative inside the surface; where it is undefined it returns NaN. Derivatives that are not
 /// given are found by differences, with four evaluations for a gradient and nineteen for a Hessian:
 /// a gradient makes sampling several times as fast. There are no bounds to prove by that every
-/// component of the surface was found, and edges are not known: a surface with edges, as the union
-/// of two bodies by `min`, is sampled as if it were smooth, and its mesh may be open there. Give
-/// the bodies one by one, and join them by [`union`](crate::union): its edges are found. So are
-/// those of a [`Formula`](crate::Formula) with `min`, `max` and `abs`.
+/// component of the surface was found.
+///
+/// Edges, as those of the union of two bodies by `min`, are found in the values of f, on a grid of
+/// 64 cells along the longest side of the box: particles lie on them, and the mesh is closed along
+/// them. What is smaller than a few cells may be missed, and what fades out, or is computed in
+/// single precision, is not found: the mesh is open there, and the report says where. A
+/// [`PiecewiseFn`](crate::PiecewiseFn) says where its edges are, and so do bodies that are given
+/// one by one and joined by [`union`](crate::union).
 ///
 /// Give the box of the surface where it is known ([`Settings::in_box`](crate::Settings::in_box)).
 /// Without one, grids of 32 cells a side look for changes of sign over cubes around the origin,
@@ -79,7 +83,7 @@ where
         self.gradient.is_some()
     }
 
-    fn write_values(&self, points: &[DVec3], f: &mut [f64]) -> Result<(), FieldError> {
+    fn write_values(&self, _: Option<u32>, points: &[DVec3], f: &mut [f64]) -> Result<(), FieldError> {
         f.iter_mut().zip(points).for_each(|(f, &p)| *f = (self.value)(p));
         Ok(())
     }
@@ -98,6 +102,10 @@ where
 {
     fn value(&self, p: DVec3) -> f64 {
         Differences::new(self, Frame::default()).value(p)
+    }
+
+    fn values(&self, points: &[DVec3], f: &mut [f64]) {
+        differences::write_values(self, None, points, f);
     }
 
     fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
@@ -180,7 +188,7 @@ where
         self.gradients.is_some()
     }
 
-    fn write_values(&self, points: &[DVec3], f: &mut [f64]) -> Result<(), FieldError> {
+    fn write_values(&self, _: Option<u32>, points: &[DVec3], f: &mut [f64]) -> Result<(), FieldError> {
         (self.values)(points, f).map_err(Into::into)
     }
 
@@ -197,6 +205,10 @@ where
 {
     fn value(&self, p: DVec3) -> f64 {
         Differences::new(self, Frame::default()).value(p)
+    }
+
+    fn values(&self, points: &[DVec3], f: &mut [f64]) {
+        differences::write_values(self, None, points, f);
     }
 
     fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {

@@ -8,19 +8,22 @@ mod combined;
 pub(crate) mod crossing;
 pub(crate) mod descent;
 mod differences;
+pub(crate) mod edges;
 mod evaluator;
 pub mod formula;
 mod function;
 pub mod gallery;
 mod given;
 pub mod model;
+mod piecewise;
 pub mod rbf;
 
 pub use crate::slices::{MaybeSend, MaybeSync};
 pub use combined::{Combined, difference, intersection, offset, smooth_union, union};
-pub use evaluator::{Bounded, Evaluator, Frame, Patches};
+pub use evaluator::{Bounded, Evaluator, Frame, Pieces};
 pub use function::{BatchField, FnField};
 pub use given::{FieldError, IntoField, SharedError, kind};
+pub use piecewise::PiecewiseFn;
 
 use evaluator::Pointwise;
 
@@ -123,6 +126,15 @@ pub trait Field: MaybeSend + MaybeSync {
         self.value_and_gradient(p).0
     }
 
+    /// Writes f at each point, for fields that are asked for many points at a time.
+    ///
+    /// # Panics
+    ///
+    /// If `f` is shorter than `points`.
+    fn values(&self, points: &[DVec3], f: &mut [f64]) {
+        points.iter().zip(f).for_each(|(&p, f)| *f = self.value(p));
+    }
+
     /// f, ∇f and ∇∇f at `p`. By default the second derivatives are central differences of the
     /// gradient.
     fn jet(&self, p: DVec3) -> Jet {
@@ -152,11 +164,18 @@ pub trait Field: MaybeSend + MaybeSync {
         None
     }
 
-    /// This field as one whose surface may have creases. By default there is none: the field is
-    /// smooth.
+    /// This field as one that finds out by itself where its [pieces](Pieces) meet. Of a field whose
+    /// evaluator knows its pieces, the library looks where labels change; the values of any other
+    /// one are searched for edges.
     #[doc(hidden)]
-    fn creased(&self) -> Option<&dyn Creased> {
+    fn piecewise(&self) -> Option<&dyn Piecewise> {
         None
+    }
+
+    /// Whether f is known to be smooth everywhere. Otherwise its values are searched for edges.
+    #[doc(hidden)]
+    fn is_smooth(&self) -> bool {
+        false
     }
 
     /// The field that stands for this one in what is [put together](union) of it and others, where
@@ -189,22 +208,20 @@ pub struct Facts {
     pub why_constant: Option<String>,
 }
 
-/// A field that is one of several smooth functions at each point, its *branches*. Where two of them
-/// meet, its surface may have a crease.
+/// A field that finds out by itself where its [pieces](Pieces) meet.
 #[doc(hidden)]
-pub trait Creased: Field + Any {
-    /// Finds cells of a box, in slices, outside of which the surface has no crease: no wider than
-    /// `width` but where that would take too long; no cell if there is no crease. With them comes
-    /// the field in which branches that meet smoothly on the surface in the box are one, and which
-    /// an evaluator of patches is to be asked of.
-    fn creases_in<'a>(&'a self, bounds: &Bounds, width: f64) -> Work<'a, (Vec<Bounds>, Arc<dyn Creased>)>;
+pub trait Piecewise: Field + Any {
+    /// Finds cells of a box, in slices, outside of which no pieces meet at an angle on the surface:
+    /// no wider than `width` but where that would take too long; no cell if none meet. With them
+    /// comes the field in which pieces that meet smoothly on the surface in the box are one, and
+    /// which an evaluator is to be asked of.
+    fn pieces_in<'a>(&'a self, bounds: &Bounds, width: f64) -> Work<'a, (Vec<Bounds>, Arc<dyn Piecewise>)>;
 
-    /// This field with the branches of another one, in which [creases were
-    /// found](Creased::creases_in), where it is the same function of other parameters; otherwise
-    /// with its own.
-    fn with_branches_of(&self, other: &dyn Creased) -> Arc<dyn Creased>;
+    /// This field with the pieces of another one, [found](Piecewise::pieces_in) before, where it is
+    /// the same function of other parameters; otherwise with its own.
+    fn with_pieces_of(&self, other: &dyn Piecewise) -> Arc<dyn Piecewise>;
 
-    /// The field f − shift, or −f − shift, with its creases.
+    /// The field f − shift, or −f − shift, with its pieces.
     fn turned(&self, is_negative: bool, shift: f64) -> Arc<dyn Field>;
 }
 
@@ -263,6 +280,10 @@ impl<P: Deref<Target: Field> + MaybeSend + MaybeSync> Field for P {
         (**self).value(p)
     }
 
+    fn values(&self, points: &[DVec3], f: &mut [f64]) {
+        (**self).values(points, f);
+    }
+
     fn jet(&self, p: DVec3) -> Jet {
         (**self).jet(p)
     }
@@ -283,8 +304,12 @@ impl<P: Deref<Target: Field> + MaybeSend + MaybeSync> Field for P {
         (**self).failure()
     }
 
-    fn creased(&self) -> Option<&dyn Creased> {
-        (**self).creased()
+    fn piecewise(&self) -> Option<&dyn Piecewise> {
+        (**self).piecewise()
+    }
+
+    fn is_smooth(&self) -> bool {
+        (**self).is_smooth()
     }
 
     fn operand(&self) -> Option<Arc<dyn Field>> {

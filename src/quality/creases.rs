@@ -208,7 +208,7 @@ impl CreaseRows {
 
     /// Whether a place is on the patch of point `i`, and not on what lies beyond its creases.
     pub(super) fn reaches(&self, field: &mut dyn Evaluator, i: usize, p: Vec3) -> bool {
-        self.patch.get(i).is_none_or(|&patch| field.branch_at(p.as_dvec3()) == patch)
+        self.patch.get(i).is_none_or(|&patch| field.label(p.as_dvec3()) == patch)
     }
 
     /// The rows of the particles at the points, with these normals. Rows that are left out have no

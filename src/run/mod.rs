@@ -24,7 +24,8 @@ pub use warning::Warning;
 
 use crate::differential::{self, Curvature};
 use crate::extent::Reach;
-use crate::field::{Creased, Evaluator, Field, FieldError, IntoField};
+use crate::field::edges::KnownPieces;
+use crate::field::{Evaluator, Field, FieldError, IntoField};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::quality;
@@ -39,7 +40,6 @@ use mesh::Meshing;
 use plan::Plan;
 use serde::Serialize;
 use state::failure_of;
-use std::sync::Arc;
 
 /// Bytes of a particle that is kept after the front: its position, normal and radius.
 const KEPT_BYTES: usize = 12 + 12 + 4;
@@ -159,8 +159,8 @@ struct RunState {
 struct FieldState {
     /// Calls of its functions before this run.
     calls: u64,
-    /// The function that is sampled in its place, see [`FoundCreases::function`].
-    creased: Option<Arc<dyn Creased>>,
+    /// What is known of its pieces.
+    pieces: Option<KnownPieces>,
 }
 
 /// The sampling of one surface, in steps.

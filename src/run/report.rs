@@ -6,7 +6,7 @@ use super::measuring::{
 };
 use super::{Run, RunState, Warning, check};
 use crate::extent::Reach;
-use crate::field::{Creased, Field};
+use crate::field::Field;
 use crate::math::Forest;
 use crate::mesh::facing::Inside;
 use crate::particles::{Particles, SlotFate, Slots};
@@ -319,7 +319,7 @@ impl RunState {
                 self.measuring = Measuring::default();
             } else if is_due {
                 let input = self.measuring_input(measured);
-                let result = input.in_slices(self.field.function(field), self.sampler.frame()).await;
+                let result = input.in_slices(&self.field.function(field), self.sampler.frame()).await;
                 self.keep(field, result);
             }
             self.reported(field)
@@ -338,8 +338,8 @@ impl RunState {
         if self.is_due(measured) {
             let begun = self.measuring.work.take();
             let work = begun.unwrap_or_else(|| {
-                let field: Arc<dyn Field> = match &self.field.creased {
-                    Some(creased) => Arc::<dyn Creased>::clone(creased),
+                let field = match &self.field.pieces {
+                    Some(known) => known.of_shared(copy),
                     None => copy(),
                 };
                 self.measuring_input(measured).work(field, self.sampler.frame())
@@ -397,8 +397,8 @@ impl RunState {
 
     /// The report, with the measurements that are there.
     pub(super) fn reported(&mut self, field: &dyn Field) -> Report {
-        let is_overflowing = self.sampler.is_open_by_overflow(self.field.function(field));
-        let blur = self.sampler.blur(self.field.function(field));
+        let is_overflowing = self.sampler.is_open_by_overflow(&self.field.function(field));
+        let blur = self.sampler.blur(&self.field.function(field));
         let particles = self.sampler.particles();
         let count = particles.count();
         let measured = &self.measuring.measured;

@@ -5,6 +5,7 @@ use super::mesh::Meshing;
 use super::plan::{Plan, Shares};
 use super::{Error, FieldState, Known, Measured, RunState, Sample, Start, Warning};
 use crate::extent::{self, Reach};
+use crate::field::edges::{KnownField, KnownPieces};
 use crate::field::{Evaluator, Field, Frame};
 use crate::math::Bounds;
 use crate::particles::Particles;
@@ -17,7 +18,7 @@ use glam::DVec3;
 
 impl FieldState {
     fn new(given: &dyn Field) -> Self {
-        Self { calls: given.calls().unwrap_or(0), creased: None }
+        Self { calls: given.calls().unwrap_or(0), pieces: None }
     }
 
     /// Calls of its functions by this run.
@@ -26,15 +27,20 @@ impl FieldState {
     }
 
     /// The field that is sampled.
-    pub(super) fn function<'a>(&'a self, given: &'a dyn Field) -> &'a dyn Field {
-        self.creased.as_ref().map_or(given, |creased| creased)
+    pub(super) fn function<'a>(&'a self, given: &'a dyn Field) -> KnownField<'a> {
+        KnownPieces::of(self.pieces.as_ref(), given)
     }
 
     /// The state for `given`, which takes the place of the last field and keeps what was found out
     /// about the branches of that one.
     pub(super) fn followed_by(&self, given: &dyn Field) -> Self {
-        let both = given.creased().zip(self.creased.as_deref());
-        Self { creased: both.map(|(given, known)| given.with_branches_of(known)), ..Self::new(given) }
+        let pieces = match (given.piecewise(), &self.pieces) {
+            (Some(given), Some(KnownPieces::Own(known))) => {
+                Some(KnownPieces::Own(given.with_pieces_of(&**known)))
+            }
+            _ => None,
+        };
+        Self { pieces, ..Self::new(given) }
     }
 }
 
@@ -90,13 +96,13 @@ impl RunState {
         let is_surveyed =
             self.known == Known::Survey && self.sampler.settings().survey_cells == settings.survey_cells;
         let creases = (!is_surveyed).then(|| {
-            let known = self.creases.take();
+            let found = self.creases.take();
             let search = || slices::complete(sampler::find_creases(field, origin, &bounds));
-            let FoundCreases { creases, function } = known.unwrap_or_else(search);
-            self.field.creased = function;
+            let FoundCreases { creases, known } = found.unwrap_or_else(search);
+            self.field.pieces = known;
             creases
         });
-        let start = self.sampler.begin(self.field.function(field), origin, &bounds, settings, creases)?;
+        let start = self.sampler.begin(&self.field.function(field), origin, &bounds, settings, creases)?;
         self.known = Known::Survey;
         self.last = None;
         self.measuring = Measuring::default();
@@ -121,7 +127,7 @@ impl RunState {
 
     /// [`Run::step`](super::Run::step).
     pub(super) fn step(&mut self, field: &dyn Field, budget: u32) -> Progress {
-        let progress = self.sampler.step(self.field.function(field), budget);
+        let progress = self.sampler.step(&self.field.function(field), budget);
         if field.failure().is_some() && progress.stop_reason.is_none() {
             return self.cancel(field);
         }
@@ -134,7 +140,7 @@ impl RunState {
     /// [`Run::follow_field`](super::Run::follow_field).
     pub(super) fn follow(&mut self, field: &dyn Field, is_closed: bool) -> Result<(), FollowError> {
         let bounds = self.local_bounds();
-        self.sampler.follow(self.field.function(field), &bounds, is_closed)?;
+        self.sampler.follow(&self.field.function(field), &bounds, is_closed)?;
         self.known = Known::Particles;
         self.creases = None;
         self.remember(field, self.sampler.progress());
@@ -155,7 +161,7 @@ impl RunState {
     pub(super) fn cancel(&mut self, field: &dyn Field) -> Progress {
         self.sampler.cancel();
         // Marks the particles next to singular points.
-        let progress = self.sampler.step(self.field.function(field), 0);
+        let progress = self.sampler.step(&self.field.function(field), 0);
         self.remember(field, progress)
     }
 
@@ -231,7 +237,7 @@ impl RunState {
 
     /// [`Run::evaluator`](super::Run::evaluator).
     pub(super) fn evaluator<'a>(&'a self, field: &'a dyn Field) -> Box<dyn Evaluator + 'a> {
-        self.field.function(field).evaluator(self.sampler.frame())
+        self.field.function(field).at_work(self.sampler.frame())
     }
 
     /// The clip box, counted from the origin of the particles.

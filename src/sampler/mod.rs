@@ -41,7 +41,8 @@ pub(crate) use attempt::COUNT_TOLERANCE;
 pub(crate) use discovery::precision::Blur;
 pub(crate) use discovery::singular::{SingularKind, SingularPlace};
 
-use crate::field::{Creased, Evaluator, Field, Frame, Patches};
+use crate::field::edges::{self, KnownPieces};
+use crate::field::{Evaluator, Field, Frame, Pieces};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::slices::Work;
@@ -64,7 +65,6 @@ use progress::RefineProgress;
 use refine::CoarseFronts;
 use relaxation::Relaxation;
 use sizing::Sizing;
-use std::sync::Arc;
 use steps::SurveyCursor;
 
 /// Bytes per particle that have to be free before a run: the columns, neighbour lists and grid of a
@@ -144,9 +144,8 @@ struct Output {
 #[derive(Clone, Default)]
 pub(crate) struct FoundCreases {
     pub(crate) creases: Creases,
-    /// The function that is sampled in the place of the field: branches of it that meet smoothly on
-    /// the surface are one. None for the field itself.
-    pub(crate) function: Option<Arc<dyn Creased>>,
+    /// What is known of the pieces of the field: those that meet smoothly on the surface are one.
+    pub(crate) known: Option<KnownPieces>,
 }
 
 /// Finds the creases of the surface of a field in a box, which is counted from `origin`, in slices.
@@ -157,9 +156,10 @@ pub(crate) fn find_creases<'a>(
 ) -> Work<'a, FoundCreases> {
     let bounds = *bounds;
     Box::pin(async move {
-        let Some(creased) = field.creased() else { return FoundCreases::default() };
-        let outward = Frame::around(origin).outward(&bounds);
-        let (cells, function) = creased.creases_in(&outward, Creases::width(&bounds)).await;
+        let (outward, width) = (Frame::around(origin).outward(&bounds), Creases::width(&bounds));
+        let found = edges::known_in(field, &outward, width).await;
+        let Some((cells, known)) = found else { return FoundCreases::default() };
+        let function = KnownPieces::of(known.as_ref(), field);
         let creases = if cells.is_empty() {
             Creases::default()
         } else {
@@ -170,7 +170,7 @@ pub(crate) fn find_creases<'a>(
             let probe = &mut Probe::new(&mut *evaluator, &mut memory);
             Creases::find(probe, &bounds, &cells, unit_cell).await
         };
-        FoundCreases { creases, function: Some(function) }
+        FoundCreases { creases, known }
     })
 }
 
@@ -429,7 +429,7 @@ impl Sampler {
         // Those of no patch come first.
         let mut patches: Vec<Vec<Vec3>> = Vec::new();
         for &p in &self.survey.position {
-            let patch = self.creases.are_there().then(|| probe.field.branch_at(p.as_dvec3()));
+            let patch = self.creases.are_there().then(|| probe.field.label(p.as_dvec3()));
             let place = patch.map_or(0, |patch| patch as usize + 1);
             patches.resize_with(patches.len().max(place + 1), Vec::new);
             patches[place].push(p);
@@ -586,9 +586,9 @@ impl Sampler {
         }
         let mut evaluator = field.evaluator(self.frame);
         let has_several =
-            |patches: &mut dyn Patches| patches.branches_in(bounds).is_none_or(|all| all.len() > 1);
+            |patches: &mut dyn Pieces| patches.labels_in(bounds).is_none_or(|all| all.len() > 1);
         let is_smooth = particles.patch.is_empty() && !self.creases.are_there();
-        if !is_smooth || evaluator.patches().is_some_and(has_several) {
+        if !is_smooth || evaluator.pieces().is_some_and(has_several) {
             return Err(FollowError::Creased);
         }
         let is_leap = flow::is_leap(&mut *evaluator, particles, self.attempt.radius)?;

@@ -61,14 +61,14 @@ impl<'a> Probe<'a> {
                 let step = step_to_surface(self.field.value_and_gradient(place));
                 place -= if step.length() <= f64::from(size) { step } else { DVec3::ZERO };
             }
-            self.field.branch_at(place + outward) == patch
+            self.field.label(place + outward) == patch
         })
     }
 
     /// Whether a patch may have points in a box: the zeros of √(u² + v²) on the edge of other
     /// patches are none.
     pub(crate) fn may_have_zeros(&mut self, patch: Option<u32>, bounds: &Bounds) -> bool {
-        let known = self.field.branches_in(bounds);
+        let known = self.field.labels_in(bounds);
         patch.zip(known).is_none_or(|(patch, known)| known.contains(&patch))
     }
 

@@ -106,7 +106,7 @@ impl Sampler {
     fn patch_at(&self, probe: &mut Probe, point: Vec3) -> Option<u32> {
         let has_patches =
             self.creases.are_there() || !self.output.particles.patch.is_empty() || probe.field.has_limits();
-        has_patches.then(|| probe.field.branch_at(point.as_dvec3()))
+        has_patches.then(|| probe.field.label(point.as_dvec3()))
     }
 
     /// Places particles on the creases, on the tips and around these, and starts fronts from them.
@@ -414,7 +414,7 @@ impl Sampler {
         Some(if is_tip { Refusal::Doubtful { at } } else { Refusal::Singular { at } })
     }
 
-    /// Tries a front of half the radius, or goes back to one of the wanted radius. Patches between
+    /// Tries a front of half the radius, or goes back to one of the wanted radius. Pieces between
     /// creases are refined once at least, and so is a lone component of sizes that differ.
     fn refuse(&mut self, refusal: Refusal) {
         let is_lone = !self.tools.coarse.are_several;

@@ -334,7 +334,7 @@ impl Session {
     /// Finds the creases of the surface in the box of the next run: of a formula, also of one with
     /// a model as an operand.
     fn fit_creases(&mut self, budget: u32) -> Option<()> {
-        if self.run.field().creased().is_some() && !self.run.knows_creases() {
+        if self.run.field().piecewise().is_some() && !self.run.knows_creases() {
             let bounds = self.run.bounds();
             let under_way = self.fitting.creases.take().filter(|(of, _)| *of == bounds);
             let search = under_way.unwrap_or_else(|| (bounds, self.run.find_creases()));

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery::SURFACES;
-use marching_particles::field::{Creased, Evaluator, Field, Frame};
+use marching_particles::field::{Evaluator, Field, Frame, Piecewise};
 use marching_particles::math::{Bounds, Sym3};
 use marching_particles::slices::complete;
 use proptest::prelude::*;
@@ -19,8 +19,8 @@ fn at_work(field: &Formula) -> Box<dyn Evaluator + '_> {
 
 /// The field with its branches as they are in a box, and the cells of the box that may have
 /// creases.
-fn creased(field: &Formula, bounds: &Bounds) -> (Arc<dyn Creased>, Vec<Bounds>) {
-    let (cells, field) = complete(field.creases_in(bounds, 0.05));
+fn creased(field: &Formula, bounds: &Bounds) -> (Arc<dyn Piecewise>, Vec<Bounds>) {
+    let (cells, field) = complete(field.pieces_in(bounds, 0.05));
     (field, cells)
 }
 
@@ -29,7 +29,7 @@ const CUBE: &str = "max(abs(x), abs(y), abs(z)) - 1";
 /// Numbers of the branches at points of a grid, each once.
 fn branches_of(field: &Formula) -> Vec<u32> {
     let mut field = at_work(field);
-    let mut numbers: Vec<u32> = spread(&Bounds::cube(1.5)).map(|p| field.branch_at(p)).collect();
+    let mut numbers: Vec<u32> = spread(&Bounds::cube(1.5)).map(|p| field.label(p)).collect();
     numbers.sort_unstable();
     numbers.dedup();
     numbers
@@ -68,7 +68,7 @@ fn a_cube_has_six_linear_branches() {
     assert_eq!(branches_of(&cube), [0, 1, 2, 3, 4, 5]);
     let faces = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
     for (number, face) in (0..).zip(faces) {
-        assert_eq!(at_work(&cube).branch_at(face + DVec3::splat(0.1)), number, "{face}");
+        assert_eq!(at_work(&cube).label(face + DVec3::splat(0.1)), number, "{face}");
         // Far from the face, where other branches give f, and in every way of evaluating it.
         for p in [Vec3::ZERO, Vec3::new(-3.0, 8.0, 5.5), Vec3::new(2.0, -0.25, -9.0)] {
             let wanted = p.as_dvec3().dot(face) - 1.0;
@@ -89,8 +89,8 @@ fn a_box_has_the_branches_of_the_faces_that_meet_it() {
     let cube = field(CUBE);
     let mut cube = at_work(&cube);
     let around = |p: DVec3| Bounds::new(p - 0.1, p + 0.1);
-    let [x, y, z] = DVec3::AXES.map(|axis| cube.branch_at(axis));
-    let mut listed = |p: DVec3| cube.branches_in(&around(p));
+    let [x, y, z] = DVec3::AXES.map(|axis| cube.label(axis));
+    let mut listed = |p: DVec3| cube.labels_in(&around(p));
     assert_eq!(listed(DVec3::new(1.0, 0.3, 0.2)), Some(vec![x]));
     // Across the plane y = 0, where the branches of |y| have no zero.
     assert_eq!(listed(DVec3::new(1.0, 0.0, 0.2)), Some(vec![x]));
@@ -98,16 +98,16 @@ fn a_box_has_the_branches_of_the_faces_that_meet_it() {
     assert_eq!(listed(DVec3::ONE), Some(vec![x, y, z]));
     assert_eq!(listed(DVec3::new(0.5, 0.5, 0.5)), Some(vec![]));
     assert_eq!(listed(DVec3::new(1.5, 0.5, 0.5)), Some(vec![]));
-    assert_eq!(cube.branches_in(&Bounds::cube(2.0)), Some(vec![0, 1, 2, 3, 4, 5]));
+    assert_eq!(cube.labels_in(&Bounds::cube(2.0)), Some(vec![0, 1, 2, 3, 4, 5]));
 }
 
 #[test]
 fn a_box_at_a_tie_has_both_branches() {
     let slabs = field("abs(x) + y");
     let mut slabs = at_work(&slabs);
-    assert_eq!(slabs.branches_in(&Bounds::new(DVec3::new(0.0, -1.0, 0.0), DVec3::ONE)), Some(vec![0, 1]));
-    assert_eq!(slabs.branches_in(&Bounds::new(DVec3::new(-1.0, -1.0, 0.0), DVec3::Y)), Some(vec![0, 1]));
-    assert_eq!((slabs.branch_at(DVec3::ZERO), slabs.branch_at(-DVec3::X)), (0, 1));
+    assert_eq!(slabs.labels_in(&Bounds::new(DVec3::new(0.0, -1.0, 0.0), DVec3::ONE)), Some(vec![0, 1]));
+    assert_eq!(slabs.labels_in(&Bounds::new(DVec3::new(-1.0, -1.0, 0.0), DVec3::Y)), Some(vec![0, 1]));
+    assert_eq!((slabs.label(DVec3::ZERO), slabs.label(-DVec3::X)), (0, 1));
 }
 
 /// The distance to a box, in whose formula operands change sides on the surface itself.
@@ -123,12 +123,12 @@ fn the_distance_to_a_box_has_the_zeros_of_its_faces_alone() {
 fn has_the_zeros_of_its_faces_alone(text: &str) {
     let distance = field(text);
     let mut distance = at_work(&distance);
-    let [x, y, z] = DVec3::AXES.map(|axis| distance.branch_at(1.1 * axis));
+    let [x, y, z] = DVec3::AXES.map(|axis| distance.label(1.1 * axis));
     // The same function inside, outside, and where neither side is taken.
     for at in [0.9, 1.0] {
-        assert_eq!(DVec3::AXES.map(|axis| distance.branch_at(at * axis)), [x, y, z], "{at}");
+        assert_eq!(DVec3::AXES.map(|axis| distance.label(at * axis)), [x, y, z], "{at}");
     }
-    let mut listed = |p: DVec3| distance.branches_in(&Bounds::new(p - 0.1, p + 0.1));
+    let mut listed = |p: DVec3| distance.labels_in(&Bounds::new(p - 0.1, p + 0.1));
     assert_eq!(listed(DVec3::new(1.0, 0.3, 0.2)), Some(vec![x]));
     let mut edge = vec![x, y];
     edge.sort_unstable();
@@ -142,8 +142,8 @@ fn has_the_zeros_of_its_faces_alone(text: &str) {
 fn too_many_branches_are_not_listed() {
     let waves = field("abs(x) + abs(y) + abs(z) + abs(x + y) + abs(y + z) + abs(z + x) + abs(x + y + z) = 1");
     let mut waves = at_work(&waves);
-    assert_eq!(waves.branches_in(&Bounds::cube(1.0)), None);
-    assert_eq!(waves.branches_in(&Bounds::new(DVec3::splat(0.05), DVec3::ONE)), Some(vec![0]));
+    assert_eq!(waves.labels_in(&Bounds::cube(1.0)), None);
+    assert_eq!(waves.labels_in(&Bounds::new(DVec3::splat(0.05), DVec3::ONE)), Some(vec![0]));
 }
 
 #[test]
@@ -189,10 +189,10 @@ fn the_absolute_value_of_a_power_is_no_choice() {
 fn parameters_change_branches_and_not_their_numbers() {
     let cube = field("max(abs(x), abs(y), abs(z)) - a");
     let p = DVec3::new(0.5, -4.0, 0.5);
-    assert_eq!(at_work(&cube).branch_at(p), 3);
+    assert_eq!(at_work(&cube).label(p), 3);
     assert_eq!(at_work(&cube).on(Some(3)).value_and_gradient(p).0, 3.0);
     let small = cube.clone().with("a", 0.25).expect("a parameter");
-    assert_eq!(at_work(&small).branch_at(p), 3);
+    assert_eq!(at_work(&small).label(p), 3);
     assert_eq!(values_of(at_work(&small).on(Some(3)), p.as_vec3()), ([3.75; 3], [3.75; 3]));
     assert_eq!(small.value_and_gradient(DVec3::splat(2.0)).0, 1.75);
     assert_eq!(at_work(&small).on(Some(3)).value_and_gradient(DVec3::splat(2.0)).0, -2.25);
@@ -213,8 +213,8 @@ fn numbers_do_not_depend_on_what_was_asked_before() {
     let points: Vec<DVec3> = spread(&Bounds::cube(1.5)).collect();
     let (forward, backward) = (field(text), field(text));
     let (mut forward, mut backward) = (at_work(&forward), at_work(&backward));
-    let numbers: Vec<u32> = points.iter().map(|&p| forward.branch_at(p)).collect();
-    let others: Vec<u32> = points.iter().rev().map(|&p| backward.branch_at(p)).collect();
+    let numbers: Vec<u32> = points.iter().map(|&p| forward.label(p)).collect();
+    let others: Vec<u32> = points.iter().rev().map(|&p| backward.label(p)).collect();
     assert!(numbers.iter().eq(others.iter().rev()));
     assert!(numbers.iter().max() > Some(&6));
 }
@@ -240,7 +240,7 @@ fn evaluators_on_several_threads_tell_the_same_branches() {
         if reverse {
             points.reverse();
         }
-        let mut numbers: Vec<u32> = points.into_iter().map(|p| evaluator.branch_at(p)).collect();
+        let mut numbers: Vec<u32> = points.into_iter().map(|p| evaluator.label(p)).collect();
         if reverse {
             numbers.reverse();
         }
@@ -259,8 +259,8 @@ fn evaluators_on_several_threads_tell_the_same_branches() {
 fn an_origin_counts_for_branches_too() {
     let cube = field(CUBE);
     let mut cube = cube.evaluator(Frame::around(DVec3::new(1.0, 1.0, 0.0)));
-    assert_eq!(cube.branch_at(DVec3::new(0.0, 0.1, 0.0)), 2);
-    assert_eq!(cube.branches_in(&Bounds::cube(0.1)), Some(vec![0, 2]));
+    assert_eq!(cube.label(DVec3::new(0.0, 0.1, 0.0)), 2);
+    assert_eq!(cube.labels_in(&Bounds::cube(0.1)), Some(vec![0, 2]));
     assert_eq!(values_of(cube.on(Some(2)), Vec3::Y), ([1.0; 3], [1.0; 3]));
 }
 
@@ -279,7 +279,7 @@ fn the_branch_at_a_point_gives_the_value_of_the_gallery_there() {
 fn agrees(field: &Formula, p: DVec3, text: &str) {
     let mut field = at_work(field);
     let wanted = field.value_and_gradient(p).0;
-    let number = field.branch_at(p);
+    let number = field.label(p);
     let value = field.on(Some(number)).value_and_gradient(p).0;
     let close = (value - wanted).abs() <= 1e-13 * (1.0 + wanted.abs());
     assert!(
@@ -288,7 +288,7 @@ fn agrees(field: &Formula, p: DVec3, text: &str) {
     );
     if wanted == 0.0 {
         // Wide enough for the rounding errors of f.
-        let listed = field.branches_in(&Bounds::new(p - 1e-12, p + 1e-12));
+        let listed = field.labels_in(&Bounds::new(p - 1e-12, p + 1e-12));
         assert!(
             listed.as_ref().is_none_or(|listed| listed.contains(&number)),
             "{text} at {p}: {number} of {listed:?}"
@@ -361,7 +361,7 @@ fn the_surfaces_of_the_gallery_have_no_creases() {
         let (field, cells) = creased(&surface.field(), &surface.bounds);
         assert!(cells.is_empty(), "{}", surface.id);
         let mut field = field.evaluator(Frame::default());
-        assert!(spread(&surface.bounds).all(|p| field.branch_at(p) == 0), "{}", surface.id);
+        assert!(spread(&surface.bounds).all(|p| field.label(p) == 0), "{}", surface.id);
         let p = Vec3::new(0.3, 0.2, 0.1);
         assert_eq!(
             format!("{:?}", values_of(field.on(Some(0)), p)),
@@ -385,7 +385,7 @@ fn choices_that_meet_smoothly_are_no_creases() {
         let (field, cells) = creased(&field(text), &Bounds::cube(1.6));
         assert!(cells.is_empty(), "{text}");
         let mut field = field.evaluator(Frame::default());
-        assert!(spread(&Bounds::cube(1.5)).all(|p| field.branch_at(p) == 0), "{text}");
+        assert!(spread(&Bounds::cube(1.5)).all(|p| field.label(p) == 0), "{text}");
     }
 }
 
@@ -406,7 +406,7 @@ fn creases_are_found_whatever_their_size_and_place() {
         let (field, cells) = creased(&field(text), &Bounds::cube(1.6));
         assert!(!cells.is_empty(), "{text}");
         let mut evaluator = field.evaluator(Frame::default());
-        let mut seen: Vec<u32> = on_surface(&*field).into_iter().map(|p| evaluator.branch_at(p)).collect();
+        let mut seen: Vec<u32> = on_surface(&*field).into_iter().map(|p| evaluator.label(p)).collect();
         seen.sort_unstable();
         seen.dedup();
         assert_eq!(seen.len(), count, "{text}: {seen:?}");
@@ -422,8 +422,8 @@ fn both_sides_of_a_face_of_an_exact_distance_are_one_branch() {
     let mut field = field.evaluator(Frame::default());
     for face in DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]) {
         let [inside, outside] = [0.69, 0.71].map(|at| at * face + 0.1 * (DVec3::ONE - face.abs()));
-        assert_eq!(field.branch_at(inside), field.branch_at(outside), "{face}");
-        let branch = field.branch_at(inside);
+        assert_eq!(field.label(inside), field.label(outside), "{face}");
+        let branch = field.label(inside);
         let far = DVec3::new(3.0, -5.0, 2.5);
         let value = field.on(Some(branch)).value_and_gradient(far).0;
         assert!((value - (far.dot(face) - 0.7)).abs() < 1e-15, "{face}");

@@ -2,7 +2,7 @@
 //! every patch.
 
 use glam::{DVec2, DVec3, Vec3};
-use marching_particles::field::{Evaluator, Field, Frame, Jet, Patches};
+use marching_particles::field::{Evaluator, Field, Frame, Jet, Pieces};
 use marching_particles::math::{Bounds, Sym3};
 use marching_particles::particles::{Particles, Slots};
 
@@ -112,27 +112,27 @@ impl Evaluator for CreasedEvaluator<'_> {
         self.at(p).evaluator(self.frame).jet(p)
     }
 
-    fn patches(&mut self) -> Option<&mut dyn Patches> {
+    fn pieces(&mut self) -> Option<&mut dyn Pieces> {
         Some(self)
     }
 }
 
 /// The creases are those of the particles: nobody looks for them.
-impl Patches for CreasedEvaluator<'_> {
-    fn crease_cells(&mut self, _: &Bounds, _: f64) -> Vec<Bounds> {
+impl Pieces for CreasedEvaluator<'_> {
+    fn seams_in(&mut self, _: &Bounds, _: f64) -> Vec<Bounds> {
         unreachable!("the creases are given")
     }
 
-    fn branches_in(&mut self, _: &Bounds) -> Option<Vec<u32>> {
+    fn labels_in(&mut self, _: &Bounds) -> Option<Vec<u32>> {
         unreachable!("the creases are given")
     }
 
-    fn branch_at(&mut self, p: DVec3) -> u32 {
+    fn label(&mut self, p: DVec3) -> u32 {
         (self.field.nearest)(self.frame.place(p))
     }
 
-    fn branch(&mut self, branch: u32) -> &mut dyn Evaluator {
-        let (field, frame, patch) = (self.field, self.frame, Some(branch));
+    fn piece(&mut self, label: u32) -> &mut dyn Evaluator {
+        let (field, frame, patch) = (self.field, self.frame, Some(label));
         &mut **self.branch.insert(Box::new(Self { field, patch, frame, branch: None }))
     }
 }

@@ -6,6 +6,7 @@
 mod settings;
 
 mod adaptive;
+mod black_box;
 mod borders;
 mod box_fit;
 mod branches;

@@ -1,4 +1,4 @@
-//! Patches that meet without an edge along one part of their border and at an angle along another,
+//! Pieces that meet without an edge along one part of their border and at an angle along another,
 //! as where a fillet fades out.
 
 use glam::DVec3;

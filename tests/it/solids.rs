@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::Formula;
-use marching_particles::field::{Creased, Enclosure, Field, Frame, gallery};
+use marching_particles::field::{Enclosure, Field, Frame, Piecewise, gallery};
 use marching_particles::math::Bounds;
 use marching_particles::slices::complete;
 
@@ -43,7 +43,7 @@ pub(crate) fn is_consistent(field: &Formula, bounds: &Bounds, what: &str) {
             &mut known,
         );
         assert!(known[0].value.holds(value), "{what} at {p}");
-        let number = field.branch_at(p);
+        let number = field.label(p);
         let branch = field.on(Some(number)).value_and_gradient(p);
         assert!((branch.0 - value).abs() < 1e-12 && (branch.1 - gradient).length() < 1e-9, "{what} at {p}");
     }
@@ -60,10 +60,10 @@ fn a_box_closes_what_it_cuts() {
         assert_eq!(closed.value_and_gradient(p).0 <= 0.0, inside, "{p}");
     }
     is_consistent(&closed, &around, "a closed gyroid");
-    assert!(!complete(closed.creases_in(&around, 0.05)).0.is_empty());
+    assert!(!complete(closed.pieces_in(&around, 0.05)).0.is_empty());
     let mut evaluator = closed.evaluator(Frame::default());
-    let listed = evaluator.branches_in(&Bounds::cube(0.5)).expect("few branches");
-    assert_eq!(listed, [evaluator.branch_at(DVec3::ZERO)]);
+    let listed = evaluator.labels_in(&Bounds::cube(0.5)).expect("few branches");
+    assert_eq!(listed, [evaluator.label(DVec3::ZERO)]);
     assert!(open.facts().periods[0].is_some());
     assert_eq!((closed.facts().periods, closed.text()), ([None; 3], open.text()));
     // Another box takes the place of the first.
@@ -74,11 +74,11 @@ fn a_box_closes_what_it_cuts() {
 #[test]
 fn a_closed_sphere_has_seven_patches() {
     let dice = field("x^2 + y^2 + z^2 - 1.2").closed_by(&Bounds::cube(1.0));
-    let (cells, dice) = complete(dice.creases_in(&Bounds::cube(1.2), 0.05));
+    let (cells, dice) = complete(dice.pieces_in(&Bounds::cube(1.2), 0.05));
     assert!(!cells.is_empty());
     let mut dice = dice.evaluator(Frame::default());
     let faces = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
-    let mut seen: Vec<u32> = faces.chain([DVec3::splat(0.63)]).map(|p| dice.branch_at(p)).collect();
+    let mut seen: Vec<u32> = faces.chain([DVec3::splat(0.63)]).map(|p| dice.label(p)).collect();
     seen.sort_unstable();
     assert_eq!(seen, [0, 1, 2, 3, 4, 5, 6]);
 }
@@ -99,7 +99,7 @@ fn a_thickened_sphere_has_two_sheets() {
             assert!(shell.value_and_gradient(direction * a.sqrt()).0 < 0.0);
         }
     }
-    assert!(complete(shell.creases_in(&Bounds::cube(2.0), 0.05)).0.is_empty());
+    assert!(complete(shell.pieces_in(&Bounds::cube(2.0), 0.05)).0.is_empty());
     is_consistent(&shell, &Bounds::cube(1.6), "a shell");
 }
 
@@ -126,7 +126,7 @@ fn a_thickened_cube_is_a_cube_in_a_cube() {
         assert_eq!(sheet(p) <= 0.0, is_inside, "{p}");
     }
     is_consistent(&shell, &Bounds::cube(2.5), "a thickened cube");
-    assert!(!complete(shell.creases_in(&Bounds::cube(2.5), 0.05)).0.is_empty());
+    assert!(!complete(shell.pieces_in(&Bounds::cube(2.5), 0.05)).0.is_empty());
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn a_thickened_surface_is_closed_by_a_box() {
         assert!(bounds.holds(p) || value > 0.0);
     }
     is_consistent(&part, &Bounds::cube(2.2), "a gyroid to print");
-    assert!(!complete(part.creases_in(&Bounds::cube(2.2), 0.05)).0.is_empty());
+    assert!(!complete(part.pieces_in(&Bounds::cube(2.2), 0.05)).0.is_empty());
 }
 
 #[test]
@@ -151,7 +151,7 @@ fn a_thickened_octahedron_keeps_its_branches_across_the_planes_of_symmetry() {
     for (size, is_inside) in [(1.0, true), (0.9, false), (1.1, false)] {
         let p = DVec3::new(0.5, 0.3, 0.2) * size;
         assert_eq!(shell.value_and_gradient(p).0 <= 0.0, is_inside, "{p}");
-        let number = shell.branch_at(p);
+        let number = shell.label(p);
         let shell = shell.on(Some(number));
         let value = shell.value_and_gradient(p).0;
         // Along the plane of this branch, beyond its edges.

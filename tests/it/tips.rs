@@ -41,7 +41,7 @@ fn surfaces() -> Vec<Tipped> {
         tipped(&gallery("octdong").replace("a z", "z"), 1.2, 1, 2, 4),
         // A tetrahedron with a trumpet at each corner.
         tipped(&gallery("cayley").replace("= t", "= 1"), 1.6, 4, 5, 6),
-        // Patches with tips: a cone on its base, one with a ball on it, and two that touch, each
+        // Pieces with tips: a cone on its base, one with a ball on it, and two that touch, each
         // with a base.
         tipped("max(sqrt(x^2 + y^2) - 0.8 (1 - z), -z)", 1.3, 1, 1, 2),
         tipped(

@@ -8,6 +8,7 @@
 //! when a hash over everything that goes into it is unchanged; when cargo then gives the same
 //! module as before, binding and optimising are skipped as well.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -70,7 +71,7 @@ pub(crate) enum Bundle {
 
 impl Bundle {
     /// Every bundle, that which all others need first.
-    pub(crate) const ALL: [Self; 5] = [Self::Core, Self::Points, Self::Lesson, Self::Webgpu, Self::Webgl];
+    pub(crate) const ALL: [Self; 5] = [Self::Core, Self::Points, Self::Lesson, Self::Webgl, Self::Webgpu];
 
     /// The folder under `www/src/wasm`.
     pub(crate) fn folder(self) -> &'static str {
@@ -137,7 +138,7 @@ impl Bundle {
     /// same flags, so that the library is compiled once.
     fn flags(self, purpose: Purpose) -> &'static [&'static str] {
         match (self, purpose) {
-            (Self::Core | Self::Points, _) | (Self::Lesson, Purpose::Development) => {
+            (Self::Core | Self::Points, _) | (_, Purpose::Development) => {
                 &["-Cllvm-args=-inline-threshold=100"]
             }
             _ => &[],
@@ -185,73 +186,100 @@ pub(crate) fn build(
     declarations: Declarations,
 ) -> Result<()> {
     let target = WasmTarget::prepare(project)?;
-    let mut current = Vec::new();
-    for &bundle in bundles {
-        let folder = project.scratch("bundles")?.join(purpose.profile()).join(bundle.folder());
-        if !build_one(project, &target, bundle, purpose, &folder)? {
-            current.push(bundle.folder());
+    let read = |&bundle: &Bundle| Stamp::read(project, &target, bundle, purpose);
+    let stamps: Vec<Stamp> = bundles.iter().map(read).collect::<Result<_>>()?;
+    if !stamps.iter().all(Stamp::is_current) {
+        // Both are cargo's work, in folders of their own.
+        let (modules, binder) = thread::scope(|scope| {
+            let binder = scope.spawn(|| binder(project));
+            (compile(project, &target, &stamps, purpose), binder.join())
+        });
+        let (modules, binder) =
+            (modules?, binder.map_err(|_| anyhow!("compiling `bind` ended with a panic"))??);
+        for stamp in stamps.iter().filter(|stamp| !stamp.is_current()) {
+            let package = stamp.bundle.package();
+            let module = modules.get(package);
+            let module = module.with_context(|| format!("cargo named no module of {package}"))?;
+            stamp.finish(project, purpose, &binder, module)?;
         }
+    }
+    for &bundle in bundles {
+        let folder = folder(project, bundle, purpose)?;
         let page = project.www.join("src/wasm").join(bundle.folder());
         if declarations == Declarations::Hold {
             hold_declarations(project, bundle, &folder, &page)?;
         }
         publish(&folder, &page)?;
     }
+    let current: Vec<&str> =
+        stamps.iter().filter(|stamp| stamp.is_current()).map(|stamp| stamp.bundle.folder()).collect();
     if !current.is_empty() {
         println!("  up to date: {}", current.join(", "));
     }
     Ok(())
 }
 
-/// Builds a bundle into `folder`; false if it was up to date.
-fn build_one(
-    project: &Project,
-    target: &WasmTarget,
+/// Where a bundle is built.
+fn folder(project: &Project, bundle: Bundle, purpose: Purpose) -> Result<PathBuf> {
+    Ok(project.scratch("bundles")?.join(purpose.profile()).join(bundle.folder()))
+}
+
+/// What a bundle was made of when it was last built, and what it would be made of now.
+struct Stamp {
     bundle: Bundle,
-    purpose: Purpose,
-    folder: &Path,
-) -> Result<bool> {
-    let name = bundle.folder();
-    let stamp_file = project.scratch("stamps")?.join(format!("{name}-{}.json", purpose.profile()));
-    let stamp: Value =
-        fs::read(&stamp_file).ok().and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default();
-    let inputs = inputs(project, target, bundle, purpose)?;
-    let intact = stamp["outputs"].as_object().is_some_and(|outputs| {
-        !outputs.is_empty()
-            && outputs
-                .iter()
-                .all(|(file, hash)| sha256_of(&folder.join(file)).is_ok_and(|have| hash == have.as_str()))
-    });
-    if intact && stamp["inputs"] == inputs.as_str() {
-        return Ok(false);
+    /// The file that keeps it.
+    file: PathBuf,
+    /// Where the bundle is built.
+    folder: PathBuf,
+    /// A hash over what goes into the bundle now.
+    inputs: String,
+    last: Value,
+    /// Whether the files of the last build are there as it left them.
+    is_intact: bool,
+}
+
+impl Stamp {
+    fn read(project: &Project, target: &WasmTarget, bundle: Bundle, purpose: Purpose) -> Result<Self> {
+        let name = bundle.folder();
+        let file = project.scratch("stamps")?.join(format!("{name}-{}.json", purpose.profile()));
+        let last: Value =
+            fs::read(&file).ok().and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default();
+        let folder = folder(project, bundle, purpose)?;
+        let is_intact = last["outputs"].as_object().is_some_and(|outputs| {
+            let is_as_left = |(file, hash): (&String, &Value)| {
+                sha256_of(&folder.join(file)).is_ok_and(|have| hash == have.as_str())
+            };
+            !outputs.is_empty() && outputs.iter().all(is_as_left)
+        });
+        Ok(Self { bundle, file, folder, inputs: inputs(project, target, bundle, purpose)?, last, is_intact })
     }
-    // Both are cargo's work, in folders of their own.
-    let (module, binder) = thread::scope(|scope| {
-        let binder = scope.spawn(|| binder(project));
-        (compile(project, target, bundle, purpose), binder.join())
-    });
-    let (module, binder) = (module?, binder.map_err(|_| anyhow!("compiling `bind` ended with a panic"))??);
-    let process =
-        Fingerprint::default().file(&module)?.text("process", &process_version(project, bundle)?).finish();
-    if !(intact && stamp["process"] == process.as_str()) {
-        if folder.exists() {
-            fs::remove_dir_all(folder)?;
+
+    fn is_current(&self) -> bool {
+        self.is_intact && self.last["inputs"] == self.inputs.as_str()
+    }
+
+    /// Makes the bundle of the module that cargo has compiled.
+    fn finish(&self, project: &Project, purpose: Purpose, binder: &Path, module: &Path) -> Result<()> {
+        let Self { bundle, ref folder, .. } = *self;
+        let process =
+            Fingerprint::default().file(module)?.text("process", &process_version(project, bundle)?).finish();
+        if !(self.is_intact && self.last["process"] == process.as_str()) {
+            if folder.exists() {
+                fs::remove_dir_all(folder)?;
+            }
+            bind(bundle, binder, module, folder)?;
+            if purpose == Purpose::Site {
+                optimise(project, bundle, folder)?;
+            }
         }
-        bind(bundle, &binder, &module, folder)?;
-        if purpose == Purpose::Site {
-            optimise(project, bundle, folder)?;
+        let mut outputs = serde_json::Map::new();
+        for file in files_under(folder)? {
+            let relative = file.strip_prefix(folder)?.to_string_lossy().into_owned();
+            outputs.insert(relative, Value::from(sha256_of(&file)?));
         }
+        let stamp = json!({ "inputs": self.inputs, "process": process, "outputs": outputs });
+        Ok(fs::write(&self.file, serde_json::to_vec_pretty(&stamp)?)?)
     }
-    let mut outputs = serde_json::Map::new();
-    for file in files_under(folder)? {
-        let relative = file.strip_prefix(folder)?.to_string_lossy().into_owned();
-        outputs.insert(relative, Value::from(sha256_of(&file)?));
-    }
-    fs::write(
-        &stamp_file,
-        serde_json::to_vec_pretty(&json!({ "inputs": inputs, "process": process, "outputs": outputs }))?,
-    )?;
-    Ok(true)
 }
 
 /// A hash over everything that goes into a bundle.
@@ -296,26 +324,48 @@ fn rust_flags(project: &Project, bundle: Bundle, purpose: Purpose) -> Vec<String
     flags
 }
 
-/// Compiles the package of a bundle and returns the module.
-fn compile(project: &Project, target: &WasmTarget, bundle: Bundle, purpose: Purpose) -> Result<PathBuf> {
-    let mut command = target.cargo(project, "build");
-    command
-        .args(["--package", bundle.package(), "--locked", "--profile", purpose.profile()])
-        .arg("--message-format=json-render-diagnostics")
-        // Cargo lets one build at a time into a folder. This one is apart so that the native checks
-        // can run meanwhile.
-        .env("CARGO_TARGET_DIR", project.target.join("wasm"))
-        .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", bundle.opt_level())
-        .env("CARGO_ENCODED_RUSTFLAGS", rust_flags(project, bundle, purpose).join("\u{1f}"));
-    let messages = step::run(&format!("{}: compile", bundle.folder()), &mut command, "")?;
-    let module = messages
-        .lines()
-        .filter_map(|line| serde_json::from_str::<Value>(line).ok())
-        .filter(|message| message["reason"] == "compiler-artifact")
-        .flat_map(|message| message["filenames"].as_array().cloned().unwrap_or_default())
-        .filter_map(|name| name.as_str().filter(|name| name.ends_with(".wasm")).map(PathBuf::from))
-        .next_back();
-    module.context("cargo named no wasm module among its results")
+/// Compiles the packages of bundles that are not up to date, and returns the module of each.
+fn compile(
+    project: &Project,
+    target: &WasmTarget,
+    stamps: &[Stamp],
+    purpose: Purpose,
+) -> Result<BTreeMap<String, PathBuf>> {
+    let mut modules = BTreeMap::new();
+    for together in stamps.chunk_by(|a, b| are_together(a.bundle, b.bundle, purpose)) {
+        if together.iter().all(Stamp::is_current) {
+            continue;
+        }
+        // Those that are up to date are named, too: fewer packages may ask for fewer features of
+        // what they share, and cargo would compile that again.
+        let bundles = || together.iter().map(|stamp| stamp.bundle);
+        let mut command = target.cargo(project, "build");
+        command
+            .args(["--locked", "--profile", purpose.profile()])
+            .args(bundles().flat_map(|bundle| ["--package", bundle.package()]))
+            .arg("--message-format=json-render-diagnostics")
+            // Cargo lets one build at a time into a folder. This one is apart so that the native
+            // checks can run meanwhile.
+            .env("CARGO_TARGET_DIR", project.target.join("wasm"))
+            .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", together[0].bundle.opt_level())
+            .env("CARGO_ENCODED_RUSTFLAGS", rust_flags(project, together[0].bundle, purpose).join("\u{1f}"));
+        let names: Vec<&str> = bundles().map(Bundle::folder).collect();
+        let messages = step::run(&format!("{}: compile", names.join(", ")), &mut command, "")?;
+        for message in messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok()) {
+            let files = message["filenames"].as_array().cloned().unwrap_or_default();
+            let module = files.iter().filter_map(Value::as_str).find(|name| name.ends_with(".wasm"));
+            if let (Some(target), Some(module)) = (message["target"]["name"].as_str(), module) {
+                modules.insert(target.replace('_', "-"), PathBuf::from(module));
+            }
+        }
+    }
+    Ok(modules)
+}
+
+/// Whether one call of cargo compiles both bundles, so that what they share is compiled once and no
+/// processor waits. WebGPU and WebGL2 are features of one library.
+fn are_together(a: Bundle, b: Bundle, purpose: Purpose) -> bool {
+    purpose == Purpose::Development && a != Bundle::Webgpu && b != Bundle::Webgpu
 }
 
 /// The program that writes the JavaScript of a module, compiled if need be.

@@ -1,19 +1,19 @@
-//! The evaluator of a combination, and its patches: those of its parts.
+//! The evaluator of a combination, and its pieces: those of its parts.
 
 use super::Combination;
-use crate::field::{BATCH, Evaluator, Field, Frame, Jet, Patches, Pointwise};
+use crate::field::{BATCH, Evaluator, Field, Frame, Jet, Pieces, Pointwise};
 use crate::math::{Bounds, Sym3};
 use crate::slices;
 use glam::{DVec3, Vec3};
 
-/// A combination at work. The branches of a minimum or maximum are those of its two parts: branch b
-/// of the first one has number 2b, of the second one 2b + 1.
+/// A combination at work. The pieces of a minimum or maximum are those of its two parts: label l of
+/// the first one has number 2l, of the second one 2l + 1.
 pub(super) struct CombinationEvaluator<'a> {
     pub(super) field: &'a Combination,
     pub(super) parts: Vec<Box<dyn Evaluator + 'a>>,
     frame: Frame,
-    /// The evaluator of a branch, once it has been asked for.
-    branch: Option<Box<BranchEvaluator<'a>>>,
+    /// The evaluator of a piece, once one has been asked for.
+    piece: Option<Box<PieceEvaluator<'a>>>,
     /// Values and derivatives of the parts at the points of a batch: those of the first part, then
     /// those of the second one.
     values: Vec<f32>,
@@ -38,7 +38,7 @@ impl<'a> CombinationEvaluator<'a> {
             field,
             parts,
             frame,
-            branch: None,
+            piece: None,
             values: Vec::new(),
             gradients: Vec::new(),
             hessians: Vec::new(),
@@ -94,13 +94,13 @@ impl<'a> CombinationEvaluator<'a> {
     /// The branches of a part in a box.
     pub(super) fn branches_of(&mut self, part: usize, bounds: &Bounds) -> Option<Vec<u32>> {
         let part = &mut self.parts[part];
-        if part.patches().is_some() { part.branches_in(bounds) } else { Some(vec![0]) }
+        if part.pieces().is_some() { part.labels_in(bounds) } else { Some(vec![0]) }
     }
 
     /// The function of a branch of a part.
     pub(super) fn function(&mut self, part: usize, branch: u32) -> &mut dyn Evaluator {
         let part = &mut *self.parts[part];
-        let own = part.patches().is_some().then_some(branch);
+        let own = part.pieces().is_some().then_some(branch);
         part.on(own)
     }
 
@@ -184,15 +184,15 @@ impl Evaluator for CombinationEvaluator<'_> {
         }
     }
 
-    fn patches(&mut self) -> Option<&mut dyn Patches> {
+    fn pieces(&mut self) -> Option<&mut dyn Pieces> {
         if self.field.is_extreme() { Some(self) } else { None }
     }
 }
 
-impl Patches for CombinationEvaluator<'_> {
-    fn branch_at(&mut self, p: DVec3) -> u32 {
+impl Pieces for CombinationEvaluator<'_> {
+    fn label(&mut self, p: DVec3) -> u32 {
         let part = self.part_at(p);
-        2 * self.parts[part].branch_at(p) + part as u32
+        2 * self.parts[part].label(p) + part as u32
     }
 
     fn has_limits(&mut self) -> bool {
@@ -203,7 +203,7 @@ impl Patches for CombinationEvaluator<'_> {
         self.field.is_limited && !branch.is_multiple_of(2)
     }
 
-    fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
+    fn labels_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
         /// Largest box, as a share of the diagonal of the box of the run, of which one point tells
         /// enough.
         const SMALL: f64 = 0.125;
@@ -229,19 +229,18 @@ impl Patches for CombinationEvaluator<'_> {
         found
     }
 
-    fn branch(&mut self, branch: u32) -> &mut dyn Evaluator {
+    fn piece(&mut self, label: u32) -> &mut dyn Evaluator {
         let (field, frame) = (self.field, self.frame);
-        let own = self
-            .branch
-            .get_or_insert_with(|| Box::new(BranchEvaluator { whole: Self::new(field, frame), branch }));
-        own.branch = branch;
+        let new = || Box::new(PieceEvaluator { whole: Self::new(field, frame), label });
+        let own = self.piece.get_or_insert_with(new);
+        own.label = label;
         &mut **own
     }
 
-    fn crease_cells(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+    fn seams_in(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
         let mut found = Vec::new();
         for part in &mut self.parts {
-            found.extend(part.patches().map_or(Vec::new(), |patches| patches.crease_cells(bounds, width)));
+            found.extend(part.pieces().map_or(Vec::new(), |pieces| pieces.seams_in(bounds, width)));
         }
         slices::complete(self.drop_hidden(&mut found, DVec3::ZERO));
         found.extend(slices::complete(self.tied_cells(bounds, width)));
@@ -249,27 +248,27 @@ impl Patches for CombinationEvaluator<'_> {
     }
 }
 
-/// The smooth function of a branch, which still knows the patches of the whole.
-struct BranchEvaluator<'a> {
+/// The smooth function of a piece, which still knows the pieces of the whole.
+struct PieceEvaluator<'a> {
     whole: CombinationEvaluator<'a>,
-    branch: u32,
+    label: u32,
 }
 
-impl BranchEvaluator<'_> {
+impl PieceEvaluator<'_> {
     fn function(&mut self) -> &mut dyn Evaluator {
-        self.whole.function(self.branch as usize % 2, self.branch / 2)
+        self.whole.function(self.label as usize % 2, self.label / 2)
     }
 }
 
-impl Evaluator for BranchEvaluator<'_> {
+impl Evaluator for PieceEvaluator<'_> {
     fn frame(&self) -> Frame {
         self.whole.frame
     }
 
     fn another(&self) -> Box<dyn Evaluator + '_> {
-        Box::new(BranchEvaluator {
+        Box::new(PieceEvaluator {
             whole: CombinationEvaluator::new(self.whole.field, self.whole.frame),
-            branch: self.branch,
+            label: self.label,
         })
     }
 
@@ -303,7 +302,7 @@ impl Evaluator for BranchEvaluator<'_> {
         self.function().exact_gradients(points, value, gradient);
     }
 
-    fn patches(&mut self) -> Option<&mut dyn Patches> {
+    fn pieces(&mut self) -> Option<&mut dyn Pieces> {
         Some(&mut self.whole)
     }
 }

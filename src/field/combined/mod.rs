@@ -12,7 +12,7 @@ mod evaluator;
 mod rule;
 mod ties;
 
-use super::{Creased, Evaluator, Facts, Field, FieldError, Frame, IntoField, Jet};
+use super::{Evaluator, Facts, Field, FieldError, Frame, IntoField, Jet, Piecewise, edges};
 use crate::math::Bounds;
 use crate::slices::Work;
 use core::fmt::{self, Debug, Formatter};
@@ -134,7 +134,7 @@ fn shared<A: IntoField<K, Field: 'static>, K>(given: A) -> Arc<dyn Field> {
 }
 
 /// The surface of a field, which ends where another field becomes positive.
-pub(super) fn limited(surface: Arc<dyn Field>, limit: Arc<dyn Field>) -> Arc<dyn Creased> {
+pub(super) fn limited(surface: Arc<dyn Field>, limit: Arc<dyn Field>) -> Arc<dyn Piecewise> {
     let whole = Combination::new(Rule::Greatest, vec![surface, limit]);
     Arc::new(Combination { is_limited: true, ..whole })
 }
@@ -154,7 +154,7 @@ pub(super) fn blended(a: Arc<dyn Field>, b: Arc<dyn Field>, width: f64) -> Arc<d
 
 /// The field f − shift, or −f − shift.
 pub(super) fn turned(field: &Arc<dyn Field>, is_negative: bool, shift: f64) -> Arc<dyn Field> {
-    match field.creased() {
+    match field.piecewise() {
         _ if !is_negative && shift == 0.0 => Arc::clone(field),
         Some(creased) => creased.turned(is_negative, shift),
         None => {
@@ -234,21 +234,26 @@ impl Field for Combination {
         self.parts.iter().find_map(|part| part.failure())
     }
 
-    fn creased(&self) -> Option<&dyn Creased> {
+    fn piecewise(&self) -> Option<&dyn Piecewise> {
         self.is_extreme().then_some(self)
+    }
+
+    fn is_smooth(&self) -> bool {
+        !self.is_extreme() && self.parts.iter().all(|part| part.is_smooth())
     }
 }
 
-impl Creased for Combination {
-    fn creases_in<'a>(&'a self, bounds: &Bounds, width: f64) -> Work<'a, (Vec<Bounds>, Arc<dyn Creased>)> {
+impl Piecewise for Combination {
+    fn pieces_in<'a>(&'a self, bounds: &Bounds, width: f64) -> Work<'a, (Vec<Bounds>, Arc<dyn Piecewise>)> {
         let bounds = *bounds;
         Box::pin(async move {
             let (mut found, mut own) = (Vec::new(), self.clone());
             for part in &mut own.parts {
-                let Some(creased) = part.creased() else { continue };
-                let (cells, function) = creased.creases_in(&bounds, width).await;
+                let Some((cells, known)) = edges::known_in(&**part, &bounds, width).await else { continue };
                 found.extend(cells);
-                *part = function;
+                if let Some(known) = known {
+                    *part = known.of_shared(|| Arc::clone(part));
+                }
             }
             let origin = bounds.middle();
             let frame = Frame { length: bounds.diagonal(), ..Frame::around(origin) };
@@ -260,12 +265,12 @@ impl Creased for Combination {
             let seams = evaluator.seams_in(&ties).await;
             drop(evaluator);
             own.seams = seams;
-            let own: Arc<dyn Creased> = Arc::new(own);
+            let own: Arc<dyn Piecewise> = Arc::new(own);
             (found, own)
         })
     }
 
-    fn with_branches_of(&self, _: &dyn Creased) -> Arc<dyn Creased> {
+    fn with_pieces_of(&self, _: &dyn Piecewise) -> Arc<dyn Piecewise> {
         Arc::new(self.clone())
     }
 

@@ -5,7 +5,7 @@ use super::compiled::Compiled;
 use super::interval::{BoxRows, FactorProgram};
 use super::scalar::ABREAST;
 use super::{Formula, eval, scalar};
-use crate::field::{Bounded, Enclosure, Evaluator, Frame, Jet, Patches};
+use crate::field::{Bounded, Enclosure, Evaluator, Frame, Jet, Pieces};
 use crate::math::{Bounds, Interval, LANES, Lanes, Sym3};
 use crate::slices;
 use glam::{DVec3, Vec3};
@@ -223,19 +223,19 @@ impl Evaluator for FormulaEvaluator<'_> {
         Some(self)
     }
 
-    fn patches(&mut self) -> Option<&mut dyn Patches> {
+    fn pieces(&mut self) -> Option<&mut dyn Pieces> {
         Some(self)
     }
 }
 
-impl Patches for FormulaEvaluator<'_> {
+impl Pieces for FormulaEvaluator<'_> {
     /// The numbers are the same whatever was asked before, but for those beyond the first 256.
-    fn branch_at(&mut self, p: DVec3) -> u32 {
+    fn label(&mut self, p: DVec3) -> u32 {
         let place = self.frame.place(p);
         self.on_branches(|branches, values| branches.patch_at(values, place))
     }
 
-    fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
+    fn labels_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
         let bounds = self.frame.outward(bounds);
         self.on_branches(|branches, values| branches.patches_within(values, &bounds))
     }
@@ -252,8 +252,8 @@ impl Patches for FormulaEvaluator<'_> {
         self.on_branches(|branches, values| branches.is_limit(branch, values))
     }
 
-    fn branch(&mut self, branch: u32) -> &mut dyn Evaluator {
-        let compiled = self.on_branches(|branches, values| branches.patch(branch, values));
+    fn piece(&mut self, label: u32) -> &mut dyn Evaluator {
+        let compiled = self.on_branches(|branches, values| branches.patch(label, values));
         let (formula, frame) = (self.formula, self.frame);
         let own = self.branch.get_or_insert_with(|| Box::new(Self::of(formula, frame, None, true)));
         let is_same = match (&own.instead, &compiled) {
@@ -267,7 +267,7 @@ impl Patches for FormulaEvaluator<'_> {
         &mut **own
     }
 
-    fn crease_cells(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+    fn seams_in(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
         let bounds = self.frame.outward(bounds);
         let cells = self
             .on_branches(|branches, values| slices::complete(branches.crease_cells(values, &bounds, width)));

@@ -100,7 +100,7 @@ pub use porosity::PorosityError;
 pub use spelling::similar;
 pub use thickness::Thickness;
 
-use super::{Creased, Evaluator, Facts, Field, Frame, Jet, UnitCell};
+use super::{Evaluator, Facts, Field, Frame, Jet, Piecewise, UnitCell};
 use crate::math::Bounds;
 use crate::slices::Work;
 use ast::Equation;
@@ -562,7 +562,7 @@ impl Formula {
     }
 
     /// Returns this formula with other branches.
-    fn with_branches(&self, branches: Branches) -> Arc<dyn Creased> {
+    fn with_branches(&self, branches: Branches) -> Arc<dyn Piecewise> {
         let compiled = self.compiled.clone();
         Arc::new(Self { branches: SharedBranches::new(branches), compiled, ..self.clone() })
     }
@@ -681,13 +681,13 @@ impl Field for Formula {
         }
     }
 
-    fn creased(&self) -> Option<&dyn Creased> {
+    fn piecewise(&self) -> Option<&dyn Piecewise> {
         Some(self)
     }
 }
 
-impl Creased for Formula {
-    fn creases_in<'a>(&'a self, bounds: &Bounds, width: f64) -> Work<'a, (Vec<Bounds>, Arc<dyn Creased>)> {
+impl Piecewise for Formula {
+    fn pieces_in<'a>(&'a self, bounds: &Bounds, width: f64) -> Work<'a, (Vec<Bounds>, Arc<dyn Piecewise>)> {
         let bounds = *bounds;
         Box::pin(async move {
             let (cells, branches) = Branches::found_in(&self.compiled, &self.values, &bounds, width).await;
@@ -697,7 +697,7 @@ impl Creased for Formula {
 
     /// The numbers of branches outlast a change of the parameters, unless that brings the width of
     /// a smooth minimum to 0 or an exponent to 1.
-    fn with_branches_of(&self, other: &dyn Creased) -> Arc<dyn Creased> {
+    fn with_pieces_of(&self, other: &dyn Piecewise) -> Arc<dyn Piecewise> {
         let other = (other as &dyn Any).downcast_ref::<Self>();
         let is_same = |other: &&Self| Arc::ptr_eq(&self.compiled.graph, &other.compiled.graph);
         let Some(other) = other.filter(is_same) else { return Arc::new(self.clone()) };

@@ -137,7 +137,7 @@ impl Base {
 #[cfg(test)]
 mod tests {
     use crate::field::formula::Formula;
-    use crate::field::{Creased, Enclosure, Evaluator, Frame};
+    use crate::field::{Enclosure, Evaluator, Frame, Piecewise};
     use crate::math::Bounds;
     use crate::slices;
     use glam::DVec3;
@@ -146,7 +146,7 @@ mod tests {
     /// has none.
     fn on_smooth(text: &str, with: impl Fn(&mut dyn Evaluator)) {
         let field = Formula::parse(text).unwrap_or_else(|error| panic!("{text}: {error}"));
-        let (cells, function) = slices::complete(field.creases_in(&Bounds::cube(1.5), 0.04));
+        let (cells, function) = slices::complete(field.pieces_in(&Bounds::cube(1.5), 0.04));
         assert!(cells.is_empty(), "{text}");
         with(&mut *function.evaluator(Frame::default()));
     }
@@ -170,7 +170,7 @@ mod tests {
         ] {
             on_smooth(text, |evaluator| {
                 assert_eq!(evaluator.bounded().map(|field| field.factors()), Some(sheets), "{text}");
-                assert_eq!(evaluator.branch_at(DVec3::X), 0, "{text}: the surface is one patch");
+                assert_eq!(evaluator.label(DVec3::X), 0, "{text}: the surface is one patch");
             });
         }
     }

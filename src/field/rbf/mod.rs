@@ -21,7 +21,7 @@ pub(crate) use pulls::pulled_box;
 pub use pulls::{LONGEST_PULL, Pull};
 
 use super::combined::limited;
-use super::{Creased, Evaluator, Field, Frame, Jet, Pointwise};
+use super::{Evaluator, Field, Frame, Jet, Piecewise, Pointwise};
 use crate::math::Sym3;
 use core::fmt::{self, Debug, Formatter};
 use glam::{DVec3, Vec3};
@@ -46,7 +46,7 @@ pub struct RbfField {
     tree: Arc<tree::CellTree>,
     pulls: Pulls,
     /// The surface that ends at the border of the points, if this one does.
-    trimmed: Option<Arc<dyn Creased>>,
+    trimmed: Option<Arc<dyn Piecewise>>,
 }
 
 impl Debug for RbfField {
@@ -150,8 +150,12 @@ impl Field for RbfField {
         }
     }
 
-    fn creased(&self) -> Option<&dyn Creased> {
+    fn piecewise(&self) -> Option<&dyn Piecewise> {
         self.trimmed.as_deref()
+    }
+
+    fn is_smooth(&self) -> bool {
+        true
     }
 
     fn operand(&self) -> Option<Arc<dyn Field>> {
@@ -175,6 +179,10 @@ impl Field for PulledBorder {
         let mut jet = self.border.jet(self.pulls.back(p));
         self.pulls.pull_back(p, &mut jet);
         jet
+    }
+
+    fn is_smooth(&self) -> bool {
+        true
     }
 }
 

@@ -16,7 +16,7 @@ impl Creases {
     pub(in super::super) fn beyond(&self, probe: &mut Probe, bounds: &Bounds, wide: &Bounds) -> Option<Self> {
         self.at_box()?;
         let width = Self::width(wide);
-        let cells = probe.field.patches()?.crease_cells(wide, width);
+        let cells = probe.field.pieces()?.seams_in(wide, width);
         let mut creases = complete(Self::find(probe, wide, &cells, self.unit_cell));
         let [lo, hi] = bounds.single().map(|corner| corner.as_dvec3());
         for axis in 0..3 {

@@ -115,7 +115,7 @@ impl Meeting {
         let mut is_given = |way: DVec3| {
             let place = self.position + way * (ASIDE * reach);
             let landed = place - step_to_surface(branch(probe, b, place));
-            probe.field.branch_at(if landed.is_finite() { landed } else { place } + outward) == b
+            probe.field.label(if landed.is_finite() { landed } else { place } + outward) == b
         };
         Some([aside, -aside].map(&mut is_given))
     }
@@ -133,7 +133,7 @@ impl Meeting {
     /// The branches that may give f near the point.
     pub(super) fn branches_near(&self, probe: &mut Probe, step: f64) -> Vec<u32> {
         let around = Bounds::new(self.position - BESIDE * step, self.position + BESIDE * step);
-        probe.field.branches_in(&around).unwrap_or_default()
+        probe.field.labels_in(&around).unwrap_or_default()
     }
 
     /// The patches that meet along the crease, in ascending order: those of its branches, and of

@@ -3,10 +3,10 @@
 //!
 //! A formula with maxima, minima and absolute values has a surface of *patches*. On each one smooth
 //! branch gives f, or several that meet without an edge
-//! ([`Patches::branch_at`](crate::field::Patches::branch_at)). Two patches meet along a *crease*,
+//! ([`Pieces::label`](crate::field::Pieces::label)). Two patches meet along a *crease*,
 //! the curve on which both branches are zero; it ends at a corner, at the box, or runs back into
 //! itself. Where the factors of a product cross, four patches meet: each factor is
-//! two branches, one on either side of the other factor. Patches that meet without an edge and yet
+//! two branches, one on either side of the other factor. Pieces that meet without an edge and yet
 //! are no single one have a [seam] in the place of a crease.
 //!
 //! 1. *Search.* The field says in which small cells of the box creases can be. There Newton's
@@ -150,7 +150,7 @@ pub struct Creases {
 }
 
 impl Creases {
-    /// Width of the [cells](crate::field::Patches::crease_cells) in which creases are looked for.
+    /// Width of the [cells](crate::field::Pieces::seams_in) in which creases are looked for.
     pub(super) fn width(bounds: &Bounds) -> f64 {
         CELL * bounds.diagonal()
     }
@@ -168,7 +168,7 @@ impl Creases {
         let step = 0.5 * Self::width(bounds);
         for cell in cells {
             pause().await;
-            let branches = probe.field.branches_in(cell).unwrap_or_default();
+            let branches = probe.field.labels_in(cell).unwrap_or_default();
             for (k, &a) in branches.iter().enumerate() {
                 for &b in &branches[..k] {
                     let meeting = Meeting::of_branches(probe, [b, a], cell.middle(), 2.0 * step, SHARP)
@@ -209,7 +209,7 @@ impl Creases {
         }
         for cell in cells {
             pause().await;
-            let branches = probe.field.branches_in(cell).unwrap_or_default();
+            let branches = probe.field.labels_in(cell).unwrap_or_default();
             for pair in pairs.iter().filter(|pair| pair.iter().all(|patch| branches.contains(patch))) {
                 if self.runs_by(cell.middle(), *pair, 0.5 * cell.diagonal(), step) {
                     continue;

@@ -31,11 +31,11 @@ struct Landed {
 /// The point of the surface to which Newton's method leads from `start`, within `reach`.
 fn landed(probe: &mut Probe, start: DVec3, reach: f64) -> Option<Landed> {
     let step_at = |p: DVec3| {
-        let patch = probe.field.branch_at(p);
+        let patch = probe.field.label(p);
         Some((step_to_surface(branch(probe, patch, p)), ()))
     };
     let (position, ()) = newton::land(start, limits(reach), step_at)?;
-    Some(Landed { position, patch: probe.field.branch_at(position) })
+    Some(Landed { position, patch: probe.field.label(position) })
 }
 
 /// The unit normal of a patch.
@@ -69,7 +69,7 @@ impl Meeting {
     /// A point in or near a cell where these patches meet without an edge.
     pub(super) fn on_seam(probe: &mut Probe, pair: [u32; 2], cell: &Bounds) -> Option<Self> {
         let reach = cell.diagonal();
-        // Patches that meet at an angle have a crease there. A gradient that is none says nothing.
+        // Pieces that meet at an angle have a crease there. A gradient that is none says nothing.
         let [u, v] = pair.map(|patch| normal(probe, patch, cell.middle()));
         if u != DVec3::ZERO && v != DVec3::ZERO && u.dot(v) < MOST_TURN {
             return None;
@@ -78,7 +78,7 @@ impl Meeting {
         // A seam may run along the face of a cell.
         let around = Bounds::new(cell.lo() - 0.3 * cell.size(), cell.hi() + 0.4 * cell.size());
         // Little is to be asked of a cell through which no branch gives way to another.
-        let [one, others @ ..] = around.corners().map(|corner| probe.field.branch_at(corner));
+        let [one, others @ ..] = around.corners().map(|corner| probe.field.label(corner));
         if others.iter().all(|&other| other == one) {
             return None;
         }

@@ -1,6 +1,7 @@
 use super::*;
+use crate::field::edges::KnownPieces;
 use crate::field::formula::Formula;
-use crate::field::{Creased, Field, Frame};
+use crate::field::{Field, Frame, Piecewise};
 use crate::particles::Particles;
 use crate::sampler::probe::ProbeMemory;
 use crate::sampler::{FoundCreases, find_creases};
@@ -9,10 +10,11 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The creases of a formula in the box from −`half` to `half`.
-fn creases(text: &str, half: f64) -> (Arc<dyn Creased>, Creases) {
+fn creases(text: &str, half: f64) -> (Arc<dyn Piecewise>, Creases) {
     let field = Formula::as_written(text, &[]).expect("a formula");
-    let FoundCreases { creases, function } = complete(find_creases(&field, DVec3::ZERO, &Bounds::cube(half)));
-    (function.expect("formulas have branches"), creases)
+    let FoundCreases { creases, known } = complete(find_creases(&field, DVec3::ZERO, &Bounds::cube(half)));
+    let Some(KnownPieces::Own(own)) = known else { panic!("a formula has pieces of its own") };
+    (own, creases)
 }
 
 /// Numbers of creases, and of corners at which more than two of them meet.

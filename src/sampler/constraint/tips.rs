@@ -70,7 +70,7 @@ impl Tip {
         spacing: f64,
     ) -> Option<Self> {
         let radius = SMALL * spacing;
-        let patch = patch.unwrap_or_else(|| probe.field.branch_at(position));
+        let patch = patch.unwrap_or_else(|| probe.field.label(position));
         let link = link_on_patch(probe, patch, position, radius)?;
         let faces_out = |curve: &Loop| {
             let normal = mean(curve, |point| point.normal);
@@ -343,8 +343,7 @@ fn link_on_patch(probe: &mut Probe, patch: u32, centre: DVec3, radius: f64) -> O
     let mut link = link(probe, centre, radius)?;
     let mut is_cut = false;
     link.retain(|curve| {
-        let own =
-            curve.iter().filter(|p| probe.field.branch_at(centre + p.direction * radius) == patch).count();
+        let own = curve.iter().filter(|p| probe.field.label(centre + p.direction * radius) == patch).count();
         is_cut |= 0 < own && own < curve.len();
         own > 0
     });

@@ -305,7 +305,7 @@ impl Walk<'_, '_> {
     /// The branches, other than those of the walk, that may give f along a chord.
     fn others_along(&mut self, [a, b]: [DVec3; 2]) -> Vec<u32> {
         let around = Bounds::new(a.min(b) - NEAR * self.step, a.max(b) + NEAR * self.step);
-        let mut found = self.probe.field.branches_in(&around).unwrap_or_default();
+        let mut found = self.probe.field.labels_in(&around).unwrap_or_default();
         found.retain(|branch| !self.patches.contains(branch));
         found
     }
@@ -316,7 +316,7 @@ impl Walk<'_, '_> {
         let offsets = [DVec3::ZERO, DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
         let mut found: Vec<u32> = Vec::new();
         for offset in offsets {
-            let branch = self.probe.field.branch_at(point.position + offset * aside);
+            let branch = self.probe.field.label(point.position + offset * aside);
             if !self.patches.contains(&branch) && !found.contains(&branch) {
                 found.push(branch);
             }

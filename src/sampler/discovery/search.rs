@@ -129,7 +129,7 @@ impl ComponentSearch {
         {
             if normal.is_none() {
                 // Where branches meet smoothly on the surface f may have no gradient there.
-                let branch = probe.field.branch_at(exact);
+                let branch = probe.field.label(exact);
                 let mut place = [exact.as_vec3()];
                 let own = &mut probe.on(Some(branch));
                 normal = own.land_all(&mut place, tolerance.min_gradient, limits, newton::STEPS)[0];

@@ -436,9 +436,7 @@ fn project_on_branches(
 ) {
     let places = found.place.iter().zip(&found.areas).zip(&found.is_unsure);
     let mut candidates: Vec<_> = places
-        .map(|((&place, &area), &is_unsure)| {
-            (probe.field.branch_at(place.as_dvec3()), place, area, is_unsure)
-        })
+        .map(|((&place, &area), &is_unsure)| (probe.field.label(place.as_dvec3()), place, area, is_unsure))
         .collect();
     sort_by_key(&mut candidates, |&(branch, ..)| branch.into());
     if candidates.first().map(|first| first.0) == candidates.last().map(|last| last.0) {

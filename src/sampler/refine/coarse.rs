@@ -42,9 +42,9 @@ pub(crate) fn largest_curvatures(field: &mut dyn Evaluator, points: &[Vec3]) -> 
     curvatures(field, points, &mut curvature);
     for (&p, own) in points.iter().zip(&mut curvature).filter(|(_, own)| !own.is_defined()) {
         // Where the branches of f meet smoothly on its surface f has no gradient.
-        let branch = field.branch_at(p.as_dvec3());
-        if let Some(patches) = field.patches() {
-            curvatures(patches.branch(branch), &[p], slice::from_mut(own));
+        let branch = field.label(p.as_dvec3());
+        if let Some(pieces) = field.pieces() {
+            curvatures(pieces.piece(branch), &[p], slice::from_mut(own));
         }
     }
     let largest = |c: &Curvature| if c.is_defined() { f64::from(c.max_abs()) } else { f64::INFINITY };

@@ -446,7 +446,7 @@ fn join_creases(particles: &mut Particles, to_come: u32, ladder: &CreaseLadder) 
     particles.share_radii();
     for (pair, sides) in ladder.pairs(to_come) {
         let rows = pair.map(|number| first[number as usize]);
-        // Patches beyond the box are left out, and what only they have in common.
+        // Pieces beyond the box are left out, and what only they have in common.
         if !rows.contains(&NONE) {
             particles.segments.push(rows);
             particles.sides.push(sides.to_vec());

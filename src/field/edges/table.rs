@@ -1,0 +1,294 @@
+//! What was found: vertices and sites, each with its labels, by the cell in which they lie.
+
+use super::sampled::Taylor;
+use super::search::Search;
+use crate::math::{Bounds, Forest, NONE};
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// Fewer vertices than these are no piece by themselves.
+const FEWEST: usize = 8;
+/// Largest distance of the sites that count beside a place, in cells of the grid.
+pub(super) const NEAR: f64 = 2.0;
+/// Distance from an edge, in steps of differences, from which on f itself is taken: they do not
+/// reach over the edge from there.
+const MARGIN: f64 = 5.0;
+
+/// A point of an edge, as one of the two pieces sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Side {
+    /// The label of the piece.
+    pub(super) label: u32,
+    /// The vertex of the piece that is nearest.
+    pub(super) end: u32,
+}
+
+/// A point of an edge.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Site {
+    pub(super) position: DVec3,
+    /// Its sides, by their labels.
+    pub(super) sides: [Side; 2],
+    /// 1 or −1: each piece gives f where this times its own function less the other one is
+    /// positive, as in a maximum or in a minimum.
+    pub(super) sign: f64,
+}
+
+/// The edges of a surface in a box, with the smooth pieces beside them.
+#[derive(Debug)]
+pub(crate) struct EdgeTable {
+    pub(super) vertices: Vec<Taylor>,
+    /// The label of each vertex; [`NONE`] where that is not known.
+    pub(super) label: Vec<u32>,
+    pub(super) sites: Vec<Site>,
+    /// Number of labels.
+    count: u32,
+    /// The size of the box.
+    pub(super) size: f64,
+    /// Distance from an edge from which on f itself is taken.
+    pub(super) margin: f64,
+    /// The side of a cell of the grid.
+    pub(super) cell: f64,
+    by_cell: Cells,
+    sites_by_cell: Cells,
+}
+
+impl EdgeTable {
+    /// The table of what was found; none if there is no edge.
+    pub(super) fn new(search: Search<'_>) -> Option<Self> {
+        if search.sites.is_empty() {
+            return None;
+        }
+        let label = labels(&search);
+        let (cell, size) = (search.grid.side, search.f.size);
+        let margin = MARGIN * search.f.step;
+        let Search { vertices, sites: raw, .. } = search;
+        let mut sites = Vec::new();
+        for site in raw {
+            let mut sides = site.ends.map(|end| Side { label: label[end as usize], end });
+            // Beside an edge that fades out both sides are one piece.
+            if sides.iter().any(|side| side.label == NONE) || sides[0].label == sides[1].label {
+                continue;
+            }
+            sides.sort_by_key(|side| side.label);
+            // On its own side of the edge a piece is zero at its vertex.
+            let [of_first, of_second] = [0, 1].map(|k: usize| {
+                let [own, other] = [sides[k], sides[1 - k]].map(|side| &vertices[side.end as usize]);
+                other.slope(own.p).0 / other.jet.gradient.length()
+            });
+            let towards = of_first.abs() >= of_second.abs();
+            let sign = if towards { -of_first.signum() } else { -of_second.signum() };
+            sites.push(Site { position: site.position, sides, sign });
+        }
+        if sites.is_empty() {
+            return None;
+        }
+        let count = label.iter().filter(|&&label| label != NONE).max().map_or(0, |last| last + 1);
+        let by_cell = Cells::new(cell, vertices.iter().map(|vertex| vertex.p));
+        let sites_by_cell = Cells::new(NEAR * cell, sites.iter().map(|site| site.position));
+        Some(Self { vertices, label, sites, count, size, margin, cell, by_cell, sites_by_cell })
+    }
+
+    /// Number of labels.
+    #[cfg(test)]
+    pub(crate) fn labels(&self) -> u32 {
+        self.count
+    }
+
+    /// Points of the edges.
+    #[cfg(test)]
+    pub(crate) fn sites(&self) -> impl Iterator<Item = DVec3> + '_ {
+        self.sites.iter().map(|site| site.position)
+    }
+
+    /// The sites that count beside a place.
+    pub(super) fn sites_near(&self, p: DVec3) -> impl Iterator<Item = &Site> + '_ {
+        let reach = NEAR * self.cell;
+        let near = self.sites_by_cell.around(p).map(|k| &self.sites[k as usize]);
+        near.filter(move |site| site.position.distance_squared(p) <= reach * reach)
+    }
+
+    /// The nearest vertex with each label in the cells around a place, by its label.
+    pub(super) fn nearest(&self, p: DVec3) -> BTreeMap<u32, (f64, u32)> {
+        let mut nearest = BTreeMap::new();
+        for k in self.by_cell.around(p) {
+            let label = self.label[k as usize];
+            if label != NONE {
+                let distance = self.vertices[k as usize].p.distance_squared(p);
+                let known = nearest.entry(label).or_insert((f64::INFINITY, NONE));
+                if distance < known.0 {
+                    *known = (distance, k);
+                }
+            }
+        }
+        nearest
+    }
+
+    /// The labels of pieces that may have points in a box, ascending; none if it holds most of the
+    /// surface.
+    pub(super) fn labels_in(&self, bounds: &Bounds) -> Option<Vec<u32>> {
+        let around = bounds.enlarged(0.6 * self.cell);
+        let cells = (around.size() / self.cell).ceil() + 1.0;
+        if cells.element_product() > 4096.0 {
+            return Some((0..self.count).collect());
+        }
+        let mut found = Vec::new();
+        let mut add = |label: u32| {
+            if label != NONE && !found.contains(&label) {
+                found.push(label);
+            }
+        };
+        for k in self.by_cell.within(&around) {
+            if around.holds(self.vertices[k as usize].p) {
+                add(self.label[k as usize]);
+            }
+        }
+        for k in self.sites_by_cell.within(&around) {
+            let site = &self.sites[k as usize];
+            if around.holds(site.position) {
+                site.sides.iter().for_each(|side| add(side.label));
+            }
+        }
+        found.sort_unstable();
+        Some(found)
+    }
+
+    /// Small cells around points of the edges.
+    pub(crate) fn seams(&self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+        let mut seams = Seams::new(width);
+        for site in self.sites.iter().filter(|site| bounds.holds(site.position)) {
+            seams.add(site.sides.map(|side| side.label), site.position);
+        }
+        seams.cells
+    }
+}
+
+/// Small cells around points of edges: one for each two labels within some widths of each other.
+pub(super) struct Seams {
+    width: f64,
+    known: BTreeMap<[u32; 2], Vec<DVec3>>,
+    pub(super) cells: Vec<Bounds>,
+}
+
+impl Seams {
+    pub(super) fn new(width: f64) -> Self {
+        Self { width, known: BTreeMap::new(), cells: Vec::new() }
+    }
+
+    pub(super) fn add(&mut self, labels: [u32; 2], place: DVec3) {
+        const APART: f64 = 6.0;
+        /// From a place to the middle of its cell, in widths. It is off the faces of a solid, where
+        /// three pieces may be equal.
+        const ASIDE: DVec3 = DVec3::new(0.131, 0.083, -0.057);
+        let known = self.known.entry(labels).or_default();
+        if known.iter().all(|p| p.distance(place) > APART * self.width) {
+            known.push(place);
+            self.cells.push(Bounds::point(place + self.width * ASIDE).enlarged(0.25 * self.width));
+        }
+    }
+}
+
+/// The label of each vertex: vertices that are joined have one, and the labels count by the first
+/// vertex of each.
+fn labels(search: &Search<'_>) -> Vec<u32> {
+    let vertices = &search.vertices;
+    let mut forest = Forest::new(vertices.len());
+    search.joined.iter().for_each(|&[a, b]| forest.join(a, b));
+    // Strips thinner than a cell have vertices beside their edges alone.
+    let inserted = search.inserted..vertices.len();
+    let cells = Cells::new(search.grid.side, vertices[inserted.clone()].iter().map(|vertex| vertex.p));
+    for a in inserted.clone() {
+        for b in cells.around(vertices[a].p) {
+            let b = inserted.start as u32 + b;
+            let is_next = vertices[a].p.distance(vertices[b as usize].p) <= 1.5 * search.grid.side;
+            if b < a as u32
+                && is_next
+                && forest.find(a as u32) != forest.find(b)
+                && search.residual(a as u32, b) <= 0.01
+            {
+                forest.join(a as u32, b);
+            }
+        }
+    }
+    let mut size = vec![0_usize; vertices.len()];
+    (0..vertices.len() as u32).for_each(|k| size[forest.find(k) as usize] += 1);
+    let (mut number, mut next) = (vec![NONE; vertices.len()], 0);
+    let mut label = Vec::with_capacity(vertices.len());
+    for k in 0..vertices.len() as u32 {
+        let root = forest.find(k) as usize;
+        if size[root] >= FEWEST && number[root] == NONE {
+            number[root] = next;
+            next += 1;
+        }
+        label.push(number[root]);
+    }
+    label
+}
+
+/// Numbers of points, by the cell in which each lies.
+#[derive(Debug)]
+struct Cells {
+    lo: DVec3,
+    side: f64,
+    count: [usize; 3],
+    /// Where the points of each cell begin.
+    start: Vec<u32>,
+    points: Vec<u32>,
+}
+
+impl Cells {
+    fn new(side: f64, points: impl Iterator<Item = DVec3> + Clone) -> Self {
+        let around = Bounds::around(points.clone());
+        let count = (around.size() / side).floor().to_array().map(|cells| cells as usize + 1);
+        let mut cells = Self { lo: around.lo(), side, count, start: Vec::new(), points: Vec::new() };
+        let mut own: Vec<(usize, u32)> =
+            points.zip(0..).map(|(p, k)| (cells.index(cells.cell(p).map(|x| x as usize)), k)).collect();
+        own.sort_unstable();
+        let mut next = own.iter().peekable();
+        for cell in 0..=count.into_iter().product() {
+            cells.start.push(cells.points.len() as u32);
+            while let Some(&(_, k)) = next.next_if(|(of, _)| *of == cell) {
+                cells.points.push(k);
+            }
+        }
+        cells
+    }
+
+    /// The cell of a place, which may lie outside.
+    fn cell(&self, p: DVec3) -> [i64; 3] {
+        ((p - self.lo) / self.side).floor().to_array().map(|x| x as i64)
+    }
+
+    fn index(&self, [x, y, z]: [usize; 3]) -> usize {
+        (z * self.count[1] + y) * self.count[0] + x
+    }
+
+    /// The points in cells from one to another.
+    fn between(&self, lo: [i64; 3], hi: [i64; 3]) -> impl Iterator<Item = u32> + '_ {
+        let range = |axis: usize| {
+            let last = self.count[axis] as i64 - 1;
+            lo[axis].max(0) as usize..(hi[axis].min(last) + 1).max(0) as usize
+        };
+        let (xs, ys) = (range(0), range(1));
+        let rows = range(2).flat_map(move |z| ys.clone().map(move |y| [y, z]));
+        let ranges = rows.filter(move |_| xs.start < xs.end).map({
+            let (first, end) = (range(0).start, range(0).end);
+            move |[y, z]| {
+                let [first, last] = [first, end - 1].map(|x| self.index([x, y, z]));
+                self.start[first] as usize..self.start[last + 1] as usize
+            }
+        });
+        ranges.flat_map(|range| self.points[range].iter().copied())
+    }
+
+    /// The points in the cell of a place and in those around it.
+    fn around(&self, p: DVec3) -> impl Iterator<Item = u32> + '_ {
+        let cell = self.cell(p);
+        self.between(cell.map(|x| x.saturating_sub(1)), cell.map(|x| x.saturating_add(1)))
+    }
+
+    /// The points in the cells of a box.
+    fn within(&self, bounds: &Bounds) -> impl Iterator<Item = u32> + '_ {
+        self.between(self.cell(bounds.lo()), self.cell(bounds.hi()))
+    }
+}
