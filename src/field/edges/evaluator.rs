@@ -8,11 +8,9 @@ use glam::{DVec3, Vec3};
 
 /// Largest distance to which a polynomial from a place within the region is taken, in margins.
 /// Farther away the polynomial of a vertex beside the edge is near enough.
-const FAR: f64 = 4.0;
+const FAR: f64 = 40.0;
 /// Number of times that a place is moved into the region of a piece, from one edge after another.
 const MOVES: u32 = 12;
-/// Steps of differences at a place that was moved, as a share of the margin.
-const SHARE: f64 = 0.2;
 /// Largest difference of f from a piece, as a share of the size of the box, at which the piece
 /// gives f as well as another one that differs less.
 const SAME: f64 = 3e-10;
@@ -68,6 +66,20 @@ impl Wall {
     }
 }
 
+/// The shortest step by which a place gets so much deeper within walls, by the ways into them: within
+/// the first three of which no two are parallel.
+fn step_within(walls: impl Iterator<Item = (f64, DVec3)>) -> DVec3 {
+    let (mut across, mut step): (Vec<DVec3>, DVec3) = (Vec::new(), DVec3::ZERO);
+    for (lacking, way) in walls {
+        // The part of the way that leaves the depth within the walls before as it is.
+        let free = across.iter().fold(way, |free, n| free - *n * free.dot(*n));
+        let Some(free) = free.try_normalize().filter(|free| free.dot(way) > 0.05) else { continue };
+        step += free * ((lacking - step.dot(way)) / free.dot(way));
+        across.push(free);
+    }
+    step
+}
+
 impl EdgeTable {
     /// The edges beside a place that a piece has, the nearest of each other piece.
     fn walls(&self, label: u32, p: DVec3) -> Vec<Wall> {
@@ -82,18 +94,17 @@ impl EdgeTable {
         walls
     }
 
-    /// The least depth of a place within the region of a piece with these edges, and the way
-    /// farther into it; none without edges.
-    fn depth(walls: &[Wall], p: DVec3) -> Option<(f64, DVec3)> {
+    /// The walls that bound the region of a piece at a place, each with the place's depth within it
+    /// and the way farther in. Where a region has a reflex angle at a corner, it lies within one
+    /// wall or within the other, so that only the deeper one bounds it.
+    fn bounding(walls: &[Wall], p: DVec3) -> Vec<(usize, f64, DVec3)> {
         let depths: Vec<(f64, DVec3)> = walls.iter().map(|wall| wall.depth(p)).collect();
-        // Where a region has a reflex angle at a corner, it lies within one wall or within the
-        // other.
         let is_reflex = |a: &Wall, b: &Wall| a.depth(b.position).0 < 0.0 && b.depth(a.position).0 < 0.0;
         let is_spared = |k: usize| {
             (0..walls.len()).any(|j| j != k && depths[j].0 > depths[k].0 && is_reflex(&walls[k], &walls[j]))
         };
-        let counting = (0..walls.len()).filter(|&k| !is_spared(k)).map(|k| depths[k]);
-        counting.min_by(|a, b| a.0.total_cmp(&b.0))
+        let bounding = (0..walls.len()).filter(|&k| !is_spared(k));
+        bounding.map(|k| (k, depths[k].0, depths[k].1)).collect()
     }
 
     /// How a piece is evaluated at a place.
@@ -102,18 +113,26 @@ impl EdgeTable {
         let Some(nearest) = walls.iter().min_by(|a, b| a.near.total_cmp(&b.near)) else { return Plan::Whole };
         let beside = Plan::Vertex(nearest.end);
         let mut p = q;
+        // The walls that the place was beyond so far, the last one first.
+        let mut passed: Vec<usize> = Vec::new();
         for _ in 0..MOVES {
-            let Some((depth, way)) = Self::depth(&walls, p) else { break };
+            let bounding = Self::bounding(&walls, p);
+            let Some(&(worst, depth, _)) = bounding.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
             if depth >= self.margin {
                 let moved = p.distance(q);
                 return match moved {
-                    0.0 => Plan::Whole,
+                    0.0 if depth >= self.clear => Plan::Whole,
                     _ if moved <= FAR * self.margin => Plan::Around(p),
                     _ => beside,
                 };
             }
-            let step = way * (1.01 * (self.margin - depth));
-            if !step.is_finite() || (p + step).distance(q) > self.cell {
+            passed.retain(|&k| k != worst);
+            passed.insert(0, worst);
+            let lacking = passed.iter().filter_map(|k| bounding.iter().find(|(wall, ..)| wall == k));
+            let step = step_within(lacking.map(|&(_, depth, way)| (1.01 * self.margin - depth, way)));
+            // Written so that NaN fails.
+            let is_near = (p + step).distance(q) <= self.cell;
+            if !is_near {
                 break;
             }
             p += step;
@@ -126,7 +145,7 @@ impl EdgeTable {
         self.sites_near(p).any(|site| {
             let depth = Wall::new(self, site, site.sides[0].label, p).map(|wall| wall.depth(p).0);
             // NaN where both functions are the same.
-            depth.is_some_and(|depth| depth.is_nan() || depth.abs() < self.margin)
+            depth.is_some_and(|depth| depth.is_nan() || depth.abs() < self.clear)
         })
     }
 }
@@ -202,7 +221,7 @@ impl<'a> EdgedEvaluator<'a> {
     }
 
     fn step(&self) -> f64 {
-        SHARE * self.table.margin
+        self.table.step
     }
 
     /// The jet of a piece at a place, by its plan.

@@ -10,8 +10,10 @@ use std::collections::BTreeMap;
 const FEWEST: usize = 8;
 /// Largest distance of the sites that count beside a place, in cells of the grid.
 pub(super) const NEAR: f64 = 2.0;
-/// Distance from an edge, in steps of differences, from which on f itself is taken: they do not
-/// reach over the edge from there.
+/// Length of the steps of differences beside an edge, as a share of those of the search. Larger: a
+/// piece is known less exactly beyond its edge, by the third power. Smaller: rounding takes digits.
+const BESIDE: f64 = 0.1;
+/// Distance from an edge, in steps of differences, from which on these do not reach over it.
 const MARGIN: f64 = 5.0;
 
 /// A point of an edge, as one of the two pieces sees it.
@@ -45,8 +47,12 @@ pub(crate) struct EdgeTable {
     count: u32,
     /// The size of the box.
     pub(super) size: f64,
-    /// Distance from an edge from which on f itself is taken.
+    /// Length of the steps of differences beside an edge.
+    pub(super) step: f64,
+    /// Distance from an edge from which on these do not reach over it.
     pub(super) margin: f64,
+    /// Distance from an edge from which on no differences do.
+    pub(super) clear: f64,
     /// The side of a cell of the grid.
     pub(super) cell: f64,
     by_cell: Cells,
@@ -61,7 +67,8 @@ impl EdgeTable {
         }
         let label = labels(&search);
         let (cell, size) = (search.grid.side, search.f.size);
-        let margin = MARGIN * search.f.step;
+        let step = BESIDE * search.f.step;
+        let (margin, clear) = (MARGIN * step, MARGIN * search.f.step);
         let Search { vertices, sites: raw, .. } = search;
         let mut sites = Vec::new();
         for site in raw {
@@ -86,7 +93,7 @@ impl EdgeTable {
         let count = label.iter().filter(|&&label| label != NONE).max().map_or(0, |last| last + 1);
         let by_cell = Cells::new(cell, vertices.iter().map(|vertex| vertex.p));
         let sites_by_cell = Cells::new(NEAR * cell, sites.iter().map(|site| site.position));
-        Some(Self { vertices, label, sites, count, size, margin, cell, by_cell, sites_by_cell })
+        Some(Self { vertices, label, sites, count, size, step, margin, clear, cell, by_cell, sites_by_cell })
     }
 
     /// Number of labels.
