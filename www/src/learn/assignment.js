@@ -35,7 +35,7 @@ const fileName = (words) => words.flatMap((word) => word.match(/[\p{L}\p{N}]+/gu
  * Puts the assignment before the first chapter.
  * @param {HTMLElement} host @param {Task} task @param {{ lab: Lab, surface: string, stops: Stops }} context
  */
-export function mountAssignment(host, task, { lab, surface, stops }) {
+export async function mountAssignment(host, task, { lab, surface, stops }) {
   const id = uniqueId('assignment');
   const benchHost = h('div', { class: 'bench' });
   const answers = task.questions.map((question) => {
@@ -96,7 +96,7 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
   );
   host.setAttribute('aria-labelledby', id);
   host.hidden = false;
-  const bench = createBench(benchHost, lab, { setup: task.setup, locks: task.locks });
+  const bench = await createBench(benchHost, lab, { setup: task.setup, locks: task.locks });
   void bench.open(task.setup.what, task.setup);
   lockParts(document.body, task.locks);
 }
@@ -118,11 +118,11 @@ export function createMaker({ setup, linkOf }) {
   const write = () => {
     const whatIf = whatIfOf(setup().what);
     // Where learners are to find the best and the worst, the teacher's own tries would solve it.
-    const { what: id, left, right } = whatIf.knobs ? { what: whatIf.id, left: USUAL, right: USUAL } : setup();
+    const { what: id, on, left, right } = { ...setup(), ...(whatIf.knobs ? { left: USUAL, right: USUAL } : {}) };
     what.textContent = `It compares what stands under “What if”: ${whatIf.name}.${whatIf.knobs ? ' Learners begin with the sampling of the lesson; your own tries stay here.' : ''}`;
     const task = {
       title: title.value,
-      setup: { what: id, left, right },
+      setup: { what: id, on, left, right },
       locks: locks.flatMap(({ box }) => (box.checked ? [/** @type {Control} */ (box.value)] : [])),
       questions: questions.value
         .split('\n')

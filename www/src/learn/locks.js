@@ -8,7 +8,6 @@ const PARTS = {
   figures: '.stage .controls',
   questions: '.predict-form .controls',
   bench: '#bench > .controls, .card > .button',
-  race: '#race-box > .controls',
 };
 
 /** @param {HTMLElement} root @param {readonly string[]} locks */

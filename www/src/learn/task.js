@@ -28,7 +28,6 @@ export const CONTROLS = [
     words: 'the answers of the questions (your guesses are saved)',
   },
   { value: 'bench', label: 'Other comparisons', words: 'the other comparisons' },
-  { value: 'race', label: 'The race', words: 'the race' },
 ];
 
 /** Returns the locked controls in words for the learner; empty if none is locked. @param {readonly Control[]} locks */

@@ -76,15 +76,8 @@ export type FromLesson =
   | { type: 'answer'; id: number; answer: unknown }
   | { type: 'crashed'; message: string; stack: string }
   | { type: 'failed'; message: string };
-/** One of the two runs of a race: its progress, and the milliseconds that its worker has worked. */
-export type Lane = { progress: LessonProgress | null; workMs: number };
 export interface LessonClientOptions {
   spawn?: () => WorkerLike;
   /** of the present run, some fifty times a second */
   onProgress?: (progress: LessonProgress) => void;
-}
-export interface RaceOptions {
-  spawn?: () => WorkerLike;
-  /** after every turn */
-  onLane?: (index: 0 | 1, lane: Lane) => void;
 }

@@ -5,11 +5,12 @@ import { fill, h, live } from '../../ui/dom.js';
 import { formatCount, formatSignificant, plural } from '../../ui/format.js';
 import { latest } from '../latest.js';
 import { createMarkKey } from '../marks.js';
-import { isClosed, widestHole } from '../measure.js';
+import { isBare, isClosed, widestHole } from '../measure.js';
 import { createPlay, createRangeRow } from '../parts.js';
 import { byNeighbours, byValue, Orbit, Picture } from '../picture.js';
 import { pushesOn } from '../pushes.js';
 import { scoreOf } from '../score.js';
+import { termShown } from '../terms.js';
 
 /**
  * @import { LessonParticles, Signal } from '../../engine/types.js'
@@ -105,10 +106,15 @@ export async function seams({ lab, stops }) {
   const picture = new Picture(orbit, {
     name: 'The front and its relaxation, with particles of five and of seven neighbours marked',
     onPick(particle) {
-      stops.pick('predict-hole', particle);
       if (isRelaxing()) followed.value = particle;
+      if (isFree()) return;
+      // Where the front has been there is no hole to come.
+      isCovered.value = !isBare(course.at(range.get()).radii.length, particle);
+      if (!isCovered.peek()) stops.pick('predict-hole', particle);
     },
   });
+  /** Whether the last press was on the front. */
+  const isCovered = signal(false);
   /** Whose pushes are drawn. @type {Signal<number | null>} */
   const followed = signal(null);
   const isFree = () => stops.isOpen('predict-hole');
@@ -145,6 +151,9 @@ export async function seams({ lab, stops }) {
     const isAfter = isRelaxing() && place >= front;
     const picked = isAfter ? followed.value : place <= front ? stops.picked('predict-hole') : null;
     const marks = marksAt(course, place, { picked, isFree: isFree(), isRelaxing: isRelaxing() });
+    // A seam is where fronts have met so far.
+    if (termShown() === 'seam')
+      marks.push(...course.found.slice(0, place + 1).flat().map((particle) => markOf(placed, particle, 'cross')));
     const measured = scores.value[step()] ?? scores.value[0];
     const particles = course.at(place);
     const colours =
@@ -167,7 +176,10 @@ export async function seams({ lab, stops }) {
     if (isNow && widest) orbit.turnTo(widest.hole.normal);
   });
   const words = h('p', { class: 'figure-count' }, () => {
-    if (!isFree()) return 'The slider goes on once you have said where.';
+    if (!isFree())
+      return isCovered.value
+        ? 'Particles lie there already. Press a place that is still bare.'
+        : 'The slider goes on once you have said where.';
     const place = range.place.value;
     if (place > front)
       return `The longest move of this step: ${formatSignificant(Number(steps[step() - 1].largest_move), 2)} r.`;
