@@ -35,7 +35,7 @@ export function mountQuestion(host, id, { question, rounds, ask, words }, { lab,
   const parts = partsOf({ question, rounds, ask, words }).map((part) => {
     const stop = stopOf(id, part);
     const asked = part.legend ? `${question} ${part.legend}` : question;
-    const input = inputOf(part, asked, stops.pickOf(stop));
+    const input = inputOf(part, question, stops.pickOf(stop));
     stops.entries.set(stop, { question: asked, get: input.get });
     return { part, stop, asked, input, isFirst: first.includes(part) };
   });
@@ -64,7 +64,6 @@ export function mountQuestion(host, id, { question, rounds, ask, words }, { lab,
       h(
         'div',
         { class: 'predict-part', hidden: () => !isFirst && !isLast() },
-        part.legend && h('p', null, part.legend),
         input.element,
       ),
     ),
@@ -170,7 +169,7 @@ function showFigure(host) {
  * The input of a part. `lock` shows what is right; null only ends it.
  * @param {Part<any>} part @param {string} question @param {Signal<number | null>} picked
  */
-function inputOf({ kind, choices = [], label = 'Your guess', most = 9999 }, question, picked) {
+function inputOf({ kind, legend, choices = [], label = 'Your guess', most = 9999 }, question, picked) {
   if (kind === 'pick')
     return {
       element: null,
@@ -202,7 +201,7 @@ function inputOf({ kind, choices = [], label = 'Your guess', most = 9999 }, ques
   const radios = choices.map(({ value }) => h('input', { type: 'radio', name, value }));
   const labels = choices.map((choice, k) => h('label', { class: 'check' }, radios[k], h('span', null, choice.label)));
   return {
-    element: h('fieldset', { class: 'predict-choices' }, h('legend', { class: 'visually-hidden' }, question), labels),
+    element: h('fieldset', { class: 'predict-choices' }, h('legend', { class: legend ? null : 'visually-hidden' }, legend ?? question), labels),
     missing: 'Choose an answer first.',
     get: () => radios.find(({ checked }) => checked)?.value ?? null,
     set(/** @type {unknown} */ guess) {

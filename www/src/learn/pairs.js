@@ -77,6 +77,15 @@ export const SIZES = [side('one size', {}), { name: 'sizes that follow the bends
 /** The pair at the beginning. @type {Judged} */
 export const OPENING = { surface: TORUS, name: 'Torus', sides: RIVALS[1], particles: 1500 };
 
+/** Runs of its sampling B from seeds of their own, which show what chance is. */
+export const SEEDS = 5;
+
+/** Its sampling B, from a seed. @param {Lab} lab @param {number} seed */
+export function fromSeed(lab, seed) {
+  const { surface, sides, particles } = OPENING;
+  return lab.on(surface).run({ ...sides[1].settings, ...(seed > 0 ? { seed } : {}) }, { particles });
+}
+
 /** Particles of a pair that is drawn: enough for the figures, few enough to wait for. */
 const DRAWN = 600;
 /** Pairs that are tried until one is clear. */
@@ -137,9 +146,12 @@ const MOST_GENUS = 3;
 export const drawable = (gallery) =>
   gallery.filter(({ genus, formula }) => formula && genus !== null && genus <= MOST_GENUS);
 
+/** So often neither is to be better. */
+const TIES = 0.3;
+
 /**
- * The pair with a number of a series, which begins with a text. Every third compares one size with many.
- * The purposes take turns, and the widest gap to a mesh is asked where sizes differ.
+ * The pair with a number of a series, which begins with a text. Every third compares one size with many, and asks for
+ * the widest gap to a mesh, too. The purposes take turns, as far as they are clear.
  * @param {Lab} lab @param {readonly SurfaceEntry[]} surfaces @param {string} series @param {number} number  from 0
  */
 export async function drawn(lab, surfaces, series, number) {
@@ -147,17 +159,22 @@ export async function drawn(lab, surfaces, series, number) {
   /** @template T @param {readonly T[]} all */
   const pick = (all) => all[Math.floor(random() * all.length)];
   const isOfSizes = number % 3 === 1;
-  const purposes = PURPOSES.filter(({ key }) => (key === 'gap' ? isOfSizes : key !== 'evaluations' || !isOfSizes));
+  const isTie = random() < TIES;
+  const allowed = PURPOSES.filter(({ key }) => (key === 'gap' ? isOfSizes : key !== 'evaluations' || !isOfSizes));
+  const first = Math.floor(randomOf(series)() * allowed.length) + number;
+  const purposes = allowed.map((_, k) => allowed[(first + k) % allowed.length]);
   for (let trial = 1; ; trial += 1) {
     const { name, formula, parameters, bounds } = pick(surfaces);
-    const purpose = pick(purposes);
     const rivals = isOfSizes ? SIZES : pick(RIVALS);
     const sides = random() < 0.5 ? rivals : /** @type {const} */ ([rivals[1], rivals[0]]);
     /** @type {Judged} */
     const pair = { surface: { formula, parameters, bounds }, name, sides, particles: DRAWN };
     const isLast = trial === MOST_TRIALS;
     try {
-      if (isClear(await scoresOf(lab, pair), purpose.key) || isLast) return { pair, purpose };
+      const scores = await scoresOf(lab, pair);
+      const clear = purposes.filter(({ key }) => isClear(scores, key));
+      const purpose = clear.find(({ key }) => (winnerOf(scores, key) === 'alike') === isTie);
+      if (purpose || isLast) return { pair, purpose: purpose ?? clear[0] ?? purposes[0] };
     } catch (error) {
       if (isLast) throw error;
     }

@@ -10,17 +10,11 @@ import { fill, h, live, s } from '../../ui/dom.js';
 import { formatFixed } from '../../ui/format.js';
 import { NoSurface } from '../lab.js';
 import { createMarkKey } from '../marks.js';
-import { OPENING } from '../pairs.js';
+import { fromSeed, SEEDS } from '../pairs.js';
 import { HALF, patchOf } from '../patch.js';
 import { chanceOf, DECIDING, rowOf, scoreAtEnd, widthOf, written } from '../score.js';
 
-/** @import { Context, Lab, LabRun, Score } from '../types.js' */
-
-/** Runs from seeds of their own. */
-export const SEEDS = 5;
-/** The sampling B of the beginning, from a seed. @param {Lab} lab @param {number} seed */
-export const fromSeed = (lab, seed) =>
-  lab.on(OPENING.surface).run({ ...OPENING.sides[1].settings, ...(seed > 0 ? { seed } : {}) }, { particles: OPENING.particles });
+/** @import { Context, LabRun, Score } from '../types.js' */
 
 /** @param {Context} context */
 export async function measures({ lab }) {
