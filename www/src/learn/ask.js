@@ -26,20 +26,14 @@ export const seenOf = (id) => `${id}-seen`;
  * @param {HTMLElement} host @param {string} id @param {Question<any>} about
  * @param {{ lab: Promise<Lab>, stops: Stops }} context
  */
-export function mountQuestion(host, id, { question, rounds, ask, words }, { lab, stops }) {
-  const [first, ...others] = rounds;
+export function mountQuestion(host, id, about, { lab, stops }) {
+  const { question, ask, words, rounds } = about;
   /** Whether the last round has come. */
-  const isSeen = others.length > 0 ? stops.state(seenOf(id)) : null;
+  const isSeen = rounds.length > 1 ? stops.state(seenOf(id)) : null;
   const isLast = () => isSeen === null || isSeen.value;
   if (isSeen && stops.more(seenOf(id))) isSeen.value = true;
-  const parts = partsOf({ question, rounds, ask, words }).map((part) => {
-    const stop = stopOf(id, part);
-    const asked = part.legend ? `${question} ${part.legend}` : question;
-    const input = inputOf(part, question, stops.pickOf(stop));
-    stops.entries.set(stop, { question: asked, get: input.get });
-    return { part, stop, asked, input, isFirst: first.includes(part) };
-  });
-  const present = () => parts.filter(({ isFirst }) => others.length === 0 || isFirst !== isLast());
+  const parts = enter(id, about, stops);
+  const present = () => parts.filter(({ isFirst }) => isSeen === null || isFirst !== isLast());
   const result = h('div', { class: 'predict-result', role: 'status', tabindex: '-1' });
   const reveal = button({ type: 'submit', class: 'primary' }, () => (isLast() ? 'Reveal' : 'Show the figures'));
   const skip = button({ class: 'plain', press: () => void answer(true) }, 'Skip');
@@ -60,12 +54,8 @@ export function mountQuestion(host, id, { question, rounds, ask, words }, { lab,
   const form = h(
     'form',
     { class: 'predict-form', on: { submit, change: keep } },
-    parts.map(({ part, input, isFirst }) =>
-      h(
-        'div',
-        { class: 'predict-part', hidden: () => !isFirst && !isLast() },
-        input.element,
-      ),
+    parts.map(({ input, isFirst }) =>
+      h('div', { class: 'predict-part', hidden: () => !isFirst && !isLast() }, input.element),
     ),
     h('div', { class: 'controls' }, reveal, skip),
   );
@@ -107,7 +97,8 @@ export function mountQuestion(host, id, { question, rounds, ask, words }, { lab,
     const isFocused = form.contains(document.activeElement);
     reveal.disabled = true;
     skip.disabled = true;
-    const guesses = parts.map(({ input }) => (isSkipped ? null : input.get()));
+    // What was guessed in a round that is over stays.
+    const guesses = parts.map(({ input, isFirst }) => (isSkipped && !(isFirst && isSeen?.peek()) ? null : input.get()));
     fill(result, h('p', null, 'The run is asked.'));
     try {
       await asked(guesses);
@@ -126,6 +117,7 @@ export function mountQuestion(host, id, { question, rounds, ask, words }, { lab,
   host.append(form, result);
   for (const { stop, input } of parts) input.set(stops.outcomes.get(stop)?.guess ?? stops.more(stop));
   const old = parts.map(({ stop }) => stops.outcomes.get(stop));
+  if (isSeen?.peek()) for (const { input, isFirst } of parts) if (isFirst) input.lock(null);
   if (!old[0]) return;
   if (isSeen) isSeen.value = true;
   stops.open(id);
@@ -136,6 +128,16 @@ export function mountQuestion(host, id, { question, rounds, ask, words }, { lab,
   // The program may have changed since; without a run, what was kept stays.
   whenNear(host, () => asked(old.map((one) => one?.guess ?? null)).catch(() => {}));
 }
+
+/** The parts of a question with their inputs, which are part of what a learner hands in. @param {string} id @param {Question<any>} about @param {Stops} stops */
+const enter = (id, about, stops) =>
+  partsOf(about).map((part) => {
+    const stop = stopOf(id, part);
+    const asked = part.legend ? `${about.question} ${part.legend}` : about.question;
+    const input = inputOf(part, about.question, stops.pickOf(stop));
+    stops.entries.set(stop, { question: asked, get: input.get });
+    return { part, stop, asked, input, isFirst: about.rounds[0].includes(part) };
+  });
 
 /** What is said of a guess. @param {Part<any>} part @param {string | number} guess @param {string | number} right */
 function judge({ kind }, guess, right) {
@@ -201,7 +203,12 @@ function inputOf({ kind, legend, choices = [], label = 'Your guess', most = 9999
   const radios = choices.map(({ value }) => h('input', { type: 'radio', name, value }));
   const labels = choices.map((choice, k) => h('label', { class: 'check' }, radios[k], h('span', null, choice.label)));
   return {
-    element: h('fieldset', { class: 'predict-choices' }, h('legend', { class: legend ? null : 'visually-hidden' }, legend ?? question), labels),
+    element: h(
+      'fieldset',
+      { class: 'predict-choices' },
+      h('legend', { class: legend ? null : 'visually-hidden' }, legend ?? question),
+      labels,
+    ),
     missing: 'Choose an answer first.',
     get: () => radios.find(({ checked }) => checked)?.value ?? null,
     set(/** @type {unknown} */ guess) {

@@ -12,15 +12,12 @@ import { COMMON, setupOf, sidesOf, whatIfOf } from './whatifs.js';
  * @param {{ setup?: Setup, locks?: readonly Control[], onChoice?: (setup: Setup) => void }} [how]
  *   `locks`: controls that stay as they are; `onChoice` is told what the learner chooses
  */
-export async function createBench(host, lab, { setup: first = setupOf(COMMON[0].id), locks = [], onChoice = () => {} } = {}) {
-  const gallery = (await lab.gallery().catch(() => [])).filter(({ formula }) => formula);
-  /** The lab of the surface with a name. @param {string} on */
-  function labOn(on) {
-    const entry = gallery.find(({ id }) => id === on);
-    if (!entry) return lab;
-    const { formula, parameters, bounds } = entry;
-    return lab.on({ formula, parameters, bounds });
-  }
+export async function createBench(
+  host,
+  lab,
+  { setup: first = setupOf(COMMON[0].id), locks = [], onChoice = () => {} } = {},
+) {
+  const { choices, labOn } = await surfacesOf(lab);
   const pair = createPair();
   const look = h('p', { class: 'look' });
   const chosen = h('div', { class: 'controls' });
@@ -41,7 +38,7 @@ export async function createBench(host, lab, { setup: first = setupOf(COMMON[0].
   });
   const surface = createSelectRow({
     name: 'Surface',
-    choices: [{ value: '', label: 'That of this lesson' }, ...gallery.map(({ id, name }) => ({ value: id, label: name }))],
+    choices,
     value: setup.on,
     change: (on) => open(setup.what, whatIfOf(setup.what).knobs ? { on } : { ...setup, on }, choose),
   });
@@ -93,7 +90,7 @@ export async function createBench(host, lab, { setup: first = setupOf(COMMON[0].
 
   /** @param {Setup} asked */
   async function compare(asked) {
-    const next = { ...asked, on: gallery.some(({ id }) => id === asked.on) ? asked.on : '' };
+    const next = { ...asked, on: choices.some(({ value }) => value === asked.on) ? asked.on : '' };
     setup = next;
     const whatIf = whatIfOf(setup.what);
     what.set(whatIf.id, whatIf.name);
@@ -122,6 +119,24 @@ export async function createBench(host, lab, { setup: first = setupOf(COMMON[0].
       const sides = (runs ?? []).map((run, k) => ({ label: names[k].label, run, score: scores()?.[k] }));
       const all = [...(fail?.runs() ?? []), ...sides];
       return all.filter(({ run }, k) => all.findIndex((one) => one.run === run) === k);
+    },
+  };
+}
+
+/** The surfaces that may be compared on, and the lab of each: that of the lesson, and those of the gallery. @param {Lab} lab */
+async function surfacesOf(lab) {
+  const gallery = (await lab.gallery().catch(() => [])).filter(({ formula }) => formula);
+  return {
+    choices: [
+      { value: '', label: 'That of this lesson' },
+      ...gallery.map(({ id, name }) => ({ value: id, label: name })),
+    ],
+    /** @param {string} on */
+    labOn(on) {
+      const entry = gallery.find(({ id }) => id === on);
+      if (!entry) return lab;
+      const { formula, parameters, bounds } = entry;
+      return lab.on({ formula, parameters, bounds });
     },
   };
 }

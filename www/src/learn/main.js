@@ -122,7 +122,8 @@ if (parts.task) {
   try {
     const [{ unpackTask, mountAssignment }, ready] = await Promise.all([teach(), lab]);
     const task = unpackTask(parts.task);
-    if (task) await mountAssignment(byId('assignment'), task, { lab: ready, surface: surfaceWords(ready.surface), stops });
+    if (task)
+      await mountAssignment(byId('assignment'), task, { lab: ready, surface: surfaceWords(ready.surface), stops });
     else say('The link holds no assignment that can be read. The lesson is complete without it.');
   } catch {
     say(LOST);

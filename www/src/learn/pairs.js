@@ -41,12 +41,14 @@ export const PURPOSES = [
   },
   {
     key: 'pair',
-    story: 'A sensor is glued to each particle. Two that stand close disturb each other, and spoil the whole measurement.',
+    story:
+      'A sensor is glued to each particle. Two that stand close disturb each other, and spoil the whole measurement.',
     why: 'The first two to disturb each other are the closest pair.',
   },
   {
     key: 'gap',
-    story: 'A mould is milled from a mesh of the particles. It is as good as its worst place, farthest from the surface.',
+    story:
+      'A mould is milled from a mesh of the particles. It is as good as its worst place, farthest from the surface.',
     why: 'The mould is worst where the gap between surface and mesh is widest.',
   },
   {

@@ -22,7 +22,12 @@ const questions = () => {
   return [
     ...asked.map((about) => h('li', null, h('p', null, about.question), partsOf(about).map(blankOf))),
     ...PURPOSES.map(({ story }) =>
-      h('li', null, h('p', null, `${story} Which figure tells how good a sampling is for that?`), h('p', { class: 'blank' }, 'Why:')),
+      h(
+        'li',
+        null,
+        h('p', null, `${story} Which figure tells how good a sampling is for that?`),
+        h('p', { class: 'blank' }, 'Why:'),
+      ),
     ),
   ];
 };
@@ -30,7 +35,12 @@ const questions = () => {
 /** @param {HTMLElement} host */
 export function printQuestions(host) {
   const name = h('p', { class: 'blank' }, 'Name and class:');
-  fill(host, h('h2', { id: 'questions-title' }, 'How particles march over a surface: questions'), name, h('ol', null, questions()));
+  fill(
+    host,
+    h('h2', { id: 'questions-title' }, 'How particles march over a surface: questions'),
+    name,
+    h('ol', null, questions()),
+  );
   const { dataset } = document.documentElement;
   dataset.prints = 'questions';
   addEventListener('afterprint', () => delete dataset.prints, { once: true });

@@ -74,12 +74,7 @@ export function createScorecard(show) {
       const heads = ['Ideal', ...names, 'Chance'].map((name) => h('th', { scope: 'col' }, name));
       fill(
         element,
-        h(
-          'table',
-          { class: 'compare' },
-          h('thead', null, h('tr', null, h('td'), heads)),
-          h('tbody', null, rows),
-        ),
+        h('table', { class: 'compare' }, h('thead', null, h('tr', null, h('td'), heads)), h('tbody', null, rows)),
         isMarked ? h('p', { class: 'outcome' }, outcomeOf(names, verdict)) : null,
         h(
           'p',

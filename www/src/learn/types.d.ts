@@ -170,7 +170,10 @@ export interface LabRun {
 /** A hole or a pair: its middle or its two particles. `radius`: of the hole, or of a particle. */
 export type ScorePlace = { places: readonly (readonly number[])[]; radius: number; normal: readonly number[] };
 /** The figures that are compared; null where one is undefined. */
-export type ScoreFigures = Record<'six' | 'hole' | 'uncovered' | 'pair' | 'count' | 'evaluations' | 'gap', number | null>;
+export type ScoreFigures = Record<
+  'six' | 'hole' | 'uncovered' | 'pair' | 'count' | 'evaluations' | 'gap',
+  number | null
+>;
 export type Score = ScoreFigures & {
   places: { hole: ScorePlace | null; pair: ScorePlace | null };
   /** number of neighbours of each particle */

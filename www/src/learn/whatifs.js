@@ -60,7 +60,6 @@ export const TOLERANCES = { min: 0.4, max: 0.95, step: 0.05 };
 /** A tolerance as it is written, in radii as every length of the lesson. @param {number} of2r */
 export const toleranceWords = (of2r) => `${formatFixed(2 * of2r, 1)} r`;
 
-
 /** The choices that can be made at once. @type {readonly Knob[]} */
 export const KNOBS = [
   {

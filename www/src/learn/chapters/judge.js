@@ -96,8 +96,18 @@ export async function draws({ lab, stops, series }) {
     h(
       'div',
       { class: 'controls' },
-      button({ class: 'plain', hidden: () => at.value === 0, disabled: () => isBusy.value, press: () => void go(at.peek() - 1) }, 'The pair before'),
-      button({ disabled: () => isBusy.value, press: () => void go(at.peek() + 1) }, () => (isBusy.value ? 'A pair is being drawn' : 'Another pair')),
+      button(
+        {
+          class: 'plain',
+          hidden: () => at.value === 0,
+          disabled: () => isBusy.value,
+          press: () => void go(at.peek() - 1),
+        },
+        'The pair before',
+      ),
+      button({ disabled: () => isBusy.value, press: () => void go(at.peek() + 1) }, () =>
+        isBusy.value ? 'A pair is being drawn' : 'Another pair',
+      ),
     ),
   ];
 }

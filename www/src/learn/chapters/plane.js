@@ -117,10 +117,7 @@ class Exercise {
       { class: 'controls' },
       button({ press: () => this.#decide({ fate: 'added', particle: null }) }, 'A new one'),
       h('span', { class: 'plane-match' }, this.#matched, this.#which),
-      button(
-        { class: 'plain', press: () => this.#queue(() => this.#leave(1)) },
-        'Let the run decide',
-      ),
+      button({ class: 'plain', press: () => this.#queue(() => this.#leave(1)) }, 'Let the run decide'),
     );
     this.#next = button({ class: 'primary', hidden: true, press: goOn }, 'Go to the cap');
     this.#back = button({ class: 'plain', press: () => this.#queue(() => this.#takeBack()) }, 'One slot back');
@@ -265,7 +262,9 @@ class Exercise {
       return;
     }
     const other = said.fate === 'matched' ? ` with ${letterOf(said.particle ?? 0)}` : '';
-    this.#round.mistakes.push(`particle ${letterOf(opened.subject.particle)}, slot ${decision.slot}: said ${said.fate}${other}`);
+    this.#round.mistakes.push(
+      `particle ${letterOf(opened.subject.particle)}, slot ${decision.slot}: said ${said.fate}${other}`,
+    );
     this.#tell('wrong', `The run objects. ${why}`);
     this.#count();
   }

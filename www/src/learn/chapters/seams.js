@@ -99,7 +99,7 @@ async function courseOf(own) {
 export async function seams({ lab, stops }) {
   const own = await lab;
   const course = await courseOf(own);
-  const { placed, steps, front, quarter, last, widest } = course;
+  const { placed, front, quarter, last, widest } = course;
   const orbit = new Orbit();
   orbit.fitTo(placed);
   orbit.faceFront(placed);
@@ -153,7 +153,12 @@ export async function seams({ lab, stops }) {
     const marks = marksAt(course, place, { picked, isFree: isFree(), isRelaxing: isRelaxing() });
     // A seam is where fronts have met so far.
     if (termShown() === 'seam')
-      marks.push(...course.found.slice(0, place + 1).flat().map((particle) => markOf(placed, particle, 'cross')));
+      marks.push(
+        ...course.found
+          .slice(0, place + 1)
+          .flat()
+          .map((particle) => markOf(placed, particle, 'cross')),
+      );
     const measured = scores.value[step()] ?? scores.value[0];
     const particles = course.at(place);
     const colours =
@@ -175,17 +180,13 @@ export async function seams({ lab, stops }) {
     if (isNow || isAfter) range.set(front);
     if (isNow && widest) orbit.turnTo(widest.hole.normal);
   });
-  const words = h('p', { class: 'figure-count' }, () => {
-    if (!isFree())
-      return isCovered.value
+  const words = h('p', { class: 'figure-count' }, () =>
+    isFree()
+      ? wordsAt(course, range.place.value)
+      : isCovered.value
         ? 'Particles lie there already. Press a place that is still bare.'
-        : 'The slider goes on once you have said where.';
-    const place = range.place.value;
-    if (place > front)
-      return `The longest move of this step: ${formatSignificant(Number(steps[step() - 1].largest_move), 2)} r.`;
-    const met = plural(course.found[place].length, 'time');
-    return `${plural(course.at(place).radii.length, 'particle')}; the front met itself ${met} on this level.`;
-  });
+        : 'The slider goes on once you have said where.',
+  );
   const play = createPlay(range, { label: 'Play', totalMs: () => STEP_MS * limit() });
   return [
     picture.element,
@@ -193,6 +194,14 @@ export async function seams({ lab, stops }) {
     createMarkKey({ hidden: () => !isFree() }),
     createPushes(course, { isOpen: isRelaxing, followed, step }),
   ];
+}
+
+/** What there is to say of a place of the slider. @param {Course} course @param {number} place */
+function wordsAt({ at, found, front, steps }, place) {
+  if (place > front)
+    return `The longest move of this step: ${formatSignificant(Number(steps[place - front - 1].largest_move), 2)} r.`;
+  const met = plural(found[place].length, 'time');
+  return `${plural(at(place).radii.length, 'particle')}; the front met itself ${met} on this level.`;
 }
 
 /**

@@ -20,7 +20,6 @@ import {
   ringsOf,
   scoresOfRest,
 } from '../../../src/learn/measure.js';
-import { HALF, patchOf } from '../../../src/learn/patch.js';
 import {
   drawable,
   drawn,
@@ -31,11 +30,12 @@ import {
   questionOf,
   runsOf,
   SEEDS,
-  scoresOf,
   SIZES,
+  scoresOf,
   TORUS,
   winnerOf,
 } from '../../../src/learn/pairs.js';
+import { HALF, patchOf } from '../../../src/learn/patch.js';
 import { QUESTIONS } from '../../../src/learn/questions.js';
 import { roomEvents } from '../../../src/learn/room.js';
 import { chanceOf, DECIDING, gapOf, rowOf, scoreAtEnd, scoreOf, verdictOf, widthOf } from '../../../src/learn/score.js';
@@ -325,7 +325,9 @@ test.runIf(ALL)(
   { timeout: 900_000 },
   async () => {
     says('differ by up to 200/√<i>n</i> points in the share with six neighbours, where <i>n</i> is the number of');
-    says('by 10 with 400 and by 5 with 1,600. In the largest hole they differ by up to 0.15, in the closest pair by 0.08');
+    says(
+      'by 10 with 400 and by 5 with 1,600. In the largest hole they differ by up to 0.15, in the closest pair by 0.08',
+    );
     const [tanglecube, torus] = [lab.on(TANGLECUBE), lab.on(TORUS)];
     const all = [
       await spreadOf(lab, {}),
@@ -359,7 +361,9 @@ test('every chapter says the same of what placing costs, and of how many particl
 });
 
 test('what limits a sampling is said of one sampling, as placed', async () => {
-  says('As placed, before any relaxation, 89.4 % have six neighbours, the largest hole is 1.49 and the closest pair 0.73.');
+  says(
+    'As placed, before any relaxation, 89.4 % have six neighbours, the largest hole is 1.49 and the closest pair 0.73.',
+  );
   const [placed, rested] = await scoresOfRest(lab);
   const written = (/** @type {import('../../../src/learn/types.js').Score} */ score) =>
     DECIDING.map((key) => rowOf(key).write(Number(score[key])));

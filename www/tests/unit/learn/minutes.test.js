@@ -39,7 +39,9 @@ const chapters = [
     .replace(/<noscript>.*?<\/noscript>/gs, '')
     .replace(/<div class="what-if-stills">.*?<\/div>/gs, '')
     .replace(/<[^>]*>/g, ' ');
-  const asked = [...content.matchAll(/class="predict" id="([\w-]+)"/g)].map(([, question]) => QUESTIONS[question].question);
+  const asked = [...content.matchAll(/class="predict" id="([\w-]+)"/g)].map(
+    ([, question]) => QUESTIONS[question].question,
+  );
   const questions = asked.length;
   const words = [read, ...asked].join(' ').split(/\s+/).filter(Boolean).length + ANSWER_WORDS * questions;
   const figures = count(content, /data-figure=|class="bench"/g);

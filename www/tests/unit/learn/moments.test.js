@@ -107,8 +107,12 @@ describe('the words', () => {
     expect(told(5)).toBe('The child of slot 1 lands on the surface, 2.000\u00a0r from its parent.');
     expect(told(4)).toContain('at θ₁ = −0.72°: f = ');
     expect(told(8)).toBe('1 particle within 4\u00a0r: the children are compared with it.');
-    expect(told(10)).toContain('2.000\u00a0r from particle 31, its nearest. That is more than the tolerance of 1.40\u00a0r');
-    expect(told(13)).toContain('0.120\u00a0r from particle 31, its nearest. That is within the tolerance of 1.40\u00a0r');
+    expect(told(10)).toContain(
+      '2.000\u00a0r from particle 31, its nearest. That is more than the tolerance of 1.40\u00a0r',
+    );
+    expect(told(13)).toContain(
+      '0.120\u00a0r from particle 31, its nearest. That is within the tolerance of 1.40\u00a0r',
+    );
     expect(told(last)).toBe('The particle is done: 1 of its children added, 1 matched, after 2 evaluations of f.');
   });
 
