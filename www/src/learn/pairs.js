@@ -51,11 +51,6 @@ export const PURPOSES = [
       'A mould is milled from a mesh of the particles. It is as good as its worst place, farthest from the surface.',
     why: 'The mould is worst where the gap between surface and mesh is widest.',
   },
-  {
-    key: 'evaluations',
-    story: 'Each value of f is an experiment that takes a day. Any sampling with these particles will do.',
-    why: 'The days are the evaluations of f.',
-  },
 ];
 
 /** The answers to the question which figure decides. */
@@ -162,7 +157,7 @@ export async function drawn(lab, surfaces, series, number) {
   const pick = (all) => all[Math.floor(random() * all.length)];
   const isOfSizes = number % 3 === 1;
   const isTie = random() < TIES;
-  const allowed = PURPOSES.filter(({ key }) => (key === 'gap' ? isOfSizes : key !== 'evaluations' || !isOfSizes));
+  const allowed = PURPOSES.filter(({ key }) => key !== 'gap' || isOfSizes);
   const first = Math.floor(randomOf(series)() * allowed.length) + number;
   const purposes = allowed.map((_, k) => allowed[(first + k) % allowed.length]);
   for (let trial = 1; ; trial += 1) {

@@ -45,16 +45,15 @@ export const QUESTIONS = {
     ],
   }),
   'predict-children': one({
-    question: 'All six children of the seed are new. How many new children has the first of them?',
+    question: 'Six new particles fit around A. For how many new ones is there room around B, the first of them?',
     kind: 'number',
-    label: 'New children, 0 to 6',
+    label: 'New particles, 0 to 6',
     most: 6,
     ask: childrenOf,
     right: ({ added }) => added,
     words: ({ added, matched }) => [
-      `${plural(added, 'child is', 'children are')} new.`,
-      `Slot 0 holds the parent, and ${plural(matched, 'child falls', 'children fall')} on particles that the seed has placed beside this one.`,
-      'The figure has done the seed. Now it is your turn with its first child.',
+      `For ${formatCount(added)}: one place around B holds A, and ${formatCount(matched)} hold particles that A has placed beside B.`,
+      'The figure has done A. Now it is your turn with B.',
     ],
   }),
   'predict-ring': one({

@@ -89,7 +89,7 @@ export const ROWS = [
     worse: 'above',
     chance: ({ gap }) => 0.25 * Number(gap),
     digits: 4,
-    write: (value) => formatSignificant(1000 * value, 3),
+    write: (value) => formatFixed(1000 * value, 1),
   },
 ];
 

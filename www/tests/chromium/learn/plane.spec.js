@@ -158,9 +158,9 @@ test('code comes after the cap, and with the answer to the question the seed is 
   const figure = await live(page, 'plane');
   await expect(figure.locator('.algorithm')).toHaveCount(0);
   const question = page.locator('#predict-children');
-  await question.getByLabel('New children').fill('5');
+  await question.getByLabel('New particles').fill('5');
   await question.getByRole('button', { name: 'Reveal' }).click();
-  await expect(question.getByRole('status')).toContainText('It is 3. You said 5.3 children are new. Slot 0 holds the');
+  await expect(question.getByRole('status')).toContainText('It is 3. You said 5.For 3: one place around B holds A');
   await expect(figure.locator('.plane-question')).toContainText('Particle B, slot 1');
 });
 

@@ -146,14 +146,14 @@ test('what the text states of the core are its constants', () => {
 });
 
 test('what the text states of the first particles is so in a plane, and in the coarse run', async () => {
-  says('All six children of the seed are new.');
+  says('Six new particles fit around A.');
   const { chapters, client } = await runOn(lab, PATCHES[0]);
   client.close();
   expect(chapters[0].fates.added).toBe(6);
   expect(await childrenOf(lab)).toEqual({ added: 3, matched: 2 });
   const { right, words } = await answerOf('predict-children');
   expect(right).toEqual([3]);
-  expect(words).toContain('2 children fall on particles that the seed has placed');
+  expect(words).toContain('For 3: one place around B holds A, and 2 hold particles that A has placed beside B.');
   const run = await lab.coarse();
   says('of a run with some 180 particles');
   expect(Math.abs(run.end.radii.length / 180 - 1)).toBeLessThan(0.12);
@@ -294,7 +294,7 @@ test.runIf(ALL)('many sizes serve a mould, and one size serves a scanner and sen
   const { surface } = lab;
   const scores = await scoresOf(lab, { surface, name: '', sides: SIZES, particles: 600 });
   const told = PURPOSES.map(({ key }) => [key, winnerOf(scores, key)]);
-  expect(Object.fromEntries(told)).toMatchObject({ gap: 'b', hole: 'a', pair: 'a', evaluations: 'a' });
+  expect(Object.fromEntries(told)).toMatchObject({ gap: 'b', hole: 'a', pair: 'a' });
 });
 
 test('the widest gap to a mesh is that between a sphere and its longest edge', async () => {
