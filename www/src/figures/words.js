@@ -211,12 +211,3 @@ function tellFate({ slot, fate, particle }, particleOf) {
       return '';
   }
 }
-
-/**
- * Returns all events of a particle as the text of a file.
- * @param {readonly Moment[]} moments @param {Subject} subject @param {readonly string[]} head  lines above
- */
-export function transcript(moments, subject, head) {
-  const told = moments.map((moment, k) => `${String(k + 1).padStart(3)}  ${tell(moment, subject)}`);
-  return `${[...head, '', ...told].join('\n')}\n`.replace(/[\u00a0\u202f]/g, ' ');
-}

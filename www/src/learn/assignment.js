@@ -7,10 +7,9 @@ import { fill, h, uniqueId } from '../ui/dom.js';
 import { kept } from '../ui/remembered.js';
 import { download } from '../ui/share.js';
 import { createBench } from './bench.js';
-import { lockParts } from './locks.js';
 import { ringsOf } from './measure.js';
 import { namedFigures } from './score.js';
-import { CONTROLS, LONGEST_TITLE, lockedWords, packTask, particleTable, tableOf } from './task.js';
+import { CONTROLS, LONGEST_TITLE, lockedWords, packTask } from './task.js';
 import { USUAL, whatIfOf } from './whatifs.js';
 
 /** @import { Control, Lab, LabRun, Score, Setup, Stops, Task, Work } from './types.js' */
@@ -63,11 +62,11 @@ export async function mountAssignment(host, task, { lab, surface, stops }) {
       runs: bench.runs().map(({ label, run, score }) => recordOf(label, run, score)),
     };
   };
-  const particles = () => particleTable(bench.runs().map(({ label, run }) => ({ label, end: run.end })));
-  const save = async (/** @type {string} */ ending, /** @type {() => string} */ write) => {
+  const save = async () => {
     await bench.settled();
-    const type = ending.endsWith('json') ? 'application/json' : 'text/csv;charset=utf-8';
-    download(new Blob([write()], { type }), fileName([task.title, group.box.value, name.box.value]) + ending);
+    const text = `${JSON.stringify(workOf(), null, 2)}\n`;
+    const blob = new Blob([text], { type: 'application/json' });
+    download(blob, `${fileName([task.title, group.box.value, name.box.value])}.json`);
   };
   fill(
     host,
@@ -81,12 +80,7 @@ export async function mountAssignment(host, task, { lab, surface, stops }) {
     h(
       'div',
       { class: 'controls' },
-      button(
-        { class: 'primary', press: () => void save('.json', () => `${JSON.stringify(workOf(), null, 2)}\n`) },
-        'Save as JSON',
-      ),
-      button({ press: () => void save('.csv', () => tableOf(workOf())) }, 'Save as CSV'),
-      button({ press: () => void save('-particles.csv', particles) }, 'Save the particles'),
+      button({ class: 'primary', press: () => void save() }, 'Save your work'),
       h(
         'span',
         { class: 'quiet' },
@@ -98,7 +92,6 @@ export async function mountAssignment(host, task, { lab, surface, stops }) {
   host.hidden = false;
   const bench = await createBench(benchHost, lab, { setup: task.setup, locks: task.locks });
   void bench.open(task.setup.what, task.setup);
-  lockParts(document.body, task.locks);
 }
 
 /**

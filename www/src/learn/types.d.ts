@@ -10,9 +10,9 @@ import type { Lab } from './lab.js';
 export type { Lab, Stops };
 
 /**
- * The controls that an assignment may lock: those of its bench, then those of the rest of the page.
+ * The controls of its bench that an assignment may lock.
  */
-export type Control = 'what' | 'left' | 'right' | 'figures' | 'questions' | 'bench';
+export type Control = 'what' | 'left' | 'right';
 /** The comparison on the bench. `on`: the name of a surface of the gallery; that of the lesson if it is empty. */
 export type Setup = { what: string; on: string; left: string; right: string };
 /** One of several choices that are made at once. Its values, or the range of its numbers. */

@@ -7,6 +7,7 @@ import { button } from '../../ui/button.js';
 import { fill, h, live } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
 import { mountQuestion, seenOf } from '../ask.js';
+import { reasonOf } from '../figure.js';
 import { createMarkKey } from '../marks.js';
 import { isClosed } from '../measure.js';
 import { drawable, drawn, FIGURES, OPENING, questionOf, runsOf, scoresOf } from '../pairs.js';
@@ -63,19 +64,19 @@ async function picturesOf(lab, pair, { stops, id, key }) {
   return [h('div', { class: 'pair' }, figures), createMarkKey({ hidden: () => !isOpen() }), box];
 }
 
-/** Pairs drawn at random, one after the other. @param {Context} context */
+/** Pairs drawn at random, one after the other, once they are asked for. @param {Context} context */
 export async function draws({ lab, stops, series }) {
   const own = await lab;
-  const surfaces = drawable(await own.gallery());
   const place = h('div', { 'aria-live': 'polite' });
-  const at = signal(Number(stops.more(AT) ?? 0));
-  const count = signal(Number(stops.more(COUNT) ?? 1));
-  const isBusy = signal(false);
+  /** Number of the pair that is shown; −1 before the first. */
+  const at = signal(-1);
+  const count = signal(Number(stops.more(COUNT) ?? 0));
+  const status = signal('');
   /** @param {number} number */
   async function go(number) {
-    isBusy.value = true;
+    status.value = 'A pair is being drawn';
     try {
-      const found = await drawn(own, surfaces, series, number);
+      const found = await drawn(own, drawable(await own.gallery()), series, number);
       const id = idOf(number);
       const pictures = await picturesOf(own, found.pair, { stops, id, key: found.purpose.key });
       const host = h('div', { class: 'predict', id }, h('div', { class: 'stage stage-pair' }, pictures));
@@ -85,29 +86,36 @@ export async function draws({ lab, stops, series }) {
       count.value = Math.max(count.peek(), number + 1);
       stops.keepMore(AT, number);
       stops.keepMore(COUNT, count.peek());
-    } finally {
-      isBusy.value = false;
+      status.value = '';
+    } catch (error) {
+      status.value = reasonOf(error);
     }
   }
-  await go(at.peek());
+  const isBusy = () => status.value.startsWith('A pair');
+  const turn = (
+    /** @type {string | (() => string)} */ words,
+    /** @type {1 | -1} */ by,
+    /** @type {() => boolean} */ hidden,
+  ) =>
+    button({ class: by < 0 ? 'plain' : null, hidden, disabled: isBusy, press: () => void go(at.peek() + by) }, words);
+  if (count.peek() > 0) await go(Number(stops.more(AT)));
   return [
-    h('p', { class: 'quiet' }, () => `Pair ${formatCount(at.value + 1)}. ${tallyOf(stops, count.value)}`),
+    h(
+      'p',
+      { class: 'quiet', hidden: () => at.value < 0 },
+      () => `Pair ${formatCount(at.value + 1)}. ${tallyOf(stops, count.value)}`,
+    ),
     place,
     h(
       'div',
       { class: 'controls' },
-      button(
-        {
-          class: 'plain',
-          hidden: () => at.value === 0,
-          disabled: () => isBusy.value,
-          press: () => void go(at.peek() - 1),
-        },
-        'The pair before',
+      turn('The pair before', -1, () => at.value < 1),
+      turn(
+        () => (at.value < 0 ? 'Draw a pair' : 'Another pair'),
+        1,
+        () => false,
       ),
-      button({ disabled: () => isBusy.value, press: () => void go(at.peek() + 1) }, () =>
-        isBusy.value ? 'A pair is being drawn' : 'Another pair',
-      ),
+      h('span', { role: 'status' }, () => status.value),
     ),
   ];
 }

@@ -1,14 +1,13 @@
 /** The front, its seams, and the relaxation after it, as one course that a slider goes through. */
 import { signal } from '@preact/signals-core';
 import { triple } from '../../engine/vector.js';
-import { fill, h, live } from '../../ui/dom.js';
+import { h, live } from '../../ui/dom.js';
 import { formatCount, formatSignificant, plural } from '../../ui/format.js';
 import { latest } from '../latest.js';
 import { createMarkKey } from '../marks.js';
 import { isBare, isClosed, widestHole } from '../measure.js';
 import { createPlay, createRangeRow } from '../parts.js';
 import { byNeighbours, byValue, Orbit, Picture } from '../picture.js';
-import { pushesOn } from '../pushes.js';
 import { scoreOf } from '../score.js';
 import { termShown } from '../terms.js';
 
@@ -106,7 +105,6 @@ export async function seams({ lab, stops }) {
   const picture = new Picture(orbit, {
     name: 'The front and its relaxation, with particles of five and of seven neighbours marked',
     onPick(particle) {
-      if (isRelaxing()) followed.value = particle;
       if (isFree()) return;
       // Where the front has been there is no hole to come.
       isCovered.value = !isBare(course.at(range.get()).radii.length, particle);
@@ -115,8 +113,6 @@ export async function seams({ lab, stops }) {
   });
   /** Whether the last press was on the front. */
   const isCovered = signal(false);
-  /** Whose pushes are drawn. @type {Signal<number | null>} */
-  const followed = signal(null);
   const isFree = () => stops.isOpen('predict-hole');
   const isRelaxing = () => isFree() && stops.isOpen('predict-rest');
   /** The slider goes on with every answer. */
@@ -148,8 +144,7 @@ export async function seams({ lab, stops }) {
   });
   live(picture.element, () => {
     const place = Math.min(range.place.value, limit());
-    const isAfter = isRelaxing() && place >= front;
-    const picked = isAfter ? followed.value : place <= front ? stops.picked('predict-hole') : null;
+    const picked = place <= front ? stops.picked('predict-hole') : null;
     const marks = marksAt(course, place, { picked, isFree: isFree(), isRelaxing: isRelaxing() });
     // A seam is where fronts have met so far.
     if (termShown() === 'seam')
@@ -192,7 +187,6 @@ export async function seams({ lab, stops }) {
     picture.element,
     h('div', { class: 'controls' }, play.element, range.element, words),
     createMarkKey({ hidden: () => !isFree() }),
-    createPushes(course, { isOpen: isRelaxing, followed, step }),
   ];
 }
 
@@ -202,27 +196,6 @@ function wordsAt({ at, found, front, steps }, place) {
     return `The longest move of this step: ${formatSignificant(Number(steps[place - front - 1].largest_move), 2)} r.`;
   const met = plural(found[place].length, 'time');
   return `${plural(at(place).radii.length, 'particle')}; the front met itself ${met} on this level.`;
-}
-
-/**
- * The pushes on a particle in the step that comes next.
- * @param {Course} course
- * @param {{ isOpen: () => boolean, followed: Signal<number | null>, step: () => number }} about
- */
-function createPushes({ run: { client }, states, steps }, { isOpen, followed, step }) {
-  const box = h('div', { class: 'pushes-box', hidden: () => !isOpen() || followed.value === null });
-  const show = latest(async (/** @type {{ particle: number, at: number }} */ { particle, at }, isOld) => {
-    // Questions are answered in their order, so none comes between these two.
-    const sought = client.ask('seek', { event: steps[at].first_event });
-    const pushes = await client.ask('pushes', { particle });
-    await sought;
-    if (!isOld()) fill(box, pushesOn({ before: states[at], after: states[at + 1] }, particle, pushes));
-  });
-  live(box, () => {
-    const at = Math.min(step(), steps.length - 1);
-    if (isOpen() && steps.length > 0 && followed.value !== null) void show({ particle: followed.value, at });
-  });
-  return box;
 }
 
 /**

@@ -183,7 +183,7 @@ test('mistakes are saved with an assignment, and stay counted when one begins ag
   }
   await press(figure, 'A new one');
   await expect(figure.locator('.told')).toContainText('The run objects.');
-  const save = page.locator('#assignment').getByRole('button', { name: 'Save as JSON' });
+  const save = page.locator('#assignment').getByRole('button', { name: 'Save your work' });
   const saved = async () => {
     const [file] = await Promise.all([page.waitForEvent('download'), save.click()]);
     const { predictions } = JSON.parse(await readFile(await file.path(), 'utf8'));

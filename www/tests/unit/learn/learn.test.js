@@ -6,7 +6,7 @@ import { asFineEverywhere, isBare, nearestDistances, ringsOf, sharpestBend } fro
 import { cellOf } from '../../../src/learn/patch.js';
 import { bestOf, rowOf, scoreOf, verdictOf } from '../../../src/learn/score.js';
 import { subjectOf } from '../../../src/learn/surface.js';
-import { packTask, readWork, tableOf, unpackTask } from '../../../src/learn/task.js';
+import { packTask, readWork, tableOfAll, unpackTask } from '../../../src/learn/task.js';
 import { FAIL, SEED, seedAt, turned, USUAL } from '../../../src/learn/whatifs.js';
 import { packCarried, packed, unpackCarried, unpacked } from '../../../src/ui/surface-link.js';
 
@@ -140,7 +140,7 @@ test('an assignment comes out of a link as it went in, and what is damaged of it
   const task = {
     title: 'Seams',
     setup: { what: 'fail', on: 'torus', left: 'queue~0.7~10~0', right: 'stack~0.95~0~2' },
-    locks: /** @type {Control[]} */ (['what', 'right', 'figures']),
+    locks: /** @type {Control[]} */ (['what', 'right']),
     questions: ['Why?', 'Where?'],
   };
   expect(unpackTask(packTask(task))).toEqual(task);
@@ -166,8 +166,8 @@ test('an assignment comes out of a link as it went in, and what is damaged of it
     expect(unpackTask(bad)).toBe(null);
 });
 
-test('a table of the work quotes what needs it and starts no formula', () => {
-  const table = tableOf({
+test('the table of all works quotes what needs it and starts no formula', () => {
+  const work = {
     assignment: '=SUM(A1)',
     surface: 'x = 1',
     name: 'Ada',
@@ -175,21 +175,21 @@ test('a table of the work quotes what needs it and starts no formula', () => {
     answers: [{ question: 'Why, and "how"?', answer: '-3' }],
     predictions: [{ stop: 'predict-ring', question: 'Q', guess: 66, answer: 'A' }],
     runs: [{ label: 'queue', figures: { six: 0.9 }, new_per_level: [1, 6], fates_per_level: [{ added: 6 }] }],
-  });
-  expect(table.split('\r\n')).toEqual([
-    'part,name,number,value',
-    "assignment,title,,'=SUM(A1)",
-    'assignment,surface,,x = 1',
-    'assignment,name,,Ada',
-    'assignment,class,,',
-    'answer,"Why, and ""how""?",,-3',
-    'prediction,Q,,66',
-    'run,Q,,A',
-    'run 1,label,,queue',
-    'run 1,figures: six,,0.9',
-    'run 1,new_per_level,0,1',
-    'run 1,new_per_level,1,6',
-    'run 1,fates_per_level: added,0,6',
+  };
+  expect(tableOfAll([work]).split('\r\n')).toEqual([
+    'work,part,name,number,value',
+    "1,assignment,title,,'=SUM(A1)",
+    '1,assignment,surface,,x = 1',
+    '1,assignment,name,,Ada',
+    '1,assignment,class,,',
+    '1,answer,"Why, and ""how""?",,-3',
+    '1,prediction,Q,,66',
+    '1,run,Q,,A',
+    '1,run 1,label,,queue',
+    '1,run 1,figures: six,,0.9',
+    '1,run 1,new_per_level,0,1',
+    '1,run 1,new_per_level,1,6',
+    '1,run 1,fates_per_level: added,0,6',
     '',
   ]);
 });

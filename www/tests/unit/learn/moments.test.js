@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import { arcOf, inPlane, lensOf, slotPlace, unrolled, widthOf } from '../../../src/figures/geometry.js';
 import { isAdaptive, momentAt } from '../../../src/figures/moment.js';
-import { ADAPTIVE, ALGORITHM, lineOf, tell, transcript } from '../../../src/figures/words.js';
+import { ADAPTIVE, ALGORITHM, lineOf, tell } from '../../../src/figures/words.js';
 
 /**
  * @import { LessonEvent } from '../../../src/engine/types.js'
@@ -126,15 +126,6 @@ describe('the words', () => {
       expect(tell(momentAt([...events, left], events.length), subject)).toMatch(/left out/);
       expect(ALGORITHM[lineOf(left)].text).toContain('leave it out');
     }
-  });
-
-  test('become a text file with one line per event', () => {
-    const moments = events.map((_, at) => momentAt(events, at));
-    const lines = transcript(moments, subject, ['Particle 47']).trimEnd().split('\n');
-    expect(lines[0]).toBe('Particle 47');
-    expect(lines.slice(2)).toHaveLength(events.length);
-    expect(lines[2]).toBe('  1  Particle 47 is taken from the queue. Its children are to be placed.');
-    expect(lines.join('')).not.toMatch(/[\u00a0\u202f]/);
   });
 });
 
