@@ -24,7 +24,10 @@ export class Stops {
   /** @type {Map<string, Guessed>} */
   outcomes;
 
-  /** The guesses that stand in the page, by the stop. @type {Map<string, { question: string, get: () => string | number | null }>} */
+  /**
+   * The guesses that stand in the page, by the stop.
+   * @type {Map<string, { question: string, get: () => string | number | null }>}
+   */
   entries = new Map();
 
   /** @param {string} [text] what was kept @param {(text: string) => void} [keep] */

@@ -129,7 +129,10 @@ export function mountQuestion(host, id, about, { lab, stops }) {
   whenNear(host, () => asked(old.map((one) => one?.guess ?? null)).catch(() => {}));
 }
 
-/** The parts of a question with their inputs, which are part of what a learner hands in. @param {string} id @param {Question<any>} about @param {Stops} stops */
+/**
+ * The parts of a question with their inputs, which are part of what a learner hands in.
+ * @param {string} id @param {Question<any>} about @param {Stops} stops
+ */
 const enter = (id, about, stops) =>
   partsOf(about).map((part) => {
     const stop = stopOf(id, part);

@@ -52,7 +52,8 @@ export async function createBench(
 
   /**
    * Shows a choice with the values that are given. Without any, several at once are shown as they are kept.
-   * @param {string} id @param {{ on?: unknown, left?: unknown, right?: unknown }} given @param {(next: Setup) => unknown} [act]
+   * @param {string} id @param {{ on?: unknown, left?: unknown, right?: unknown }} given
+   * @param {(next: Setup) => unknown} [act]
    */
   async function open(id, given, act = show) {
     const values = whatIfOf(id).knobs ? (await import('./fail.js')).keptSides(labOn(String(given.on ?? ''))) : {};
@@ -123,7 +124,10 @@ export async function createBench(
   };
 }
 
-/** The surfaces that may be compared on, and the lab of each: that of the lesson, and those of the gallery. @param {Lab} lab */
+/**
+ * The surfaces on which runs may be compared, and the lab of each: that of the lesson, and those of the gallery.
+ * @param {Lab} lab
+ */
 async function surfacesOf(lab) {
   const gallery = (await lab.gallery().catch(() => [])).filter(({ formula }) => formula);
   return {

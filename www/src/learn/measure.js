@@ -87,7 +87,7 @@ export function sharpestBend({ normals, parents }) {
  * Opens a particle at one of its slots.
  * @param {LabRun} run @param {number} particle @param {number} slot
  */
-export async function openSlot(run, particle, slot) {
+async function openSlot(run, particle, slot) {
   const opened = await openParticle(run.client, run, particle);
   const whole = momentAt(opened.events, opened.events.length - 1);
   return { run, opened, whole, slot, profile: opened.profiles[slot] };

@@ -7,7 +7,7 @@ import { adaptiveRun } from './adaptive.js';
 import { bestOf, chanceOf, ROWS, rowOf, scoreOf, written } from './score.js';
 
 /**
- * @import { SurfaceEntry } from '../engine/core-types.js'
+ * @import { SurfaceInfo } from '../engine/types.js'
  * @import { FormulaSurface } from '../ui/types.js'
  * @import { Judged, JudgedSide, Lab, LabRun, Question, Score, ScoreFigures } from './types.js'
  */
@@ -26,7 +26,10 @@ export const SIDES = [
   { value: 'alike', label: 'Neither: they differ by chance at most' },
 ];
 
-/** What a sampling is for, and the figure that says how good it is for that. @type {readonly { key: keyof ScoreFigures, story: string, why: string }[]} */
+/**
+ * What a sampling is for, and the figure that says how good it is for that.
+ * @type {readonly { key: keyof ScoreFigures, story: string, why: string }[]}
+ */
 export const PURPOSES = [
   {
     key: 'hole',
@@ -61,7 +64,7 @@ export const FIGURES = ROWS.filter(({ key }) => PURPOSES.some((purpose) => purpo
 /** @param {string} name @param {JudgedSide['settings']} settings */
 const side = (name, settings) => ({ name, settings });
 /** In a pair, one of these against the other. @type {readonly (readonly [JudgedSide, JudgedSide])[]} */
-export const RIVALS = [
+const RIVALS = [
   [side('a queue, relaxed', {}), side('a stack, relaxed', { order: 'stack' })],
   [side('a stack, relaxed', { order: 'stack' }), side('a queue, not relaxed', { relax_steps: 0 })],
   [side('a queue, relaxed', {}), side('a queue, not relaxed', { relax_steps: 0 })],
@@ -88,7 +91,7 @@ const DRAWN = 600;
 /** Pairs that are tried until one is clear. */
 const MOST_TRIALS = 6;
 /** A difference between these shares of chance is neither clear nor clearly a tie. */
-export const UNCLEAR = [0.75, 1.25];
+const UNCLEAR = [0.75, 1.25];
 
 /** The run of a side. @param {Lab} lab @param {Judged} pair @param {JudgedSide} of @returns {Promise<LabRun>} */
 function runOf(lab, { surface, particles }, { settings, isAdaptive = false }) {
@@ -107,13 +110,19 @@ export const scoresOf = async (lab, pair) =>
     ),
   );
 
-/** The value of {@link SIDES} that is right by a figure. @param {readonly Score[]} scores @param {keyof ScoreFigures} key */
+/**
+ * The value of {@link SIDES} that is right by a figure.
+ * @param {readonly Score[]} scores @param {keyof ScoreFigures} key
+ */
 export const winnerOf = (scores, key) => ['alike', 'a', 'b'][bestOf(scores, rowOf(key)) + 1];
 
 /** Where so few have six neighbours in both, the surface bends too much within 2r for the figures to say anything. */
 const LEAST_ORDER = 0.6;
 
-/** Whether a figure clearly differs or clearly does not. @param {readonly Score[]} scores @param {keyof ScoreFigures} key */
+/**
+ * Whether a figure clearly differs or clearly does not.
+ * @param {readonly Score[]} scores @param {keyof ScoreFigures} key
+ */
 export function isClear(scores, key) {
   const [one, other] = scores.map((score) => score[key]);
   if (one === null || other === null || scores.every(({ six }) => Number(six) < LEAST_ORDER)) return false;
@@ -138,7 +147,7 @@ const MOST_GENUS = 3;
 
 /**
  * The surfaces of the gallery that pairs are drawn from: closed, in one piece and without self-intersections.
- * @param {readonly SurfaceEntry[]} gallery
+ * @param {readonly SurfaceInfo[]} gallery
  */
 export const drawable = (gallery) =>
   gallery.filter(({ genus, formula }) => formula && genus !== null && genus <= MOST_GENUS);
@@ -149,7 +158,7 @@ const TIES = 0.3;
 /**
  * The pair with a number of a series, which begins with a text. Every third compares one size with many, and asks for
  * the widest gap to a mesh, too. The purposes take turns, as far as they are clear.
- * @param {Lab} lab @param {readonly SurfaceEntry[]} surfaces @param {string} series @param {number} number  from 0
+ * @param {Lab} lab @param {readonly SurfaceInfo[]} surfaces @param {string} series @param {number} number  from 0
  */
 export async function drawn(lab, surfaces, series, number) {
   const random = randomOf(`${series} ${number}`);

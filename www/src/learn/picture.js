@@ -210,7 +210,7 @@ export class Picture {
     this.scene.value = scene;
   }
 
-  /** The size that is drawn. The hand-out has pictures of one shape. */
+  /** The size that is drawn. On paper pictures have one shape. */
   #room() {
     const { width, height } = this.#size.peek();
     return { width, height: printing.peek() && height > 0 ? PAPER * width : height };

@@ -13,8 +13,7 @@ import { RequestWorker } from '../bundle/requests.js';
 import { spawnSampler } from './spawn.js';
 
 /**
- * @import { SurfaceEntry } from '../core-types.js'
- * @import { FieldRequest } from '../types.js'
+ * @import { FieldRequest, SurfaceInfo } from '../types.js'
  * @import { FromWorker, PlacedColumns, PlacedMeasures, ToWorker, WorkerLike } from './types.js'
  */
 
@@ -22,7 +21,7 @@ export class Meter {
   /** @type {RequestWorker<ToWorker, FromWorker>} */
   #worker;
 
-  /** The surfaces of the gallery, once a worker has told them: it begins with that. @type {SurfaceEntry[] | null} */
+  /** The surfaces of the gallery, once a worker has told them: it begins with that. @type {SurfaceInfo[] | null} */
   #surfaces = null;
 
   /** Requests for them. @type {number[]} */
@@ -37,7 +36,7 @@ export class Meter {
     });
   }
 
-  /** The surfaces of the gallery. @returns {Promise<SurfaceEntry[]>} */
+  /** The surfaces of the gallery. @returns {Promise<SurfaceInfo[]>} */
   async surfaces() {
     if (this.#surfaces) return this.#surfaces;
     return this.#worker.requests.make((request) => {

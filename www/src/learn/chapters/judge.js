@@ -26,8 +26,8 @@ export const opening = async ({ lab, stops }) => picturesOf(await lab, OPENING, 
 /**
  * The pictures of a pair, and its figures where it has a purpose.
  * @param {Lab} lab @param {Judged} pair
- * @param {{ stops: Stops, id: string, key?: keyof ScoreFigures }} how  `id`: of the question; `key`: the figure that the
- *   purpose needs
+ * @param {{ stops: Stops, id: string, key?: keyof ScoreFigures }} how  `id`: of the question; `key`: the
+ *   figure that the purpose needs
  */
 async function picturesOf(lab, pair, { stops, id, key }) {
   const runs = await runsOf(lab, pair);

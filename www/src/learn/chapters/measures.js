@@ -1,6 +1,6 @@
 /**
- * The three figures by which samplings are judged, in a patch of sampling B of the beginning, and what another seed does
- * to them: five runs as dots, whose width is chance.
+ * The three figures by which samplings are judged, in a patch of sampling B of the beginning, and what
+ * another seed does to them: five runs as dots, whose width is chance.
  */
 import { signal } from '@preact/signals-core';
 import { clamp } from '../../engine/vector.js';

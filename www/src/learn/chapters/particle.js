@@ -47,8 +47,8 @@ function keyOf({ events }) {
  * Views of a particle at one of its events: its tangent plane, the event in words, the line of the algorithm, and the
  * slot from the side with both landings.
  * @param {Opened} opened
- * @param {{ at: number, go: (by: 1 | -1) => void }} how  `at`: the event that is shown first; −1 for the last; `go` leads
- *   to the particle before or after
+ * @param {{ at: number, go: (by: 1 | -1) => void }} how  `at`: the event that is shown first; −1 for the
+ *   last; `go` leads to the particle before or after
  */
 function viewsOf(opened, { at, go }) {
   const { events, subject } = opened;
