@@ -17,17 +17,13 @@ const blankOf = ({ kind, choices = [], label }) =>
 
 /** The questions in the order of the page, then the purposes for which pairs are judged. */
 const questions = () => {
+  const why = () => h('p', { class: 'blank' }, 'Why:');
   const ids = Array.from(document.querySelectorAll('.chapter .predict'), ({ id }) => id);
   const asked = ids.filter((id) => Object.hasOwn(QUESTIONS, id)).map((id) => QUESTIONS[id]);
   return [
-    ...asked.map((about) => h('li', null, h('p', null, about.question), partsOf(about).map(blankOf))),
+    ...asked.map((about) => h('li', null, h('p', null, about.question), partsOf(about).map(blankOf), why())),
     ...PURPOSES.map(({ story }) =>
-      h(
-        'li',
-        null,
-        h('p', null, `${story} Which figure tells how good a sampling is for that?`),
-        h('p', { class: 'blank' }, 'Why:'),
-      ),
+      h('li', null, h('p', null, `${story} Which figure tells how good a sampling is for that?`), why()),
     ),
   ];
 };
