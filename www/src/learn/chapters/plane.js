@@ -294,6 +294,8 @@ class Exercise {
     const { opened } = now;
     const at = { centre: opened.place, right: frame.u, up: frame.w, radius: opened.subject.radius };
     const { slot } = now.decisions[now.at];
+    // What the particle in the middle covers is not pressed.
+    if (Math.hypot(x, y) < 1) return this.#tell('', `That is particle ${letterOf(opened.subject.particle)} itself.`);
     // The whole disc of a particle is the particle; a slot is what is left of its circle.
     const near = { particle: -1, far: 1 };
     for (const { particle } of gathered?.neighbours ?? []) {

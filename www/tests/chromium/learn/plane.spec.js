@@ -126,7 +126,14 @@ test('the whole disc of a particle counts as the particle, and its number is und
     await expect(question).toContainText(`Particle A, slot ${slot}`);
     await press(figure, 'A new one');
   }
-  // Slot 1 of particle 1 holds a particle: all over its disc a press is that particle, though the slot lies on it.
+  // The particle itself covers what is below it.
+  await expect(question).toContainText('Particle B, slot 1');
+  await drawing.evaluate((svg) => {
+    const { left, top, width, height } = svg.getBoundingClientRect();
+    svg.dispatchEvent(new MouseEvent('click', { bubbles: true, clientX: left + width / 2, clientY: top + height / 2 }));
+  });
+  await expect(figure.locator('.told').last()).toHaveText('That is particle B itself.');
+  // Slot 1 of particle B holds a particle: all over its disc a press is that particle, though the slot lies on it.
   for (const [dx, dy] of [
     [0, 0],
     [0.6, 0.6],
