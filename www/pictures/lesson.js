@@ -41,7 +41,10 @@ for (const stage of await page.locator('[data-figure]').all()) {
   );
   // A pair is drawn once it is asked for.
   if (name === 'draws') {
-    await stage.locator('button').last().evaluate((one) => /** @type {HTMLElement} */ (one).click());
+    await stage
+      .locator('button')
+      .last()
+      .evaluate((one) => /** @type {HTMLElement} */ (one).click());
     await expect(stage.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 300_000 });
   }
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
