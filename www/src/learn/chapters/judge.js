@@ -97,7 +97,15 @@ export async function draws({ lab, stops, series }) {
     /** @type {1 | -1} */ by,
     /** @type {() => boolean} */ hidden,
   ) =>
-    button({ class: by < 0 ? 'plain' : null, hidden, disabled: isBusy, press: () => void go(at.peek() + by) }, words);
+    button(
+      {
+        class: by < 0 ? 'plain' : null,
+        hidden,
+        disabled: isBusy,
+        press: () => void go(at.peek() + by),
+      },
+      words,
+    );
   if (count.peek() > 0) await go(Number(stops.more(AT)));
   return [
     h(
