@@ -3,7 +3,7 @@
  * address]`.
  *
  * Writes learn/stills/*.webp: what stands in a figure's place without JavaScript, before it is live, and if it cannot
- * be; and a still of each comparison, for paper and for readers without JavaScript.
+ * be; and a still of each comparison, for readers without JavaScript.
  */
 import { writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
@@ -18,7 +18,7 @@ const folder = fileURLToPath(new URL('../learn/stills/', import.meta.url));
  * alone.
  */
 const STYLE = `.controls, .choices, .figure-count, .key, .scale, .bar, .check, .quiet, figcaption { display: none !important }
-  .stage .compare-box { display: none !important } .told { min-height: 0 !important } .cost { display: table !important }`;
+  .stage .compare-box, .stage :is(.predict-question, .predict-form), .stage > p { display: none !important } .told { min-height: 0 !important } .cost { display: table !important }`;
 
 const browser = await launch();
 const page = await browser.newPage({
@@ -28,6 +28,8 @@ const page = await browser.newPage({
   bypassCSP: true,
   serviceWorkers: 'block',
 });
+// Runs take long where a machine has other work.
+page.setDefaultTimeout(300_000);
 await page.goto(`${base}learn/`);
 await page.addStyleTag({ content: STYLE });
 for (const stage of await page.locator('[data-figure]').all()) {
@@ -37,10 +39,18 @@ for (const stage of await page.locator('[data-figure]').all()) {
     (element) => /** @type {HTMLElement} */ (element).dataset.state === 'live',
     await stage.elementHandle(),
   );
+  // A pair is drawn once it is asked for.
+  if (name === 'draws') {
+    await stage
+      .locator('button')
+      .last()
+      .evaluate((one) => /** @type {HTMLElement} */ (one).click());
+    await expect(stage.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 300_000 });
+  }
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   await save(name ?? '', await stage.screenshot());
 }
-// Two of them stand beside each other on paper.
+// They are as wide as a column.
 await page.setViewportSize({ width: 640, height: 900 });
 for (const { id } of COMMON) {
   await page.goto(`${base}learn/#what-if-${id}`);

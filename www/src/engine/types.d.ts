@@ -57,7 +57,6 @@ export type FileRecord = import('./core-types.js').FileRecord;
 export type MeshAnswer = import('./core-types.js').MeshAnswer;
 export type LessonEvent = import('./core-types.js').LessonEvent;
 export type LessonIterate = import('./core-types.js').LessonIterate;
-export type LessonPush = import('./core-types.js').LessonPush;
 export type LessonChapter = import('./core-types.js').LessonChapter;
 export type LessonSettings = import('./core-types.js').LessonSettings;
 export type LessonClient = import('./lesson/client.js').LessonClient;

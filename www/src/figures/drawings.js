@@ -27,6 +27,7 @@ const MIDDLE = 0.85;
 export function tangentPlane(opened, moment) {
   const { subject, positions, normals, place } = opened;
   const { frame, gathered, children, slot, isNow } = moment;
+  const { nameOf = formatCount } = subject;
   const svg = s('svg', {
     class: 'drawing',
     viewBox: `${-TANGENT_HALF} ${-TANGENT_HALF} ${2 * TANGENT_HALF} ${2 * TANGENT_HALF}`,
@@ -52,15 +53,15 @@ export function tangentPlane(opened, moment) {
     const taken = [...shapes, ...children.map(numberPlace)];
     for (const { particle } of gathered?.neighbours ?? []) {
       svg.append(ring('centre', at(particle), 0.08));
-      svg.append(label('number', clear(at(particle), taken), formatCount(particle)));
+      svg.append(label('number', clear(at(particle), taken), nameOf(particle)));
     }
     for (const { place, particle } of added)
-      if (particle !== null) svg.append(label('number', clear(place, taken), formatCount(particle)));
+      if (particle !== null) svg.append(label('number', clear(place, taken), nameOf(particle)));
     const now = slot === null ? null : children[slot];
     if (now?.compared && moment.event.type === 'compared')
       svg.append(ring('tolerance', inPlane(plane, now.compared.position), now.compared.limit / subject.radius));
   }
-  svg.append(ring('self', [0, 0], 1), label('number strong', [0, 0], formatCount(subject.particle)));
+  svg.append(ring('self', [0, 0], 1), label('number strong', [0, 0], nameOf(subject.particle)));
   return svg;
 }
 
@@ -128,7 +129,8 @@ export function childMarks(child, plane, at) {
 
 /** @param {Opened} opened @param {Moment} moment */
 function tangentWords({ subject }, { frame, gathered, children }) {
-  const plane = `Tangent plane of particle ${formatCount(subject.particle)}`;
+  const { nameOf = formatCount } = subject;
+  const plane = `Tangent plane of particle ${nameOf(subject.particle)}`;
   if (!frame) return `${plane}, not laid yet`;
   const fates = children.filter(({ fate }) => fate !== 'open').map(({ slot, fate }) => `slot ${slot} ${FATES[fate]}`);
   const around = gathered ? `, ${formatCount(gathered.neighbours.length)} particles around` : '';

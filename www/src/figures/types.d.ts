@@ -68,4 +68,12 @@ export type Point = [number, number];
 export type Plane = { centre: ArrayLike<number>; right: ArrayLike<number>; up: ArrayLike<number>; radius: number };
 
 /** Whose events are told. `parent` is null for a seed; `levels` is the last level of the run. */
-export type Subject = { particle: number; level: number; levels?: number; parent: number | null; radius: number };
+/** `nameOf`: what particles are called, if not by their numbers. */
+export type Subject = {
+  particle: number;
+  level: number;
+  levels?: number;
+  parent: number | null;
+  radius: number;
+  nameOf?: (particle: number) => string;
+};

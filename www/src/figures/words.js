@@ -42,7 +42,7 @@ export const ALGORITHM = [
   { depth: 1, text: 'Gather the particles around p', of: ['gathered'] },
   { depth: 1, text: 'Slot 0 holds the parent, if p has one', of: ['fate:parent'] },
   { depth: 1, text: 'For each child: find the nearest of those particles', of: ['compared', 'fronts_meet'] },
-  { depth: 2, text: 'if the two correspond, that particle is the child', of: ['fate:matched'] },
+  { depth: 2, text: 'if it is within the tolerance, that particle is the child', of: ['fate:matched'] },
   {
     depth: 2,
     text: 'if it is not on the surface in the box, leave it out',
@@ -85,18 +85,16 @@ export function lineOf(event, lines = ALGORITHM) {
   return lines.findIndex(({ of }) => of.includes(name));
 }
 
-/** @param {number} particle */
-const particleOf = (particle) => `particle ${formatCount(particle)}`;
-
 /**
  * Tells an event in one or two sentences.
  * @param {Moment} moment @param {Subject} subject
  */
 export function tell({ event, slot, children, evaluations }, subject) {
-  const { radius } = subject;
+  const { radius, nameOf = formatCount } = subject;
+  const particleOf = (/** @type {number} */ particle) => `particle ${nameOf(particle)}`;
   switch (event.type) {
     case 'taken':
-      return `Particle ${formatCount(event.particle)} is taken from the queue. Its children are to be placed.`;
+      return `Particle ${nameOf(event.particle)} is taken from the queue. Its children are to be placed.`;
     case 'frame':
       return subject.parent === null
         ? 'Its tangent plane is laid. A seed has no parent, so slot 0 points anywhere; the others follow every 60°.'
@@ -113,21 +111,21 @@ export function tell({ event, slot, children, evaluations }, subject) {
       return `${near}: the children are compared with ${length === 1 ? 'it' : 'them'}.`;
     }
     case 'compared':
-      return tellComparison(event, radius);
+      return tellComparison(event, radius, particleOf);
     case 'fronts_meet':
       return event.is_other
         ? `The front of another seed is met at ${particleOf(event.particle)}.`
         : `The front meets itself at ${particleOf(event.particle)}, out of step.`;
     case 'added':
-      return `A new particle, number ${formatCount(event.particle)}, is added where the child of slot ${slot} landed. It waits its turn.`;
+      return `A new one, ${particleOf(event.particle)}, is added where the child of slot ${slot} landed. It waits its turn.`;
     case 'fate':
-      return tellFate(event);
+      return tellFate(event, particleOf);
     case 'arc':
     case 'start':
     case 'push':
     case 'push_on_circle':
     case 'room':
-      return tellPush(event, radius);
+      return tellPush(event, radius, particleOf);
     case 'done': {
       const placed = children.filter(({ fate }) => fate === 'added').length;
       const met = children.filter(({ fate }) => fate === 'matched').length;
@@ -145,21 +143,23 @@ function tellIterate({ slot, step, theta_rad: angle, value }) {
   return `The child of slot ${slot} at ${where}: f = ${formatSignificant(value, 3)}.`;
 }
 
-/** @param {Extract<LessonEvent, {type: 'compared'}>} event @param {number} radius */
-function tellComparison({ slot, against, distance, limit, corresponds }, radius) {
+/** @typedef {(particle: number) => string} Name  of a particle */
+
+/** @param {Extract<LessonEvent, {type: 'compared'}>} event @param {number} radius @param {Name} particleOf */
+function tellComparison({ slot, against, distance, limit, corresponds }, radius, particleOf) {
   if (against === null || distance === null) return `The child of slot ${slot} has no particle of its sheet near it.`;
   const far = `The child of slot ${slot} is ${inRadii(distance, radius)} from ${particleOf(against)}, its nearest.`;
   const bound = inRadii(limit, radius, 2);
   return corresponds
-    ? `${far} That is within ${bound}: the two correspond.`
-    : `${far} That is more than ${bound}: the place is free.`;
+    ? `${far} That is within the tolerance of ${bound}.`
+    : `${far} That is more than the tolerance of ${bound}: the place is free.`;
 }
 
 /**
  * @param {Extract<LessonEvent, {type: 'arc' | 'start' | 'push' | 'push_on_circle' | 'room'}>} event
- * @param {number} radius
+ * @param {number} radius @param {Name} particleOf
  */
-function tellPush(event, radius) {
+function tellPush(event, radius, particleOf) {
   switch (event.type) {
     case 'arc': {
       const { before, behind, angles_rad: angles } = event;
@@ -187,8 +187,8 @@ function tellPush(event, radius) {
   }
 }
 
-/** @param {Extract<LessonEvent, {type: 'fate'}>} event */
-function tellFate({ slot, fate, particle }) {
+/** @param {Extract<LessonEvent, {type: 'fate'}>} event @param {Name} particleOf */
+function tellFate({ slot, fate, particle }, particleOf) {
   const other = particle === null ? '' : particleOf(particle);
   switch (fate) {
     case 'parent':
@@ -210,13 +210,4 @@ function tellFate({ slot, fate, particle }) {
     default:
       return '';
   }
-}
-
-/**
- * Returns all events of a particle as the text of a file.
- * @param {readonly Moment[]} moments @param {Subject} subject @param {readonly string[]} head  lines above
- */
-export function transcript(moments, subject, head) {
-  const told = moments.map((moment, k) => `${String(k + 1).padStart(3)}  ${tell(moment, subject)}`);
-  return `${[...head, '', ...told].join('\n')}\n`.replace(/[\u00a0\u202f]/g, ' ');
 }

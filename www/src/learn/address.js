@@ -1,13 +1,22 @@
 /**
- * The fragment of the lesson's address: the stop, then what is carried along, such as `#rings&surface=…&mode=present`.
+ * The fragment of the lesson's address: the stop, then what is carried along, such as `#rings&surface=…&task=…`.
  * A stop alone is an ordinary anchor, which works without scripts.
  */
 
 /** Parts that a fragment may have beside the stop. */
-const PARTS = ['surface', 'mode', 'task', 'left', 'right', 'particle'];
-/** The stops of comparisons begin with this; only theirs have the values of the two sides. */
+const PARTS = ['surface', 'task', 'on', 'left', 'right', 'particle'];
+/** The stops of comparisons begin with this; only theirs have a surface and the values of the two sides. */
 export const BENCH = 'what-if';
-const OF_BENCH = ['left', 'right'];
+const OF_BENCH = ['on', 'left', 'right'];
+/** Stops that the lesson once had, and what is nearest to them by its content. @type {Record<string, string>} */
+const GONE = {
+  race: 'cost',
+  moving: 'cost',
+  'predict-moving': 'cost',
+  'predict-last': 'judge',
+  'predict-few': 'judge',
+  'predict-chance': 'judge',
+};
 
 /** @typedef {{ stop: string, parts: Record<string, string> }} Address */
 
@@ -48,13 +57,14 @@ export const titleOf = (stop) =>
   stop?.querySelector(':is(.predict-question, .challenge-title, h2, caption)')?.textContent ?? '';
 
 /**
- * Returns the stop that a name means: the one of this name, else the one whose name is nearest to it by the letters
- * that have to be changed; null for an empty name.
+ * Returns the stop that a name means: the one of this name, else the one that has taken its place, else the one whose
+ * name is nearest to it by the letters that have to be changed; null for an empty name.
  * @param {string} name @param {readonly string[]} stops  at least one
  */
 export function nearestStop(name, stops) {
   if (name === '') return null;
   if (stops.includes(name)) return { stop: name, isExact: true };
+  if (Object.hasOwn(GONE, name)) return { stop: GONE[name], isExact: false };
   const distances = stops.map((stop) => editDistance(name.slice(0, LONGEST_NAME), stop));
   return { stop: stops[distances.indexOf(Math.min(...distances))], isExact: false };
 }

@@ -6,8 +6,8 @@ import { signal } from '@preact/signals-core';
  * @import { Guessed } from './types.js'
  */
 
-/** The name under which the guess by eye of a question is kept. @param {string} stop */
-export const eyeOf = (stop) => `${stop}-eye`;
+/** The name under which it is kept what the pairs that are drawn follow from. */
+const SERIES = 'series';
 
 /** The predictions that were made. A figure shows what would give an answer away only after its prediction. */
 export class Stops {
@@ -25,10 +25,8 @@ export class Stops {
   outcomes;
 
   /**
-   * The present entries of a learner, by the stop.
-   * @type {Map<string, { question: string, get: () => string | number | null, look: () => boolean,
-   *   reveal: () => Promise<void>, ask: () => Promise<string> }>} `look` shows what comes before the
-   *   answer, if it is not shown yet
+   * The guesses that stand in the page, by the stop.
+   * @type {Map<string, { question: string, get: () => string | number | null }>}
    */
   entries = new Map();
 
@@ -38,12 +36,18 @@ export class Stops {
     this.outcomes = new Map(outcomes.map((/** @type {Guessed} */ one) => [one.stop, one]));
     this.#more = more;
     this.#keep = keep;
-    for (const stop of this.outcomes.keys()) this.state(stop).value = true;
+    for (const stop of this.outcomes.keys()) this.open(stop);
   }
 
   /** Whether there is something to forget. */
   isBegun() {
-    return this.outcomes.size > 0 || Object.keys(this.#more).length > 0;
+    return this.outcomes.size > 0 || Object.keys(this.#more).some((name) => name !== SERIES);
+  }
+
+  /** What the pairs that are drawn follow from: the same as before, in this browser. */
+  series() {
+    if (!this.#more[SERIES]) this.keepMore(SERIES, Math.random().toString(36).slice(2));
+    return this.#more[SERIES];
   }
 
   #write() {
@@ -85,6 +89,11 @@ export class Stops {
     const known = this.#open.get(stop) ?? signal(false);
     this.#open.set(stop, known);
     return known;
+  }
+
+  /** Lets figures show the answer. @param {string} stop */
+  open(stop) {
+    this.state(stop).value = true;
   }
 
   /** @param {string} stop */

@@ -7,10 +7,9 @@ import { fill, h, uniqueId } from '../ui/dom.js';
 import { kept } from '../ui/remembered.js';
 import { download } from '../ui/share.js';
 import { createBench } from './bench.js';
-import { lockParts } from './locks.js';
 import { ringsOf } from './measure.js';
 import { namedFigures } from './score.js';
-import { CONTROLS, LONGEST_TITLE, lockedWords, packTask, particleTable, tableOf } from './task.js';
+import { CONTROLS, LONGEST_TITLE, lockedWords, packTask } from './task.js';
 import { USUAL, whatIfOf } from './whatifs.js';
 
 /** @import { Control, Lab, LabRun, Score, Setup, Stops, Task, Work } from './types.js' */
@@ -35,7 +34,7 @@ const fileName = (words) => words.flatMap((word) => word.match(/[\p{L}\p{N}]+/gu
  * Puts the assignment before the first chapter.
  * @param {HTMLElement} host @param {Task} task @param {{ lab: Lab, surface: string, stops: Stops }} context
  */
-export function mountAssignment(host, task, { lab, surface, stops }) {
+export async function mountAssignment(host, task, { lab, surface, stops }) {
   const id = uniqueId('assignment');
   const benchHost = h('div', { class: 'bench' });
   const answers = task.questions.map((question) => {
@@ -63,11 +62,11 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
       runs: bench.runs().map(({ label, run, score }) => recordOf(label, run, score)),
     };
   };
-  const particles = () => particleTable(bench.runs().map(({ label, run }) => ({ label, end: run.end })));
-  const save = async (/** @type {string} */ ending, /** @type {() => string} */ write) => {
+  const save = async () => {
     await bench.settled();
-    const type = ending.endsWith('json') ? 'application/json' : 'text/csv;charset=utf-8';
-    download(new Blob([write()], { type }), fileName([task.title, group.box.value, name.box.value]) + ending);
+    const text = `${JSON.stringify(workOf(), null, 2)}\n`;
+    const blob = new Blob([text], { type: 'application/json' });
+    download(blob, `${fileName([task.title, group.box.value, name.box.value])}.json`);
   };
   fill(
     host,
@@ -81,12 +80,7 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
     h(
       'div',
       { class: 'controls' },
-      button(
-        { class: 'primary', press: () => void save('.json', () => `${JSON.stringify(workOf(), null, 2)}\n`) },
-        'Save as JSON',
-      ),
-      button({ press: () => void save('.csv', () => tableOf(workOf())) }, 'Save as CSV'),
-      button({ press: () => void save('-particles.csv', particles) }, 'Save the particles'),
+      button({ class: 'primary', press: () => void save() }, 'Save your work'),
       h(
         'span',
         { class: 'quiet' },
@@ -96,9 +90,8 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
   );
   host.setAttribute('aria-labelledby', id);
   host.hidden = false;
-  const bench = createBench(benchHost, lab, { setup: task.setup, locks: task.locks });
+  const bench = await createBench(benchHost, lab, { setup: task.setup, locks: task.locks });
   void bench.open(task.setup.what, task.setup);
-  lockParts(document.body, task.locks);
 }
 
 /**
@@ -118,11 +111,11 @@ export function createMaker({ setup, linkOf }) {
   const write = () => {
     const whatIf = whatIfOf(setup().what);
     // Where learners are to find the best and the worst, the teacher's own tries would solve it.
-    const { what: id, left, right } = whatIf.knobs ? { what: whatIf.id, left: USUAL, right: USUAL } : setup();
+    const { what: id, on, left, right } = { ...setup(), ...(whatIf.knobs ? { left: USUAL, right: USUAL } : {}) };
     what.textContent = `It compares what stands under “What if”: ${whatIf.name}.${whatIf.knobs ? ' Learners begin with the sampling of the lesson; your own tries stay here.' : ''}`;
     const task = {
       title: title.value,
-      setup: { what: id, left, right },
+      setup: { what: id, on, left, right },
       locks: locks.flatMap(({ box }) => (box.checked ? [/** @type {Control} */ (box.value)] : [])),
       questions: questions.value
         .split('\n')

@@ -12,8 +12,13 @@ import { COMMON, setupOf, sidesOf, whatIfOf } from './whatifs.js';
  * @param {{ setup?: Setup, locks?: readonly Control[], onChoice?: (setup: Setup) => void }} [how]
  *   `locks`: controls that stay as they are; `onChoice` is told what the learner chooses
  */
-export function createBench(host, lab, { setup: first = setupOf(COMMON[0].id), locks = [], onChoice = () => {} } = {}) {
-  const pair = createPair(lab);
+export async function createBench(
+  host,
+  lab,
+  { setup: first = setupOf(COMMON[0].id), locks = [], onChoice = () => {} } = {},
+) {
+  const { choices, labOn } = await surfacesOf(lab);
+  const pair = createPair();
   const look = h('p', { class: 'look' });
   const chosen = h('div', { class: 'controls' });
   const [above, below] = [h('div', { class: 'beside' }), h('div', { class: 'beside' })];
@@ -29,9 +34,15 @@ export function createBench(host, lab, { setup: first = setupOf(COMMON[0].id), l
     name: 'What changes',
     choices: COMMON.map(({ id, name }) => ({ value: id, label: name })),
     value: setup.what,
-    change: (id) => open(id, {}, choose),
+    change: (id) => open(id, { on: setup.on }, choose),
   });
-  what.select.disabled = locks.includes('what');
+  const surface = createSelectRow({
+    name: 'Surface',
+    choices,
+    value: setup.on,
+    change: (on) => open(setup.what, whatIfOf(setup.what).knobs ? { on } : { ...setup, on }, choose),
+  });
+  for (const { select } of [what, surface]) select.disabled = locks.includes('what');
 
   /** @param {Setup} next */
   function choose(next) {
@@ -41,32 +52,35 @@ export function createBench(host, lab, { setup: first = setupOf(COMMON[0].id), l
 
   /**
    * Shows a choice with the values that are given. Without any, several at once are shown as they are kept.
-   * @param {string} id @param {{ left?: unknown, right?: unknown }} given @param {(next: Setup) => unknown} [act]
+   * @param {string} id @param {{ on?: unknown, left?: unknown, right?: unknown }} given
+   * @param {(next: Setup) => unknown} [act]
    */
   async function open(id, given, act = show) {
-    const values = whatIfOf(id).knobs ? (await import('./fail.js')).keptSides(lab) : {};
+    const values = whatIfOf(id).knobs ? (await import('./fail.js')).keptSides(labOn(String(given.on ?? ''))) : {};
     await act(setupOf(id, { ...values, ...given }));
   }
 
   /** Makes the controls of a choice. @param {WhatIf} whatIf */
   async function stand({ id, values, knobs, look: words }) {
-    if (standing === id) return;
+    const { on } = setup;
+    const own = `${id} ${on}`;
+    if (standing === own) return;
     const module = knobs ? await import('./fail.js') : null;
-    if (setup.what !== id || standing === id) return;
-    standing = id;
+    if (`${setup.what} ${setup.on}` !== own || standing === own) return;
+    standing = own;
     // What is taken off the page ends, so it is made anew.
-    fail = module?.createFail(lab, { choose, isLocked: locks.includes('right') }) ?? null;
+    fail = module?.createFail(labOn(on), { choose, isLocked: locks.includes('right'), on }) ?? null;
     look.textContent = words;
     fill(above, fail?.kept, fail?.said);
     fill(below, fail?.verdict);
     if (fail) {
       follow = fail.follow;
-      fill(chosen, what.element, fail.controls);
+      fill(chosen, what.element, surface.element, fail.controls);
       return;
     }
     const sides = createSides(values, locks, (side, value) => choose({ ...setup, [side]: value }));
     follow = sides.follow;
-    fill(chosen, what.element, sides.controls);
+    fill(chosen, what.element, surface.element, sides.controls);
   }
 
   /** @param {Setup} next */
@@ -75,33 +89,23 @@ export function createBench(host, lab, { setup: first = setupOf(COMMON[0].id), l
     return shown;
   }
 
-  /** @param {Setup} next */
-  async function compare(next) {
+  /** @param {Setup} asked */
+  async function compare(asked) {
+    const next = { ...asked, on: choices.some(({ value }) => value === asked.on) ? asked.on : '' };
     setup = next;
     const whatIf = whatIfOf(setup.what);
     what.set(whatIf.id, whatIf.name);
+    surface.set(next.on);
     await stand(whatIf);
     if (setup !== next) return;
     follow(next);
     const isPicked = whatIf.knobs && !locks.includes('right');
     pair.pickWith(isPicked ? (place) => fail?.seed(place) : null);
-    await pair.show(sidesOf(whatIf, [setup.left, setup.right]), whatIf);
+    await pair.show({ lab: labOn(next.on), sides: sidesOf(whatIf, [next.left, next.right]), whatIf });
     if (setup === next) await fail?.tell(next);
   }
 
-  // A presentation goes through the values on the right.
-  host.addEventListener('walk', (event) => {
-    const { values } = whatIfOf(setup.what);
-    const others = values.filter(({ value }) => value !== setup.left);
-    const at = others.findIndex(({ value }) => value === setup.right);
-    const to = others[at + /** @type {CustomEvent<number>} */ (event).detail];
-    if (!to) return;
-    event.preventDefault();
-    void show({ ...setup, right: to.value });
-  });
-
-  const asks = h('p', { class: 'asks' }, 'Which of the two is better, and at what?');
-  fill(host, asks, chosen, above, look, pair.element, below);
+  fill(host, chosen, above, look, pair.element, below);
   return {
     show,
     open,
@@ -116,6 +120,27 @@ export function createBench(host, lab, { setup: first = setupOf(COMMON[0].id), l
       const sides = (runs ?? []).map((run, k) => ({ label: names[k].label, run, score: scores()?.[k] }));
       const all = [...(fail?.runs() ?? []), ...sides];
       return all.filter(({ run }, k) => all.findIndex((one) => one.run === run) === k);
+    },
+  };
+}
+
+/**
+ * The surfaces on which runs may be compared, and the lab of each: that of the lesson, and those of the gallery.
+ * @param {Lab} lab
+ */
+async function surfacesOf(lab) {
+  const gallery = (await lab.gallery().catch(() => [])).filter(({ formula }) => formula);
+  return {
+    choices: [
+      { value: '', label: 'That of this lesson' },
+      ...gallery.map(({ id, name }) => ({ value: id, label: name })),
+    ],
+    /** @param {string} on */
+    labOn(on) {
+      const entry = gallery.find(({ id }) => id === on);
+      if (!entry) return lab;
+      const { formula, parameters, bounds } = entry;
+      return lab.on({ formula, parameters, bounds });
     },
   };
 }

@@ -21,11 +21,11 @@ function mountCard(card, id) {
     card.toggleAttribute('data-open', isOpen.peek());
     if (isMade || !isOpen.peek()) return;
     isMade = true;
-    const pair = createPair(await lab);
+    const pair = createPair();
     const whatIf = whatIfOf(id);
     const { left, right } = setupOf(id, { right: card.dataset.right });
     fill(place, h('p', { class: 'look' }, whatIf.look), pair.element);
-    await pair.show(sidesOf(whatIf, [left, right]), whatIf);
+    await pair.show({ lab: await lab, sides: sidesOf(whatIf, [left, right]), whatIf });
   }
   const expanded = () => String(isOpen.value);
   card.append(

@@ -9,7 +9,7 @@ import { formatCount, MISSING, plural } from '../ui/format.js';
 import { download } from '../ui/share.js';
 import { loadSheet } from '../ui/sheet.js';
 import sheet from './collect.css?url';
-import { PREDICTIONS } from './predictions.js';
+import { choicesOf, QUESTIONS } from './questions.js';
 import { ROWS } from './score.js';
 import { readWork, tableOfAll } from './task.js';
 
@@ -47,7 +47,7 @@ export async function mountCollect(host) {
       hidden: true,
       press: () => {
         works.clear();
-        write([]);
+        write();
       },
     },
     'Clear',
@@ -66,21 +66,25 @@ export async function mountCollect(host) {
 
   /** @param {readonly File[]} files */
   async function take(files) {
-    const refused = [];
+    const [refused, equal] = [[], []].map((names) => /** @type {string[]} */ (names));
     for (const file of files) {
       const text = file.size > LARGEST ? '' : await file.text().catch(() => '');
       const work = readWork(text);
-      if (work) works.set(text, work);
-      else refused.push(file.name);
+      if (!work) refused.push(file.name);
+      else if (works.has(text)) equal.push(file.name);
+      else works.set(text, work);
     }
     input.value = '';
-    write(refused);
+    write(refused, equal);
   }
 
-  /** @param {readonly string[]} refused  names of files */
-  function write(refused) {
+  /** @param {readonly string[]} [refused]  names of files @param {readonly string[]} [equal]  to another one */
+  function write(refused = [], equal = []) {
     told.textContent = [
       `${plural(works.size, 'work')} collected.`,
+      equal.length > 0
+        ? `Counted once, since ${equal.length === 1 ? 'it equals' : 'they equal'} a file that was there: ${equal.join(', ')}.`
+        : '',
       refused.length > 0
         ? `Left out, since they are not the work of a learner or are damaged: ${refused.join(', ')}.`
         : '',
@@ -120,9 +124,6 @@ const scrolled = (name, table) =>
 /** The questions of works in the order of their first appearance. @param {readonly { question: string }[]} all */
 const questionsOf = (all) => [...new Set(all.map(({ question }) => question))];
 
-/** The choices of a question of the lesson. @param {string} stop */
-const choicesOf = (stop) => (Object.hasOwn(PREDICTIONS, stop) ? (PREDICTIONS[stop].choices ?? []) : []);
-
 /** A guess in the words of the page. @param {Guessed | undefined} guessed */
 function guessWords(guessed) {
   if (!guessed || guessed.guess === null) return MISSING;
@@ -130,7 +131,7 @@ function guessWords(guessed) {
 }
 
 /** The questions that have one right answer, and not one for each place or learner. @param {Guessed} guessed */
-const hasBars = ({ stop }) => Object.hasOwn(PREDICTIONS, stop) && PREDICTIONS[stop].kind !== 'pick';
+const hasBars = ({ stop }) => choicesOf(stop).length > 0 || (Object.hasOwn(QUESTIONS, stop) && stop !== 'predict-hole');
 
 /**
  * How often each answer of a question was guessed, as bars, with the right one marked.

@@ -6,13 +6,12 @@
 import { distance, triple } from '../engine/vector.js';
 import { momentAt } from '../figures/moment.js';
 import { openParticle } from '../figures/particle.js';
-import { inRadii, lineOf } from '../figures/words.js';
-import { formatCount, plural } from '../ui/format.js';
+import { inRadii } from '../figures/words.js';
 
 /**
  * @import { LessonEvent } from '../engine/types.js'
  * @import { Opened } from '../figures/types.js'
- * @import { Answer, Decision, Lab, LabRun, Patch, Verdict } from './types.js'
+ * @import { Decision, Lab, LabRun, Patch, Verdict } from './types.js'
  */
 
 /** @type {readonly Patch[]} */
@@ -44,23 +43,30 @@ export const PATCHES = [
 export const runOn = (lab, { surface, radius, seed }) =>
   lab.beside(surface).run({ relax_steps: 0, radius, seeds: [seed] }, { keep: true });
 
-/** How many children of the seed's first child are new. @param {Lab} lab @returns {Promise<Answer>} */
+/** What became of the children of the seed's first child. @param {Lab} lab */
 export async function childrenOf(lab) {
   const run = await runOn(lab, PATCHES[0]);
   try {
     const { events } = await openParticle(run.client, run, 1);
     const fates = momentAt(events, events.length - 1).children.map(({ fate }) => fate);
     const count = (/** @type {string} */ name) => fates.filter((fate) => fate === name).length;
-    const [right, met] = [count('added'), count('matched')];
-    const words = [
-      `${plural(right, 'child is', 'children are')} new.`,
-      `Slot 0 holds the parent, and ${plural(met, 'child falls', 'children fall')} on particles that the seed has placed beside this one.`,
-      'The figure has done the seed. Now it is your turn with its first child.',
-    ];
-    return { right, words: words.join(' ') };
+    return { added: count('added'), matched: count('matched') };
   } finally {
     run.client.close();
   }
+}
+
+/** A particle's name: a letter, so that it is no slot's. @param {number} particle @returns {string} */
+export const letterOf = (particle) =>
+  (particle < 26 ? '' : letterOf(Math.floor(particle / 26) - 1)) + String.fromCharCode(65 + (particle % 26));
+
+/**
+ * A particle of a patch with its events, named by letters.
+ * @param {LabRun} run @param {number} particle @returns {Promise<Opened>}
+ */
+export async function openNamed(run, particle) {
+  const opened = await openParticle(run.client, run, particle);
+  return { ...opened, subject: { ...opened.subject, nameOf: letterOf } };
 }
 
 /** Particles of a plane that the learner treats: the seed and its first child. */
@@ -102,9 +108,6 @@ export function decisionsOf(events) {
   });
 }
 
-/** The line of the algorithm that asks what is at a slot. @param {Decision} decision */
-export const lineAt = ({ compared }) => (compared ? lineOf(compared) : -1);
-
 /**
  * Returns why a verdict is not that of the run; empty if it is.
  * @param {Opened} opened @param {Decision} decision @param {Verdict} said
@@ -112,21 +115,21 @@ export const lineAt = ({ compared }) => (compared ? lineOf(compared) : -1);
 export function objection({ subject, positions }, { compared, verdict }, said) {
   const isSame = said.fate === verdict.fate && (said.fate !== 'matched' || said.particle === verdict.particle);
   if (isSame) return '';
-  const name = (/** @type {number | null} */ particle) => `Particle ${formatCount(particle ?? 0)}`;
   if (!compared) return '';
+  const name = (/** @type {number | null} */ particle) => `Particle ${letterOf(particle ?? 0)}`;
   // Rounded first, since a distance of rounding errors would be written as a power of ten.
   const far = (/** @type {number} */ particle) => {
     const radii = distance(triple(positions, particle), compared.position) / subject.radius;
     return inRadii(Math.round(100 * radii) / 100, 1, 2);
   };
-  const limit = inRadii(compared.limit, subject.radius, 2);
+  const limit = `the tolerance of ${inRadii(compared.limit, subject.radius, 2)}`;
   const { particle } = verdict;
   if (verdict.fate === 'matched' && particle !== null) {
     const nearest = `${name(particle)} lies ${far(particle)} from this child`;
     return said.fate === 'added' || said.particle === null
-      ? `${nearest}, within ${limit}. The two correspond, so nothing is added.`
-      : `${nearest}, particle ${formatCount(said.particle)} ${far(said.particle)} from it. The nearest one counts.`;
+      ? `${nearest}, within ${limit}. It is the child, so nothing is added.`
+      : `${nearest}, particle ${letterOf(said.particle)} ${far(said.particle)} from it. The nearest one counts.`;
   }
   if (said.particle === null) return `No particle lies within ${limit} of this child.`;
-  return `${name(said.particle)} lies ${far(said.particle)} from this child, and only within ${limit} do two correspond. Nothing that was there before does, so the child is new.`;
+  return `${name(said.particle)} lies ${far(said.particle)} from this child, beyond ${limit}. Nothing that was there before is nearer, so the child is new.`;
 }

@@ -1,11 +1,11 @@
 /** What is dragged beside the ranges: a number in a sentence, and a drawing. */
 import { clamp } from '../engine/vector.js';
 import { h, queryAll } from '../ui/dom.js';
-import { formatCount, formatFixed } from '../ui/format.js';
+import { formatCount } from '../ui/format.js';
 import { afterKey, toPlace, toValue } from '../ui/scale.js';
 import { rangePlaces } from './parts.js';
 import { pin } from './pinned.js';
-import { TOLERANCES } from './whatifs.js';
+import { TOLERANCES, toleranceWords } from './whatifs.js';
 
 /** @import { Point } from '../figures/types.js' */
 /** @import { NumberOptions } from './types.js' */
@@ -73,15 +73,15 @@ export function createNumber({ name, scale, value, say, change, stage }) {
 }
 
 /**
- * The match tolerance as a number in a sentence.
+ * The tolerance as a number in a sentence.
  * @param {Pick<NumberOptions, 'value' | 'change' | 'stage'>} about
  */
 export const createTolerance = ({ change, ...about }) =>
   createNumber({
     ...about,
-    name: 'Match tolerance',
+    name: 'Tolerance',
     scale: TOLERANCES,
-    say: (to) => formatFixed(to, 2),
+    say: toleranceWords,
     change: (to) => change(Number(to.toPrecision(3))),
   });
 

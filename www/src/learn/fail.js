@@ -7,8 +7,8 @@ import { packed } from '../ui/surface-link.js';
 import { createTolerance } from './drag.js';
 import { reasonOf } from './figure.js';
 import { createSelectRow } from './parts.js';
-import { verdictOf } from './score.js';
-import { blame, isWorse, reasonWhy, tryOut, written } from './verdict.js';
+import { verdictOf, written } from './score.js';
+import { blame, isWorse, tryOut } from './verdict.js';
 import { FAIL, KNOBS, knobWords, partsOf, partWords, SEED, seedAt, turned, USUAL } from './whatifs.js';
 
 /**
@@ -65,9 +65,9 @@ function triesOf(lab) {
 /**
  * The controls of the choices, and what is kept and said of them.
  * @param {Lab} lab
- * @param {{ choose: (setup: Setup) => void, isLocked: boolean }} how
+ * @param {{ choose: (setup: Setup) => void, isLocked: boolean, on: string }} how  `on`: the name of the surface
  */
-export function createFail(lab, { choose, isLocked }) {
+export function createFail(lab, { choose, isLocked, on }) {
   const tries = triesOf(lab);
   const own = signal(USUAL);
   /** The try on the right, and beside it the best so far; beside the best, the worst. @param {string} right */
@@ -75,7 +75,7 @@ export function createFail(lab, { choose, isLocked }) {
     if (right === own.peek() || isLocked) return;
     const [best, worst] = tries.ends.peek();
     const left = best?.value === right ? worst?.value : best?.value;
-    choose({ what: FAIL, left: left ?? USUAL, right });
+    choose({ what: FAIL, on, left: left ?? USUAL, right });
   };
   const turn = (/** @type {number} */ k, /** @type {string} */ part) => setTo(turned(own.peek(), k, part));
   const knobs = KNOBS.map(({ name, values, scale }, k) => {
@@ -113,7 +113,7 @@ export function createFail(lab, { choose, isLocked }) {
       tries.ends.peek().map(({ value, run, score }, k) => ({ label: `${ENDS[k]}: ${knobWords(value)}`, run, score })),
     controls: [
       ...knobs.flatMap((knob) => knob?.element ?? []),
-      h('p', { class: 'knob' }, 'A particle within ', number, ' · 2r of a child’s place counts as the child.'),
+      h('p', { class: 'knob' }, 'A particle within ', number, ' of a child’s place counts as the child.'),
     ],
     kept: keptRow,
     said,
@@ -185,7 +185,7 @@ function verdictWords(mine, usual) {
 /** @param {Score} own @param {Awaited<ReturnType<typeof blame>>[number]} one */
 function blameItem(own, { k, part, usual, score, harm }) {
   const key = /** @type {keyof typeof SAID} */ (harm ?? 'six');
-  const why = harm ? reasonWhy(k, part) : 'It does no harm beyond chance here.';
+  const why = harm ? KNOBS[k].why(part) : 'It does no harm beyond chance here.';
   return h(
     'li',
     null,

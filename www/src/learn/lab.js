@@ -69,6 +69,11 @@ export class Lab {
     this.#last = Promise.resolve();
   }
 
+  /** The surfaces of the gallery. */
+  gallery() {
+    return this.#meter.surfaces();
+  }
+
   /** Another one, on another surface. @param {FormulaSurface} surface */
   beside(surface) {
     return new Lab(surface, this.#open, this.#meter);

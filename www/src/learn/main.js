@@ -7,13 +7,14 @@ import { kept } from '../ui/remembered.js';
 import { packed, surfaceWords } from '../ui/surface-link.js';
 import { readAddress, writeAddress } from './address.js';
 import { Stops } from './answers.js';
+import { mountQuestion } from './ask.js';
 import { FIGURES } from './chapters/index.js';
 import { mountFigure } from './figure.js';
 import { openSubject } from './lesson-lab.js';
-import { mountPrediction } from './predict.js';
-import { PREDICTIONS } from './predictions.js';
+import { QUESTIONS } from './questions.js';
 import { keepSetup, mountStops } from './stops.js';
-import { COMMON, FAIL, setupOf, stopsOfBench } from './whatifs.js';
+import { mountTerms } from './terms.js';
+import { stopsOfBench } from './whatifs.js';
 
 const { subject, notice, parts, lab } = openSubject();
 const own = kept(`lesson.${packed(subject.surface)}`);
@@ -31,30 +32,29 @@ if (stops.isBegun()) {
   place.hidden = false;
 }
 
-const context = { lab, stops };
+/** Those of one class judge the same pairs. */
+const context = { lab, stops, series: parts.task ?? stops.series() };
 const figures = queryAll(document, '[data-figure]').map((host) =>
   mountFigure(host, () => FIGURES[host.dataset.figure ?? ''](context)),
 );
 // The numbers of the text are handles of live figures.
 for (const { stage, ready } of figures) void ready.then(async () => (await import('./drag.js')).mountNumbers(stage));
-for (const host of queryAll(document, '.predict')) mountPrediction(host, PREDICTIONS[host.id], context);
+for (const host of queryAll(document, '.predict')) mountQuestion(host, host.id, QUESTIONS[host.id], context);
+mountTerms();
 const bench = lab.then(async (ready) => {
   const { createBench } = await import('./bench.js');
-  void import('./race.js').then(({ mountRace }) => mountRace(byId('race-box'), ready));
   return createBench(byId('bench'), ready, { onChoice: keepSetup });
 });
 const say = (/** @type {string} */ words) => {
   notice.textContent = words;
 };
-const { present } = mountStops({
+mountStops({
   stops: [...document.querySelectorAll('[data-stop]')].map(({ id }) => id),
   others: stopsOfBench,
-  questions: stops,
   onBench: async (id, given) => {
     const { open, show, setup } = await bench;
-    // What has a slide of its own is not on that of the comparisons.
     if (id) await open(id, given);
-    else await show(setup().what === FAIL ? setupOf(COMMON[0].id) : setup());
+    else await show(setup());
   },
   teach,
   say: (words, place) => {
@@ -78,42 +78,14 @@ async function makeAssignment() {
   maker.open();
 }
 
-/** The hand-out, once it is asked for. @type {{ print: () => Promise<void> } | null} */
-let handout = null;
-/** Whether the page has printed without a hand-out that was asked for. */
-let isLost = false;
+/** Prints the questions, without a guess and without an answer. */
 async function print() {
-  say('The answers are being asked for.');
   try {
-    const { createHandout } = await teach();
-    handout ??= createHandout(byId('answers'), {
-      figures,
-      lab,
-      async compare() {
-        const { show, setup } = await bench;
-        await show(setup());
-      },
-    });
-    await handout.print();
-    say('');
+    (await teach()).printQuestions(byId('questions'));
   } catch {
-    isLost = true;
-    // The article is complete without the answers. What is said would be on the paper, too.
-    say('');
-    window.print();
     say(LOST);
   }
 }
-addEventListener('keydown', (event) => {
-  const isPrint = (event.ctrlKey || event.metaKey) && !event.altKey && !event.shiftKey && event.key === 'p';
-  if (!isPrint) return;
-  event.preventDefault();
-  void print();
-});
-addEventListener('afterprint', () => {
-  if (!handout && !isLost)
-    say('This was printed without the answers. “Print”, under “For teachers”, asks the runs for them.');
-});
 
 const tool = (/** @type {string} */ label, /** @type {() => unknown} */ press) =>
   button({ class: 'plain', press: () => void press() }, label);
@@ -128,8 +100,7 @@ const teachers = h(
   h(
     'div',
     { class: 'teachers-list' },
-    tool('Present', present),
-    tool('Print', print),
+    tool('Print the questions', print),
     tool('Assignment', makeAssignment),
     h('a', { class: 'button plain', href: '#collect' }, 'Collect answers'),
   ),
@@ -151,7 +122,8 @@ if (parts.task) {
   try {
     const [{ unpackTask, mountAssignment }, ready] = await Promise.all([teach(), lab]);
     const task = unpackTask(parts.task);
-    if (task) mountAssignment(byId('assignment'), task, { lab: ready, surface: surfaceWords(ready.surface), stops });
+    if (task)
+      await mountAssignment(byId('assignment'), task, { lab: ready, surface: surfaceWords(ready.surface), stops });
     else say('The link holds no assignment that can be read. The lesson is complete without it.');
   } catch {
     say(LOST);

@@ -8,7 +8,7 @@ import { placesOf, scoreOf } from './score.js';
 
 /**
  * @import { LessonParticles } from '../engine/types.js'
- * @import { Cost, Lab, LabRun, Snapshot } from './types.js'
+ * @import { Cost, Lab, LabRun } from './types.js'
  */
 
 /**
@@ -87,7 +87,7 @@ export function sharpestBend({ normals, parents }) {
  * Opens a particle at one of its slots.
  * @param {LabRun} run @param {number} particle @param {number} slot
  */
-export async function openSlot(run, particle, slot) {
+async function openSlot(run, particle, slot) {
   const opened = await openParticle(run.client, run, particle);
   const whole = momentAt(opened.events, opened.events.length - 1);
   return { run, opened, whole, slot, profile: opened.profiles[slot] };
@@ -117,11 +117,10 @@ export function asFineEverywhere(radii) {
 }
 
 /**
- * The last snapshot that had cost no more than this; the first where each had.
- * @template L
- * @param {readonly Snapshot<L>[]} shots  in their order @param {(lane: L) => number} costOf @param {number} cost
+ * Whether a place that is pressed, by the particle that will lie there, is bare: the front has not come so far.
+ * @param {number} count  the first so many particles are there @param {number} particle
  */
-export const shotAt = (shots, costOf, cost) => shots.findLast(({ lane }) => costOf(lane) <= cost) ?? shots[0];
+export const isBare = (count, particle) => particle >= count;
 
 /** The widest hole that the fronts leave, and the particle beside it; null where none is measured. @param {Lab} lab */
 export async function widestHole(lab) {

@@ -61,8 +61,7 @@ function legendOf(colouring, [least, most]) {
   }
 }
 
-/** @param {Lab} lab */
-export function createPair(lab) {
+export function createPair() {
   const orbit = new Orbit();
   const names = ['left', 'right'].map((side) => `The picture on the ${side}; both turn together`);
   const { pictures, captions, figures, point } = sideBySide(orbit, names);
@@ -94,7 +93,8 @@ export function createPair(lab) {
       pictures[k].show(score && end ? { ...scene, particles: end, colours: byNeighbours(score.valence) } : scene);
     }
   });
-  let isFirst = true;
+  /** That of the runs that are shown. @type {Lab | null} */
+  let seen = null;
   const shown = {
     element,
     runs: /** @type {readonly [LabRun, LabRun] | null} */ (null),
@@ -105,10 +105,10 @@ export function createPair(lab) {
       for (const [k, picture] of pictures.entries())
         picture.pickWith(onPick && ((particle) => onPick(particlePlace(k, particle))));
     },
-    show: (/** @type {Pair['sides']} */ sides, /** @type {Pair['whatIf']} */ whatIf) => compare({ sides, whatIf }),
+    show: (/** @type {Pair} */ about) => compare(about),
   };
-  /** @typedef {{ sides: readonly [Side, Side], whatIf: Pick<WhatIf, 'colouring' | 'decides'> }} Pair */
-  const compare = latest(async (/** @type {Pair} */ { sides, whatIf: { colouring, decides } }, isOld) => {
+  /** @typedef {{ lab: Lab, sides: readonly [Side, Side], whatIf: Pick<WhatIf, 'colouring' | 'decides'> }} Pair */
+  const compare = latest(async (/** @type {Pair} */ { lab, sides, whatIf: { colouring, decides } }, isOld) => {
     status.textContent = 'Running both';
     element.ariaBusy = 'true';
     try {
@@ -118,8 +118,8 @@ export function createPair(lab) {
       shown.runs = [left, right];
       scores.value = null;
       orbit.fitTo(left.end, right.end);
-      if (isFirst) orbit.faceFront(left.placed);
-      isFirst = false;
+      if (lab !== seen) orbit.faceFront(left.placed);
+      seen = lab;
       const all = [...left.end.radii, ...right.end.radii];
       /** @type {[number, number]} */
       const radii = [Math.min(...all), Math.max(...all)];

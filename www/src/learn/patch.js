@@ -43,18 +43,18 @@ export function cellOf(place, others, reach) {
 }
 
 /**
- * The patch around the largest hole of a run as it was placed: its particles with their cells and
+ * The patch around the largest hole of a run: its particles with their cells and
  * neighbours, the hole, and the closest pair of the patch. Null where no hole is measured. Lengths
  * are in r.
- * @param {LabRun} run @param {Score} score  of the particles as placed
+ * @param {LabRun} run @param {Score} score  at its end
  */
-export function patchOf({ placed, radius }, { places: { hole }, valence }) {
+export function patchOf({ end, radius }, { places: { hole }, valence }) {
   if (!hole) return null;
-  const { positions } = placed;
+  const { positions } = end;
   const [centre] = hole.places;
   const right = unit(cross(Math.abs(hole.normal[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0], hole.normal));
   const plane = { centre, right, up: cross(hole.normal, right), radius };
-  const near = [...placed.radii.keys()]
+  const near = [...end.radii.keys()]
     .filter((i) => distance(triple(positions, i), centre) < radius * (Math.hypot(HALF.width, HALF.height) + BEYOND))
     .map((i) => ({ particle: i, at: unrolled(plane, triple(positions, i)), valence: valence[i] }));
   const all = near.map(({ at }) => at);

@@ -3,7 +3,7 @@
  * A page of figures would run out of contexts of the graphics card.
  */
 import { signal } from '@preact/signals-core';
-import { clamp } from '../engine/vector.js';
+import { clamp, distance } from '../engine/vector.js';
 import { axes, Camera, projected, viewOf } from '../engine/view/camera.js';
 import { anglesOf } from '../engine/view/facing.js';
 import { rgbFromPacked } from '../engine/view/oklab.js';
@@ -210,7 +210,7 @@ export class Picture {
     this.scene.value = scene;
   }
 
-  /** The size that is drawn. The hand-out has pictures of one shape. */
+  /** The size that is drawn. On paper pictures have one shape. */
   #room() {
     const { width, height } = this.#size.peek();
     return { width, height: printing.peek() && height > 0 ? PAPER * width : height };
@@ -308,14 +308,15 @@ export class Picture {
     const { positions, normals, radii } = scene.places ?? scene.particles;
     const view = this.#view();
     let best = null;
-    let nearest = Infinity;
+    let least = Infinity;
     for (let i = 0; i < radii.length; i += 1) {
       const place = positions.subarray(3 * i, 3 * i + 3);
       const at = projected(view, place);
       if (!at || !isFacing(view.eye, place, normals.subarray(3 * i, 3 * i + 3))) continue;
       const far = Math.hypot(at.x - xPx, at.y - yPx) * at.perPx;
-      // Several particles may lie under the point; the one in front is chosen.
-      if (far < 2 * radii[i] && at.perPx < nearest) [best, nearest] = [i, at.perPx];
+      // Several particles may lie under the point: the one in front is chosen, and of its sheet the nearest.
+      const cost = distance(view.eye, place) + 2 * far;
+      if (far < 2 * radii[i] && cost < least) [best, least] = [i, cost];
     }
     return best;
   }

@@ -2,8 +2,9 @@
  * The figures that decide between two runs, or two moments of one: those of the sampler's own
  * report.
  */
-import { distance, triple } from '../engine/vector.js';
-import { formatCount, formatFixed, formatSignificant } from '../ui/format.js';
+import { clamp, distance, dot, triple } from '../engine/vector.js';
+import { formatCount, formatFixed, formatSignificant, MISSING } from '../ui/format.js';
+import { between, createGrid } from '../ui/neighbours.js';
 
 /**
  * @import { LessonParticles, Measures } from '../engine/types.js'
@@ -65,7 +66,7 @@ export const ROWS = [
   {
     key: 'uncovered',
     name: 'Surface outside all discs',
-    isSavedOnly: true,
+    isRare: true,
     ideal: null,
     worse: null,
     digits: 3,
@@ -79,6 +80,16 @@ export const ROWS = [
     chance: ({ evaluations }) => 0.03 * Number(evaluations),
     digits: 1,
     write: (value) => formatSignificant(value, 3),
+  },
+  {
+    key: 'gap',
+    name: 'Widest gap to a mesh, in ‰ of the surface’s size',
+    isRare: true,
+    ideal: null,
+    worse: 'above',
+    chance: ({ gap }) => 0.25 * Number(gap),
+    digits: 4,
+    write: (value) => formatFixed(1000 * value, 1),
   },
 ];
 
@@ -99,11 +110,39 @@ export async function scoreOf(lab, particles, { evaluations, isAdaptive }) {
     hole: (isAdaptive ? quality?.cover_local : quality?.cover) ?? null,
     uncovered: quality?.uncovered ?? null,
     pair: (isAdaptive ? quality?.overlap_min : quality?.rho) ?? null,
+    gap: gapOf(particles),
     count: radii.length,
     evaluations: evaluations / Math.max(1, radii.length),
     places: placesOf(particles, places),
     valence,
   };
+}
+
+/** Two particles are beside each other where they are no farther apart than this, over the sum of their radii. */
+const BESIDE = 1.4;
+
+/**
+ * The widest gap between the surface and the edges of a mesh of its particles, over the longest side of their box. Over
+ * an edge the surface is an arc, which turns by as much as the normals at its ends; null without an edge.
+ * @param {LessonParticles} particles
+ */
+export function gapOf({ positions, normals, radii }) {
+  const grid = createGrid(positions, radii.keys(), 2 * BESIDE * Math.max(...radii));
+  let widest = -1;
+  for (const i of radii.keys())
+    for (const ring of [0, 1])
+      for (const j of grid.around(i, ring)) {
+        const far = between(positions, i, j);
+        if (j <= i || far > BESIDE * (radii[i] + radii[j])) continue;
+        const turn = Math.acos(clamp(dot(triple(normals, i), triple(normals, j)), -1, 1));
+        // Where the normals differ by more than a right angle, the two lie on sheets of their own.
+        if (turn < Math.PI / 2) widest = Math.max(widest, (far / 2) * Math.tan(turn / 4));
+      }
+  const side = (/** @type {number} */ axis) => {
+    const values = positions.filter((_, k) => k % 3 === axis);
+    return values.reduce((most, v) => Math.max(most, v), -Infinity) - values.reduce((l, v) => Math.min(l, v), Infinity);
+  };
+  return widest < 0 ? null : widest / Math.max(side(0), side(1), side(2));
 }
 
 /** The score of a run at its end. @param {LabRun} run */
@@ -136,6 +175,15 @@ function nearestTo(positions, place) {
     if (away < least) [best, least] = [i, away];
   }
   return best;
+}
+
+/** A figure of a score as it is written. @param {keyof ScoreFigures} key @param {Score} score */
+export const written = (key, score) => (score[key] === null ? MISSING : rowOf(key).write(Number(score[key])));
+
+/** By how much a figure differs among scores. @param {keyof ScoreFigures} key @param {readonly Score[]} scores */
+export function widthOf(key, scores) {
+  const values = scores.map((score) => Number(score[key]));
+  return Math.max(...values) - Math.min(...values);
 }
 
 /** The figures of a score by their names, as numbers. @param {Score} score */

@@ -11,8 +11,8 @@ import { bestOf, chanceOf, DECIDING, ROWS, rowOf, verdictOf } from './score.js';
 
 /**
  * @typedef {object} ScoreWords
- * @property {string} [caption]
  * @property {readonly (keyof ScoreFigures)[]} [keys]  the figures that decide, in their order
+ * @property {readonly (keyof ScoreFigures)[]} [also]  rows that tables do not have else
  * @property {boolean} [isMarked]  whether it says which is better
  */
 
@@ -47,13 +47,13 @@ export function createScorecard(show) {
       element.ariaBusy = 'true';
     },
     /** @param {readonly string[]} names @param {readonly Score[]} scores @param {ScoreWords} [how] */
-    tell(names, scores, { caption, keys = DECIDING, isMarked = true } = {}) {
+    tell(names, scores, { keys = DECIDING, also = [], isMarked = true } = {}) {
       pressed.value = '';
       element.ariaBusy = 'false';
       const verdict = isMarked ? verdictOf(scores, keys) : null;
-      const rows = ROWS.filter(({ isSavedOnly }) => !isSavedOnly).map((row) => {
-        // What a sampling costs is marked only where that is what decides.
-        const isJudged = row.ideal !== null || keys.includes(row.key);
+      const rows = ROWS.filter(({ key, isRare }) => !isRare || also.includes(key)).map((row) => {
+        // What a sampling costs is marked only where that is what decides, or may be.
+        const isJudged = row.ideal !== null || [...keys, ...also].includes(row.key);
         const chance = isJudged ? chanceOf(row, scores) : null;
         const best = isMarked && isJudged ? bestOf(scores, row) : -1;
         const kind = row.key === verdict?.key ? 'decides' : null;
@@ -74,13 +74,7 @@ export function createScorecard(show) {
       const heads = ['Ideal', ...names, 'Chance'].map((name) => h('th', { scope: 'col' }, name));
       fill(
         element,
-        h(
-          'table',
-          { class: 'compare' },
-          caption ? h('caption', null, caption) : null,
-          h('thead', null, h('tr', null, h('td'), heads)),
-          h('tbody', null, rows),
-        ),
+        h('table', { class: 'compare' }, h('thead', null, h('tr', null, h('td'), heads)), h('tbody', null, rows)),
         isMarked ? h('p', { class: 'outcome' }, outcomeOf(names, verdict)) : null,
         h(
           'p',

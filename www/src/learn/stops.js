@@ -4,8 +4,6 @@ import { BENCH, nearestStop, readAddress, titleOf, writeAddress } from './addres
 
 /** @import { Setup, StopsOptions } from './types.js' */
 
-/** Value of the address's `mode` while presenting. */
-const PRESENT = 'present';
 /** The part of the page where work is collected. */
 const COLLECT = 'collect';
 /** Height of what stays at the top of the window, in pixels. */
@@ -21,7 +19,7 @@ async function collect({ teach, say }) {
 }
 
 /** @param {StopsOptions} about */
-export function mountStops({ stops, others, questions, onBench, teach, say }) {
+export function mountStops({ stops, others, onBench, teach, say }) {
   const all = [...stops, ...others, COLLECT];
   let isBenchShown = false;
   const showBench = (/** @type {string} */ id, /** @type {Record<string, string>} */ parts = {}) => {
@@ -29,29 +27,10 @@ export function mountStops({ stops, others, questions, onBench, teach, say }) {
     void onBench(id, parts);
   };
 
-  /** @type {ReturnType<typeof import('./presenter.js').createPresenter> | null} */
-  let loaded = null;
-  /** The presenter, which is loaded when it is asked for. */
-  const presenter = () => {
-    loaded ??= teach().then(({ createPresenter }) =>
-      createPresenter({
-        stops,
-        questions,
-        to(stop, isPresenting) {
-          const { parts } = readAddress(location.hash);
-          location.hash = writeAddress({ stop, parts: { ...parts, mode: isPresenting ? PRESENT : '' } });
-        },
-      }),
-    );
-    return loaded;
-  };
-
   /** Goes where the address says. */
   function go() {
     const { stop, parts } = readAddress(location.hash);
-    const isPresenting = parts.mode === PRESENT;
-    const found = nearestStop(stop || (isPresenting ? stops[0] : ''), all);
-    if (!isPresenting) loaded?.then(({ end }) => end()).catch(() => {});
+    const found = nearestStop(stop, all);
     if (!found) return;
     if (!found.isExact) {
       const nearest = document.getElementById(found.stop) ?? document.getElementById(BENCH);
@@ -60,15 +39,8 @@ export function mountStops({ stops, others, questions, onBench, teach, say }) {
     }
     const isBench = others.includes(found.stop);
     if (isBench) showBench(found.stop.slice(BENCH.length + 1), parts);
-    else if (isPresenting && found.stop === BENCH) showBench('');
     if (found.stop === COLLECT) void collect({ teach, say });
-    const target = isBench ? BENCH : found.stop;
-    if (isPresenting)
-      presenter().then(
-        ({ show }) => show(stops.includes(found.stop) ? found.stop : target),
-        () => say('The presentation did not load. The lesson is complete without it.'),
-      );
-    else settleOn(document.getElementById(target));
+    settleOn(document.getElementById(isBench ? BENCH : found.stop));
   }
 
   let leave = new AbortController();
@@ -122,19 +94,11 @@ export function mountStops({ stops, others, questions, onBench, teach, say }) {
     { rootMargin: '300px 0px' },
   );
   if (bench) observer.observe(bench);
-  return {
-    /** Presents from the stop on that is nearest to the top of the window. */
-    present() {
-      const { parts } = readAddress(location.hash);
-      const seen = stops.find((id) => (document.getElementById(id)?.getBoundingClientRect().bottom ?? 0) > HEAD_PX);
-      location.hash = writeAddress({ stop: seen ?? stops[0], parts: { ...parts, mode: PRESENT } });
-    },
-  };
 }
 
 /** Puts a comparison with its values into the address. @param {Setup} setup */
-export function keepSetup({ what, left, right }) {
+export function keepSetup({ what, on, left, right }) {
   const { parts } = readAddress(location.hash);
-  const address = writeAddress({ stop: `${BENCH}-${what}`, parts: { ...parts, left, right } });
+  const address = writeAddress({ stop: `${BENCH}-${what}`, parts: { ...parts, on, left, right } });
   history.replaceState(history.state, '', address);
 }

@@ -1,11 +1,8 @@
 /** Assignments as plain data: in a link, and as what a learner hands in. */
-import { NO_PARENT } from '../engine/core-numbers.js';
-import { triple } from '../engine/vector.js';
 import { packed, unpacked } from '../ui/surface-link.js';
 import { setupOf, WHAT_IFS } from './whatifs.js';
 
 /**
- * @import { LessonParticles } from '../engine/types.js'
  * @import { Control, Task, Work } from './types.js'
  */
 
@@ -21,14 +18,6 @@ export const CONTROLS = [
   { value: 'what', label: 'What changes', words: 'what is compared here', usual: true },
   { value: 'left', label: 'Left', words: 'the picture on the left', usual: true },
   { value: 'right', label: 'Right', words: 'the picture on the right', usual: true },
-  { value: 'figures', label: 'Sliders and buttons of the figures', words: 'the sliders and buttons of the figures' },
-  {
-    value: 'questions',
-    label: 'Answers of the questions',
-    words: 'the answers of the questions (your guesses are saved)',
-  },
-  { value: 'bench', label: 'Other comparisons', words: 'the other comparisons' },
-  { value: 'race', label: 'The race', words: 'the race' },
 ];
 
 /** Returns the locked controls in words for the learner; empty if none is locked. @param {readonly Control[]} locks */
@@ -106,36 +95,9 @@ const rowsOf = ({ assignment, surface, name: learner, group, answers, prediction
   ...runs.flatMap((run, k) => flat(run).map((row) => [`run ${k + 1}`, ...row])),
 ];
 
-/**
- * The work as a table with one value in a row: of an answer, a setting, a figure, a level or a step.
- * @param {Work} work
- */
-export const tableOf = (work) => written([COLUMNS, ...rowsOf(work)]);
-
 /** The works of many as one table, whose first column is the number of the work. @param {readonly Work[]} works */
 export const tableOfAll = (works) =>
   written([['work', ...COLUMNS], ...works.flatMap((work, k) => rowsOf(work).map((row) => [k + 1, ...row]))]);
-
-const VECTORS = ['x', 'y', 'z', 'normal_x', 'normal_y', 'normal_z'];
-
-/**
- * The particles of runs at their ends, one in a row. A seed has no parent.
- * @param {readonly { label: string, end: LessonParticles }[]} runs
- */
-export function particleTable(runs) {
-  const rows = runs.flatMap(({ label, end: { positions, normals, radii, levels, parents } }) =>
-    Array.from(radii, (radius, i) => [
-      label,
-      i,
-      levels[i],
-      parents[i] === NO_PARENT ? '' : parents[i],
-      radius,
-      ...triple(positions, i),
-      ...triple(normals, i),
-    ]),
-  );
-  return written([['run', 'particle', 'level', 'parent', 'radius', ...VECTORS], ...rows]);
-}
 
 /**
  * Reads the work of a learner from a file, in which anything may stand; null if it is none.

@@ -10,24 +10,25 @@ import type { Lab } from './lab.js';
 export type { Lab, Stops };
 
 /**
- * The controls that an assignment may lock: those of its bench, then those of the rest of the page.
+ * The controls of its bench that an assignment may lock.
  */
-export type Control = 'what' | 'left' | 'right' | 'figures' | 'questions' | 'bench' | 'race';
-/** The comparison on the bench. */
-export type Setup = { what: string; left: string; right: string };
+export type Control = 'what' | 'left' | 'right';
+/** The comparison on the bench. `on`: the name of a surface of the gallery; that of the lesson if it is empty. */
+export type Setup = { what: string; on: string; left: string; right: string };
 /** One of several choices that are made at once. Its values, or the range of its numbers. */
 export interface Knob {
   name: string;
   values: readonly { value: string; label: string }[];
   scale?: Scale;
   set: (value: string) => Partial<LessonSettings>;
+  /** what a value that is not that of the lesson does to the sampling */
+  why: (value: string) => string;
 }
 /** What knobs give. */
 export type Try = { value: string; run: LabRun; score: Score };
 /**
  * One choice. `make` is given a value and makes the run; the first two values are shown first. One
- * with knobs has a value for each position of them, and names those that a presentation goes
- * through.
+ * with knobs has a value for each position of them.
  */
 export interface WhatIf {
   id: string;
@@ -43,25 +44,42 @@ export interface WhatIf {
   values: readonly { value: string; label: string }[];
   make: (lab: Lab, value: string) => Promise<LabRun>;
 }
-/** `right` is compared with the guess, `eye` with the one by eye; `words` say it in a sentence. */
-export type Answer = { right: string | number; eye?: string; words: string };
+export type Choices = readonly { value: string; label: string }[];
 /**
- * `choice`: one of several; `number`: a count; `pick`: a particle pressed in the figure before it.
+ * What a question asks for. `choice`: one of several; `number`: a count; `pick`: a particle pressed in the figure
+ * before it. `F`: what is measured for the answer.
  */
-export interface Prediction {
+export interface Part<F> {
+  /** empty where a question has one part */
+  name: string;
   kind: 'choice' | 'number' | 'pick';
-  choices?: readonly { value: string; label: string }[];
-  /** what is guessed by eye first, before the figures are shown */
-  eye?: readonly { value: string; label: string }[];
+  /** above the part, where there are several */
+  legend?: string;
+  choices?: Choices;
   /** of the number */
   label?: string;
   /** largest number */
   most?: number;
-  answer: (lab: Lab, guess: string | number | null) => Promise<Answer>;
-  judge?: (guess: string | number, right: string | number) => string;
-  /** what is right, in words, if the choices do not say it */
-  name?: (right: string | number) => string;
+  right: (facts: F) => string | number;
 }
+export interface Question<F> {
+  question: string;
+  /** the parts that are asked together; figures show more once the first round is over */
+  rounds: readonly (readonly Part<F>[])[];
+  /** measures what the answer needs */
+  ask: (lab: Lab) => Promise<F>;
+  /** what the answer says; `guess`: of the first part */
+  words: (facts: F, guess: string | number | null) => string[];
+}
+/** A sampling of a pair that is judged, with the name that it has once it was. */
+export type JudgedSide = { name: string; settings: Partial<LessonSettings>; isAdaptive?: boolean };
+/** `name`: of the surface. */
+export type Judged = {
+  surface: FormulaSurface;
+  name: string;
+  sides: readonly [JudgedSide, JudgedSide];
+  particles: number;
+};
 /**
  * What is said of a slot. `particle`: the one that holds it; of a new one, its number in the run.
  */
@@ -152,7 +170,10 @@ export interface LabRun {
 /** A hole or a pair: its middle or its two particles. `radius`: of the hole, or of a particle. */
 export type ScorePlace = { places: readonly (readonly number[])[]; radius: number; normal: readonly number[] };
 /** The figures that are compared; null where one is undefined. */
-export type ScoreFigures = Record<'six' | 'hole' | 'uncovered' | 'pair' | 'count' | 'evaluations', number | null>;
+export type ScoreFigures = Record<
+  'six' | 'hole' | 'uncovered' | 'pair' | 'count' | 'evaluations' | 'gap',
+  number | null
+>;
 export type Score = ScoreFigures & {
   places: { hole: ScorePlace | null; pair: ScorePlace | null };
   /** number of neighbours of each particle */
@@ -162,11 +183,8 @@ export type Score = ScoreFigures & {
 export interface ScoreRow {
   key: keyof ScoreFigures;
   name: string;
-  /**
-   * whether it is in the files of a work, and not in tables: with more or larger discs it always
-   * gets smaller
-   */
-  isSavedOnly?: boolean;
+  /** whether only files of a work have it, and tables where it is asked for */
+  isRare?: boolean;
   /** null where there is none */
   ideal: number | null;
   /** the side of the ideal on which a value is worse; null if it is told, and not judged */
@@ -196,65 +214,13 @@ export type Work = {
   predictions: Guessed[];
   runs: object[];
 };
-/** A surface that moves by one parameter. `radius`: of the particles on it. */
-export interface Motion {
-  value: string;
-  label: string;
-  surface: FormulaSurface;
-  name: string;
-  range: readonly [number, number];
-  radius: number;
-}
-/** A lane at a snapshot. `step`: of the slider. */
-export type AtStep = { step: number; evaluations: number };
-/** Particles that follow a surface that moves. `evaluations`: of f so far. */
-export interface FlowLane extends Flowing {
-  /** covers the surface of a step of the slider */
-  begin: (step: number) => Promise<void>;
-  /** goes to the surface of a step beside the one before */
-  follow: (step: number) => Promise<void>;
-  /** what it does once the surface rests at a step */
-  rest: (step: number) => Promise<void>;
-  close: () => void;
-}
-export type Flowing = { particles: LessonParticles; evaluations: number };
-/** A lane of a race at the end of one of its turns. */
-export type Snapshot<L> = { lane: L; particles: LessonParticles };
-/** `L`: what is known of a lane at a snapshot. */
-export interface ReplayOptions<L> {
-  /**
-   * the snapshots of each lane in their order, none of them empty; the lanes may still be under way
-   */
-  films: readonly Snapshot<L>[][];
-  names: readonly string[];
-  /** what the axis can be */
-  axes: readonly {
-    value: string;
-    label: string;
-    of: (lane: L) => number;
-    say: (cost: number) => string;
-    /** the moment in words, above the figures */
-    moment: (cost: number) => string;
-  }[];
-  axisName: string;
-  /** of the slider, with so many places, and where it begins */
-  name: string;
-  places: number;
-  at: number;
-  /** the end of an axis */
-  most: (of: (lane: L) => number) => number;
-  score: (shot: Snapshot<L>) => Promise<Score>;
-  show: (side: number, shot: Snapshot<L>) => void;
-  /** shows a place of the particles on a side; null: none */
-  point: (place: ScorePlace | null, side: number) => void;
-}
 /** `ready` is fulfilled once it is live, and never if it cannot be made. */
 export type Figure = { stage: HTMLElement; load: () => Promise<void>; ready: Promise<void> };
 
 export type Law = LessonSettings['law'];
 export type Subject = { surface: FormulaSurface; isOwn: boolean; from: string; notice: string };
-/** The input of a figure: the runs, and the predictions that were made. */
-export type Context = { lab: Promise<Lab>; stops: Stops };
+/** The input of a figure: the runs, the predictions that were made, and what the pairs that are drawn follow from. */
+export type Context = { lab: Promise<Lab>; stops: Stops; series: string };
 /**
  * A slot in its plane, from p: places are (along V, along N). `bend` is that of the surface towards
  * the child, which landed on the circle at `child`, `section` the curve f = 0; `newton` are the
@@ -295,25 +261,11 @@ export interface SelectRowOptions<T extends string> {
   value?: NoInfer<T>;
   change: (value: T) => void;
 }
-export interface HandoutOptions {
-  figures: readonly Figure[];
-  lab: Promise<Lab>;
-  /** shows the comparison that stands on the bench */
-  compare: () => Promise<void>;
-}
-export interface PresenterOptions {
-  /** ids of elements, in their order */
-  stops: readonly string[];
-  questions: Stops;
-  /** leads the address to a stop */
-  to: (stop: string, isPresenting: boolean) => void;
-}
 export interface StopsOptions {
   /** ids of elements */
   stops: readonly string[];
   /** stops of the bench: `what-if-…` */
   others: readonly string[];
-  questions: Stops;
   /** shows a comparison; the one that is there for an empty id */
   onBench: (id: string, given: Record<string, string>) => Promise<void>;
   /** loads what a class needs */

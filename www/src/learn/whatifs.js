@@ -1,4 +1,5 @@
 /** The choices of the method that can be seen side by side. */
+import { formatFixed } from '../ui/format.js';
 import { adaptiveRun, LAWS } from './adaptive.js';
 import { BENCH } from './address.js';
 
@@ -53,8 +54,11 @@ export const partsOf = (value) => value.split(BETWEEN);
 /** The value of knobs in which one is turned. @param {string} value @param {number} k @param {string} part */
 export const turned = (value, k, part) => partsOf(value).with(k, part).join(BETWEEN);
 
-/** The range of the match tolerance, in 2r. */
+/** The range of the tolerance, in 2r. */
 export const TOLERANCES = { min: 0.4, max: 0.95, step: 0.05 };
+
+/** A tolerance as it is written, in radii as every length of the lesson. @param {number} of2r */
+export const toleranceWords = (of2r) => `${formatFixed(2 * of2r, 1)} r`;
 
 /** The choices that can be made at once. @type {readonly Knob[]} */
 export const KNOBS = [
@@ -65,12 +69,18 @@ export const KNOBS = [
       ['stack', 'Stack'],
     ]),
     set: (order) => ({ order: /** @type {LessonSettings['order']} */ (order) }),
+    why: () =>
+      'The newest particle comes next, so the front runs off like a thread. Threads meet far more often than rings do, and every meeting is a seam.',
   },
   {
-    name: 'Match tolerance',
+    name: 'Tolerance',
     values: [],
     scale: TOLERANCES,
     set: (tolerance) => ({ match_tolerance: Number(tolerance) }),
+    why: (part) =>
+      Number(part) < 0.7
+        ? 'Where rows meet, a particle that is off by more than this does not count as the child. A second one is put beside it, and the particles crowd.'
+        : 'A child counts as matched by a particle far from its place. Nothing is put there, and the hole stays open.',
   },
   {
     name: 'Relaxation',
@@ -80,6 +90,10 @@ export const KNOBS = [
       ['100', 'A hundred steps'],
     ]),
     set: (steps) => ({ relax_steps: Number(steps) }),
+    why: (part) =>
+      part === '0'
+        ? 'Nothing is pushed into the holes that placing leaves beside its seams.'
+        : 'Pushed that long, particles go farther from where the front has put them.',
   },
   {
     name: 'Seed',
@@ -90,6 +104,7 @@ export const KNOBS = [
       ['3', 'Seed 3'],
     ]),
     set: (seed) => (isPlace(seed) ? { seeds: [parsePlace(seed)] } : { seed: Number(seed) }),
+    why: () => 'Another seed moves the rings, and the seams with them. Their number hardly changes.',
   },
 ];
 /** The number of the knob that takes a place, too. */
@@ -100,7 +115,7 @@ export const USUAL = ['queue', '0.7', '10', '0'].join(BETWEEN);
 
 /** A value of a knob in words. @param {number} k @param {string} part */
 export const partWords = (k, part) =>
-  KNOBS[k].scale ? `${part} · 2r` : (KNOBS[k].values.find(({ value }) => value === part)?.label ?? part);
+  KNOBS[k].scale ? toleranceWords(Number(part)) : (KNOBS[k].values.find(({ value }) => value === part)?.label ?? part);
 
 /** @param {number} k @param {string} part */
 function isPart(k, part) {
@@ -301,7 +316,7 @@ export const whatIfOf = (id) => WHAT_IFS.find((whatIf) => whatIf.id === id) ?? W
 
 /**
  * The setup of a choice with the values that are given, and those that are first shown where there is none of its own.
- * @param {string} id @param {{ left?: unknown, right?: unknown }} [given]
+ * @param {string} id @param {{ on?: unknown, left?: unknown, right?: unknown }} [given]
  * @returns {Setup}
  */
 export function setupOf(id, given = {}) {
@@ -309,5 +324,5 @@ export function setupOf(id, given = {}) {
   const [left, right] = [given.left, given.right].map((value, k) =>
     hasValue(whatIf, value) ? String(value) : whatIf.values[k].value,
   );
-  return { what: whatIf.id, left, right };
+  return { what: whatIf.id, on: typeof given.on === 'string' ? given.on : '', left, right };
 }

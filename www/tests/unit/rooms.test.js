@@ -83,15 +83,7 @@ const MAY_USE = {
   figures: ['ui/*', ...ENGINE_FACE],
   // The lesson's page stands beside the first: it has its own runs, which the sampler's meter measures, and draws with the
   // painter of the engine.
-  learn: [
-    'figures',
-    'ui/*',
-    'engine/lesson',
-    'engine/sampling/meter',
-    'engine/sampling/flowing',
-    'engine/view',
-    ...ENGINE_FACE,
-  ],
+  learn: ['figures', 'ui/*', 'engine/lesson', 'engine/sampling/meter', 'engine/view', ...ENGINE_FACE],
   // Shared parts of the interface; the panels' folders do not know each other.
   ui: ENGINE_FACE,
   'ui/app': ['ui', ...ENGINE_FACE],

@@ -74,10 +74,13 @@ export class RequestWorker {
 
   /** @param {(id: number) => Sent} message @returns {Promise<any>} */
   ask(message) {
-    return this.requests.make((id) => {
-      this.#worker ??= this.#start();
-      this.#worker.postMessage(message(id));
-    });
+    return this.requests.make((id) => this.start().postMessage(message(id)));
+  }
+
+  /** Starts a worker if there is none. */
+  start() {
+    this.#worker ??= this.#start();
+    return this.#worker;
   }
 
   /** @param {Sent} message  dropped while there is no worker */

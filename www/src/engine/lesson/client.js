@@ -65,14 +65,13 @@ export class LessonClient {
    * questions are answered about the part that there is.
    * @param {Surface} surface
    * @param {Partial<LessonSettings>} settings  what is missing has its default; `radius` has none
-   * @param {boolean} [holds]  the run only begins, and goes on as far as `ask('advance', …)` says
    * @returns {Promise<LessonProgress>}
    */
-  start(surface, settings, holds = false) {
+  start(surface, settings) {
     this.#worker.requests.refuseAll(new LessonError('given_up', 'another run has begun'));
     return this.#worker.ask((id) => {
       this.#run = id;
-      return { type: 'start', id, surface, settings, holds };
+      return { type: 'start', id, surface, settings };
     });
   }
 

@@ -9,7 +9,7 @@ import { nextBudget } from '../bundle/budget.js';
 /**
  * @import { Lesson } from '../../wasm/lesson/lesson.js'
  * @import { WorkerEnv } from '../bundle/types.js'
- * @import { Advanced, FromLesson, Particles, ToLesson } from './types.js'
+ * @import { FromLesson, Particles, ToLesson } from './types.js'
  */
 
 /** Target duration of a slice, so that a question does not wait long. */
@@ -27,7 +27,7 @@ export function follow(lesson, env) {
   let stops = false;
 
   /** @param {Extract<ToLesson, {type: 'start'}>} order */
-  async function start({ id, surface, settings, holds }) {
+  async function start({ id, surface, settings }) {
     present = id;
     stops = false;
     const answer =
@@ -35,7 +35,6 @@ export function follow(lesson, env) {
         ? lesson.start_points(surface.system, surface.pulls, surface.bounds, settings)
         : lesson.start(surface, settings);
     if (!answer.ok) return env.post({ type: 'refused', id, error: answer.error });
-    if (holds) return env.post({ type: 'ended', id, progress: answer });
     for (let budget = FIRST_BUDGET; ; ) {
       const before = env.nowMs();
       const progress = step(lesson, budget);
@@ -60,7 +59,7 @@ export function follow(lesson, env) {
           stops = true;
           break;
         case 'ask':
-          env.post({ type: 'answer', id: message.id, answer: answer(lesson, env.nowMs, message) });
+          env.post({ type: 'answer', id: message.id, answer: answer(lesson, message) });
           break;
         default:
       }
@@ -88,8 +87,8 @@ const particles = (lesson, at) => ({
   done: lesson.done(),
 });
 
-/** @param {Lesson} lesson @param {() => number} nowMs @param {Extract<ToLesson, {type: 'ask'}>} question */
-function answer(lesson, nowMs, question) {
+/** @param {Lesson} lesson @param {Extract<ToLesson, {type: 'ask'}>} question */
+function answer(lesson, question) {
   switch (question.about) {
     case 'chapters':
       return lesson.chapters(question.ask.first);
@@ -99,25 +98,13 @@ function answer(lesson, nowMs, question) {
       return particles(lesson, lesson.seek(Math.min(question.ask.event, 0xffff_ffff)));
     case 'life':
       return lesson.life(question.ask.particle);
-    case 'pushes':
-      return lesson.pushes(question.ask.particle);
     case 'section': {
       const { centre, right, up, half, cells } = question.ask;
       return lesson.section(Float64Array.from(centre), Float64Array.from(right), Float64Array.from(up), half, cells);
     }
     case 'newton':
       return lesson.newton(Float64Array.from(question.ask.start), question.ask.reach);
-    case 'follow':
-      return lesson.follow(question.ask);
-    case 'advance':
-      return advance(lesson, nowMs, question.ask.units);
     case 'digest':
       return lesson.digest();
   }
-}
-
-/** @param {Lesson} lesson @param {() => number} nowMs @param {number} units @returns {Advanced} */
-function advance(lesson, nowMs, units) {
-  const before = nowMs();
-  return { progress: step(lesson, units), workMs: nowMs() - before };
 }

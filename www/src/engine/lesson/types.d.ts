@@ -1,15 +1,6 @@
 // Messages between the page and the worker of the lesson, and what its clients are given. The worker follows one run at
 // a time; every question is answered under its number.
-import type {
-  Answer,
-  Bounds,
-  LessonEvent,
-  LessonField,
-  LessonIterate,
-  LessonLife,
-  LessonPush,
-  Pull,
-} from '../core-types.js';
+import type { Bounds, LessonEvent, LessonField, LessonIterate, LessonLife, Pull } from '../core-types.js';
 
 export type WorkerLike = import('../bundle/types.js').WorkerLike<ToLesson, FromLesson>;
 export type LessonSettings = import('../core-types.js').LessonSettings;
@@ -35,8 +26,6 @@ export interface Particles {
   slots: Uint32Array;
   done: Uint8Array;
 }
-/** The progress of a run, and the milliseconds that its worker has worked for it since it was asked. */
-export type Advanced = { progress: LessonProgress; workMs: number };
 /** A plane through a point: `right` and `up` are perpendicular unit vectors. */
 export type Plane = { centre: Vec3; right: Vec3; up: Vec3; half: number; cells: number };
 /** The questions about a run and their answers. `events` and `chapters` are what there is so far. */
@@ -47,22 +36,15 @@ export interface Questions {
   /** the particles before that event; at the end for a larger number */
   seek: { ask: { event: number }; answer: Particles };
   life: { ask: { particle: number }; answer: LessonLife | null };
-  /** of a relaxation on a particle, at the moment that was sought */
-  pushes: { ask: { particle: number }; answer: LessonPush[] };
   /** the curve f = 0 in the plane: segments as x₀, y₀, x₁, y₁ around the centre */
   section: { ask: Plane; answer: Float32Array };
   /** Newton's method in space from a point */
   newton: { ask: { start: Vec3; reach: number }; answer: LessonIterate[] };
-  /** has the particles of a particle system follow their surface to that of this formula; null before a run */
-  follow: { ask: LessonField; answer: Answer<LessonProgress, Fault> | null };
-  /** goes on with a run that was begun and held, or whose surface has moved */
-  advance: { ask: { units: number }; answer: Advanced };
   /** of the particles at the moment that was sought */
   digest: { ask: object; answer: string };
 }
-/** `holds`: the run only begins, and goes on by `advance`. */
 export type ToLesson =
-  | { type: 'start'; id: number; surface: Surface; settings: Partial<LessonSettings>; holds: boolean }
+  | { type: 'start'; id: number; surface: Surface; settings: Partial<LessonSettings> }
   | { type: 'stop' }
   | { [K in keyof Questions]: { type: 'ask'; id: number; about: K; ask: Questions[K]['ask'] } }[keyof Questions];
 /**
@@ -76,15 +58,8 @@ export type FromLesson =
   | { type: 'answer'; id: number; answer: unknown }
   | { type: 'crashed'; message: string; stack: string }
   | { type: 'failed'; message: string };
-/** One of the two runs of a race: its progress, and the milliseconds that its worker has worked. */
-export type Lane = { progress: LessonProgress | null; workMs: number };
 export interface LessonClientOptions {
   spawn?: () => WorkerLike;
   /** of the present run, some fifty times a second */
   onProgress?: (progress: LessonProgress) => void;
-}
-export interface RaceOptions {
-  spawn?: () => WorkerLike;
-  /** after every turn */
-  onLane?: (index: 0 | 1, lane: Lane) => void;
 }

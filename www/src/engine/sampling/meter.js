@@ -13,7 +13,7 @@ import { RequestWorker } from '../bundle/requests.js';
 import { spawnSampler } from './spawn.js';
 
 /**
- * @import { FieldRequest } from '../types.js'
+ * @import { FieldRequest, SurfaceInfo } from '../types.js'
  * @import { FromWorker, PlacedColumns, PlacedMeasures, ToWorker, WorkerLike } from './types.js'
  */
 
@@ -21,12 +21,27 @@ export class Meter {
   /** @type {RequestWorker<ToWorker, FromWorker>} */
   #worker;
 
+  /** The surfaces of the gallery, once a worker has told them: it begins with that. @type {SurfaceInfo[] | null} */
+  #surfaces = null;
+
+  /** Requests for them. @type {number[]} */
+  #asked = [];
+
   /** @param {{ spawn?: () => WorkerLike }} [options] */
   constructor({ spawn = spawnSampler } = {}) {
     this.#worker = new RequestWorker({
       spawn,
       onMessage: (message) => this.#receive(message),
       onFail: (message) => this.#worker.end(new Error(message || 'the sampler did not load')),
+    });
+  }
+
+  /** The surfaces of the gallery. @returns {Promise<SurfaceInfo[]>} */
+  async surfaces() {
+    if (this.#surfaces) return this.#surfaces;
+    return this.#worker.requests.make((request) => {
+      this.#asked.push(request);
+      this.#worker.start();
     });
   }
 
@@ -44,10 +59,14 @@ export class Meter {
   /** @param {FromWorker} message */
   #receive(message) {
     if (message.type === 'failed' || message.type === 'crashed') return this.#worker.end(new Error(message.message));
-    if (message.type !== 'measured') return;
     const { requests } = this.#worker;
-    if ('measures' in message) requests.answer(message.request, message.measures);
-    else requests.refuse(message.request, new Error(message.error.message));
+    if (message.type === 'ready') {
+      this.#surfaces = message.description.surfaces;
+      for (const request of this.#asked.splice(0)) requests.answer(request, this.#surfaces);
+    } else if (message.type === 'measured') {
+      if ('measures' in message) requests.answer(message.request, message.measures);
+      else requests.refuse(message.request, new Error(message.error.message));
+    } else return;
     if (requests.count === 0) this.#worker.end(new Error('all is measured'));
   }
 }

@@ -4,18 +4,15 @@
 
 /** @type {Record<string, (context: Context) => Promise<(Node | null)[]>>} */
 export const FIGURES = {
-  'judge-first': async (context) => (await import('./judge.js')).judge(context, 'first'),
+  opening: async (context) => (await import('./judge.js')).opening(context),
   measures: async (context) => (await import('./measures.js')).measures(context),
   plane: async (context) => (await import('./plane.js')).plane(context),
-  circle: async (context) => (await import('./circle.js')).circle(context),
-  first: async (context) => (await import('./particle.js')).whoWasFirst(context),
   rings: async (context) => (await import('./rings.js')).rings(context),
   seams: async (context) => (await import('./seams.js')).seams(context),
-  cost: async (context) => (await import('./cost.js')).cost(context),
+  draws: async (context) => (await import('./judge.js')).draws(context),
+  circle: async (context) => (await import('./circle.js')).circle(context),
+  first: async (context) => (await import('./particle.js')).whoWasFirst(context),
   angles: async () => (await import('./angles.js')).angles(),
   sizes: async (context) => (await import('./sizes.js')).sizes(context),
-  'judge-last': async (context) => (await import('./judge.js')).judge(context, 'weigh'),
-  'judge-few': async (context) => (await import('./judge.js')).judge(context, 'few'),
-  'judge-chance': async (context) => (await import('./judge.js')).judge(context, 'chance'),
-  moving: async (context) => (await import('./moving.js')).moving(context),
+  cost: async (context) => (await import('./cost.js')).cost(context),
 };

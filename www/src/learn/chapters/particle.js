@@ -1,4 +1,4 @@
-/** The chapter on who was first: one particle by events, particles or levels, and the fates of all children. */
+/** One particle event by event, amid the front. */
 import { computed, signal } from '@preact/signals-core';
 import { nearest } from '../../engine/vector.js';
 import { algorithmList } from '../../figures/algorithm.js';
@@ -6,27 +6,23 @@ import { asideWords, isSearched, lens, profileOf, tangentPlane } from '../../fig
 import { momentAt } from '../../figures/moment.js';
 import { openParticle } from '../../figures/particle.js';
 import { fateShape } from '../../figures/svg.js';
-import { FATES, inRadii, lineOf, tell, transcript } from '../../figures/words.js';
+import { FATES, inRadii, lineOf, tell } from '../../figures/words.js';
 import { button } from '../../ui/button.js';
 import { fill, h, queryAll, s } from '../../ui/dom.js';
 import { formatCount, MISSING, plural } from '../../ui/format.js';
-import { download } from '../../ui/share.js';
 import { loadSheet } from '../../ui/sheet.js';
 import { unpackParticle } from '../../ui/surface-link.js';
 import { readAddress } from '../address.js';
 import { createTolerance } from '../drag.js';
 import { reasonOf } from '../figure.js';
 import { latest } from '../latest.js';
-import { createChart, createRangeRow, createSelectRow, facts } from '../parts.js';
+import { createRangeRow, facts } from '../parts.js';
 import sheet from '../plane.css?url';
 
 /**
- * @import { Signal } from '../../engine/types.js'
  * @import { Moment, Opened } from '../../figures/types.js'
- * @import { Context, Lab, LabRun } from '../types.js'
+ * @import { Context, Lab } from '../types.js'
  */
-
-/** @typedef {'event' | 'particle' | 'level'} Grain */
 
 /** The match tolerance of the lesson. */
 const USUAL_TOLERANCE = 0.7;
@@ -47,21 +43,14 @@ function keyOf({ events }) {
   );
 }
 
-/** What one step is. @type {readonly { value: Grain, label: string }[]} */
-const GRAINS = [
-  { value: 'event', label: 'an event' },
-  { value: 'particle', label: 'a particle' },
-  { value: 'level', label: 'a level' },
-];
-
 /**
  * Views of a particle at one of its events: its tangent plane, the event in words, the line of the algorithm, and the
  * slot from the side with both landings.
  * @param {Opened} opened
- * @param {{ at: number, grain: Signal<Grain>, go: (by: 1 | -1) => void }} how  `at`: the event that is shown first;
- *   `go` leads to another particle
+ * @param {{ at: number, go: (by: 1 | -1) => void }} how  `at`: the event that is shown first; −1 for the
+ *   last; `go` leads to the particle before or after
  */
-function viewsOf(opened, { at, grain, go }) {
+function viewsOf(opened, { at, go }) {
   const { events, subject } = opened;
   const last = events.length - 1;
   const range = createRangeRow({
@@ -74,19 +63,11 @@ function viewsOf(opened, { at, grain, go }) {
   const moment = computed(() => momentAt(events, Math.min(range.place.value, last)));
   const step = (/** @type {1 | -1} */ by) => {
     const to = range.get() + by;
-    if (grain.peek() === 'event' && to >= 0 && to <= last) range.set(to);
+    if (to >= 0 && to <= last) range.set(to);
     else go(by);
   };
   const turn = (/** @type {1 | -1} */ by, /** @type {string} */ label, /** @type {'back' | 'forward'} */ icon) =>
     button({ class: 'square', icon, 'aria-label': label, press: () => step(by) });
-  const what = createSelectRow({
-    name: 'One step is',
-    choices: GRAINS,
-    value: grain.peek(),
-    change: (value) => {
-      grain.value = value;
-    },
-  });
   const parent = subject.parent === null ? 'a seed' : `child of particle ${formatCount(subject.parent)}`;
   return [
     h(
@@ -107,13 +88,7 @@ function viewsOf(opened, { at, grain, go }) {
           { class: 'controls' },
           turn(-1, 'Step back', 'back'),
           turn(1, 'Step forward', 'forward'),
-          what.element,
           range.element,
-        ),
-        h(
-          'div',
-          { class: 'controls' },
-          button({ class: 'plain', press: () => saveTranscript(opened) }, 'Save transcript'),
         ),
         h('div', { class: 'particle-lines' }, () => algorithmList(lineOf(moment.value.event))),
       ),
@@ -123,14 +98,6 @@ function viewsOf(opened, { at, grain, go }) {
     ),
     keyOf(opened),
   ];
-}
-
-/** Saves all events of a particle in words. @param {Opened} opened */
-function saveTranscript({ events, subject }) {
-  const head = [`Particle ${subject.particle}, level ${subject.level}`, `Algorithm 2, r = ${subject.radius}`];
-  const moments = events.map((_, at) => momentAt(events, at));
-  const blob = new Blob([transcript(moments, subject, head)], { type: 'text/plain;charset=utf-8' });
-  download(blob, `particle-${subject.particle}.txt`);
 }
 
 /**
@@ -166,31 +133,6 @@ function sideOf(opened, moment) {
 }
 
 /**
- * Charts the fates of the children, level by level.
- * @param {{ readonly value: LabRun }} run
- */
-function fateChart(run) {
-  const levels = computed(() => run.value.chapters.filter((chapter) => chapter.kind === 'level'));
-  const countsOf = (/** @type {'added' | 'matched'} */ fate) => levels.value.map(({ fates }) => fates[fate]);
-  const total = (/** @type {'added' | 'matched'} */ fate) =>
-    formatCount(countsOf(fate).reduce((sum, count) => sum + count, 0));
-  return createChart({
-    hidden: () => false,
-    chart: () => ({
-      kind: 'bars',
-      rows: /** @type {const} */ (['added', 'matched']).map((fate) => ({ fate, name: fate, counts: countsOf(fate) })),
-      first: 0,
-      at: null,
-      format: formatCount,
-      ends: ['level 0', `level ${formatCount(levels.value.length - 1)}`],
-    }),
-    label: () => `Children of each level: in the whole run ${total('added')} added and ${total('matched')} matched`,
-    words: () =>
-      `Children by level: ${total('added')} added below, ${total('matched')} matched above. Parents are not counted.`,
-  });
-}
-
-/**
  * The run whose particles are shown, and the first of them as a share of all: the one that the address names, in a run
  * with its radius from the same seeds, else one in the middle of a coarse run.
  * @param {Lab} own
@@ -219,18 +161,14 @@ export async function whoWasFirst({ lab }) {
     to === USUAL_TOLERANCE ? usual : own.run({ ...usual.settings, match_tolerance: to }, { keep: true });
   /** The particle that is shown, as a share of all. */
   let share = first;
-  /** @type {Signal<Grain>} */
-  const grain = signal('event');
   const status = h('p', { class: 'figure-status', role: 'status' });
-  /** Goes to the particle before or after, or to the first of a level. @param {1 | -1} by */
+  /** Goes to the particle before or after. @param {1 | -1} by */
   function go(by) {
-    const { levels } = run.peek().end;
-    const own = Math.floor(share * levels.length);
-    const level = levels[own] + by;
-    const to = grain.peek() === 'level' ? levels.indexOf(level) : own + by;
-    if (to < 0 || to >= levels.length) return;
-    share = (to + 0.5) / levels.length;
-    isBackwards = by < 0 && grain.peek() === 'event';
+    const { length } = run.peek().end.radii;
+    const to = Math.floor(share * length) + by;
+    if (to < 0 || to >= length) return;
+    share = (to + 0.5) / length;
+    isBackwards = by < 0;
     void show(tolerance.peek());
   }
   /** Whether a particle is come to from behind, at its last event. */
@@ -252,7 +190,7 @@ export async function whoWasFirst({ lab }) {
       const at = isBackwards ? -1 : isFirst || old !== next ? compared : 0;
       isFirst = false;
       const held = place.contains(document.activeElement) ? document.activeElement?.getAttribute('aria-label') : null;
-      fill(place, viewsOf(opened, { at, grain, go }));
+      fill(place, viewsOf(opened, { at, go }));
       // The button that was pressed has been made anew.
       if (held)
         queryAll(place, 'button')
@@ -275,6 +213,5 @@ export async function whoWasFirst({ lab }) {
     place,
     h('p', { class: 'figure-count' }, () => `A run of ${plural(run.value.end.radii.length, 'particle')}.`),
     status,
-    fateChart(run),
   ];
 }

@@ -8,7 +8,6 @@ import { algorithmList } from '../../figures/algorithm.js';
 import { tangentPlane } from '../../figures/drawings.js';
 import { inPlane, slotPlace } from '../../figures/geometry.js';
 import { momentAt } from '../../figures/moment.js';
-import { openParticle } from '../../figures/particle.js';
 import { fateShape } from '../../figures/svg.js';
 import { tell } from '../../figures/words.js';
 import { button } from '../../ui/button.js';
@@ -16,7 +15,7 @@ import { fill, h, live, s } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
 import { createSelect } from '../../ui/select.js';
 import { loadSheet } from '../../ui/sheet.js';
-import { decisionsOf, lineAt, objection, PATCHES, runOn, treatedOf } from '../decisions.js';
+import { decisionsOf, letterOf, objection, openNamed, PATCHES, runOn, treatedOf } from '../decisions.js';
 import sheet from '../plane.css?url';
 
 /**
@@ -28,13 +27,7 @@ import sheet from '../plane.css?url';
 
 /** @typedef {{ opened: Opened, decisions: Decision[], at: number, moment: Moment }} Shown */
 
-/** What is seen in the drawing: circles by their class, then the shapes of what became of a child. */
-const KEY = [
-  ['self', 'the particle whose turn it is'],
-  ['disc', 'a particle, with its centre'],
-  ['slot', 'a slot'],
-  ['tolerance', 'how near counts as the same place'],
-];
+/** The shapes of what became of a child. */
 const SHAPES = [
   ['open', 'a child, not decided yet'],
   ['parent', 'the parent'],
@@ -69,10 +62,7 @@ export async function plane(context) {
     svg.append(mark);
     return h('li', null, svg, words);
   };
-  const key = [
-    ...KEY.map(([kind, words]) => entry(s('circle', { class: kind, r: 1 }), words)),
-    ...SHAPES.map(([fate, words]) => entry(fateShape(fate, [0, 0], 0.9), words)),
-  ];
+  const key = SHAPES.map(([fate, words]) => entry(fateShape(fate, [0, 0], 0.9), words));
   return [
     h('div', { class: 'controls choices', role: 'group', 'aria-label': 'Surface' }, buttons),
     place,
@@ -96,7 +86,8 @@ class Exercise {
   #treated;
   #stops;
   #box = h('div', { class: 'drawing-box plane-drawing', on: { click: (event) => this.#press(event) } });
-  #lines = h('div', { class: 'plane-lines' });
+  /** The algorithm, once it was gone through. */
+  #lines = h('div', { class: 'plane-lines', hidden: true });
   #question = h('p', { class: 'plane-question', 'aria-live': 'polite' });
   #told = h('p', { class: 'told', role: 'status' });
   #score = h('p', { class: 'figure-count' });
@@ -126,26 +117,16 @@ class Exercise {
       { class: 'controls' },
       button({ press: () => this.#decide({ fate: 'added', particle: null }) }, 'A new one'),
       h('span', { class: 'plane-match' }, this.#matched, this.#which),
-      button(
-        { class: 'plain', 'data-step': 'predict-children', press: () => this.#queue(() => this.#leave(1)) },
-        'Let the run decide',
-      ),
+      button({ class: 'plain', press: () => this.#queue(() => this.#leave(1)) }, 'Let the run decide'),
     );
-    this.#next = button(
-      { class: 'primary', hidden: true, 'data-step': 'predict-children', press: goOn },
-      'Go to the cap',
-    );
-    this.#back = button(
-      { class: 'plain', 'data-back': 'predict-children', press: () => this.#queue(() => this.#takeBack()) },
-      'One slot back',
-    );
+    this.#next = button({ class: 'primary', hidden: true, press: goOn }, 'Go to the cap');
+    this.#back = button({ class: 'plain', press: () => this.#queue(() => this.#takeBack()) }, 'One slot back');
     const again = button({ class: 'plain', press: () => this.#queue(() => this.#beginAgain()) }, 'Begin again');
     this.element = h(
       'div',
       { class: 'plane' },
       this.#question,
       this.#box,
-      this.#lines,
       h(
         'div',
         { class: 'side' },
@@ -153,6 +134,7 @@ class Exercise {
         this.#told,
         this.#next,
         h('div', { class: 'controls plane-score' }, this.#score, this.#back, again),
+        this.#lines,
       ),
     );
   }
@@ -175,7 +157,7 @@ class Exercise {
   async take() {
     const { turn, at } = this.#round;
     const isOver = turn >= this.#treated.length;
-    const opened = await openParticle(this.#run.client, this.#run, this.#treated[isOver ? turn - 1 : turn]);
+    const opened = await openNamed(this.#run, this.#treated[isOver ? turn - 1 : turn]);
     const decisions = decisionsOf(opened.events);
     this.#now = { opened, decisions, at, moment: momentAt(opened.events, 0) };
     if (isOver) this.#end(this.#now);
@@ -183,11 +165,9 @@ class Exercise {
     this.#count();
   }
 
-  /** Takes back all decisions. The first round is kept for an assignment. */
+  /** Takes back all decisions. Mistakes stay counted. */
   async #beginAgain() {
-    const { first, rounds, mistakes, right, left } = this.#round;
-    const isBegun = right + left + mistakes.length > 0;
-    this.#round = { ...newRound(), first: first ?? (isBegun ? mistakes : null), rounds: rounds + (isBegun ? 1 : 0) };
+    this.#round = { ...newRound(), mistakes: this.#round.mistakes };
     this.#tell('', '');
     await this.take();
   }
@@ -207,32 +187,30 @@ class Exercise {
     const { slot, at: event } = decisions[at];
     now.moment = { ...momentAt(opened.events, event), slot, isNow: true };
     fill(this.#box, tangentPlane(opened, now.moment));
-    fill(this.#lines, algorithmList(lineAt(decisions[at])));
-    this.#question.textContent = `Particle ${formatCount(opened.subject.particle)}, slot ${slot}: what is here?`;
+    this.#question.textContent = `Particle ${letterOf(opened.subject.particle)}, slot ${slot}: is a new one put here?`;
     const near = now.moment.gathered?.neighbours.map(({ particle }) => particle) ?? [];
     if (at === 0 || this.#which.options.length === 0)
-      this.#near.value = near.map((particle) => ({ value: particle, label: `particle ${formatCount(particle)}` }));
+      this.#near.value = near.map((particle) => ({ value: particle, label: `particle ${letterOf(particle)}` }));
     this.#matched.disabled = near.length === 0;
     this.#which.disabled = near.length === 0;
     this.#answers.hidden = false;
+    this.#lines.hidden = true;
     this.#next.hidden = true;
   }
 
   /** Writes the score, also for an assignment, and keeps the round. */
   #count() {
-    const { turn, past, mistakes, right, left, first, rounds } = this.#round;
+    const { turn, past, mistakes, right, left } = this.#round;
     const treated = formatCount(Math.min(turn + 1, this.#treated.length));
     this.#back.hidden = past.length === 0;
     const score = scoreOf(this.#round);
     this.#score.textContent = `${[`Particle ${treated} of ${formatCount(this.#treated.length)}`, ...score].join(' · ')}.`;
     const stop = stopOf(this.#patch);
     // Nothing is answered before the first decision.
-    if (right + left + mistakes.length + rounds === 0) return;
+    if (right + left + mistakes.length === 0) return;
     this.#stops.keepMore(stop, this.#round);
-    const question = `${this.#patch.name}, slot by slot: number of mistakes in the first round`;
-    const own = first ?? mistakes;
-    const answer = [...(first ? [`round ${rounds + 1}`] : []), ...score, ...own].join('; ');
-    this.#stops.record({ stop, question, guess: own.length, answer });
+    const question = `${this.#patch.name}, slot by slot: number of mistakes`;
+    this.#stops.record({ stop, question, guess: mistakes.length, answer: [...score, ...mistakes].join('; ') });
   }
 
   /** Goes on to the next slot, or the next particle. @param {string} words */
@@ -250,7 +228,9 @@ class Exercise {
     this.#answers.hidden = true;
     this.#next.hidden = this.#patch === PATCHES.at(-1);
     fill(this.#box, tangentPlane(opened, momentAt(opened.events, opened.events.length - 1)));
-    fill(this.#lines, algorithmList(-1));
+    // Code comes after what it stands for.
+    this.#lines.hidden = this.#patch !== PATCHES.at(-1);
+    fill(this.#lines, h('p', null, 'What you have done, as the paper writes it:'), algorithmList(-1));
     this.#question.textContent = this.#patch.ends;
   }
 
@@ -281,8 +261,10 @@ class Exercise {
       });
       return;
     }
-    const other = said.fate === 'matched' ? ` with ${said.particle}` : '';
-    this.#round.mistakes.push(`particle ${opened.subject.particle}, slot ${decision.slot}: said ${said.fate}${other}`);
+    const other = said.fate === 'matched' ? ` with ${letterOf(said.particle ?? 0)}` : '';
+    this.#round.mistakes.push(
+      `particle ${letterOf(opened.subject.particle)}, slot ${decision.slot}: said ${said.fate}${other}`,
+    );
     this.#tell('wrong', `The run objects. ${why}`);
     this.#count();
   }
@@ -312,6 +294,8 @@ class Exercise {
     const { opened } = now;
     const at = { centre: opened.place, right: frame.u, up: frame.w, radius: opened.subject.radius };
     const { slot } = now.decisions[now.at];
+    // What the particle in the middle covers is not pressed.
+    if (Math.hypot(x, y) < 1) return this.#tell('', `That is particle ${letterOf(opened.subject.particle)} itself.`);
     // The whole disc of a particle is the particle; a slot is what is left of its circle.
     const near = { particle: -1, far: 1 };
     for (const { particle } of gathered?.neighbours ?? []) {
@@ -329,7 +313,6 @@ const stopOf = ({ id }) => `plane-${id}`;
 
 /**
  * A round: `turn` and `at` are the particle and the slot that come next, and `past` where it stood at each decision.
- * `first` are the mistakes of the first round, once another one has begun.
  * @typedef {object} Round
  * @property {number} turn
  * @property {number} at
@@ -337,12 +320,10 @@ const stopOf = ({ id }) => `plane-${id}`;
  * @property {number} left
  * @property {string[]} mistakes
  * @property {{ turn: number, at: number, right: number, left: number }[]} past
- * @property {string[] | null} first
- * @property {number} rounds
  */
 
 /** @returns {Round} */
-const newRound = () => ({ turn: 0, at: 0, right: 0, left: 0, mistakes: [], past: [], first: null, rounds: 0 });
+const newRound = () => ({ turn: 0, at: 0, right: 0, left: 0, mistakes: [], past: [] });
 
 /** @param {Round} round */
 function scoreOf({ mistakes, right, left }) {

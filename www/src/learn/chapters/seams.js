@@ -1,15 +1,15 @@
 /** The front, its seams, and the relaxation after it, as one course that a slider goes through. */
 import { signal } from '@preact/signals-core';
 import { triple } from '../../engine/vector.js';
-import { fill, h, live } from '../../ui/dom.js';
+import { h, live } from '../../ui/dom.js';
 import { formatCount, formatSignificant, plural } from '../../ui/format.js';
 import { latest } from '../latest.js';
 import { createMarkKey } from '../marks.js';
-import { isClosed, widestHole } from '../measure.js';
+import { isBare, isClosed, widestHole } from '../measure.js';
 import { createPlay, createRangeRow } from '../parts.js';
 import { byNeighbours, byValue, Orbit, Picture } from '../picture.js';
-import { pushesOn } from '../pushes.js';
 import { scoreOf } from '../score.js';
+import { termShown } from '../terms.js';
 
 /**
  * @import { LessonParticles, Signal } from '../../engine/types.js'
@@ -98,19 +98,21 @@ async function courseOf(own) {
 export async function seams({ lab, stops }) {
   const own = await lab;
   const course = await courseOf(own);
-  const { placed, steps, front, quarter, last, widest } = course;
+  const { placed, front, quarter, last, widest } = course;
   const orbit = new Orbit();
   orbit.fitTo(placed);
   orbit.faceFront(placed);
   const picture = new Picture(orbit, {
     name: 'The front and its relaxation, with particles of five and of seven neighbours marked',
     onPick(particle) {
-      stops.pick('predict-hole', particle);
-      if (isRelaxing()) followed.value = particle;
+      if (isFree()) return;
+      // Where the front has been there is no hole to come.
+      isCovered.value = !isBare(course.at(range.get()).radii.length, particle);
+      if (!isCovered.peek()) stops.pick('predict-hole', particle);
     },
   });
-  /** Whose pushes are drawn. @type {Signal<number | null>} */
-  const followed = signal(null);
+  /** Whether the last press was on the front. */
+  const isCovered = signal(false);
   const isFree = () => stops.isOpen('predict-hole');
   const isRelaxing = () => isFree() && stops.isOpen('predict-rest');
   /** The slider goes on with every answer. */
@@ -142,9 +144,16 @@ export async function seams({ lab, stops }) {
   });
   live(picture.element, () => {
     const place = Math.min(range.place.value, limit());
-    const isAfter = isRelaxing() && place >= front;
-    const picked = isAfter ? followed.value : place <= front ? stops.picked('predict-hole') : null;
+    const picked = place <= front ? stops.picked('predict-hole') : null;
     const marks = marksAt(course, place, { picked, isFree: isFree(), isRelaxing: isRelaxing() });
+    // A seam is where fronts have met so far.
+    if (termShown() === 'seam')
+      marks.push(
+        ...course.found
+          .slice(0, place + 1)
+          .flat()
+          .map((particle) => markOf(placed, particle, 'cross')),
+      );
     const measured = scores.value[step()] ?? scores.value[0];
     const particles = course.at(place);
     const colours =
@@ -166,42 +175,27 @@ export async function seams({ lab, stops }) {
     if (isNow || isAfter) range.set(front);
     if (isNow && widest) orbit.turnTo(widest.hole.normal);
   });
-  const words = h('p', { class: 'figure-count' }, () => {
-    if (!isFree()) return 'The slider goes on once you have said where.';
-    const place = range.place.value;
-    if (place > front)
-      return `The longest move of this step: ${formatSignificant(Number(steps[step() - 1].largest_move), 2)} r.`;
-    const met = plural(course.found[place].length, 'time');
-    return `${plural(course.at(place).radii.length, 'particle')}; the front met itself ${met} on this level.`;
-  });
+  const words = h('p', { class: 'figure-count' }, () =>
+    isFree()
+      ? wordsAt(course, range.place.value)
+      : isCovered.value
+        ? 'Particles lie there already. Press a place that is still bare.'
+        : 'The slider goes on once you have said where.',
+  );
   const play = createPlay(range, { label: 'Play', totalMs: () => STEP_MS * limit() });
   return [
     picture.element,
     h('div', { class: 'controls' }, play.element, range.element, words),
     createMarkKey({ hidden: () => !isFree() }),
-    createPushes(course, { isOpen: isRelaxing, followed, step }),
   ];
 }
 
-/**
- * The pushes on a particle in the step that comes next.
- * @param {Course} course
- * @param {{ isOpen: () => boolean, followed: Signal<number | null>, step: () => number }} about
- */
-function createPushes({ run: { client }, states, steps }, { isOpen, followed, step }) {
-  const box = h('div', { class: 'pushes-box', hidden: () => !isOpen() || followed.value === null });
-  const show = latest(async (/** @type {{ particle: number, at: number }} */ { particle, at }, isOld) => {
-    // Questions are answered in their order, so none comes between these two.
-    const sought = client.ask('seek', { event: steps[at].first_event });
-    const pushes = await client.ask('pushes', { particle });
-    await sought;
-    if (!isOld()) fill(box, pushesOn({ before: states[at], after: states[at + 1] }, particle, pushes));
-  });
-  live(box, () => {
-    const at = Math.min(step(), steps.length - 1);
-    if (isOpen() && steps.length > 0 && followed.value !== null) void show({ particle: followed.value, at });
-  });
-  return box;
+/** What there is to say of a place of the slider. @param {Course} course @param {number} place */
+function wordsAt({ at, found, front, steps }, place) {
+  if (place > front)
+    return `The longest move of this step: ${formatSignificant(Number(steps[place - front - 1].largest_move), 2)} r.`;
+  const met = plural(found[place].length, 'time');
+  return `${plural(at(place).radii.length, 'particle')}; the front met itself ${met} on this level.`;
 }
 
 /**

@@ -12,16 +12,13 @@ import { fingerprint, live, openLesson, overflow, settled, TORUS } from './helpe
  * @import { Locator } from '@playwright/test'
  */
 
-const FIGURES =
-  'judge-first measures plane rings seams judge-last judge-few judge-chance circle first angles sizes cost moving'.split(
-    ' ',
-  );
+const FIGURES = 'opening measures plane rings seams draws circle first angles sizes cost'.split(' ');
 
 test('every chapter has a live figure, in a folder of a host, too, and is accessible, also in the dark', async ({
   page,
 }) => {
   const { clean } = await openLesson(page, { place: './sub/path/' });
-  await expect(page.locator('.chapter h2')).toHaveCount(13);
+  await expect(page.locator('.chapter h2')).toHaveCount(11);
   for (const name of FIGURES) await live(page, name);
   expect(
     await page.locator('canvas').evaluateAll((all) => all.every((one) => /** @type {any} */ (one).getContext('2d'))),
@@ -50,7 +47,7 @@ test('the learner’s own formula is carried over, and back', { tag: '@all' }, a
   await page.getByRole('link', { name: 'Lesson' }).click();
   await page.waitForURL(/learn\/#surface=/);
   await expect(page.locator('#surface-name')).toContainText(formula);
-  await live(page, 'judge-first');
+  await live(page, 'opening');
   await page.getByRole('link', { name: 'Marching Particles', exact: true }).click();
   await page.waitForURL((url) => !url.pathname.includes('learn') && url.hash.startsWith('#v1'));
   await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.engine.state.value.formula !== '');
@@ -64,7 +61,7 @@ test('a surface without a point gives way to the ellipsoid, and the page says so
     JSON.stringify({ formula: 'x^2 + y^2 + z^2 + 1 = 0', bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, from: '' }),
   ).toString('base64url');
   await openLesson(page, { hash: `#surface=${none}` });
-  await live(page, 'judge-first');
+  await live(page, 'opening');
   await expect(page.locator('#notice')).toContainText('The figures show an ellipsoid.');
 });
 
@@ -156,8 +153,8 @@ test('in a comparison one camera turns both pictures, and a press on one sets th
 test('the match tolerance is dragged in its sentence, and the figure follows', { tag: '@all' }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#first' });
   const first = await live(page, 'first');
-  const number = page.locator('#first').getByRole('slider', { name: 'Match tolerance' });
-  await expect(number).toHaveText('0.70');
+  const number = page.locator('#first').getByRole('slider', { name: 'Tolerance' });
+  await expect(number).toHaveText('1.4 r');
   const count = async () =>
     Number(/run of ([\d,]+)/.exec(await first.getByText(/^A run of/).innerText())?.[1].replace(',', ''));
   const usual = await count();
@@ -167,9 +164,9 @@ test('the match tolerance is dragged in its sentence, and the figure follows', {
   await page.mouse.down();
   await page.mouse.move(box.x - 300, box.y + 5, { steps: 20 });
   await page.mouse.up();
-  await expect(number).toHaveText('0.40');
+  await expect(number).toHaveText('0.8 r');
   await expect.poll(count).toBeGreaterThan(1.5 * usual);
-  await expect(first.locator('.told')).toContainText('within 0.80 r');
+  await expect(first.locator('.told')).toContainText('tolerance of 0.80 r');
   await number.press('End');
   await expect.poll(count).toBeLessThan(0.9 * usual);
   for (let k = 0; k < 5; k += 1) await number.press('ArrowLeft');
@@ -206,7 +203,7 @@ test('the picture of a figure stays in view while a number of the text is dragge
   clean();
 });
 
-test('a particle is followed by events, particles and levels, with its plane, its line and a slot from the side', {
+test('a particle is followed event by event, with its plane, its line and a slot from the side', {
   tag: '@all',
 }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#first' });
@@ -223,23 +220,12 @@ test('a particle is followed by events, particles and levels, with its plane, it
   await expect(told).toContainText('The particle is done');
   await on.click();
   await expect(name).toContainText(`Particle ${own + 1} `);
-  await back.click();
+  await back.focus();
+  await page.keyboard.press('Enter');
   await expect(name).toContainText(`Particle ${own} `);
   await expect(told).toContainText('The particle is done');
-  await first.getByLabel('One step is').selectOption('particle');
-  await on.focus();
-  await page.keyboard.press('Enter');
-  await expect(name).toContainText(`Particle ${own + 1} `);
   // The button keeps the focus, so that the keys go on.
-  await page.keyboard.press('Enter');
-  await expect(name).toContainText(`Particle ${own + 2} `);
-  const level = async () => Number(/level (\d+)/.exec((await name.textContent()) ?? '')?.[1]);
-  const before = await level();
-  await first.getByLabel('One step is').selectOption('level');
-  await on.click();
-  await expect.poll(level).toBe(before + 1);
-  await back.click();
-  await expect.poll(level).toBe(before);
+  await expect(back).toBeFocused();
   clean();
 });
 
@@ -286,12 +272,6 @@ test('what the text claims of the ellipsoid is what its runs say', { tag: '@all'
   await expect(page.locator('#predict-rest .predict-result')).toContainText(
     /The largest hole was 1\.\d+ and is 1\.\d+/,
   );
-  // The pushes of the neighbours on a particle are drawn once it is pressed.
-  const pushes = seams.locator('.pushes-box');
-  await expect(pushes).toBeHidden();
-  await seams.getByRole('application').press('Enter');
-  await expect(pushes).toContainText(/\d neighbours push particle \d+\. Their pushes add up to \d+ % of the strongest/);
-  await expect(pushes.locator('.push')).toHaveCount(await pushes.locator('.disc').count());
   await expect(slider).toHaveAttribute('aria-valuetext', /^level/);
   const placed = await fingerprint(seams.locator('.picture'));
   await slider.press('End');
@@ -299,6 +279,25 @@ test('what the text claims of the ellipsoid is what its runs say', { tag: '@all'
   await expect(seams.locator('.figure-count').first()).toContainText('The longest move of this step');
   await expect.poll(() => fingerprint(seams.locator('.picture'))).not.toBe(placed);
   clean();
+});
+
+test('a link to the slides or the race leads to the article', { tag: '@all' }, async ({ page }) => {
+  await openLesson(page, { hash: '#race&mode=present' });
+  await expect(page.locator('#notice')).toContainText('There is no stop “race” in this lesson.');
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#cost');
+  await expect(page.locator('#cost h2')).toBeInViewport();
+  await expect(page.locator('.chapter').filter({ visible: true })).toHaveCount(11);
+});
+
+test('a press where particles lie already is no answer', { tag: '@all' }, async ({ page }) => {
+  await openLesson(page, { hash: '#seams' });
+  const seams = await live(page, 'seams');
+  // The picture opens on the front, so that its middle is covered.
+  await seams.getByRole('application').press('Enter');
+  await expect(seams).toContainText('Particles lie there already.');
+  const hole = page.locator('#predict-hole');
+  await hole.getByRole('button', { name: 'Reveal' }).click();
+  await expect(hole.locator('.predict-result')).toContainText('Press a bare place on the surface first.');
 });
 
 test('an unknown stop leads to the nearest one, and the page says so', { tag: '@all' }, async ({ page }) => {
@@ -322,10 +321,10 @@ test('the focus goes from the button of a question to its answer', { tag: '@all'
 test('without the bundle the text stays and a figure says what is missing', { tag: '@all' }, async ({ page }) => {
   await page.route(/lesson_bg.*\.wasm$/, (route) => route.abort());
   await openLesson(page);
-  const why = await settled(page, 'judge-first');
+  const why = await settled(page, 'opening');
   await expect(why).toHaveAttribute('data-state', 'still');
   await expect(why.locator('img')).toBeVisible();
-  await expect(page.locator('[data-figure="judge-first"] + .figure-status')).toContainText('did not load');
+  await expect(page.locator('[data-figure="opening"] + .figure-status')).toContainText('did not load');
   await expect(page.getByText('Particles are such a list')).toBeVisible();
 });
 
@@ -377,7 +376,7 @@ test('every question is answered by the run, or skipped, and on a phone nothing 
   const { clean } = await openLesson(page, { width: 390, height: 760 });
   for (const name of FIGURES) await live(page, name);
   const questions = page.locator('.predict');
-  await expect(questions).toHaveCount(12);
+  await expect(questions).toHaveCount(8);
   for (const question of await questions.all()) {
     await question.getByRole('button', { name: 'Skip' }).click();
     await expect(question).toHaveAttribute('data-state', 'open');
@@ -430,53 +429,93 @@ test('guesses and answers are there again after a reload, and are forgotten on r
   await expect(page.locator('#predict-ring').getByLabel('Particles in ring 12')).toHaveValue('');
 });
 
-test('the last pairs are judged by eye, then by their figures, and then they have marks and names', {
+test('pairs are drawn from the gallery and judged by eye, then by the figure of their purpose', {
   tag: '@all',
 }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#judge' });
-  const judge = await live(page, 'judge-last');
-  const question = page.locator('#predict-last');
-  const plain = await fingerprint(judge.locator('.picture').first());
-  await expect(judge.locator('table')).toBeHidden();
-  await expect(question.getByRole('radio')).toHaveCount(3);
+  const stage = await live(page, 'draws');
+  await expect(stage.locator('.picture')).toHaveCount(0);
+  await stage.getByRole('button', { name: 'Draw a pair' }).click();
+  const question = page.locator('#judge-1');
+  const [eye, figure, winner] = [0, 1, 2].map((k) => question.getByRole('group').nth(k));
+  const plain = await fingerprint(question.locator('.picture').first());
+  await expect(question.locator('table')).toBeHidden();
+  await expect(figure).toBeHidden();
   await question.getByRole('button', { name: 'Show the figures' }).click();
-  await expect(question.getByRole('status')).toContainText('Choose an answer first.');
-  await question.getByRole('radio', { name: 'Sampling A' }).check();
+  await expect(question.locator('.predict-result')).toContainText('Choose an answer first.');
+  await eye.getByRole('radio', { name: 'Sampling A' }).check();
   await question.getByRole('button', { name: 'Show the figures' }).click();
   // The figures have what chance can do, and no verdict.
-  await expect(judge.locator('thead')).toHaveText('IdealABChance');
-  await expect(judge.getByRole('row', { name: /^Six neighbours/ })).toContainText('5.2 points');
-  await expect(judge.locator('.best, .decides, .outcome')).toHaveCount(0);
-  expect(await fingerprint(judge.locator('.picture').first())).toBe(plain);
-  await expect(question.getByRole('radio', { name: 'Sampling B' })).toBeDisabled();
-  await question.getByRole('radio', { name: 'A, by the largest hole' }).check();
-  await question.getByRole('button', { name: 'Reveal' }).click();
-  await expect(question.locator('.predict-judged')).toHaveText('B, by six neighbours. You said otherwise.');
-  await expect(question.locator('.check[data-right]')).toHaveText(['Sampling Bright', 'B, by six neighboursright']);
-  await expect(judge.locator('.decides')).toContainText('Six neighbours');
-  await expect(judge.locator('.outcome')).toHaveText(
-    /^Better: B, a queue, not relaxed, by the row “Six neighbours”\.$/,
-  );
-  // The other two figures speak for A.
-  await expect(judge.locator('td:has(.best)')).toHaveCount(3);
-  await expect(judge.getByText('seven or more')).toBeVisible();
-  await expect.poll(() => fingerprint(judge.locator('.picture').first())).not.toBe(plain);
-  // Two that cannot be told apart: no row has a winner.
-  const even = await live(page, 'judge-chance');
-  const last = page.locator('#predict-chance');
-  await last.getByRole('radio', { name: 'They cannot be told apart' }).first().check();
-  await last.getByRole('button', { name: 'Show the figures' }).click();
-  await last.getByRole('radio', { name: 'They cannot be told apart' }).last().check();
-  await last.getByRole('button', { name: 'Reveal' }).click();
-  await expect(last.locator('.predict-judged')).toContainText('As you said.');
-  await expect(even.locator('.outcome')).toHaveText('No difference beyond chance: the two cannot be told apart.');
-  await expect(even.locator('.best, .decides')).toHaveCount(0);
-  // Both guesses are there again after a reload.
+  await expect(question.locator('thead')).toHaveText('IdealABChance');
+  await expect(question.locator('.best, .decides, .outcome')).toHaveCount(0);
+  expect(await fingerprint(question.locator('.picture').first())).toBe(plain);
+  await expect(eye.getByRole('radio').first()).toBeDisabled();
+  await figure.getByRole('radio', { name: 'Largest hole' }).check();
+  await winner.getByRole('radio', { name: 'Neither' }).check();
+  // A reload keeps the pair and what was chosen.
+  const story = await question.locator('.predict-question').innerText();
   await page.reload();
-  await live(page, 'judge-last');
-  await expect(question.getByRole('radio', { name: 'Sampling A' })).toBeChecked();
-  await expect(question.getByRole('radio', { name: 'A, by the largest hole' })).toBeChecked();
+  await live(page, 'draws');
+  await expect(question.locator('.predict-question')).toHaveText(story);
+  await expect(figure.getByRole('radio', { name: 'Largest hole' })).toBeChecked();
+  await question.getByRole('button', { name: 'Reveal' }).click();
+  await expect(question).toHaveAttribute('data-state', 'open');
+  await expect(question.locator('.check[data-right]')).toHaveCount(3);
+  await expect(question.locator('.outcome')).toHaveText(/^(Better: [AB], |No difference beyond chance)/);
+  await expect(question.getByText('seven or more')).toBeVisible();
+  await expect.poll(() => fingerprint(question.locator('.picture').first())).not.toBe(plain);
+  await expect(stage).toContainText(/Right by eye: [01] of 1 pair; by the figures: [01]\./);
+  // The next one compares one size with many, and the one before is there again.
+  await stage.getByRole('button', { name: 'Another pair' }).click();
+  await expect(page.locator('#judge-2')).toBeVisible();
+  await stage.getByRole('button', { name: 'The pair before' }).click();
+  await expect(question).toHaveAttribute('data-state', 'open');
+  await expect(question.locator('.predict-question')).toHaveText(story);
   clean();
+});
+
+test('five runs from other seeds become dots, and a term marks what it means', { tag: '@all' }, async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: '#measures' });
+  const measures = await live(page, 'measures');
+  const dots = measures.locator('.dots-axis').first().locator('span');
+  for (let count = 1; count < 5; count += 1) {
+    await expect(dots).toHaveCount(count);
+    await measures.getByRole('button', { name: 'Another seed' }).click();
+  }
+  await expect(dots).toHaveCount(5);
+  await expect(measures.locator('.told')).toContainText(/The dots are [\d.]+ points, 0\.\d+, 0\.\d+ wide/);
+  await expect(measures.getByRole('button', { name: 'Another seed' })).toBeHidden();
+  const cell = measures.locator('.cell').first();
+  const width = () => cell.evaluate((one) => getComputedStyle(one).strokeWidth);
+  const plain = await width();
+  await page.locator('[data-term="cell"]').hover();
+  await expect.poll(width).not.toBe(plain);
+  await page.locator('[data-term="pair"]').focus();
+  await expect(measures).toHaveAttribute('data-marks', 'pair');
+  clean();
+});
+
+test('what if takes a surface of the gallery, which is part of the address', { tag: '@all' }, async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: '#what-if-order' });
+  const bench = page.locator('#bench');
+  await expect(bench.locator('table.compare')).toBeVisible();
+  const before = await fingerprint(bench.locator('.picture').first());
+  await bench.getByLabel('Surface').selectOption('torus');
+  await expect.poll(() => fingerprint(bench.locator('.picture').first())).not.toBe(before);
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#what-if-order&on=torus&left=queue&right=stack');
+  await page.reload();
+  await expect(bench.getByLabel('Surface')).toHaveValue('torus');
+  await bench.getByLabel('What changes').selectOption('fail');
+  await expect(bench.getByLabel('Surface')).toHaveValue('torus');
+  await expect(bench.locator('.said')).toContainText(/six neighbours|chance/);
+  clean();
+});
+
+test('on a phone two samplings stand side by side', { tag: '@all' }, async ({ page }) => {
+  await openLesson(page, { width: 390, height: 844 });
+  const pair = (await live(page, 'opening')).locator('.picture');
+  const [a, b] = [await pair.first().boundingBox(), await pair.last().boundingBox()];
+  expect(a && b && a.y === b.y && a.x + a.width <= b.x && b.x + b.width <= 390).toBe(true);
 });
 
 test('in a comparison one switch marks five and seven neighbours in both pictures', { tag: '@all' }, async ({

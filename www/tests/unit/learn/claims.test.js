@@ -7,13 +7,10 @@
 import { readFileSync } from 'node:fs';
 import { beforeAll, expect, test } from 'vitest';
 import { LessonClient } from '../../../src/engine/lesson/client.js';
-import { FlowingFront } from '../../../src/engine/sampling/flowing.js';
 import { Meter } from '../../../src/engine/sampling/meter.js';
 import { cross } from '../../../src/engine/vector.js';
 import { newtonShare, slotOf, slotOn } from '../../../src/learn/bend.js';
 import { childrenOf, PATCHES, runOn } from '../../../src/learn/decisions.js';
-import { FrontLane, lossOf, MOTIONS, STEPS, SystemLane, scoreAt } from '../../../src/learn/flowing.js';
-import { PAIRS, TORUS } from '../../../src/learn/judged.js';
 import { Lab } from '../../../src/learn/lab.js';
 import {
   costOf,
@@ -23,14 +20,29 @@ import {
   ringsOf,
   scoresOfRest,
 } from '../../../src/learn/measure.js';
+import {
+  drawable,
+  drawn,
+  fromSeed,
+  isClear,
+  OPENING,
+  PURPOSES,
+  questionOf,
+  runsOf,
+  SEEDS,
+  SIZES,
+  scoresOf,
+  TORUS,
+  winnerOf,
+} from '../../../src/learn/pairs.js';
 import { HALF, patchOf } from '../../../src/learn/patch.js';
-import { PREDICTIONS } from '../../../src/learn/predictions.js';
+import { QUESTIONS } from '../../../src/learn/questions.js';
 import { roomEvents } from '../../../src/learn/room.js';
-import { chanceOf, DECIDING, rowOf, scoreAtEnd, scoreOf, verdictOf } from '../../../src/learn/score.js';
+import { chanceOf, DECIDING, gapOf, rowOf, scoreAtEnd, scoreOf, verdictOf, widthOf } from '../../../src/learn/score.js';
 import { subjectOf } from '../../../src/learn/surface.js';
 import { blame, isWorse, tryOut } from '../../../src/learn/verdict.js';
 import { turned as knobTurned, projected, SEED, TANGLECUBE, USUAL, whatIfOf } from '../../../src/learn/whatifs.js';
-import { between, createGrid, spread } from '../../../src/ui/neighbours.js';
+import { between, createGrid } from '../../../src/ui/neighbours.js';
 import { Core } from '../../../src/wasm/core/core.js';
 import { ALL } from '../../all.js';
 import { loadWasm, spawn, spawnCore } from './workers.js';
@@ -40,7 +52,7 @@ const read = (path) => readFileSync(new URL(`../../../${path}`, import.meta.url)
 
 const page = read('learn/index.html');
 const cards = read('learn/cards/index.html');
-const sources = ['predictions', 'whatifs', 'race', 'verdict', 'decisions', 'score', 'judged']
+const sources = ['questions', 'pairs', 'whatifs', 'decisions', 'score', 'chapters/measures']
   .map((name) => read(`src/learn/${name}.js`))
   .join('\n');
 const paper = read('../docs/tables/paper.md');
@@ -76,6 +88,13 @@ function reported({ formula, parameters, bounds }, settings) {
   return { particles: /** @type {any} */ (particles), quality: /** @type {any} */ (report.quality) };
 }
 
+/** What is right in each part of a question, and what is said. @param {string} id */
+async function answerOf(id) {
+  const { rounds, ask, words } = QUESTIONS[id];
+  const facts = await ask(lab);
+  return { right: rounds.flat().map((part) => part.right(facts)), words: words(facts, null).join(' ') };
+}
+
 /** @type {Lab} */
 let lab;
 beforeAll(() => {
@@ -90,9 +109,6 @@ const rowsOf = (html) =>
     head,
     cells: [...cells.matchAll(/<td>([^<]+)<\/td>/g)].map(([, cell]) => cell),
   }));
-
-/** @param {string} cell */
-const numberOf = (cell) => Number(cell.replace(/,/g, ''));
 
 test('the tables on the page are those of the paper', () => {
   const rows = rowsOf(cards);
@@ -119,18 +135,6 @@ test('the tables on the page are those of the paper', () => {
 test('what the text states of the paper is in its tables', () => {
   says('in the paper it takes 373 rounds for 10,633 particles');
   expect(section('Ellipsoid, uniform, 13,923')).toMatch(/10,633[\s\S]*\| 373 \|/);
-  says('82 to 96 % of the time in the paper’s Table 2');
-  says('in the paper’s Table 2 ten steps take 82 to 96 % of it');
-  const shares = rowsOf(cards)
-    .filter(({ cells }) => cells.length === 3)
-    .map(({ cells: [, relaxing, total] }) => Math.round((100 * numberOf(relaxing)) / numberOf(total)));
-  expect([Math.min(...shares), Math.max(...shares)]).toEqual([82, 96]);
-  // The ratios of the race are quotients of the table.
-  for (const [other, own] of [...sources.matchAll(/ratio: ([\d.]+) \/ ([\d.]+)/g)].map(([, ...both]) =>
-    both.map(Number),
-  ))
-    for (const value of [other, own])
-      expect(cards).toContain(`<td>${value.toLocaleString('en', { minimumFractionDigits: 2 })}</td>`);
 });
 
 test('what the text states of the core are its constants', () => {
@@ -142,12 +146,14 @@ test('what the text states of the core are its constants', () => {
 });
 
 test('what the text states of the first particles is so in a plane, and in the coarse run', async () => {
-  says('All six children of the seed are new.');
+  says('Six new particles fit around A.');
   const { chapters, client } = await runOn(lab, PATCHES[0]);
   client.close();
   expect(chapters[0].fates.added).toBe(6);
-  const { right, words } = await childrenOf(lab);
-  expect([right, words]).toEqual([3, expect.stringContaining('2 children fall on particles that the seed has placed')]);
+  expect(await childrenOf(lab)).toEqual({ added: 3, matched: 2 });
+  const { right, words } = await answerOf('predict-children');
+  expect(right).toEqual([3]);
+  expect(words).toContain('For 3: one place around B holds A, and 2 hold particles that A has placed beside B.');
   const run = await lab.coarse();
   says('of a run with some 180 particles');
   expect(Math.abs(run.end.radii.length / 180 - 1)).toBeLessThan(0.12);
@@ -165,13 +171,16 @@ test('what the text states of the first particles is so in a plane, and in the c
 test('what the text states of rings, tolerance and rest is so in the run', async () => {
   const run = await lab.run({}, { keep: true });
   says('On a plane, ring 12 has 72 particles.');
-  says('A particle within 1.4 <i>r</i> of the child counts as the child.');
+  says('if it lies within the <dfn>tolerance</dfn> of it, 1.4 <i>r</i>');
+  says('has a queue and the tolerance 1.4 <i>r</i>, and is relaxed by ten steps');
   // On a dome the rings fall behind 6k.
   says('On a dome the rings fall behind that number and shrink again');
   const rings = ringsOf(run.placed);
   expect(rings[12]).toBeLessThan(72);
   expect(rings[rings.length - 1]).toBeLessThan(Math.max(...rings));
-  says('Here it is <span data-number="tolerance" title="Match tolerance">0.7</span> · 2<i>r</i>.');
+  says('Here the tolerance is <span data-number="tolerance" title="Tolerance">1.4 <i>r</i></span>.');
+  // It is the only length of its kind, in one unit.
+  for (const text of [page, cards]) expect(text).not.toMatch(/0\.7 ·|correspond/);
   expect((await lab.run({ match_tolerance: 0.7 })).end.positions).toEqual(run.end.positions);
   says('No two particles are then nearer than the tolerance.');
   expect(Math.min(...nearestDistances(run.placed))).toBeGreaterThanOrEqual(0.7 - 1e-4);
@@ -234,44 +243,69 @@ test.runIf(ALL)(
   },
 );
 
-test.runIf(ALL)('the learner judges four pairs, and the runs say which is better for what, or neither', async () => {
-  const first = await PREDICTIONS['predict-first'].answer(lab, null);
-  expect(first.right).toBe('b');
-  expect(first.words).toContain('Of the particles of B 89.4 % have six neighbours, of those of A 73.9 %');
-  // Neither hole nor pair speaks for B.
-  const scoresOf = async (/** @type {keyof typeof PAIRS} */ which) =>
-    Promise.all((await PAIRS[which].make(lab)).map(scoreAtEnd));
-  const [a, b] = await scoresOf('first');
-  for (const key of /** @type {const} */ (['hole', 'pair'])) expect(verdictOf([a, b], [key]), key).toBe(null);
-  says('A leaves more of the surface bare, but only because it has fewer discs');
-  expect(Number(a.uncovered)).toBeGreaterThan(2 * Number(b.uncovered));
-  expect(first.words).toContain('1,297 against 1,526');
-  for (const [stop, which, right, eye] of /** @type {const} */ ([
-    ['predict-last', 'weigh', 'six', 'b'],
-    ['predict-few', 'few', 'hole', 'b'],
-    ['predict-chance', 'chance', 'alike', 'alike'],
-  ])) {
-    const answer = await PREDICTIONS[stop].answer(lab, null);
-    expect([answer.right, answer.eye], stop).toEqual([right, eye]);
-    // The choices name the side that has the better figure, be it by chance.
-    const [one, other] = await scoresOf(which);
-    for (const key of DECIDING) {
-      const isFirst = Number(one[key]) < Number(other[key]) === (rowOf(key).worse === 'above');
-      const choice = PREDICTIONS[stop].choices?.find(({ value }) => value === key);
-      expect(choice?.label, stop).toMatch(isFirst ? /^A, by / : /^B, by /);
-    }
+test('the pair at the beginning fools the eye, and the figure below it is of its sampling B', async () => {
+  const [a, b] = await scoresOf(lab, OPENING);
+  const { right, words } = await answerOf('predict-first');
+  expect(right).toEqual(['b']);
+  expect(words).toContain('In B 83.7 % of the particles have exactly six neighbours, in A 73.1 %');
+  says('A looks evener, since it was relaxed');
+  says('B was not.');
+  expect(OPENING.sides.map(({ settings }) => settings.relax_steps)).toEqual([undefined, 0]);
+  // The eye sees gaps: A has the smaller hole and the wider closest pair.
+  for (const key of /** @type {const} */ (['hole', 'pair'])) expect(winnerOf([a, b], key), key).toBe('a');
+  says('Sampling B, which is not relaxed: the patch around its largest hole');
+  expect((await fromSeed(lab, 0)).end.positions).toEqual((await runsOf(lab, OPENING))[1].end.positions);
+});
+
+test('five runs from other seeds are dots, no wider than what is called chance', async () => {
+  const scores = [];
+  for (let seed = 0; seed < SEEDS; seed += 1) scores.push(await scoreAtEnd(await fromSeed(lab, seed)));
+  for (const key of DECIDING) {
+    expect(widthOf(key, scores), key).toBeGreaterThan(0);
+    expect(widthOf(key, scores), key).toBeLessThan(Number(chanceOf(rowOf(key), scores)));
   }
-  says('For the two other purposes A would be the better one, by a smaller hole and a wider closest pair.');
-  const weighed = await scoresOf('weigh');
-  for (const key of /** @type {const} */ (['hole', 'pair']))
-    expect(verdictOf(weighed, [key]), key).toEqual({ key, side: 0 });
-  says('but with so few particles chance makes');
-  const few = await scoresOf('few');
-  expect(Number(few[0].six) - Number(few[1].six)).toBeGreaterThan(0.1);
-  expect(verdictOf(few, ['six'])).toBe(null);
-  says('With some 200 particles');
-  for (const { count } of few) expect(Math.abs(Number(count) - 200)).toBeLessThan(30);
-  for (const key of DECIDING) expect(verdictOf(await scoresOf('chance'), [key]), key).toBe(null);
+});
+
+test.runIf(ALL)(
+  'pairs are drawn from the gallery, the same for one series, and are clear',
+  { timeout: 900_000 },
+  async () => {
+    const surfaces = drawable(await lab.gallery());
+    expect(surfaces.length).toBeGreaterThanOrEqual(10);
+    for (const number of [0, 1, 2]) {
+      const found = await drawn(lab, surfaces, 'a series', number);
+      expect(await drawn(lab, surfaces, 'a series', number)).toEqual(found);
+      const scores = await scoresOf(lab, found.pair);
+      const { key } = found.purpose;
+      expect(isClear(scores, key), found.pair.name).toBe(true);
+      const { rounds, words } = questionOf(found);
+      const [[eye], [figure, winner]] = rounds;
+      expect([figure.right(scores), winner.right(scores)]).toEqual([key, eye.right(scores)]);
+      for (const part of [eye, figure, winner])
+        expect(part.choices?.map(({ value }) => value)).toContain(part.right(scores));
+      expect(words(scores, null).join(' ')).toMatch(/ in A and .* in B\. A difference of up to /);
+      // Every third is one size against many.
+      expect(found.pair.sides.some(({ isAdaptive }) => isAdaptive)).toBe(number === 1);
+    }
+  },
+);
+
+test.runIf(ALL)('many sizes serve a mould, and one size serves a scanner and sensors', async () => {
+  const { surface } = lab;
+  const scores = await scoresOf(lab, { surface, name: '', sides: SIZES, particles: 600 });
+  const told = PURPOSES.map(({ key }) => [key, winnerOf(scores, key)]);
+  expect(Object.fromEntries(told)).toMatchObject({ gap: 'b', hole: 'a', pair: 'a' });
+});
+
+test('the widest gap to a mesh is that between a sphere and its longest edge', async () => {
+  const bounds = { min: [-1.2, -1.2, -1.2], max: [1.2, 1.2, 1.2] };
+  const sphere = lab.beside(/** @type {any} */ ({ formula: 'x^2 + y^2 + z^2 - 1', parameters: [], bounds }));
+  const { end } = await sphere.run({ relax_steps: 0, radius: 0.2 });
+  const longest = 2.8 * 0.2;
+  const most = 1 - Math.sqrt(1 - (longest / 2) ** 2);
+  // Over the sphere's diameter, and no edge is longer than what counts as one.
+  expect(2 * Number(gapOf(end))).toBeLessThan(1.02 * most);
+  expect(2 * Number(gapOf(end))).toBeGreaterThan(0.75 * most);
 });
 
 /** The largest difference of each judged figure among ten seeds, and what is called chance there. */
@@ -290,10 +324,10 @@ test.runIf(ALL)(
   'ten seeds of one method differ by no more than what is called chance, and by nearly as much',
   { timeout: 900_000 },
   async () => {
+    says('differ by up to 200/√<i>n</i> points in the share with six neighbours, where <i>n</i> is the number of');
     says(
-      'two seeds differ by up to 200/√<i>n</i> points in the share with six neighbours, so by 10 with 400 particles',
+      'by 10 with 400 and by 5 with 1,600. In the largest hole they differ by up to 0.15, in the closest pair by 0.08',
     );
-    says('and by 5 with 1,600; by 0.15 in the largest hole and 0.08 in the closest pair, more on strong bends.');
     const [tanglecube, torus] = [lab.on(TANGLECUBE), lab.on(TORUS)];
     const all = [
       await spreadOf(lab, {}),
@@ -312,45 +346,39 @@ test.runIf(ALL)(
   },
 );
 
-test('every chapter says the same of what placing costs', async () => {
+test('every chapter says the same of what placing costs, and of how many particles', async () => {
   const { rows, particles } = await costOf(lab);
   const alone = await lab.run({ relax_steps: 0 });
   expect(rows[0].evaluations).toBeCloseTo(alone.progress.evaluations / particles, 9);
-  expect((await PREDICTIONS['predict-cost'].answer(lab, null)).right).toBe('placing');
-  says('Placing takes 15 evaluations of <i>f</i> for each particle, and ten steps 11 more');
-  says('which pushes them apart from the beginning, takes 73.');
+  expect((await answerOf('predict-cost')).right).toEqual(['placing']);
+  says('Placing takes 15 evaluations of <i>f</i> for each of these 1,526 particles. With 181 it takes 33');
+  says('Ten steps of relaxation take 11 more');
+  says('which pushes particles apart from the beginning, takes 73.');
+  expect(particles).toBe(1526);
   expect(rows.map(({ evaluations }) => Math.round(evaluations))).toEqual([15, 11, 73]);
+  const few = await lab.coarse();
+  expect([few.end.radii.length, Math.round(few.placing / few.end.radii.length)]).toEqual([181, 33]);
 });
 
-test.runIf(ALL)('what limits a sampling is so in the runs of the lesson', async () => {
+test('what limits a sampling is said of one sampling, as placed', async () => {
   says(
-    'with 1,526 particles and ten steps, 89.4 % have six neighbours, the largest hole is 1.23 and the closest pair 0.75',
+    'As placed, before any relaxation, 89.4 % have six neighbours, the largest hole is 1.49 and the closest pair 0.73.',
   );
   const [placed, rested] = await scoresOfRest(lab);
-  expect(DECIDING.map((key) => rowOf(key).write(Number(rested[key])))).toEqual(['89.4 %', '1.23', '0.75']);
-  says('As placed, 88 particles have five, 70 seven and 3 eight: 88 − 70 − 2 · 3 = 12.');
+  const written = (/** @type {import('../../../src/learn/types.js').Score} */ score) =>
+    DECIDING.map((key) => rowOf(key).write(Number(score[key])));
+  expect(written(placed)).toEqual(['89.4 %', '1.49', '0.73']);
+  says('Here 88 particles have five, 70 seven and 3 eight: 88 − 70 − 2 · 3 = 12.');
   const valence = [...placed.valence];
   const having = (/** @type {number} */ count) => valence.filter((own) => own === count).length;
   expect([5, 6, 7, 8].map(having)).toEqual([88, 1526 - 88 - 70 - 3, 70, 3]);
   says('at least twelve have five, and 99.2 % is the most');
   expect((100 * (1 - 12 / valence.length)).toFixed(1)).toBe('99.2');
-  says('The queue has few seams; the stack has many, and 73.9 %.');
-  const stack = await scoreAtEnd(await lab.run({ order: 'stack' }));
-  expect(rowOf('six').write(Number(stack.six))).toBe('73.9 %');
-  says('Relaxation lets the largest hole shrink from 1.49 to 1.23, and changes order by chance only.');
-  expect(rowOf('hole').write(Number(placed.hole))).toBe('1.49');
-  expect(verdictOf([placed, rested], ['hole'])).toEqual({ key: 'hole', side: 1 });
-  expect(verdictOf([placed, rested], ['six'])).toBe(null);
-  says('distances to the nearest particle vary by 9.9 % before it and by 6.1 % after it');
-  const { placed: before, end } = await lab.run({}, { keep: true });
-  const variation = [before, end].map((particles) => {
-    const { mean, deviation } = spread(nearestDistances(particles));
-    return ((100 * deviation) / mean).toFixed(1);
-  });
-  expect(variation).toEqual(['9.9', '6.1']);
-  says('there the sum is 0, and yet its particles are no nearer to 100 %');
-  const torus = await scoreAtEnd(await lab.on(TORUS).run({}));
-  expect(Number(torus.six)).toBeLessThan(Number(rested.six));
+  const stack = await scoreAtEnd(await lab.run({ order: 'stack', relax_steps: 0 }));
+  says(`The queue has few seams; the stack has many, and ${rowOf('six').write(Number(stack.six))}.`);
+  says('Relaxation lets the largest hole shrink from 1.49 to 1.23, and changes order and closest pair by chance only.');
+  expect(written(rested)[1]).toBe('1.23');
+  expect(DECIDING.map((key) => verdictOf([placed, rested], [key])?.side ?? null)).toEqual([null, 1, null]);
 });
 
 test.runIf(ALL)(
@@ -455,14 +483,13 @@ test.runIf(ALL).each(['ellipsoid', 'torus'])(
     says('Nothing is put there, and the hole stays open.');
     expect(large.run.end.radii.length).toBeLessThan(0.9 * usual.run.end.radii.length);
     expect(figures(large).uncovered).toBeGreaterThan(1.5 * figures(usual).uncovered);
-    says('Nothing is pushed into the holes that placing leaves beside its seams, and pairs stay too near.');
+    // The closest pair is not said to change: it does by chance at most.
+    says("? 'Nothing is pushed into the holes that placing leaves beside its seams.'");
     expect(figures(still).hole).toBeGreaterThan(figures(usual).hole + 0.1);
-    expect(figures(still).pair).toBeLessThan(figures(usual).pair);
+    if (name === 'ellipsoid') expect(verdictOf([still.score, usual.score], ['pair'])).toBe(null);
     says('Another seed moves the rings, and the seams with them. Their number hardly changes.');
     expect(seed.run.end.positions).not.toEqual(usual.run.end.positions);
     expect(Math.abs(figures(seed).six - figures(usual).six)).toBeLessThan(0.05);
-    // Which of them alone does most harm.
-    says('Not the stack.');
     for (const other of [stack, large, seed, still]) expect(isWorse(small.score, other.score)).toBe(true);
     says('The ellipsoid can be brought below a half with six neighbours.');
     expect(figures(all).six).toBeLessThan(0.5);
@@ -503,70 +530,6 @@ test.runIf(ALL)('pushed for a hundred steps, particles go farther from where the
   };
   expect(await farOf('100')).toBeGreaterThan(1.5 * (await farOf('10')));
 });
-
-/** @param {object} [how] */
-const frontOn = (motion = MOTIONS[0], how = {}) =>
-  new FrontLane(motion, { ...how, front: new FlowingFront({ spawn: spawnCore }) });
-
-/**
- * Scores of a lane before the surface moves, at the other end of the slider, and at rest there.
- * @param {FrontLane | SystemLane} lane
- */
-async function driven(lane, motion = MOTIONS[0]) {
-  await lane.begin(0);
-  const scores = [await scoreAt(lab, motion, 0, lane)];
-  for (let step = 1; step <= STEPS; step += 1) await lane.follow(step);
-  scores.push(await scoreAt(lab, motion, STEPS, lane));
-  await lane.rest(STEPS);
-  scores.push(await scoreAt(lab, motion, STEPS, lane));
-  lane.close();
-  return scores.map(({ six, hole, count }) => ({ six: Number(six), hole: Number(hole), count: Number(count) }));
-}
-
-test.runIf(ALL)('what the text states of a surface that moves is so in its lanes', async () => {
-  says('is drawn out to twice its length');
-  expect(MOTIONS[0].range[1] / MOTIONS[0].range[0]).toBe(2);
-  says('What flows keeps its number and nearly its cover');
-  const [before, drawn, rest] = await driven(frontOn());
-  expect(drawn.six).toBeLessThan(before.six - 0.1);
-  expect(drawn.hole).toBeLessThan(1.5);
-  expect(Math.abs(drawn.count / rest.count - 1)).toBeLessThan(0.05);
-  says('it begins anew and brings all the order back');
-  expect(Math.abs(rest.six - before.six)).toBeLessThan(0.05);
-  says('Witkin and Heckbert’s particles have four rounds for each step of the slider;');
-  says('while the other system settles in the disorder that it has');
-  const system = await driven(new SystemLane(MOTIONS[0], { client: new LessonClient({ spawn }) }));
-  for (const { six, hole } of system) {
-    expect(six).toBeLessThan(0.75);
-    expect(hole).toBeLessThan(1.6);
-  }
-  says('Without births and deaths most of the order stays, and the particles drift apart.');
-  const [, closed, still] = await driven(frontOn(MOTIONS[0], { isClosed: true }));
-  expect(closed.six).toBeGreaterThan(before.six - 0.06);
-  expect(closed.hole).toBeGreaterThan(4);
-  expect(still).toEqual(closed);
-});
-
-test.runIf(ALL)('the question about a surface that moves has the answer of its run', async () => {
-  const { right, words } = await lossOf(lab, frontOn());
-  expect(right).toBe('order');
-  expect(words).toMatch(/^There are 1,8\d\d particles, and a new front has 1,9\d\d\. .* born where there is room/);
-});
-
-test.runIf(ALL)(
-  'a tanglecube falls into eight and joins again, and Witkin and Heckbert’s particles with it',
-  async () => {
-    const [, motion] = MOTIONS;
-    const lane = new SystemLane(motion, { client: new LessonClient({ spawn }) });
-    await lane.begin(0);
-    for (let step = 1; step <= STEPS; step += 1) await lane.follow(step);
-    // In eight pieces none is near a plane of symmetry.
-    for (const x of lane.particles.positions) expect(Math.abs(x)).toBeGreaterThan(0.5);
-    for (let step = STEPS - 1; step >= 0; step -= 1) await lane.follow(step);
-    expect((await scoreAt(lab, motion, 0, lane)).hole).toBeLessThan(1.6);
-    lane.close();
-  },
-);
 
 test.runIf(ALL)('what the text states of Newton’s method is so on a sphere, by formula and in a run', async () => {
   expect((100 * (1 - newtonShare(0.1))).toFixed(1)).toBe('1.5');

@@ -5,8 +5,8 @@ import { triple } from '../../../src/engine/vector.js';
 import { inPlane } from '../../../src/figures/geometry.js';
 import { momentAt } from '../../../src/figures/moment.js';
 import { openParticle } from '../../../src/figures/particle.js';
-import { ALGORITHM } from '../../../src/figures/words.js';
-import { decisionsOf, lineAt, objection, PATCHES, runOn, treatedOf } from '../../../src/learn/decisions.js';
+import { tell } from '../../../src/figures/words.js';
+import { decisionsOf, letterOf, objection, PATCHES, runOn, treatedOf } from '../../../src/learn/decisions.js';
 import { Lab } from '../../../src/learn/lab.js';
 import { loadWasm, spawn } from './workers.js';
 
@@ -52,9 +52,12 @@ test('the learner decides matched and new ones, each asked before it is told; th
   ]);
 });
 
-test('the line that asks is that of comparing', () => {
-  const asked = decisionsOf(EVENTS).map((decision) => ALGORITHM[lineAt(decision)].of[0]);
-  expect(asked).toEqual(['compared', 'compared']);
+test('particles have letters, so that none is named as a slot', () => {
+  expect([0, 25, 26, 51, 52].map(letterOf)).toEqual(['A', 'Z', 'AA', 'AZ', 'BA']);
+  const subject = { particle: 1, level: 1, parent: 0, radius: R, nameOf: letterOf };
+  const told = EVENTS.map((_, at) => tell(momentAt(EVENTS, at), subject));
+  expect(told).toContain('The child of slot 1 matched particle C, so nothing is added.');
+  for (const words of told) expect(words).not.toMatch(/article \d/);
 });
 
 test('what the run decided meets no objection, and all else does, with its reason', () => {
@@ -62,13 +65,13 @@ test('what the run decided meets no objection, and all else does, with its reaso
   const [matched, added] = decisions;
   for (const decision of decisions) expect(objection(OPENED, decision, decision.verdict)).toBe('');
   expect(objection(OPENED, matched, { fate: 'added', particle: null })).toMatch(
-    /Particle 2 lies 0\.10\sr .*within 1\.40\sr/,
+    /Particle C lies 0\.10\sr .*within the tolerance of 1\.40\sr/,
   );
   expect(objection(OPENED, matched, { fate: 'matched', particle: 3 })).toMatch(
     /0\.10\sr .*1\.50\sr .*The nearest one counts/,
   );
   expect(objection(OPENED, added, { fate: 'matched', particle: 3 })).toMatch(
-    /Particle 3 lies 1\.50\sr .*only within 1\.40\sr/,
+    /Particle D lies 1\.50\sr .*beyond the tolerance of 1\.40\sr/,
   );
 });
 

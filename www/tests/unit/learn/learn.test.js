@@ -2,11 +2,11 @@
 import { expect, test } from 'vitest';
 import { nearestStop, readAddress, writeAddress } from '../../../src/learn/address.js';
 import { Stops } from '../../../src/learn/answers.js';
-import { asFineEverywhere, nearestDistances, ringsOf, sharpestBend, shotAt } from '../../../src/learn/measure.js';
+import { asFineEverywhere, isBare, nearestDistances, ringsOf, sharpestBend } from '../../../src/learn/measure.js';
 import { cellOf } from '../../../src/learn/patch.js';
 import { bestOf, rowOf, scoreOf, verdictOf } from '../../../src/learn/score.js';
 import { subjectOf } from '../../../src/learn/surface.js';
-import { packTask, readWork, tableOf, unpackTask } from '../../../src/learn/task.js';
+import { packTask, readWork, tableOfAll, unpackTask } from '../../../src/learn/task.js';
 import { FAIL, SEED, seedAt, turned, USUAL } from '../../../src/learn/whatifs.js';
 import { packCarried, packed, unpackCarried, unpacked } from '../../../src/ui/surface-link.js';
 
@@ -36,7 +36,7 @@ const particles = (places, { levels = [], parents = [], fronts = [] } = {}) => (
 });
 
 test('an address is read as it was written, and a bare anchor is one', () => {
-  const address = { stop: 'what-if-order', parts: { surface: 'abc_-', mode: 'present' } };
+  const address = { stop: 'what-if-order', parts: { surface: 'abc_-', on: 'torus' } };
   expect(readAddress(writeAddress(address))).toEqual(address);
   expect(readAddress('#rings')).toEqual({ stop: 'rings', parts: {} });
   expect(readAddress('#surface=abc')).toEqual({ stop: '', parts: { surface: 'abc' } });
@@ -51,6 +51,22 @@ test('an unknown stop leads to the one with the nearest name', () => {
   expect(nearestStop('what-if-orders', stops)).toEqual({ stop: 'what-if-order', isExact: false });
   expect(nearestStop('', stops)).toBe(null);
   expect(nearestStop('x'.repeat(10_000), stops)?.isExact).toBe(false);
+});
+
+test('a link to what the lesson no longer has leads to what is nearest by its content, without slides', () => {
+  const stops = ['why', 'plane', 'rings', 'judge', 'cost'];
+  for (const [old, stop] of [
+    ['race', 'cost'],
+    ['moving', 'cost'],
+    ['predict-moving', 'cost'],
+    ['predict-few', 'judge'],
+  ])
+    expect(nearestStop(old, stops), old).toEqual({ stop, isExact: false });
+  expect(readAddress('#rings&mode=present')).toEqual({ stop: 'rings', parts: {} });
+});
+
+test('a press counts where the front has not come yet', () => {
+  expect([0, 41, 42, 100].map((particle) => isBare(42, particle))).toEqual([false, false, true, true]);
 });
 
 test('a surface comes out of a link as it went in, with the way back', () => {
@@ -123,21 +139,22 @@ test('a fine sampling counts areas', () => {
 test('an assignment comes out of a link as it went in, and what is damaged of it is set right', () => {
   const task = {
     title: 'Seams',
-    setup: { what: 'fail', left: 'queue~0.7~10~0', right: 'stack~0.95~0~2' },
-    locks: /** @type {Control[]} */ (['what', 'right', 'figures', 'race']),
+    setup: { what: 'fail', on: 'torus', left: 'queue~0.7~10~0', right: 'stack~0.95~0~2' },
+    locks: /** @type {Control[]} */ (['what', 'right']),
     questions: ['Why?', 'Where?'],
   };
   expect(unpackTask(packTask(task))).toEqual(task);
   const odd = unpackTask(
-    packed({ setup: { what: 'step', left: 9, right: '1' }, locks: 'all', questions: [3, 'x'.repeat(999)] }),
+    packed({ setup: { what: 'step', left: 9, right: '1' }, locks: ['race'], questions: [3, 'x'.repeat(999)] }),
   );
-  const pressed = { what: FAIL, left: USUAL, right: turned(USUAL, SEED, seedAt([0.123456, -1, 1e-7])) };
+  const pressed = { what: FAIL, on: '', left: USUAL, right: turned(USUAL, SEED, seedAt([0.123456, -1, 1e-7])) };
   expect(pressed.right).toBe('queue~0.7~10~at 0.1235 -1 1e-7');
   expect(unpackTask(packed({ setup: pressed, questions: [] }))?.setup).toEqual(pressed);
   const stack = 'stack~0.7~10~0';
   for (const right of ['at 1 x 2', 'heap~0.7~10~0', 'stack~0.1~10~0', 'stack~0.7~10', 'stack~0.7~10~at 1 x 2'])
     expect(unpackTask(packed({ setup: { ...pressed, right }, questions: [] }))?.setup.right, right).toBe(stack);
-  expect(odd).toMatchObject({ title: '', setup: { what: 'step', left: '0.6', right: '1' }, locks: [] });
+  // A link from before there was a choice of surfaces, and of a lock that is gone.
+  expect(odd).toMatchObject({ title: '', setup: { what: 'step', on: '', left: '0.6', right: '1' }, locks: [] });
   expect(odd?.questions.map(({ length }) => length)).toEqual([1, 500]);
   for (const bad of [
     '',
@@ -149,8 +166,8 @@ test('an assignment comes out of a link as it went in, and what is damaged of it
     expect(unpackTask(bad)).toBe(null);
 });
 
-test('a table of the work quotes what needs it and starts no formula', () => {
-  const table = tableOf({
+test('the table of all works quotes what needs it and starts no formula', () => {
+  const work = {
     assignment: '=SUM(A1)',
     surface: 'x = 1',
     name: 'Ada',
@@ -158,21 +175,21 @@ test('a table of the work quotes what needs it and starts no formula', () => {
     answers: [{ question: 'Why, and "how"?', answer: '-3' }],
     predictions: [{ stop: 'predict-ring', question: 'Q', guess: 66, answer: 'A' }],
     runs: [{ label: 'queue', figures: { six: 0.9 }, new_per_level: [1, 6], fates_per_level: [{ added: 6 }] }],
-  });
-  expect(table.split('\r\n')).toEqual([
-    'part,name,number,value',
-    "assignment,title,,'=SUM(A1)",
-    'assignment,surface,,x = 1',
-    'assignment,name,,Ada',
-    'assignment,class,,',
-    'answer,"Why, and ""how""?",,-3',
-    'prediction,Q,,66',
-    'run,Q,,A',
-    'run 1,label,,queue',
-    'run 1,figures: six,,0.9',
-    'run 1,new_per_level,0,1',
-    'run 1,new_per_level,1,6',
-    'run 1,fates_per_level: added,0,6',
+  };
+  expect(tableOfAll([work]).split('\r\n')).toEqual([
+    'work,part,name,number,value',
+    "1,assignment,title,,'=SUM(A1)",
+    '1,assignment,surface,,x = 1',
+    '1,assignment,name,,Ada',
+    '1,assignment,class,,',
+    '1,answer,"Why, and ""how""?",,-3',
+    '1,prediction,Q,,66',
+    '1,run,Q,,A',
+    '1,run 1,label,,queue',
+    '1,run 1,figures: six,,0.9',
+    '1,run 1,new_per_level,0,1',
+    '1,run 1,new_per_level,1,6',
+    '1,run 1,fates_per_level: added,0,6',
     '',
   ]);
 });
@@ -202,12 +219,6 @@ test('a work is read from the file that it was saved as, and nothing else is one
     JSON.stringify({ ...work, runs: [null] }),
   ])
     expect(readWork(bad), bad).toBe(null);
-});
-
-test('at a cost a lane stands where it last had spent no more', () => {
-  const shots = /** @type {any[]} */ ([{ lane: 10 }, { lane: 20 }, { lane: 20 }, { lane: 40 }]);
-  const at = (/** @type {number} */ cost) => shots.indexOf(shotAt(shots, (lane) => Number(lane), cost));
-  expect([0, 10, 19, 20, 39, 40, 1e9].map(at)).toEqual([0, 0, 0, 2, 2, 3, 3]);
 });
 
 /** A score of 1,500 particles. @param {object} figures @returns {any} */

@@ -1,6 +1,7 @@
 /** How long the lesson takes, as its pages say: the words of a chapter, and what is done in it. */
 import { readFileSync } from 'node:fs';
 import { expect, test } from 'vitest';
+import { QUESTIONS } from '../../../src/learn/questions.js';
 
 const page = readFileSync(new URL('../../../learn/index.html', import.meta.url), 'utf8');
 const guide = readFileSync(new URL('../../../../docs/page.md', import.meta.url), 'utf8');
@@ -17,12 +18,12 @@ const ANSWER_WORDS = 45;
 const QUESTION_S = 30;
 const FIGURE_S = 90;
 /**
- * Seconds for what takes longer: slots of the plane and of the cap, both modes of the bench,
- * events, the race itself.
+ * Seconds for what takes longer: seeds, slots of the plane and of the cap, both modes of the bench, three pairs that are
+ * drawn, events.
  */
-const MORE_S = /** @type {Record<string, number>} */ ({ plane: 120, 'what-if': 180, first: 150, race: 90 });
+const MORE_S = /** @type {Record<string, number>} */ ({ why: 30, plane: 120, 'what-if': 180, judge: 240, first: 150 });
 /** Chapters that the lesson can do without. */
-const APPENDIX = ['circle', 'first', 'sizes', 'cost', 'race', 'moving'];
+const APPENDIX = ['circle', 'first', 'sizes', 'cost'];
 
 /** @param {string} text @param {RegExp} what */
 const count = (text, what) => [...text.matchAll(what)].length;
@@ -36,11 +37,14 @@ const chapters = [
 ].map(([, id, minutes, content]) => {
   const read = content
     .replace(/<noscript>.*?<\/noscript>/gs, '')
-    .replace(/<div class="(notes|what-if-stills)">.*?<\/div>/gs, '')
+    .replace(/<div class="what-if-stills">.*?<\/div>/gs, '')
     .replace(/<[^>]*>/g, ' ');
-  const questions = count(content, /class="predict"/g);
-  const words = read.split(/\s+/).filter(Boolean).length + ANSWER_WORDS * questions;
-  const figures = count(content, /data-figure=|class="(bench|race)"/g);
+  const asked = [...content.matchAll(/class="predict" id="([\w-]+)"/g)].map(
+    ([, question]) => QUESTIONS[question].question,
+  );
+  const questions = asked.length;
+  const words = [read, ...asked].join(' ').split(/\s+/).filter(Boolean).length + ANSWER_WORDS * questions;
+  const figures = count(content, /data-figure=|class="bench"/g);
   const seconds = QUESTION_S * questions + FIGURE_S * figures + (MORE_S[id] ?? 0);
   return { id, minutes: Number(minutes), exact: words / WORDS_A_MINUTE + seconds / 60 };
 });

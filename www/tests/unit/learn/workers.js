@@ -49,5 +49,6 @@ export function spawnCore() {
       if (job) void runJob(core, job, /** @type {any} */ (env), memory);
     },
   };
+  post({ type: 'ready', description: core.describe() });
   return worker;
 }

@@ -1,0 +1,212 @@
+/**
+ * Pairs of samplings that the learner judges: the one at the beginning, and those that are drawn at random, each for a
+ * purpose that a story tells. A figure that differs by no more than chance is a tie. A pair whose difference is near
+ * chance is not asked about.
+ */
+import { adaptiveRun } from './adaptive.js';
+import { bestOf, chanceOf, ROWS, rowOf, scoreOf, written } from './score.js';
+
+/**
+ * @import { SurfaceInfo } from '../engine/types.js'
+ * @import { FormulaSurface } from '../ui/types.js'
+ * @import { Judged, JudgedSide, Lab, LabRun, Question, Score, ScoreFigures } from './types.js'
+ */
+
+/** A torus, on which the eye prefers the sampling with less order. @type {FormulaSurface} */
+export const TORUS = {
+  formula: '(sqrt(x^2 + y^2) - 0.7)^2 + z^2 = 0.09',
+  parameters: [],
+  bounds: { min: [-1.2, -1.2, -0.5], max: [1.2, 1.2, 0.5] },
+};
+
+/** The answers to the question which of two is better. */
+export const SIDES = [
+  { value: 'a', label: 'Sampling A' },
+  { value: 'b', label: 'Sampling B' },
+  { value: 'alike', label: 'Neither: they differ by chance at most' },
+];
+
+/**
+ * What a sampling is for, and the figure that says how good it is for that.
+ * @type {readonly { key: keyof ScoreFigures, story: string, why: string }[]}
+ */
+export const PURPOSES = [
+  {
+    key: 'hole',
+    story: 'A scanner looks into a body at the particles. Thin tumours must not fall between them.',
+    why: 'A tumour can hide where the surface is barest, in the largest hole.',
+  },
+  {
+    key: 'six',
+    story:
+      'A machine knits a cover of hexagons, one around each particle. Where six do not meet it stops, and somebody knits on by hand.',
+    why: 'The machine goes on where a particle has six neighbours.',
+  },
+  {
+    key: 'pair',
+    story:
+      'A sensor is glued to each particle. Two that stand close disturb each other, and spoil the whole measurement.',
+    why: 'The first two to disturb each other are the closest pair.',
+  },
+  {
+    key: 'gap',
+    story:
+      'A mould is milled from a mesh of the particles. It is as good as its worst place, farthest from the surface.',
+    why: 'The mould is worst where the gap between surface and mesh is widest.',
+  },
+];
+
+/** The answers to the question which figure decides. */
+export const FIGURES = ROWS.filter(({ key }) => PURPOSES.some((purpose) => purpose.key === key)).map(
+  ({ key, name }) => ({ value: key, label: name }),
+);
+
+/** @param {string} name @param {JudgedSide['settings']} settings */
+const side = (name, settings) => ({ name, settings });
+/** In a pair, one of these against the other. @type {readonly (readonly [JudgedSide, JudgedSide])[]} */
+const RIVALS = [
+  [side('a queue, relaxed', {}), side('a stack, relaxed', { order: 'stack' })],
+  [side('a stack, relaxed', { order: 'stack' }), side('a queue, not relaxed', { relax_steps: 0 })],
+  [side('a queue, relaxed', {}), side('a queue, not relaxed', { relax_steps: 0 })],
+  [side('tolerance 1.4 r', {}), side('tolerance 1.9 r', { match_tolerance: 0.95 })],
+  [side('one seed', { seed: 1 }), side('another seed', { seed: 2 })],
+];
+/** @type {readonly [JudgedSide, JudgedSide]} */
+export const SIZES = [side('one size', {}), { name: 'sizes that follow the bends', settings: {}, isAdaptive: true }];
+
+/** The pair at the beginning. @type {Judged} */
+export const OPENING = { surface: TORUS, name: 'Torus', sides: RIVALS[1], particles: 1500 };
+
+/** Runs of its sampling B from seeds of their own, which show what chance is. */
+export const SEEDS = 5;
+
+/** Its sampling B, from a seed. @param {Lab} lab @param {number} seed */
+export function fromSeed(lab, seed) {
+  const { surface, sides, particles } = OPENING;
+  return lab.on(surface).run({ ...sides[1].settings, ...(seed > 0 ? { seed } : {}) }, { particles });
+}
+
+/** Particles of a pair that is drawn: enough for the figures, few enough to wait for. */
+const DRAWN = 600;
+/** Pairs that are tried until one is clear. */
+const MOST_TRIALS = 6;
+/** A difference between these shares of chance is neither clear nor clearly a tie. */
+const UNCLEAR = [0.75, 1.25];
+
+/** The run of a side. @param {Lab} lab @param {Judged} pair @param {JudgedSide} of @returns {Promise<LabRun>} */
+function runOf(lab, { surface, particles }, { settings, isAdaptive = false }) {
+  const own = lab.on(surface);
+  return isAdaptive ? adaptiveRun(own, 'chord_error', settings, particles) : own.run(settings, { particles });
+}
+
+/** @param {Lab} lab @param {Judged} pair */
+export const runsOf = (lab, pair) => Promise.all(pair.sides.map((of) => runOf(lab, pair, of)));
+
+/** The scores of both, against the ideal of one size. @param {Lab} lab @param {Judged} pair */
+export const scoresOf = async (lab, pair) =>
+  Promise.all(
+    (await runsOf(lab, pair)).map((run) =>
+      scoreOf(run.lab, run.end, { evaluations: run.progress.evaluations, isAdaptive: false }),
+    ),
+  );
+
+/**
+ * The value of {@link SIDES} that is right by a figure.
+ * @param {readonly Score[]} scores @param {keyof ScoreFigures} key
+ */
+export const winnerOf = (scores, key) => ['alike', 'a', 'b'][bestOf(scores, rowOf(key)) + 1];
+
+/** Where so few have six neighbours in both, the surface bends too much within 2r for the figures to say anything. */
+const LEAST_ORDER = 0.6;
+
+/**
+ * Whether a figure clearly differs or clearly does not.
+ * @param {readonly Score[]} scores @param {keyof ScoreFigures} key
+ */
+export function isClear(scores, key) {
+  const [one, other] = scores.map((score) => score[key]);
+  if (one === null || other === null || scores.every(({ six }) => Number(six) < LEAST_ORDER)) return false;
+  const share = Math.abs(one - other) / Number(chanceOf(rowOf(key), scores));
+  return share < UNCLEAR[0] || share > UNCLEAR[1];
+}
+
+/** Numbers from 0 to 1 that follow from a text (FNV-1a, then mulberry32). @param {string} text */
+function randomOf(text) {
+  let state = 0x811c9dc5;
+  for (const letter of text) state = Math.imul(state ^ (letter.codePointAt(0) ?? 0), 0x01000193);
+  return () => {
+    state = (state + 0x6d2b79f5) | 0;
+    let bits = Math.imul(state ^ (state >>> 15), 1 | state);
+    bits = (bits + Math.imul(bits ^ (bits >>> 7), 61 | bits)) ^ bits;
+    return ((bits ^ (bits >>> 14)) >>> 0) / 2 ** 32;
+  };
+}
+
+/** With more holes than this a surface bends too much within 2r, and a run takes long. */
+const MOST_GENUS = 3;
+
+/**
+ * The surfaces of the gallery that pairs are drawn from: closed, in one piece and without self-intersections.
+ * @param {readonly SurfaceInfo[]} gallery
+ */
+export const drawable = (gallery) =>
+  gallery.filter(({ genus, formula }) => formula && genus !== null && genus <= MOST_GENUS);
+
+/** So often neither is to be better. */
+const TIES = 0.3;
+
+/**
+ * The pair with a number of a series, which begins with a text. Every third compares one size with many, and asks for
+ * the widest gap to a mesh, too. The purposes take turns, as far as they are clear.
+ * @param {Lab} lab @param {readonly SurfaceInfo[]} surfaces @param {string} series @param {number} number  from 0
+ */
+export async function drawn(lab, surfaces, series, number) {
+  const random = randomOf(`${series} ${number}`);
+  /** @template T @param {readonly T[]} all */
+  const pick = (all) => all[Math.floor(random() * all.length)];
+  const isOfSizes = number % 3 === 1;
+  const isTie = random() < TIES;
+  const allowed = PURPOSES.filter(({ key }) => key !== 'gap' || isOfSizes);
+  const first = Math.floor(randomOf(series)() * allowed.length) + number;
+  const purposes = allowed.map((_, k) => allowed[(first + k) % allowed.length]);
+  for (let trial = 1; ; trial += 1) {
+    const { name, formula, parameters, bounds } = pick(surfaces);
+    const rivals = isOfSizes ? SIZES : pick(RIVALS);
+    const sides = random() < 0.5 ? rivals : /** @type {const} */ ([rivals[1], rivals[0]]);
+    /** @type {Judged} */
+    const pair = { surface: { formula, parameters, bounds }, name, sides, particles: DRAWN };
+    const isLast = trial === MOST_TRIALS;
+    try {
+      const scores = await scoresOf(lab, pair);
+      const clear = purposes.filter(({ key }) => isClear(scores, key));
+      const purpose = clear.find(({ key }) => (winnerOf(scores, key) === 'alike') === isTie);
+      if (purpose || isLast) return { pair, purpose: purpose ?? clear[0] ?? purposes[0] };
+    } catch (error) {
+      if (isLast) throw error;
+    }
+  }
+}
+
+/**
+ * The question about a pair that was drawn: by eye first, then by its figures.
+ * @param {Awaited<ReturnType<typeof drawn>>} of @returns {Question<readonly Score[]>}
+ */
+export function questionOf({ pair, purpose: { key, story, why } }) {
+  const right = (/** @type {readonly Score[]} */ scores) => winnerOf(scores, key);
+  const { writeChance, write } = rowOf(key);
+  return {
+    question: `${story} Which sampling is better for that?`,
+    rounds: [
+      [{ name: 'eye', kind: 'choice', legend: 'By eye:', choices: SIDES, right }],
+      [
+        { name: 'figure', kind: 'choice', legend: 'Which figure tells?', choices: FIGURES, right: () => key },
+        { name: 'winner', kind: 'choice', legend: 'Which is better by it?', choices: SIDES, right },
+      ],
+    ],
+    ask: (lab) => scoresOf(lab, pair),
+    words: (scores) => [
+      `${why} It is ${written(key, scores[0])} in A and ${written(key, scores[1])} in B.`,
+      `A difference of up to ${(writeChance ?? write)(Number(chanceOf(rowOf(key), scores)))} may be chance.`,
+    ],
+  };
+}

@@ -1,0 +1,198 @@
+/**
+ * The questions of the lesson as data: what is asked, what is measured for the answer, what is right, and what is said.
+ * `ask.js` reads them.
+ */
+import { distance, triple } from '../engine/vector.js';
+import { inRadii } from '../figures/words.js';
+import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
+import { adaptiveRun } from './adaptive.js';
+import { childrenOf } from './decisions.js';
+import { asFineEverywhere, costOf, openBend, RING, ringsOf, scoresOfRest, widestHole } from './measure.js';
+import { FIGURES, OPENING, SIDES, scoresOf, winnerOf } from './pairs.js';
+import { verdictOf, written } from './score.js';
+
+/** @import { Part, Question, Score } from './types.js' */
+
+/** Two amounts that differ by less than this factor are called alike. */
+const ALIKE = 1.25;
+/** Distances below this share of 2r are called nearer. */
+const NEARER = 0.999;
+/** The lower ends of the answers to the question of sizes; below the first, all sizes are called alike. */
+const FACTORS = [1.05, 1.3, 2, 4];
+
+/** @param {Record<string, string>} labels  by their values */
+const choices = (labels) => Object.entries(labels).map(([value, label]) => ({ value, label }));
+
+/**
+ * A question with one part.
+ * @template F
+ * @param {Omit<Question<F>, 'rounds'> & Omit<Part<F>, 'name'>} about
+ * @returns {Question<any>}
+ */
+const one = ({ question, ask, words, ...part }) => ({ question, ask, words, rounds: [[{ name: '', ...part }]] });
+
+/** By the id of the question in the page's markup. @type {Record<string, Question<any>>} */
+export const QUESTIONS = {
+  'predict-first': one({
+    question: 'Two samplings of a torus, with discs of one size. Which is the more regular pattern?',
+    kind: 'choice',
+    choices: SIDES,
+    ask: (lab) => scoresOf(lab, OPENING),
+    right: (/** @type {Score[]} */ scores) => winnerOf(scores, 'six'),
+    words: ([a, b]) => [
+      `In B ${written('six', b)} of the particles have exactly six neighbours, in A ${written('six', a)}: the coloured ones have more or fewer.`,
+      'A looks evener, since it was relaxed: its particles were pushed apart until their gaps were alike. B was not.',
+    ],
+  }),
+  'predict-children': one({
+    question: 'Six new particles fit around A. For how many new ones is there room around B, the first of them?',
+    kind: 'number',
+    label: 'New particles, 0 to 6',
+    most: 6,
+    ask: childrenOf,
+    right: ({ added }) => added,
+    words: ({ added, matched }) => [
+      `For ${formatCount(added)}: one place around B holds A, and ${formatCount(matched)} hold particles that A has placed beside B.`,
+      'The figure has done A. Now it is your turn with B.',
+    ],
+  }),
+  'predict-ring': one({
+    question: 'On a plane, ring 12 has 72 particles. How many has it on this surface?',
+    kind: 'number',
+    label: 'Particles in ring 12',
+    async ask(lab) {
+      const rings = ringsOf((await lab.run({}, { keep: true })).placed);
+      const level = Math.min(RING, rings.length - 1);
+      return { level, count: rings[level], flat: 6 * level };
+    },
+    right: ({ count }) => count,
+    words: ({ level, count, flat }) => [
+      `Ring ${level} of this surface has ${plural(count, 'particle')}; on a plane it would have ${flat}.`,
+      count === flat
+        ? 'The bars below the picture follow 6k, as in a plane.'
+        : count < flat
+          ? 'The surface closes around the seed and takes room from the rings: the bars below the picture fall behind 6k.'
+          : 'The surface bends like a saddle around the seed, which gives the rings more room: the bars below the picture run ahead of 6k.',
+    ],
+  }),
+  'predict-hole': one({
+    question:
+      'A quarter of the particles are there. Where will the widest hole open? Turn the picture and press a bare place.',
+    kind: 'pick',
+    ask: widestHole,
+    right: (widest) => widest?.particle ?? -1,
+    words(widest, guess) {
+      if (!widest) return ['On this surface the rings leave no hole wide enough to count.'];
+      const { placed } = widest.run;
+      const last = placed.levels.reduce((most, own) => Math.max(most, own), 0);
+      const words = `The widest hole is in the ring of the picture, beside a particle of level ${placed.levels[widest.particle]} of ${last}: on a seam, where parts of the front have met and left less room than a particle needs.`;
+      if (typeof guess !== 'number') return [words];
+      const far = distance(triple(placed.positions, guess), widest.hole.places[0]) / (2 * widest.radius);
+      return [words, `You pressed ${formatFixed(far, 1)} particle distances away from it.`];
+    },
+  }),
+  'predict-rest': one({
+    question: 'Ten steps later, what has changed by more than chance?',
+    kind: 'choice',
+    choices: choices({
+      hole: 'The largest hole',
+      six: 'The share with six neighbours',
+      both: 'Both',
+      neither: 'Neither',
+    }),
+    ask: scoresOfRest,
+    right(/** @type {Score[]} */ scores) {
+      const changed = /** @type {const} */ (['hole', 'six']).filter((key) => verdictOf(scores, [key]));
+      return changed.length === 2 ? 'both' : (changed[0] ?? 'neither');
+    },
+    words: ([before, after]) => [
+      `The largest hole was ${written('hole', before)} and is ${written('hole', after)}; ${written('six', before)} had six neighbours and ${written('six', after)} have.`,
+      'Pushes even out the room that there is: those around a hole move in. For another neighbour whole rows would have to slip past each other, and hardly any does.',
+    ],
+  }),
+  'predict-newton': one({
+    question:
+      'A child starts in the tangent plane, 2r from its parent, where this surface bends most. How far from the parent does Newton’s method land it?',
+    kind: 'choice',
+    choices: choices({ nearer: 'Nearer than 2r', same: 'At 2r', farther: 'Farther than 2r' }),
+    async ask(lab) {
+      const { profile, opened, whole, slot } = await openBend(lab);
+      const { radius } = opened.subject;
+      const landed = whole.children[slot].landed?.distance ?? 2 * radius;
+      return { radius, landed, own: profile?.newtonDistance ?? null };
+    },
+    right({ own, radius }) {
+      const share = own === null ? Number.NaN : own / (2 * radius);
+      return share < NEARER ? 'nearer' : share > 1 / NEARER ? 'farther' : Number.isNaN(share) ? 'none' : 'same';
+    },
+    words: ({ own, landed, radius }) =>
+      own === null
+        ? ['Here Newton’s method lands nowhere near. The circle does.']
+        : [
+            `Newton’s method lands at ${inRadii(own, radius)}, the circle at ${inRadii(landed, radius)}.`,
+            'It goes down the gradient and knows nothing of the parent: the open circle in the drawing is its landing.',
+          ],
+  }),
+  'predict-sizes': one({
+    question: 'Were all particles as small as the smallest ones here, how many would there be?',
+    kind: 'choice',
+    choices: choices({
+      0: 'About the same number',
+      1: 'Up to twice the number',
+      2: 'Two to four times the number',
+      3: 'More than that',
+    }),
+    async ask(lab) {
+      const { end } = await adaptiveRun(lab, 'max_curvature');
+      const [count, wanted] = [end.radii.length, asFineEverywhere(end.radii)];
+      return { count, wanted, factor: wanted / count };
+    },
+    right: ({ factor }) => String(FACTORS.slice(1).filter((limit) => factor >= limit).length),
+    words: ({ count, wanted, factor }) =>
+      factor < FACTORS[0]
+        ? [
+            'On this surface the stronger curvature is nearly the same everywhere, and so are the radii. Nothing is saved here.',
+          ]
+        : [
+            `Here ${plural(count, 'particle')} follow the curvature.`,
+            `All as small as the smallest of them, they would be about ${formatCount(wanted)}, ${formatSignificant(factor, 2)} times as many: the sharpest bend, where the picture has its smallest discs, would rule the flat parts, too.`,
+          ],
+  }),
+  'predict-cost': one({
+    question:
+      'What takes more evaluations of f on this surface: placing all particles, or the ten steps of relaxation after that?',
+    kind: 'choice',
+    choices: choices({
+      placing: 'Placing all particles',
+      alike: 'Both about the same',
+      resting: 'The ten steps of relaxation',
+    }),
+    ask: costOf,
+    right({ rows }) {
+      const [placing, resting] = rows.map(({ evaluations }) => evaluations);
+      return placing > ALIKE * resting ? 'placing' : resting > ALIKE * placing ? 'resting' : 'alike';
+    },
+    words({ rows }) {
+      const [one, ten, pushes] = [rows[0].evaluations, rows[1].evaluations, rows[1].pushes].map((count) =>
+        formatSignificant(count, 3),
+      );
+      return [
+        `Placing took ${one} evaluations of f for each particle, the ten steps ${ten}.`,
+        `In seconds the steps cost far more: besides asking f they sum pushes, ${pushes} for each particle here.`,
+      ];
+    },
+  }),
+};
+
+/** The parts of a question. @param {Question<any>} question */
+export const partsOf = ({ rounds }) => rounds.flat();
+
+/** The name under which the answer of a part is kept. @param {string} id @param {{ name: string }} part */
+export const stopOf = (id, { name }) => (name ? `${id}-${name}` : id);
+
+/** The choices of a guess that a learner has saved, by the name under which it is kept. @param {string} stop */
+export function choicesOf(stop) {
+  if (Object.hasOwn(QUESTIONS, stop)) return partsOf(QUESTIONS[stop])[0].choices ?? [];
+  if (/^judge-\d+-figure$/.test(stop)) return FIGURES;
+  return /^judge-\d+-(eye|winner)$/.test(stop) ? SIDES : [];
+}
