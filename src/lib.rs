@@ -66,6 +66,7 @@
 //! | fission, death | Splitting and removal of particles, in the system of Witkin and Heckbert. |
 //! | field | The function f(x, y, z); f < 0 inside. |
 //! | component | A connected part of the surface. |
+//! | body, chip | Of a mesh: a closed component with the walls of its hollows, or an open component; one that is small beside the largest. |
 //! | sheet | A part of the surface that is a graph over its tangent plane. Two sheets may be close in space and far along the surface. |
 //! | residual | \|f\|/\|∇f\|, the distance to the surface to first order. |
 //! | witness | A point of the surface that interval arithmetic found, at least one on each component. |
@@ -89,12 +90,12 @@
 //! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`PiecewiseFn`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Pieces`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [glam] |
 //! | solids of two fields | [`union`], [`intersection`], [`difference`], [`smooth_union`], [`offset`], [`Combined`] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
-//! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
+//! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Body`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
 //! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measured`], [`Measures`], [`Cut`] |
 //! | its figures | [`Figures`] with the groups in [figures], [`Histogram`], [`Places`], [`Pair`], [`Hole`], [`Measurements`] |
 //! | what may be wrong | [`Warning`], [`Severity`], [`Doubt`], [`Refusal`], [`Spot`] |
 //! | why there is no result | [`Error`], [`SettingsError`], [`BoxError`], [`FollowError`]; of points [`JobError`], [`ReadError`], [`InputFormat`], [`CloudError`], [`FitError`] |
-//! | files | [`Format`], [`ParticleFile`], [`MeshFormat`], [`MeshFile`], [`Vertices`], [`Placement`], [`Unit`], [`UpAxis`], [`RecordText`] |
+//! | files | [`Format`], [`ParticleFile`], [`MeshFormat`], [`MeshFile`], [`Bodies`], [`Vertices`], [`Placement`], [`Unit`], [`UpAxis`], [`RecordText`] |
 //!
 //! The modules behind the root are public for the project's own tests, benchmarks and page and may
 //! change at any time; ARCHITECTURE.md says what each is for and who may use whom.
@@ -164,6 +165,7 @@ pub use field::{
 };
 pub use glam;
 pub use math::{Bounds, BoxError, Interval, Sym3};
+pub use mesh::bodies::{Bodies, Body};
 pub use mesh::facing::Inside;
 pub use mesh::triangulation::Triangulation;
 pub use particles::{OppositeFaces, Particles, SlotFate, Slots};

@@ -12,7 +12,7 @@ use marching_particles::session::{
     BeyondPoints, BoxCell, BoxFaces, BoxMode, FileRecord, Language, SolidSettings,
 };
 use marching_particles::{
-    Format, Measured, MeshFormat, Placement, Thickness, Unit, UpAxis, Vertices, gallery,
+    Bodies, Format, Measured, MeshFormat, Placement, Thickness, Unit, UpAxis, Vertices, gallery,
 };
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
@@ -168,6 +168,7 @@ Examples:
   marching-particles sample --surface gyroid --thickness 0.3 --closed --mesh part.stl
   marching-particles sample --surface gyroid --thickness \"1 + 0.1z\" --closed --porosity 70% --mesh graded.stl
   marching-particles sample --formula \"x^2 + y^2 + z^2 = 1\" --mesh ball.3mf --scale 25 --unit mm
+  marching-particles sample --surface gyroid --closed --size 40mm --wall 2mm --largest-part --mesh part.3mf
   marching-particles sample --like part.glb --radius 0.3% --mesh finer.glb
   marching-particles sample --points scan.ply --centres 400 --out even.ply --mesh even.glb
   marching-particles sample --points scan.ply --formula \"max(model, abs(z) - 0.1)\" --mesh slice.stl
@@ -237,6 +238,28 @@ pub(crate) struct SampleArguments {
     /// converted. Without it numbers stay what they are: metres in glb, millimetres in 3mf
     #[arg(long, value_name = "WORD", value_parser = one_of(&Unit::ALL), help_heading = "Output")]
     pub(crate) unit: Option<(&'static str, Unit)>,
+
+    /// Longest side of the mesh in the files of --mesh, such as 40mm, 4cm or 1.5in; millimetres
+    /// without a unit. Takes the place of --scale and --unit
+    #[arg(
+        long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true,
+        conflicts_with_all = ["scale", "unit"], help_heading = "Output"
+    )]
+    pub(crate) size: Option<Length>,
+
+    /// Thickness of the sheet as it is in the files of --mesh, such as 2mm, in place of
+    /// --thickness: with --size, for which up to two more runs correct it, or with --scale and
+    /// --unit
+    #[arg(
+        long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true,
+        conflicts_with_all = ["thickness", "porosity", "points", "print"], help_heading = "Output"
+    )]
+    pub(crate) wall: Option<Length>,
+
+    /// Leave out of the files of --mesh all parts but the largest, by their areas; the walls of its
+    /// hollows belong to it
+    #[arg(long, help_heading = "Output")]
+    pub(crate) largest_part: bool,
 
     /// Axis of the formula that points up in the files of --mesh: along z there, but in glb along y
     #[arg(long, value_name = "AXIS", value_parser = one_of(&UpAxis::ALL), default_value = "z", help_heading = "Output")]
@@ -346,9 +369,20 @@ impl SurfaceArguments {
 }
 
 impl SampleArguments {
-    /// Size and orientation of the mesh in its files.
-    pub(crate) fn placement(&self) -> Placement {
-        Placement { scale: self.scale, unit: self.unit.map(|(_, unit)| unit), up: self.up.1 }
+    /// Orientation of the mesh in its files, and its size for one whose longest side is this long
+    /// in the coordinates.
+    pub(crate) fn placement(&self, longest_side: f64) -> Placement {
+        let (scale, unit) = match self.size {
+            Some(size) if longest_side > 0.0 => (size.value / longest_side, Some(size.unit)),
+            Some(size) => (1.0, Some(size.unit)),
+            None => (self.scale, self.unit.map(|(_, unit)| unit)),
+        };
+        Placement { scale, unit, up: self.up.1 }
+    }
+
+    /// The bodies of the mesh that its files hold.
+    pub(crate) fn bodies(&self) -> Bodies {
+        if self.largest_part { Bodies::Largest } else { Bodies::All }
     }
 
     /// Takes from the record of a file what is not given.
@@ -378,7 +412,8 @@ impl SampleArguments {
             let kept = record
                 .solid
                 .sheet()
-                .filter(|thickness| self.porosity.is_none() || matches!(thickness, Thickness::Formula(_)));
+                .filter(|thickness| self.porosity.is_none() || matches!(thickness, Thickness::Formula(_)))
+                .filter(|_| self.wall.is_none());
             surface.thickness = surface.thickness.take().or(kept.cloned());
         }
         self.sampling.complete(&record.settings);
@@ -464,6 +499,30 @@ fn thickness(text: &str) -> Result<Thickness, String> {
     let solid = SolidSettings { thickness: text.into(), ..SolidSettings::default() };
     solid.validate().map_err(|error| error.to_string())?;
     Ok(solid.thickness)
+}
+
+/// A length of a file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Length {
+    pub(crate) value: f64,
+    pub(crate) unit: Unit,
+}
+
+impl Length {
+    pub(crate) fn metres(self) -> f64 {
+        self.value * self.unit.metres()
+    }
+}
+
+/// A positive length with its unit, or in millimetres.
+fn length(text: &str) -> Result<Length, String> {
+    // `mm` ends with the symbol of the metre, too, and comes first in the table.
+    let found = Unit::ALL.iter().find_map(|&(symbol, unit)| Some((text.strip_suffix(symbol)?, unit)));
+    let (digits, unit) = found.unwrap_or((text, Unit::Millimetre));
+    match number(digits.trim()) {
+        Ok(value) if (1e-12..=1e12).contains(&value) => Ok(Length { value, unit }),
+        _ => Err("a length is a positive number with mm, cm, m or in, such as 40mm".to_owned()),
+    }
 }
 
 /// A share between 0 and 1.

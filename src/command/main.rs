@@ -14,6 +14,7 @@ mod summary;
 mod surface;
 mod surfaces;
 mod sweep;
+mod wall;
 
 use arguments::{Arguments, Command};
 use clap::{CommandFactory, Parser};

@@ -3,7 +3,7 @@
 use marching_particles::field::model::ModelInfo;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::Settings;
-use marching_particles::{Inside, Report, Sample, Thickness, Triangulation};
+use marching_particles::{Bodies, Body, Inside, Placement, Report, Sample, Thickness, Triangulation, Unit};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -90,10 +90,21 @@ pub(crate) struct MeshCounts {
     pub(crate) inside: Option<Inside>,
     /// Smallest angle of any triangle in degrees, those at borders among them.
     pub(crate) smallest_angle: Option<f64>,
+    /// Bodies that are no loose chips: closed components with the walls of their hollows, and open
+    /// ones.
+    pub(crate) parts: usize,
+    /// Bodies that are small beside the largest.
+    pub(crate) chips: usize,
+    /// Bodies that the files do not hold.
+    pub(crate) parts_left_out: usize,
+    /// Sides of the box around the bodies in the files, in their unit.
+    pub(crate) size: [f64; 3],
+    /// The unit of the files; none where the lengths are those of the formula.
+    pub(crate) unit: Option<Unit>,
 }
 
 impl MeshCounts {
-    pub(crate) fn new(sample: &Sample) -> Self {
+    pub(crate) fn new(sample: &Sample, all: &[Body], kept: Bodies, placement: Placement) -> Self {
         let (Triangulation { triangles, topology, unfilled, left_out, inside, .. }, report) =
             (sample.mesh(), sample.report());
         Self {
@@ -106,6 +117,11 @@ impl MeshCounts {
             volume: report.joined_volume,
             inside: *inside,
             smallest_angle: report.smallest_angle,
+            parts: all.iter().filter(|body| !body.is_chip).count(),
+            chips: all.iter().filter(|body| body.is_chip).count(),
+            parts_left_out: if kept == Bodies::Largest { all.len().saturating_sub(1) } else { 0 },
+            size: (kept.size(all) * placement.scale).to_array(),
+            unit: placement.unit,
         }
     }
 }

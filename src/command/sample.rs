@@ -7,6 +7,7 @@ use crate::outcome::{MeshCounts, Outcome, Seconds};
 use crate::output::{OutputFile, STANDARD, record_path};
 use crate::porosity::Wish;
 use crate::surface::{choose, fit};
+use crate::wall::Wall;
 use crate::{code, summary};
 use indicatif::ProgressBar;
 use marching_particles::export::VERTICES;
@@ -103,6 +104,14 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         }
         None => None,
     };
+    let mut wall = match arguments.wall_share() {
+        Some(share) => {
+            let solid = arguments.surface.solid();
+            let begin = || Wall::begin(&mut session, solid, share, &settings_in);
+            Some(timed(&mut seconds.seeding, begin)?)
+        }
+        None => None,
+    };
     let bar = bar(arguments.quiet);
     let measured = arguments.report.measured();
     let is_mesh = !mesh_formats.is_empty() || wish.is_some();
@@ -117,9 +126,10 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         let peak = peak_mb();
         let is_joined = is_mesh && session.run.count() > 0;
         let volume = if is_joined { join(&mut session.run, &mut seconds, &bar) } else { None };
-        let is_corrected = match &mut wish {
-            Some(wish) => timed(&mut seconds.seeding, || wish.corrects(&mut session, volume))?,
-            None => false,
+        let is_corrected = match (&mut wish, &mut wall) {
+            (Some(wish), _) => timed(&mut seconds.seeding, || wish.corrects(&mut session, volume))?,
+            (None, Some(wall)) => wall.corrects(&mut session, arguments.bodies())?,
+            (None, None) => false,
         };
         if !is_corrected {
             break (settings, start.predicted_count, is_joined, peak);
@@ -142,7 +152,9 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         }
         error => Failure::Nothing(refusal_of_run(&error)),
     })?;
-    let mesh = is_joined.then(|| MeshCounts::new(&sample));
+    let bodies = if is_joined { sample.mesh().bodies(sample.particles()) } else { Vec::new() };
+    let placement = arguments.placement(arguments.bodies().size(&bodies).max_element());
+    let mesh = is_joined.then(|| MeshCounts::new(&sample, &bodies, arguments.bodies(), placement));
     let is_printed =
         mesh_formats.iter().any(|format| matches!(format, MeshFormat::Stl | MeshFormat::ThreeMf));
     let record = RecordText::new(&serde_json::to_string(&made).map_err(std::io::Error::other)?);
@@ -152,8 +164,8 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
             output.write(|out| sample.write(file, out))?;
         }
         for (format, output) in mesh_formats.into_iter().zip(outputs.by_ref()) {
-            let (placement, vertices) = (arguments.placement(), arguments.vertices);
-            let file = MeshFile { format, placement, vertices, record: record.clone() };
+            let (vertices, bodies) = (arguments.vertices, arguments.bodies());
+            let file = MeshFile { format, placement, vertices, bodies, record: record.clone() };
             output.write(|out| sample.write_mesh(file, out))?;
         }
         let document = record.document().unwrap_or_default();
@@ -244,14 +256,21 @@ fn check_vertices(arguments: &SampleArguments) -> Result<(), Failure> {
     )))
 }
 
-/// Refuses a scale, a unit or an axis without a file that it is for.
+/// Refuses what is for a mesh file where there is none.
 fn check_placement(arguments: &SampleArguments) -> Result<(), Failure> {
     let usual = Placement::default();
-    let Placement { scale, unit, up } = arguments.placement();
-    let given = [("--scale", scale != usual.scale), ("--unit", unit != usual.unit), ("--up", up != usual.up)];
+    let Placement { scale, unit, up } = arguments.placement(0.0);
+    let given = [
+        ("--size", arguments.size.is_some()),
+        ("--wall", arguments.wall.is_some()),
+        ("--largest-part", arguments.largest_part),
+        ("--scale", scale != usual.scale),
+        ("--unit", unit != usual.unit),
+        ("--up", up != usual.up),
+    ];
     match given.into_iter().find(|(_, is_given)| *is_given) {
         Some((option, _)) if arguments.mesh.is_empty() => Err(Failure::Usage(format!(
-            "{option} is for the files of --mesh: the points of --out keep the units of the formula"
+            "{option} is for the files of --mesh: the points of --out stay as they are in the formula"
         ))),
         _ => Ok(()),
     }

@@ -4,7 +4,7 @@ use crate::outcome::{MeshCounts, Outcome, Porosity};
 use marching_particles::field::model::{ModelInfo, NormalSource};
 use marching_particles::math::{counted, grouped, significant};
 use marching_particles::session::{ReportRow, describe};
-use marching_particles::{Cut, Inside, Severity, Thickness};
+use marching_particles::{Cut, Inside, Severity, Thickness, Unit};
 use serde_json::Value;
 use std::io::{self, Write};
 
@@ -202,6 +202,18 @@ fn mesh_line(mesh: &MeshCounts) -> String {
     };
     let triangles = counted(mesh.triangles, "triangle", "triangles");
     let components = counted(mesh.components, "component", "components");
+    let chips = match mesh.chips {
+        0 => String::new(),
+        chips => format!(" and {}", counted(chips, "loose chip", "loose chips")),
+    };
+    let left_out = match mesh.parts_left_out {
+        0 => "",
+        _ => ", all but the largest left out",
+    };
+    let unit = mesh.unit.and_then(|unit| Unit::ALL.iter().find(|(_, known)| *known == unit));
+    let unit = unit.map_or(String::new(), |(symbol, _)| format!(" {symbol}"));
+    let size = mesh.size.map(significant).join(" × ");
+    let parts = format!("{}{chips}{left_out}, {size}{unit}", counted(mesh.parts, "part", "parts"));
     let volume = mesh.volume.map_or("–".to_owned(), significant);
     let turned = match mesh.inside {
         Some(Inside::Positive) => ", turned to face outward: f is larger inside",
@@ -210,7 +222,7 @@ fn mesh_line(mesh: &MeshCounts) -> String {
     };
     let angle = mesh.smallest_angle.map_or("–".to_owned(), |angle| format!("{angle:.1}°"));
     format!(
-        "{triangles}, {components}, Euler number {}, {borders}, volume {volume}, smallest angle {angle}{turned}",
+        "{parts}\n{triangles}, {components}, Euler number {}, {borders}, volume {volume}, smallest angle {angle}{turned}",
         mesh.euler
     )
 }

@@ -28,6 +28,7 @@ impl FileContent {
         measured: &Measurements,
         mesh: &Triangulation,
     ) -> Self {
+        let mesh = &*mesh.only(wish.bodies, particles);
         let mut placed = wish.placement.placed(wish.format, particles, measured);
         let of_file = placed.as_ref().map_or(particles, |(particles, _)| particles);
         if let Some(normal) = outward_normals(mesh, of_file) {
@@ -96,7 +97,7 @@ impl<'a> File<'a> {
     ///
     /// The errors of `out`, and an error if the 32-bit counters of the format are too small.
     pub(crate) fn write_rows(&self, rows: Range<usize>, out: &mut dyn Write) -> io::Result<()> {
-        let &Self { wish: MeshFile { format, placement, record, vertices: way }, particles, .. } = self;
+        let &Self { wish: MeshFile { format, placement, record, vertices: way, .. }, particles, .. } = self;
         let vertices = &self.content.vertices;
         match format {
             MeshFormat::Glb => glb::write(particles, vertices, record, out),

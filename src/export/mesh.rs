@@ -2,6 +2,7 @@
 
 use super::vertices::{Indexed, Vertices};
 use super::{File, FileContent, Placement, RecordText};
+use crate::mesh::bodies::Bodies;
 use crate::mesh::triangulation::Triangulation;
 use crate::particles::Particles;
 use crate::quality;
@@ -52,6 +53,8 @@ pub struct MeshFile {
     pub placement: Placement,
     /// The vertices of the particles on sharp edges, in GLB, OBJ and PLY.
     pub vertices: Vertices,
+    /// The bodies that it holds. With [`Vertices::Columns`] the particles of the others stay rows.
+    pub bodies: Bodies,
     /// The record that it carries, but for STL.
     pub record: RecordText,
 }
@@ -62,6 +65,7 @@ impl From<MeshFormat> for MeshFile {
             format,
             placement: Placement::default(),
             vertices: Vertices::default(),
+            bodies: Bodies::default(),
             record: RecordText::default(),
         }
     }

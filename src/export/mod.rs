@@ -9,6 +9,7 @@ mod record;
 mod three_mf;
 mod vertices;
 
+pub use crate::mesh::bodies::Bodies;
 pub use mesh::{MeshFile, MeshFormat, write_mesh};
 pub use placement::{Placement, Unit, UpAxis};
 pub use record::RecordText;

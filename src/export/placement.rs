@@ -31,7 +31,8 @@ impl Unit {
         [("mm", Self::Millimetre), ("cm", Self::Centimetre), ("m", Self::Metre), ("in", Self::Inch)];
 
     /// Length of the unit in metres.
-    fn metres(self) -> f64 {
+    #[must_use]
+    pub fn metres(self) -> f64 {
         match self {
             Self::Millimetre => 1e-3,
             Self::Centimetre => 1e-2,

@@ -31,6 +31,9 @@ pub(crate) struct Facing {
     pub(crate) turned: Vec<bool>,
     /// Sign of f inside of the closed parts; none if there is no closed part.
     pub(crate) inside: Option<Inside>,
+    /// For each component the one whose body it bounds: itself, but for the wall of a hollow the
+    /// wall around that; empty where each is a body of its own.
+    pub(crate) body_of: Vec<u32>,
 }
 
 /// A part of a mesh: triangles that edges join.
@@ -73,12 +76,13 @@ pub(crate) async fn facing(position: &[Vec3], triangles: &[[u32; 3]], topology: 
         return Facing { inside: Some(Inside::Negative), ..Facing::default() };
     }
     let mut outer: Vec<usize> = (0..parts.len()).collect();
+    let mut body_of = Vec::new();
     if inward < closed.len() {
-        outer = outermost(position, triangles, &parts, part_of).await;
+        Nesting { outer, body_of } = nesting(position, triangles, &parts, part_of).await;
     }
     let turned = |k: &&usize| is_inward(outer[**k]);
     let inside = match closed.iter().filter(turned).count() {
-        0 => return Facing { inside: Some(Inside::Negative), ..Facing::default() },
+        0 => return Facing { inside: Some(Inside::Negative), turned: Vec::new(), body_of },
         count if count == closed.len() => Inside::Positive,
         _ => Inside::Both,
     };
@@ -86,7 +90,7 @@ pub(crate) async fn facing(position: &[Vec3], triangles: &[[u32; 3]], topology: 
         .map(|k| if parts[k].is_closed { is_inward(outer[k]) } else { inside == Inside::Positive })
         .collect();
     let turned = part_of.iter().map(|&part| is_turned.get(part as usize).copied().unwrap_or(false));
-    Facing { turned: turned.collect(), inside: Some(inside) }
+    Facing { turned: turned.collect(), inside: Some(inside), body_of }
 }
 
 /// The parts of a mesh, which are the components of its topology.
@@ -143,9 +147,16 @@ async fn parts(position: &[Vec3], triangles: &[[u32; 3]], topology: &Topology) -
     parts
 }
 
-/// For each part, the closed part that holds it and is held by none: itself if there is no such
-/// part, or if it is open.
-async fn outermost(position: &[Vec3], triangles: &[[u32; 3]], parts: &[Part], part_of: &[u32]) -> Vec<usize> {
+/// Which parts hold others.
+struct Nesting {
+    /// For each part, the closed part that holds it and is held by none: itself if there is no such
+    /// part, or if it is open.
+    outer: Vec<usize>,
+    /// See [`Facing::body_of`].
+    body_of: Vec<u32>,
+}
+
+async fn nesting(position: &[Vec3], triangles: &[[u32; 3]], parts: &[Part], part_of: &[u32]) -> Nesting {
     // Rays along x from the last vertices of the closed parts, by their y.
     let mut rays: Vec<(Vec3, u32)> = (0..)
         .zip(parts)
@@ -180,8 +191,16 @@ async fn outermost(position: &[Vec3], triangles: &[[u32; 3]], parts: &[Part], pa
         let from = holders.partition_point(|pair| pair[0] < part);
         holders[from..].iter().take_while(move |pair| pair[0] == part).map(|pair| pair[1])
     };
-    let outer = |part: u32| holders_of(part).find(|&holder| holders_of(holder).next().is_none());
-    (0..parts.len() as u32).map(|part| outer(part).unwrap_or(part) as usize).collect()
+    let depth = |part: u32| holders_of(part).count();
+    let outer = |part: u32| holders_of(part).find(|&holder| depth(holder) == 0);
+    // Walls alternate from outside to inside: of a body, of its hollow, of a body in that.
+    let wall =
+        |part: u32| holders_of(part).find(|&holder| depth(part) % 2 == 1 && depth(holder) + 1 == depth(part));
+    let all = 0..parts.len() as u32;
+    Nesting {
+        outer: all.clone().map(|part| outer(part).unwrap_or(part) as usize).collect(),
+        body_of: all.map(|part| wall(part).unwrap_or(part)).collect(),
+    }
 }
 
 /// Whether the ray along x from a point meets a triangle. A ray meets a closed mesh an odd number
@@ -242,7 +261,7 @@ mod tests {
         /// For each tetrahedron, whether it has to be turned, and what is inside.
         fn facing(&self) -> (Vec<bool>, Option<Inside>) {
             let topology = Topology::new(&self.triangles, self.position.len());
-            let Facing { turned, inside } = complete(facing(&self.position, &self.triangles, &topology));
+            let Facing { turned, inside, .. } = complete(facing(&self.position, &self.triangles, &topology));
             assert!(turned.chunks(4).all(|of_part| of_part.iter().all(|&t| t == of_part[0])));
             (turned.into_iter().step_by(4).collect(), inside)
         }

@@ -6,12 +6,14 @@
 //!
 //! * [`build`]: from points with normals to triangles.
 //! * [`facing`]: which side of a closed mesh is its inside.
+//! * [`bodies`]: the pieces of a mesh, and which of them are loose chips.
 //! * `stars`: the natural neighbours of points.
 //! * [`half_edge`]: a surface that can be changed: flips, splits, collapses, insertions, undone by
 //!   a journal; subdivision.
 //!
 //! [`topology`](crate::topology) counts the components, borders and Euler number of such a list.
 
+pub mod bodies;
 pub mod facing;
 pub mod half_edge;
 pub(crate) mod stars;

@@ -6,6 +6,7 @@ use crate::export::{File, FileContent, MeshFile};
 use crate::field::Field;
 use crate::field::crossing::is_passed;
 use crate::math::{Bounds, sort_few};
+use crate::mesh::bodies::{Body, Split};
 use crate::mesh::facing::Inside;
 use crate::mesh::stars::Sheets;
 use crate::mesh::triangulation::{self, Middle, Triangulation};
@@ -40,6 +41,10 @@ pub struct MeshAnswer {
     /// Border loops: rows of particles in order. Those where no manifold could be had come first,
     /// then the longest.
     pub loops: Vec<Vec<u32>>,
+    /// The bodies, the largest first.
+    pub bodies: Vec<Body>,
+    /// The triangles of those that are loose chips, in ascending order.
+    pub chips: Vec<u32>,
 }
 
 /// A connected part of a mesh.
@@ -52,6 +57,8 @@ pub struct MeshComponent {
     pub euler: i64,
     /// Number of edges with one triangle.
     pub open_edges: u32,
+    /// Place of its body among those of the mesh.
+    pub body: usize,
 }
 
 /// The mesh of a run, as far as it is there, and a file of it that is being written.
@@ -128,10 +135,12 @@ impl MeshAnswer {
     /// Counts and sizes of the triangles over the particles.
     #[must_use]
     pub fn new(mesh: &Triangulation, particles: &Particles) -> Self {
-        let component = |component: &Component| MeshComponent {
+        let split = Split::new(mesh, particles);
+        let component = |(component, &body): (&Component, &usize)| MeshComponent {
             triangles: component.triangles,
             euler: component.euler(),
             open_edges: component.border_edges,
+            body,
         };
         let mut loops: Vec<((bool, usize), &Vec<u32>)> = (mesh.topology.borders.iter())
             .map(|border| ((mesh.unfilled.contains(border), border.len()), border))
@@ -139,13 +148,15 @@ impl MeshAnswer {
         sort_few(&mut loops, |(a, _), (b, _)| a > b);
         Self {
             triangles: mesh.triangles.len(),
-            components: mesh.topology.components.iter().map(component).collect(),
+            components: mesh.topology.components.iter().zip(&split.place_of).map(component).collect(),
             unfilled: mesh.unfilled.len(),
             left_out: mesh.left_out.len(),
             volume: mesh.volume(particles),
             inside: mesh.inside,
             smallest_angle: mesh.smallest_angle(particles),
             loops: loops.into_iter().map(|(_, border)| border.clone()).collect(),
+            chips: split.chips(mesh),
+            bodies: split.bodies,
         }
     }
 }

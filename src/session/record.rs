@@ -2,7 +2,7 @@
 //! file.
 
 use super::{BoxFaces, Session, SolidSettings, Source};
-use crate::export::{self, MeshFile, MeshFormat, Placement, Vertices};
+use crate::export::{self, Bodies, MeshFile, MeshFormat, Placement, Vertices};
 use crate::field::rbf::Pull;
 use crate::math::Bounds;
 use crate::sampler::{Method, Settings};
@@ -60,6 +60,8 @@ pub struct FileRequest {
     pub placement: Placement,
     /// The vertices of the particles on sharp edges, in GLB, OBJ and PLY, and the columns of PLY.
     pub vertices: Vertices,
+    /// The bodies that the file holds.
+    pub bodies: Bodies,
     /// Link for the record.
     pub link: Option<String>,
     /// Whether the file is written without a record.
@@ -125,8 +127,8 @@ impl Session {
         let record = if request.plain { None } else { self.record(request.link.clone()) };
         let record =
             record.map_or_else(export::RecordText::default, |made| export::RecordText::new(&json(&made)));
-        let FileRequest { placement, vertices, .. } = *request;
-        let wish = MeshFile { format, placement, vertices, record };
+        let FileRequest { placement, vertices, bodies, .. } = *request;
+        let wish = MeshFile { format, placement, vertices, bodies, record };
         self.run.mesh_file(&wish, budget).map_or(Some(None), |bytes| bytes.map(Some))
     }
 }

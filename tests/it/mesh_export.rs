@@ -9,9 +9,10 @@ use marching_particles::mesh::triangulation::{Triangulation, triangulate};
 use marching_particles::particles::Particles;
 use marching_particles::quality;
 use marching_particles::sampler::Settings;
-use marching_particles::{Formula, Inside, MeshBuffers, Sample, Topology, Warning, sample};
+use marching_particles::{Bodies, Body, Formula, Inside, MeshBuffers, Sample, Topology, Warning, sample};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::PI;
 use std::path::PathBuf;
 
 fn sampled(id: &str, radius_share: f64) -> (Particles, Triangulation) {
@@ -51,6 +52,46 @@ fn vectors(bytes: &[u8]) -> Vec<Vec3> {
 
 fn triples(bytes: &[u8]) -> Vec<[u32; 3]> {
     bytes.chunks_exact(12).map(|b| [0, 4, 8].map(|at| word(b, at))).collect()
+}
+
+#[test]
+fn a_shell_is_one_body_and_files_hold_those_that_are_wanted() {
+    // A shell, a ball in its hollow, and a small ball beside it.
+    let text = "r = sqrt(x^2 + y^2 + z^2); min(|r - 1| - 0.1, r - 0.5, hypot(x - 2, y, z) - 0.1)";
+    let settings = settings!(radius_share: 0.006; ..Settings::default());
+    let sample = sample(Formula::parse(text).expect("a formula"), &settings).expect("a surface");
+    let mesh = sample.mesh();
+    assert_eq!(mesh.topology.components.len(), 4);
+    let bodies = mesh.bodies(sample.particles());
+    let [shell, ball, chip] = &bodies[..] else { panic!("{bodies:?}") };
+    // A chip of few particles is smaller than its ball.
+    let is_near = |body: &Body, area: f64, middle: f64, radius: f64| {
+        let close = if body.is_chip { 0.1 } else { 0.02 };
+        let reaches = [[-radius; 3], [radius; 3]].map(|[x, y, z]| [middle + x, y, z]);
+        let off = [body.min, body.max].into_iter().flatten().zip(reaches.into_iter().flatten());
+        (body.area / area - 1.0).abs() < close && off.into_iter().all(|(a, b)| (a - b).abs() < 0.02)
+    };
+    assert!(is_near(shell, 4.0 * PI * (1.1 * 1.1 + 0.9 * 0.9), 0.0, 1.1), "{shell:?}");
+    assert!(is_near(ball, PI, 0.0, 0.5), "{ball:?}");
+    assert!(is_near(chip, 0.04 * PI, 2.0, 0.1), "{chip:?}");
+    assert_eq!([shell, ball, chip].map(|body| body.is_chip), [false, false, true]);
+    for (body, cubes) in bodies.iter().zip([1.1_f64.powi(3) - 0.9_f64.powi(3), 0.125, 0.001]) {
+        let ball = 4.0 / 3.0 * PI * cubes;
+        let close = if body.is_chip { 0.15 } else { 0.05 };
+        assert!(body.volume.is_some_and(|volume| (volume / ball - 1.0).abs() < close), "{body:?}");
+    }
+    for (which, components, side) in
+        [(Bodies::All, 4, 3.2), (Bodies::WithoutChips, 3, 2.2), (Bodies::Largest, 2, 2.2)]
+    {
+        assert!((which.size(&bodies).x - side).abs() < 0.02, "{which:?}: {}", which.size(&bodies));
+        let mut bytes = Vec::new();
+        let file = MeshFile { bodies: which, ..MeshFormat::Obj.into() };
+        sample.write_mesh(file, &mut bytes).expect("writing to memory does not fail");
+        let Obj { points, triangles, .. } = Obj::read(&bytes);
+        let topology = Topology::new(&triangles, points.len());
+        assert!(topology.is_closed());
+        assert_eq!(topology.components.len(), components, "{which:?}");
+    }
 }
 
 /// The document of a GLB file and its buffer.

@@ -334,6 +334,9 @@ fn equations_in_other_coordinates_are_suggested_in_x_y_and_z() {
     }
     let error = Formula::as_written("r = 2", &[]).expect_err("a radius");
     assert_eq!(error.choices.to_vec(), ["hypot(x, y, z) = 2", "hypot(x, y) = 2"]);
+    // A slider would leave nothing that changes with x, y or z.
+    assert_eq!(error.name, None);
+    assert_eq!(Formula::as_written("r = 2cos(3θ)", &[]).expect_err("polar").name, None);
     let error = Formula::as_written("z = r^2 cos(2 theta)", &[]).expect_err("cylindrical");
     assert_eq!(error.suggestion.as_deref(), Some("z = hypot(x, y)^2 cos(2 atan2(y, x))"));
     // Sliders of these names.
@@ -356,10 +359,16 @@ fn paths_and_functions_with_bodies_are_refused_with_what_to_do() {
         "r(u, v) = [u, v, u*v]",
         "ParametricPlot3D[{Cos[u], Sin[u], v}, {u, 0, 2 Pi}, {v, 0, 1}]",
         "plot3d([cos(u), sin(u), v], u=0..2*Pi, v=0..1)",
+        "(2 + cos v) cos u, (2 + cos v) sin u, sin v",
+        "x=cos(t) y=sin(t) z=t",
     ] {
         let error = Formula::as_written(text, &[]).expect_err(text);
-        assert!(error.message.contains("Equations are drawn, not points"), "{text}: {error:?}");
+        assert!(error.message.contains("Equations are drawn, not paths"), "{text}: {error:?}");
         assert_eq!((error.suggestion, error.mended), (None, None), "{text}");
+    }
+    for text in ["1,5", "x, y, z", "x = y = z", "a, b, 2"] {
+        let error = Formula::as_written(text, &[]).expect_err(text);
+        assert!(!error.message.contains("not paths"), "{text}: {error:?}");
     }
     for (text, head) in [
         ("float h(vec3 i){ return length(i) - 1.0; }", "float h(vec3 i)"),

@@ -56,12 +56,11 @@ pub(super) fn error(text: &str, parsed: &Parsed, declared: &[&str]) -> Option<Fo
         (Some(_), false) if one_angle => ("Polar", [FROM_AXIS, AROUND_AXIS, AROUND_AXIS]),
         (Some(radius), false) => {
             let message = format!(
-                "`{radius}` is no coordinate: the distance from the origin is `{FROM_ORIGIN}`, that from the z axis `{FROM_AXIS}`. Or add \
-                 a slider `{radius}`"
+                "`{radius}` is no coordinate: the distance from the origin is `{FROM_ORIGIN}`, that from the z axis `{FROM_AXIS}`"
             );
             let ways = [FROM_ORIGIN, FROM_AXIS].map(|place| written(text, declared, &[(radius, place)]));
             let span = 0..text.trim_end().len();
-            let error = FormulaError::new(ErrorKind::UnknownName, span, message).unknown(radius);
+            let error = FormulaError::new(ErrorKind::UnknownName, span, message);
             return Some(error.choose(ways.into_iter().flatten()));
         }
     };
@@ -78,7 +77,8 @@ pub(super) fn error(text: &str, parsed: &Parsed, declared: &[&str]) -> Option<Fo
     let message =
         format!("{kind} coordinates are written by x, y and z: {}", meanings.collect::<Vec<_>>().join("; "));
     let error = FormulaError::new(ErrorKind::UnknownName, 0..text.trim_end().len(), message);
-    let error = match radius.or(theta) {
+    // Without a coordinate beside it, a slider would leave no surface.
+    let error = match radius.or(theta).filter(|_| has(2)) {
         Some(name) => error.unknown(name),
         None => error,
     };

@@ -100,8 +100,8 @@ fn function_with_body(plain: &str) -> Option<Range<usize>> {
 }
 
 /// The error message for a surface that is given by its points.
-const NO_PATHS: &str = "Equations are drawn, not points that follow parameters: eliminate the parameters, as in \
-     `x^2 + y^2 = 1` for (cos(u), sin(u), v)";
+const NO_PATHS: &str = "Equations are drawn, not paths of parameters. Eliminate these, as in `x^2 + y^2 = 1` for \
+     (cos(u), sin(u), v), or compute points elsewhere and open them as a file";
 
 /// Whether a text gives the points of a surface: `x = cos(u), y = sin(u), z = v`, or at last
 /// `(cos(u), sin(u), v)`.
@@ -120,7 +120,22 @@ fn is_path(plain: &str, all: &[Range<usize>]) -> bool {
         Some(at) => last.start + at + 1..last.end,
         None => last.clone(),
     };
-    named.len() > 1 || matches!(listed(plain, &value).len(), 2 | 3)
+    let has_axis = || COORDINATES.iter().any(|axis| mentions(&plain[value.clone()], axis));
+    // Three numbers without brackets, such as `cos u, sin u, v`, and `x = cos t y = sin t z = t`.
+    let bare = parts(plain, value.clone(), &[","]);
+    let varies = |part: &Range<usize>| plain[part.clone()].contains(char::is_alphabetic);
+    named.len() > 1
+        || matches!(listed(plain, &value).len(), 2 | 3)
+        || bare.len() == 3 && bare.iter().all(varies) && !has_axis()
+        || COORDINATES.iter().all(|axis| is_assigned(plain, axis))
+}
+
+/// Whether `name =` stands in a text, but not as in `a = name = b`.
+fn is_assigned(text: &str, name: &str) -> bool {
+    text.match_indices(name).any(|(at, _)| {
+        let (before, after) = (&text[..at], text[at + name.len()..].trim_start());
+        !before.ends_with(is_of_name) && !before.trim_end().ends_with('=') && after.starts_with('=')
+    })
 }
 
 /// A text, and the same bytes with blanks in the place of comments and quoted words.

@@ -68,6 +68,8 @@ pub struct Triangulation {
     pub(crate) turned: Vec<bool>,
     /// The holes that were filled, by rows.
     pub(crate) filled: Vec<Fill>,
+    /// For each component the one whose body it bounds; empty where each is a body of its own.
+    pub(crate) body_of: Vec<u32>,
 }
 
 impl Triangulation {
@@ -230,7 +232,7 @@ impl Joined {
             sides.any(|side| edges.binary_search(&side).is_ok())
         };
         let is_unfilled: Vec<bool> = topology.borders.iter().map(is_open).collect();
-        let Facing { turned, inside } = facing(&particles.local, &triangles, &topology).await;
+        let Facing { turned, inside, body_of } = facing(&particles.local, &triangles, &topology).await;
         let unfilled = topology.borders.iter().zip(is_unfilled);
         let unfilled =
             unfilled.filter(|(_, is_unfilled)| *is_unfilled).map(|(border, _)| border.clone()).collect();
@@ -243,6 +245,7 @@ impl Joined {
             corners,
             turned: Vec::new(),
             filled,
+            body_of,
         };
         if !turned.is_empty() {
             mesh.turn(turned);

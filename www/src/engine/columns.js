@@ -316,6 +316,11 @@ export class Columns {
     }
     return { min, max };
   }
+
+  /** Takes the loose chips out of the mesh. */
+  leaveOutChips() {
+    if (this.mesh) this.mesh = withoutChips(this.mesh);
+  }
 }
 
 /**
@@ -350,4 +355,26 @@ export function grown(column, length) {
   const next = emptyLike(column, length);
   next.set(column);
   return next;
+}
+
+/** Returns a mesh without its loose chips. @param {Mesh} mesh @returns {Mesh} */
+export function withoutChips({ triangles, about }) {
+  const kept = new Uint32Array(triangles.length - 3 * about.chips.length);
+  let [from, to] = [0, 0];
+  for (const chip of [...about.chips, triangles.length / 3]) {
+    const part = triangles.subarray(from, 3 * chip);
+    kept.set(part, to);
+    to += part.length;
+    from = 3 * (chip + 1);
+  }
+  // The chips are the smallest bodies, and the last ones.
+  const bodies = about.bodies.filter((body) => !body.is_chip);
+  const components = about.components.filter(({ body }) => body < bodies.length);
+  const volumes = bodies.map(({ volume }) => volume ?? Number.NaN);
+  const volume = about.volume === null ? null : volumes.reduce((sum, one) => sum + one, 0);
+  return {
+    triangles: kept,
+    about: { ...about, triangles: kept.length / 3, bodies, components, volume, chips: [] },
+    leavesOutChips: true,
+  };
 }

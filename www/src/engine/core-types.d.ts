@@ -4,6 +4,23 @@
 /** What a command is answered: the fields of the value, or the error. */
 export type Answer<T, E> = ({ ok: true } & T) | { ok: false; error: E };
 
+/** The bodies of a mesh that a file holds. */
+export type Bodies = "all" | "without_chips" | "largest";
+
+/** A body of a mesh: a closed component with the walls of its hollows, or an open component. */
+export type Body = {
+  /** Area, in squared units of the coordinates. */
+  area: number,
+  /** Lower corner of the box around it, in the coordinates of the field. */
+  min: [number, number, number],
+  /** Upper corner of the box around it. */
+  max: [number, number, number],
+  /** Volume that it encloses, without that of its hollows; none if an edge of it is open. */
+  volume: number | null,
+  /** Whether it is a loose chip: it has less than a twentieth of the area of the largest body. */
+  is_chip: boolean,
+};
+
 /** An axis-aligned box, in the field's coordinates. */
 export type Bounds = {
   /** Smallest corner. */
@@ -339,6 +356,8 @@ export type FileRequest = {
   placement: Placement,
   /** The vertices of the particles on sharp edges, in GLB, OBJ and PLY, and the columns of PLY. */
   vertices: Vertices,
+  /** The bodies that the file holds. */
+  bodies: Bodies,
   /** Link for the record. */
   link: string | null,
   /** Whether the file is written without a record. */
@@ -919,6 +938,10 @@ export type MeshAnswer = {
   /** Border loops: rows of particles in order. Those where no manifold could be had come first,
   * then the longest. */
   loops: Array<Array<number>>,
+  /** The bodies, the largest first. */
+  bodies: Array<Body>,
+  /** The triangles of those that are loose chips, in ascending order. */
+  chips: Array<number>,
 };
 
 /** A connected part of a mesh. */
@@ -929,6 +952,8 @@ export type MeshComponent = {
   euler: number,
   /** Number of edges with one triangle. */
   open_edges: number,
+  /** Place of its body among those of the mesh. */
+  body: number,
 };
 
 /** A built-in model. */

@@ -67,6 +67,7 @@ export function createStore() {
     loadingError: signal(null),
     model: signal(null),
     frame: signal(0),
+    turned: signal(0),
     theme: signal('light'),
   };
 }

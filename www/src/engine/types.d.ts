@@ -62,7 +62,9 @@ export type LessonSettings = import('./core-types.js').LessonSettings;
 export type LessonClient = import('./lesson/client.js').LessonClient;
 export type LessonParticles = import('./lesson/types.js').Particles;
 /** A mesh over all particles on the page, three indices a triangle. */
-export type Mesh = { triangles: Uint32Array; about: MeshAnswer };
+export type Mesh = { triangles: Uint32Array; about: MeshAnswer; leavesOutChips?: true };
+/** A piece of a mesh. */
+export type Body = import('./core-types.js').Body;
 export type CoreAnswer<T> = Answer<T, FieldFault>;
 export type FieldAnswer = CoreAnswer<import('./core-types.js').FieldAnswer>;
 /** `surface` is of a model its id, of a file {@link FILE_SURFACE} */
@@ -328,6 +330,8 @@ export interface EngineSignals {
   /** whether the last run found no surface */
   empty: ReadonlySignal<boolean>;
   lastDrag: ReadonlySignal<LastDrag | null>;
+  /** increases when the page turns the camera to show another surface, as no hand does */
+  turned: ReadonlySignal<number>;
   /** increases with every picture drawn, after which places may have moved in it */
   frame: ReadonlySignal<number>;
   /** the effective theme, after `auto` is resolved */
@@ -350,9 +354,10 @@ export interface EngineCommands {
   cancelLoading: () => void;
   /**
    * a formula that names {@link MODEL} keeps the model shown, another one leaves it; `typing`: more
-   * keys may follow, so that the text is sampled once they pause; without it, at once
+   * keys may follow, so that the text is sampled once they pause; without it, at once; `whole`: nothing of the formula
+   * before stays, and what was set for it ends with it, as when another surface is chosen
    */
-  setFormula: (text: string, options?: { typing?: boolean }) => void;
+  setFormula: (text: string, options?: { typing?: boolean; whole?: boolean }) => void;
   /** `live` during a drag; call once more without it at the end */
   setParameter: (name: string, value: number, options?: { live?: boolean }) => void;
   /** restores the value of the gallery or of the declaration */
@@ -426,6 +431,8 @@ export interface EngineCommands {
   makeMesh: () => void;
   /** draws particles by the method that is set, as before the mesh was made */
   leaveMesh: () => void;
+  /** takes the loose chips out of the present mesh, and out of its files */
+  leaveOutChips: () => void;
   /** once no run is left; with the record of what it was made from, unless `plain` */
   exportMesh: (format: MeshFormat, options?: Partial<Omit<FileRequest, 'format'>>) => Promise<Blob>;
   dismissNotice: () => void;

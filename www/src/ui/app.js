@@ -11,6 +11,8 @@ import { createHistory } from './history.js';
 import { mountLayout } from './layout.js';
 import { createMeshButton } from './mesh/button.js';
 import { createMotion } from './motion.js';
+import { createPrint } from './print.js';
+import { createReplace } from './replacing.js';
 import { mountReport } from './report/panel.js';
 import { mountSampling } from './sampling/panel.js';
 import { isDue } from './sampling/settings.js';
@@ -47,7 +49,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
     view,
     nav: byId('tabs'),
     panels: [
-      { id: 'field', title: 'Field', panel: field, head: head(field) },
+      { id: 'field', title: 'Surface', panel: field, head: head(field) },
       { id: 'sampling', title: 'Sampling', panel: sampling, head: samplingTools, folded: true },
       { id: 'levels', title: 'Levels', panel: levels },
       { id: 'report', title: 'Report', panel: report, head: head(report), folded: true },
@@ -89,6 +91,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
       open: () => shortcuts.open(),
     }),
   );
+  stopByEscape(engine, motion);
 
   followTheme(engine);
   nameTab(engine);
@@ -109,7 +112,8 @@ export function mountInterface(engine, { grabs = false } = {}) {
   byId('tabs').append(goButton(engine));
 
   void described.then(async (description) => {
-    const mesh = createMeshButton(engine, toast);
+    const shared = { motion, pins, replace: createReplace(engine, toast), print: createPrint(engine) };
+    const mesh = createMeshButton(engine, toast, shared.print);
     const [hide, makeMesh] = [layout.hideMore, () => void mesh.open()];
     const tools = { hide, shortcuts: shortcuts.open, picture, makeMesh, motion, toast };
     // First what the camera's fit leaves free.
@@ -117,7 +121,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
     view.prepend(legend, createToolbar(engine, tools));
     layout.follow(legend);
     for (const mountPart of [
-      () => mountField(byId('field-body'), engine, description, { motion, pins }),
+      () => mountField(byId('field-body'), engine, description, shared),
       () => mountSampling(byId('sampling-body'), engine, description, { head: [mesh.element, samplingTools] }),
       () => mountReport(byId('report-body'), engine, description, byId('report-title')),
       () => loadMarks(engine, { stage, view, pins }),
@@ -234,6 +238,29 @@ function pictureOf(engine, motion, toast) {
 }
 
 /**
+ * Has Escape stop a run wherever the focus is, but where it closes a dialog or the list of completions.
+ * @param {Engine} engine
+ * @param {Motion} motion
+ */
+function stopByEscape(engine, motion) {
+  const stop = (/** @type {KeyboardEvent} */ event) => {
+    if (event.key !== 'Escape' || event.isComposing || !(engine.busy.peek() || engine.loading.peek())) return;
+    // It takes back what is being dragged.
+    if (engine.dragging.peek()) return;
+    const within = event.composedPath();
+    const isCompleting = within.some(
+      (node) => node instanceof ShadowRoot && node.querySelector('.cm-tooltip-autocomplete'),
+    );
+    if (isCompleting || document.querySelector('dialog[open]')) return;
+    event.preventDefault();
+    event.stopPropagation();
+    if (!motion.stop()) engine.stop();
+  };
+  // Before what has the focus takes the key for itself.
+  addEventListener('keydown', stop, true);
+}
+
+/**
  * Returns the shortcuts of the page.
  * @param {Engine} engine
  * @param {ShortcutTargets} page
@@ -259,7 +286,7 @@ function shortcutsOf(engine, { history, motion, pins, print, timeline, hide, ope
     { keys: ['z', 'Z'], ctrl: true, shown: `${COMMAND_KEY} Z`, label: 'Undo', act: history.undo },
     { keys: ['z', 'Z'], ctrl: true, shift: true, shown: `${COMMAND_KEY} Shift Z`, label: 'Redo', act: history.redo },
     { keys: ['p', 'P'], ctrl: true, shown: `${COMMAND_KEY} P`, label: 'Print', act: print },
-    { keys: ['g', 'G'], shown: 'G', label: 'Generate only', act: () => engine.generateOnly() },
+    { keys: ['g', 'G'], shown: 'G', label: 'Without relaxing', act: () => engine.generateOnly() },
     {
       keys: ['e', 'E'],
       shown: 'E',

@@ -79,14 +79,14 @@ export class History {
   /**
    * @param {Moment} moment
    * @param {number} nowMs
-   * @param {{ faulty?: boolean, isWritten?: boolean }} [how]  `faulty`: the previous entry has an
+   * @param {{ faulty?: boolean, isWritten?: boolean, isTurned?: boolean }} [how]  `faulty`: the previous entry has an
    *   invalid formula, so that it is not worth restoring; `isWritten`: somebody has written the
-   *   formula, with which no surface begins
+   *   formula, with which no surface begins; `isTurned`: the page has turned the camera for that surface
    */
-  record(moment, nowMs, { faulty = false, isWritten = false } = {}) {
+  record(moment, nowMs, { faulty = false, isWritten = false, isTurned = false } = {}) {
     const present = this.entries[this.#at];
     const found = present && differences(present, moment);
-    if (found?.length === 0) {
+    if (found?.length === 0 || (isTurned && found?.length === 1 && found[0] === 'camera')) {
       // The camera has followed the surface.
       this.entries[this.#at] = moment;
       return;
@@ -128,13 +128,23 @@ export class History {
  */
 export function createHistory(engine, moves) {
   const history = new History();
+  /** How often the page had turned the camera when the state got its last one. */
+  let turned = engine.turned.peek();
+  let { camera } = engine.state.peek().view;
   const canUndo = signal(false);
   const canRedo = signal(false);
   const record = (/** @type {State} */ state) => {
     // Before the core has loaded there is no state to restore.
     if (!engine.description.value || state.surface === '') return;
     const own = engine.description.value.surfaces.find(({ id }) => id === state.surface)?.formula ?? MODEL;
-    const how = { faulty: engine.fieldError.peek() !== null, isWritten: state.formula !== own };
+    const [last, now] = [turned, engine.turned.peek()];
+    // The state has the new camera once the picture stands still.
+    if (state.view.camera !== camera) [turned, camera] = [now, state.view.camera];
+    const how = {
+      faulty: engine.fieldError.peek() !== null,
+      isWritten: state.formula !== own,
+      isTurned: last !== now,
+    };
     history.record(momentOf(state), performance.now(), how);
   };
   const tell = () => {

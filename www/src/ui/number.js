@@ -6,7 +6,7 @@ import { h } from './dom.js';
 
 /**
  * Creates a number box.
- * @param {{ name: string, class?: string, id?: string, value?: string }} options
+ * @param {{ name: string, class?: string, id?: string, value?: string, placeholder?: string }} options
  */
 export const numberBox = ({ name, ...options }) =>
   h('input', {

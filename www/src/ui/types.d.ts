@@ -81,6 +81,21 @@ export interface ButtonProps extends Props<HTMLButtonElement> {
   off?: () => boolean;
 }
 
+/** The longest side of a sheet, and how many of its two ends no box cuts off. */
+export type Span = { side: number; free: number };
+/** A part to be printed; the functions read signals. */
+export interface Print {
+  /** its longest side in millimetres */
+  sizeMm: Signal<number>;
+  /** millimetres of a unit of the formula; null where there is nothing */
+  scale: () => number | null;
+  /** the wall in millimetres; 0 without a sheet, null where its thickness is a formula */
+  wall: () => number | null;
+  /** the thickness that gives a wall of so many millimetres; null if none does */
+  thickness: (wallMm: number) => number | null;
+}
+/** Does what puts another surface in the place of the present one, and names what ends with that. */
+export type Replace = (act: () => void) => void;
 /** Bars above the places. With `widths` a bar stands for so many places. */
 export type Bars = { heights: ArrayLike<number>; widths?: ArrayLike<number> };
 export interface Track {

@@ -1,7 +1,9 @@
 /** Every setting and what else a surface can be given, against another surface: what stays and what begins afresh. */
 import { expect, test } from 'vitest';
+import { TYPING_MS } from '../../src/engine/constants.js';
+import { createHistory } from '../../src/ui/history.js';
 import { keptOf } from '../../src/ui/kept.js';
-import { open } from './engine.js';
+import { open, turn, until } from './engine.js';
 
 /** @import { SettingInfo } from '../../src/engine/types.js' */
 
@@ -81,4 +83,52 @@ test('plane, box, parameters and the place on the timeline end with their surfac
     pulls: [],
   });
   expect(p.state.view).toMatchObject({ ...drawn, level: null, step: null });
+});
+
+test('a formula put in the place of another as a whole ends what was set for that; one that is typed does not', async () => {
+  const p = await open();
+  const { engine } = p;
+  const give = () => {
+    engine.setSurface('gyroid');
+    for (const [name, value] of Object.entries({ box_faces: 'closed', thickness: 0.3, relax_steps: 5 }))
+      engine.setSetting(name, value);
+    engine.setBounds({ min: [-4, -4, -4], max: [4, 4, 4] });
+    engine.setPlane({ normal: [1, 0, 0], offset: 0 });
+    engine.setParameter('t', 0.2);
+  };
+  const nut = 'max(abs(x), abs(y), abs(z)) - 1 + t';
+  give();
+  engine.setFormula(nut, { typing: true });
+  expect(keptOf(engine)).toHaveLength(4);
+  give();
+  engine.setFormula(nut, { typing: true, whole: true });
+  expect(keptOf(engine)).toEqual([]);
+  expect(p.state).toMatchObject({
+    formula: nut,
+    plane: null,
+    bounds: null,
+    parameters: {},
+    settings: { relax_steps: 5 },
+  });
+  engine.stop();
+});
+
+test('one step back leads to the surface before, with all that was set for it, though the camera has turned', async () => {
+  const p = await open();
+  const { engine, debug } = p;
+  const history = createHistory(engine, engine.typing);
+  await p.set({ surface: 'gyroid', settings: { radius_share: 0.06, thickness: 0.4, box_faces: 'closed' } });
+  engine.lookFrom('front');
+  await debug.still();
+  const before = p.state;
+  engine.setFormula('9x^2 + y^2 + 4z^2 = 1', { typing: true, whole: true });
+  turn(TYPING_MS);
+  await until(engine.turned, (times) => times > 0);
+  await debug.still();
+  expect(p.state.view.camera.yaw).not.toBe(before.view.camera.yaw);
+  history.undo();
+  const { surface, formula, settings, view } = p.state;
+  expect([surface, formula, settings]).toEqual([before.surface, before.formula, before.settings]);
+  expect(view.camera).toEqual(before.view.camera);
+  engine.stop();
 });

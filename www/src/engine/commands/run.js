@@ -14,10 +14,13 @@ import { changeView, description, showAll } from '../store.js';
 /** Largest number of relaxation steps of one command. */
 const MOST_STEPS = 1000;
 
-/** @typedef {Pick<EngineCommands, 'run' | 'stop' | 'generateOnly' | 'relax' | 'makeMesh' | 'leaveMesh'>} RunCommands */
+/**
+ * @typedef {Pick<EngineCommands, 'run' | 'stop' | 'generateOnly' | 'relax' | 'makeMesh' | 'leaveMesh' |
+ *   'leaveOutChips'>} RunCommands
+ */
 
 /** @param {Parts} parts @returns {RunCommands} */
-export function runCommands({ store, columns, scheduler }) {
+export function runCommands({ store, columns, scheduler, picture: { viewer } }) {
   /** Whether the particles are those of a method. @param {Settings[string]} method */
   const isOf = (method) => columns.record?.settings.method === method;
   return {
@@ -40,6 +43,12 @@ export function runCommands({ store, columns, scheduler }) {
       // Who has chosen another way of drawing meanwhile keeps it.
       if (view.draw === 'mesh') changeView(store, before);
       if (!isOf(completeSettings(description(store), settings).method)) scheduler.resample();
+    },
+    leaveOutChips() {
+      if (!columns.mesh?.about.chips.length) return;
+      columns.leaveOutChips();
+      viewer.meshed();
+      store.mesh.value = columns.mesh.about;
     },
     stop: () => scheduler.stop(),
     generateOnly() {

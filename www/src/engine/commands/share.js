@@ -80,7 +80,8 @@ export function shareCommands({ store, columns, picture: { viewer }, scheduler, 
     },
     code: (language) => scheduler.sampling.client.code(language),
     async exportMesh(format, options) {
-      const bytes = await scheduler.sampling.client.meshFile({ ...options, format });
+      const bodies = columns.mesh?.leavesOutChips ? 'without_chips' : 'all';
+      const bytes = await scheduler.sampling.client.meshFile({ bodies, ...options, format });
       return new Blob([bytes], { type: MIME[format] ?? 'application/octet-stream' });
     },
   };

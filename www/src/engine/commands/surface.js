@@ -65,13 +65,18 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
   /**
    * Returns what a typed formula makes of the state.
    * @param {string} text
+   * @param {boolean} whole  it was put in the place of the formula before, of which nothing stays
    * @returns {{ shape: Partial<State>, another: boolean }}
    */
-  function typed(text) {
+  function typed(text, whole) {
     const about = description(store);
     const { v: _, view: __, ...shape } = state.value;
     const { surface, formula, bounds, settings } = shape;
     const isModel = fromPoints(about, surface);
+    if (whole && !isModel) {
+      left = null;
+      return { shape: freshShape(about, settings, surface, text), another: true };
+    }
     if (isModel && !namesModel(text)) {
       left = { shape, formula: text };
       return { shape: freshShape(about, settings, about.surfaces[0].id, text), another: true };
@@ -119,9 +124,9 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
       scheduler.choose();
     },
     cancelLoading: () => scheduler.loader.cancel(),
-    setFormula(text, { typing = false } = {}) {
+    setFormula(text, { typing = false, whole = false } = {}) {
       if (text !== state.value.formula) {
-        const { shape, another } = typed(text);
+        const { shape, another } = typed(text, whole);
         change(store, shape);
         framing.written({ typed: true, another });
       } else if (!store.typing.value) {

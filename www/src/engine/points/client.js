@@ -109,7 +109,7 @@ export class PointsClient {
 
   /** Waits so long for the next message before the worker counts as hung. @param {number} ms */
   #listen(ms) {
-    const silent = () => this.#refuse('silent', 'the solver fell silent and was stopped');
+    const silent = () => this.#refuse('silent', 'the solver stopped answering and was ended');
     this.#clock.clearTimeout(this.#timer);
     this.#timer = this.#clock.setTimeout(() => {
       this.#timer = this.#clock.setTimeout(silent, GRACE_MS);

@@ -15,7 +15,7 @@
  * @returns {Notice}
  */
 export function restartNotice(crash, lost, { again, version }) {
-  const what = crash.cause === 'hang' ? 'The sampler fell silent' : 'The sampler stopped on an error';
+  const what = crash.cause === 'hang' ? 'The sampler stopped answering' : 'The sampler stopped on an error';
   const harmless = again || !lost;
   const outcome = harmless ? 'Nothing was lost.' : 'The same input stopped it twice: change the formula or a setting.';
   return {
@@ -65,7 +65,7 @@ export const refusalNotice = (words) => ({
  */
 function crashReport(crash, lost, version) {
   return [
-    `Marching Particles ${version}: the sampler ${crash.cause === 'hang' ? 'fell silent' : 'stopped on an error'}`,
+    `Marching Particles ${version}: the sampler ${crash.cause === 'hang' ? 'stopped answering' : 'stopped on an error'}`,
     crash.message,
     crash.stack,
     `job: ${lost ? JSON.stringify(lost) : 'none'}`,

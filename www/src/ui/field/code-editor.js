@@ -12,6 +12,7 @@ import { h } from '../dom.js';
 /**
  * @import { StateEffectType } from '@codemirror/state'
  * @import { DecorationSet, ViewUpdate } from '@codemirror/view'
+ * @import { Transaction } from '@codemirror/state'
  * @import { FieldFault } from '../../engine/types.js'
  * @import { CodeEditorOptions, Editor, Functions } from './types.js'
  */
@@ -196,6 +197,15 @@ const typedOver = EditorView.domEventHandlers({
   },
 });
 
+/** Whether a text was pasted over all of the one before. @param {Transaction} transaction */
+function isWhole(transaction) {
+  let isAll = false;
+  transaction.changes.iterChangedRanges((from, to) => {
+    isAll = from === 0 && to === transaction.startState.doc.length;
+  });
+  return isAll && transaction.isUserEvent('input.paste');
+}
+
 /** @param {CodeEditorOptions} options @returns {Editor} */
 export function createCodeEditor({ text, selection, functions, names, change, finish }) {
   const element = h('div', { class: 'code-host' });
@@ -234,7 +244,7 @@ export function createCodeEditor({ text, selection, functions, names, change, fi
           ...defaultKeymap,
         ]),
         EditorView.updateListener.of((update) => {
-          if (update.docChanged && !own) change(update.state.doc.toString());
+          if (update.docChanged && !own) change(update.state.doc.toString(), update.transactions.some(isWhole));
         }),
       ],
     }),

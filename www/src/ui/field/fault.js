@@ -1,19 +1,27 @@
 /** Describes the error in a formula and its possible repairs, or returns a hint while the formula is unfinished. */
+import { questionOf } from './meant.js';
 
 /**
  * @import { FieldFault } from '../../engine/types.js'
- * @import { FaultView, Repair } from './types.js'
+ * @import { FaultView, Meant, Repair } from './types.js'
  */
 
 /** Number of characters of context around an error. */
 const CONTEXT = 22;
+/** Most characters of a whole formula on a button. */
+const LONGEST_FORMULA = 60;
 
 /**
  * @param {string} formula
  * @param {FieldFault | null} fault
+ * @param {readonly Meant[]} [meant]  the surfaces that the text names
  * @returns {FaultView | null}
  */
-export function describeFault(formula, fault) {
+export function describeFault(formula, fault, meant = []) {
+  if (meant.length > 0) {
+    const repairs = meant.map(({ id, name }) => ({ label: `Show the ${name}`, surface: id }));
+    return { tone: 'hint', message: questionOf(meant), excerpt: null, repairs };
+  }
   if (formula.trim() === '') {
     return {
       tone: 'hint',
@@ -29,11 +37,13 @@ export function describeFault(formula, fault) {
   const repairs = fault.name === null ? [] : [{ label: `Add slider ${fault.name}`, declare: fault.name }];
   /** @param {string} marked @param {string} text */
   const labelOf = (marked, text) =>
-    marked === ''
-      ? `Insert ${shorten(text)}`
-      : text === ''
-        ? `Remove ${shorten(marked)}`
-        : `Change to ${shorten(text)}`;
+    marked === formula.trimEnd() && marked !== ''
+      ? `Write as ${shorten(text, LONGEST_FORMULA)}`
+      : marked === ''
+        ? `Insert ${shorten(text)}`
+        : text === ''
+          ? `Remove ${shorten(marked)}`
+          : `Change to ${shorten(text)}`;
   const choices = fault.choices ?? [];
   repairs.unshift(
     ...choices.map((text) => ({ label: labelOf(formula.slice(start, end), text), replace: { start, end, text } })),
@@ -83,5 +93,5 @@ export function excerptOf(formula, start, end) {
   };
 }
 
-/** @param {string} text */
-const shorten = (text) => (text.length > 24 ? `${text.slice(0, 23)}…` : text);
+/** @param {string} text @param {number} [longest] */
+const shorten = (text, longest = 24) => (text.length > longest ? `${text.slice(0, longest - 1)}…` : text);

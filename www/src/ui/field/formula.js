@@ -6,24 +6,27 @@ import { fill, h, live, marked, uniqueId } from '../dom.js';
 import { mathElement, mathLines } from '../mathml.js';
 import { describeFault } from './fault.js';
 import { openFunctions } from './functions.js';
+import { meantBy } from './meant.js';
 import { createTextarea } from './textarea.js';
 
 /**
  * @import { Description, Engine } from '../../engine/types.js'
- * @import { Editor, FaultView, Repair } from './types.js'
+ * @import { Replace } from '../types.js'
+ * @import { Change, Editor, FaultView, Repair } from './types.js'
  */
 
 /**
  * Creates the section of the formula.
  * @param {Engine} engine
  * @param {Description} description
+ * @param {Replace} replace
  */
-export function createFormula(engine, description) {
-  const input = new FormulaInput(engine, description);
+export function createFormula(engine, description, replace) {
+  const input = new FormulaInput(engine, description, replace);
   const preview = createPreview(engine);
   const help = button(
     { class: 'plain small', press: () => openFunctions(description, (name) => input.insert(name)) },
-    'Syntax',
+    'What can I write?',
   );
   const section = h(
     'div',
@@ -43,7 +46,8 @@ export function createFormula(engine, description) {
 /** The present editor, and the error in its text. */
 class FormulaInput {
   #engine;
-  #functions;
+  #description;
+  #replace;
 
   #upgrading;
   #fault;
@@ -55,17 +59,24 @@ class FormulaInput {
   /**
    * @param {Engine} engine
    * @param {Description} description
+   * @param {Replace} replace
    */
-  constructor(engine, description) {
+  constructor(engine, description, replace) {
     this.#engine = engine;
-    this.#functions = description.functions;
+    this.#description = description;
+    this.#replace = replace;
     this.error = h('div', { class: 'fault', id: 'formula-fault', role: 'status', 'aria-live': 'polite' });
     this.holder = h('div', { class: 'editor', id: 'formula' });
     this.#upgrading = false;
     this.#faulty = '';
     const shown = computed(() => engine.state.value.formula);
     this.#fault = computed(() => engine.fieldError.value);
-    this.#change = (/** @type {string} */ text) => engine.setFormula(text, { typing: true });
+    /** @type {Change} */
+    this.#change = (text, whole) => {
+      const set = () => engine.setFormula(text, { typing: true, whole });
+      if (whole) replace(set);
+      else set();
+    };
     /** @type {Editor} */
     this.editor = createTextarea({
       text: shown.peek(),
@@ -88,6 +99,7 @@ class FormulaInput {
     });
     live(this.holder, () => {
       void shown.value;
+      void engine.typing.value;
       this.#render();
     });
   }
@@ -113,7 +125,7 @@ class FormulaInput {
       const focused = plain.element === document.activeElement;
       const next = createCodeEditor({
         text: plain.text(),
-        functions: this.#functions,
+        functions: this.#description.functions,
         change: this.#change,
         finish: this.#finish,
         names: () => this.#names(),
@@ -133,7 +145,11 @@ class FormulaInput {
   #render() {
     const { editor, holder, error } = this;
     const fault = this.#fault.peek();
-    const view = describeFault(editor.text(), editor.text() === this.#faulty ? fault : null);
+    const text = editor.text();
+    // Words are a formula, too, but one that nobody means: only what has been read counts.
+    const isRead = !this.#engine.typing.peek();
+    const meant = isRead ? meantBy(this.#description, text) : [];
+    const view = describeFault(text, text === this.#faulty ? fault : null, meant);
     holder.classList.toggle('has-fault', view?.tone === 'fault');
     editor.setFault(view?.tone === 'fault' ? fault : null, view?.message ?? '');
     if (!view) return fill(error);
@@ -159,6 +175,8 @@ class FormulaInput {
 
   /** @param {Repair} repair */
   #mend(repair) {
+    const { surface } = repair;
+    if (surface) return this.#replace(() => this.#engine.setSurface(surface));
     if (repair.declare) this.#engine.declareParameter(repair.declare);
     if (repair.replace) this.editor.replace(repair.replace.start, repair.replace.end, repair.replace.text);
     this.#finish();
@@ -193,7 +211,11 @@ function createPreview(engine) {
   // While the formula cannot be read, the last readable one stays, with a caption that says so.
   const isLast = computed(() => engine.fieldError.value !== null && math.value !== null);
   const id = uniqueId('preview');
-  const last = h('p', { class: 'quiet', id, hidden: () => !isLast.value }, 'The last formula that could be read:');
+  const last = h(
+    'p',
+    { class: 'visually-hidden', id, hidden: () => !isLast.value },
+    'The last formula that could be read:',
+  );
   const preview = h('div', {
     class: 'preview',
     role: 'group',
@@ -230,5 +252,15 @@ function createPreview(engine) {
     if (preview.clientWidth !== width) fit();
     width = preview.clientWidth;
   }).observe(preview);
-  return [last, preview];
+  const unchanging = h('p', { class: 'quiet unchanging' }, () => unchangingOf(engine));
+  return [last, h('div', { class: 'shown' }, preview, unchanging)];
+}
+
+/** Says which coordinates a formula does without, and what surface that makes. @param {Engine} engine */
+function unchangingOf({ field, fieldError, empty }) {
+  const { periods, model } = field.value ?? {};
+  if (!periods || model || fieldError.value || empty.value) return '';
+  const without = ['x', 'y', 'z'].filter((_, k) => periods[k] === 0);
+  if (without.length === 1) return `No ${without[0]}: a cylinder`;
+  return without.length === 2 ? `No ${without.join(', ')}: planes` : '';
 }

@@ -12,6 +12,7 @@ import { filesOf } from './files.js';
 
 /**
  * @import { Description, Engine, Signal } from '../../engine/types.js'
+ * @import { Replace } from '../types.js'
  * @import { Entry, Finding } from './types.js'
  */
 
@@ -22,8 +23,9 @@ const POINTS = 'Points';
 /**
  * @param {Engine} engine
  * @param {Description} description
+ * @param {Replace} replace
  */
-export function createGallery(engine, description) {
+export function createGallery(engine, description, replace) {
   const groups = groupsOf(description);
   const shown = signal(groups[0].name);
   const query = signal('');
@@ -31,7 +33,8 @@ export function createGallery(engine, description) {
   const chosen = computed(() =>
     engine.field.value && engine.field.value.surface === null ? null : engine.state.value.surface,
   );
-  const finding = { words, chosen };
+  const choose = (/** @type {string} */ id) => replace(() => engine.setSurface(id));
+  const finding = { words, chosen, choose };
   const tiles = groups.map(({ name, entries }) =>
     h(
       'div',
@@ -84,10 +87,10 @@ export function createGallery(engine, description) {
  * @param {{ group: string, entry: Entry, face: Node, isFound: () => boolean }} tile  what it shows, and whether the
  *   search finds it
  */
-function createTile(engine, { words, chosen }, { group, entry: { id, name, story, credit }, face, isFound }) {
+function createTile(engine, { words, chosen, choose }, { group, entry: { id, name, story, credit }, face, isFound }) {
   // When the present surface is chosen again, its original formula is restored.
   const again = () => {
-    if (engine.state.peek().surface === id && engine.field.peek()?.surface !== id) engine.setSurface(id);
+    if (engine.state.peek().surface === id && engine.field.peek()?.surface !== id) choose(id);
   };
   const input = h('input', {
     type: 'radio',
@@ -96,7 +99,7 @@ function createTile(engine, { words, chosen }, { group, entry: { id, name, story
     class: 'visually-hidden',
     'aria-label': name,
     prop: { checked: () => chosen.value === id },
-    on: { change: () => engine.setSurface(id), click: again },
+    on: { change: () => choose(id), click: again },
   });
   const hidden = () => words.value.length > 0 && !isFound();
   const caption = h('span', { class: 'tile-name', 'aria-hidden': 'true' }, name);

@@ -9,7 +9,7 @@ import { explain } from '../explain.js';
 import { formatCount } from '../format.js';
 import { createSlider } from '../slider.js';
 import { createWarning } from '../warning.js';
-import { factsOf, fittedOf } from './facts.js';
+import { factsOf, fittedOf, plainOf } from './facts.js';
 
 /** @import { Description, Engine, ModelInfo, ReadonlySignal, Shape } from '../../engine/types.js' */
 
@@ -29,9 +29,15 @@ export function createModel(engine, description) {
       h('h2', null, 'Function'),
       button({ class: 'plain small', press: () => goBack() }, 'Back to the formula'),
     ),
-    h('p', { class: 'quiet' }, () => model.value && fittedOf(model.value)),
-    createCentres(engine, description, model),
-    h('dl', { class: 'facts' }, () => model.value && factsOf(model.value).map(factElements)),
+    h('p', { class: 'quiet' }, () => model.value && plainOf(model.value)),
+    h(
+      'details',
+      { class: 'details' },
+      h('summary', { class: 'disclose' }, 'Details'),
+      h('p', { class: 'quiet' }, () => model.value && fittedOf(model.value)),
+      createCentres(engine, description, model),
+      h('dl', { class: 'facts' }, () => model.value && factsOf(model.value).map(factElements)),
+    ),
     h('ul', { class: 'warnings', hidden: () => warnings.value.length === 0 }, () => warnings.value.map(createWarning)),
   );
 

@@ -13,26 +13,26 @@ import { storyOf } from './story.js';
 
 /**
  * @import { Description, Engine } from '../../engine/types.js'
- * @import { Motion, Pins } from '../types.js'
+ * @import { Motion, Pins, Print, Replace } from '../types.js'
  */
 
 /**
  * @param {HTMLElement} body
  * @param {Engine} engine
  * @param {Description} description
- * @param {{ motion: Motion, pins: Pins }} shared
+ * @param {{ motion: Motion, pins: Pins, replace: Replace, print: Print }} shared
  */
 export function mountField(body, engine, description, shared) {
   fill(
     body,
-    createFormula(engine, description),
+    createFormula(engine, description, shared.replace),
     createModel(engine, description),
     createParameters(engine, shared),
-    createGallery(engine, description),
+    createGallery(engine, description, shared.replace),
     ...createLoading(engine),
     createStory(engine, description),
     ...createClipBox(engine),
-    createSolid(engine, description),
+    createSolid(engine, description, shared.print),
     createCuttingPlane(engine),
   );
 }

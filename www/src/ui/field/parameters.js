@@ -36,7 +36,10 @@ export function createParameters(engine, { motion, pins }) {
     'div',
     {
       class: 'section parameters',
-      hidden: () => !canGrab(engine.field.value) && !engine.field.value?.parameters.length,
+      hidden: () =>
+        (!canGrab(engine.field.value) && !engine.field.value?.parameters.length) ||
+        // Where f does not change with x, y or z, no slider makes a surface.
+        (engine.empty.value && engine.progress.value.stop_reason === 'constant'),
     },
     h(
       'div',

@@ -5,8 +5,13 @@
 import { computed, signal } from '@preact/signals-core';
 import { h, live, marked, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
+import { formatSignificant } from '../format.js';
+import { millimetresOf } from '../print.js';
 
-/** @import { Description, Engine, SettingInfo } from '../../engine/types.js' */
+/**
+ * @import { Description, Engine, SettingInfo } from '../../engine/types.js'
+ * @import { Print } from '../types.js'
+ */
 
 const FACES = 'box_faces';
 const THICKNESS = 'thickness';
@@ -15,10 +20,11 @@ const CELL = 'box_cell';
 const PERIODIC = 'periodic';
 const BEYOND = 'beyond_points';
 const KEPT = 'kept';
-const NEGATIVE = 'A thickness is a number from 0 on, in the units of x, y and z, or a formula such as 0.1 + 0.05z.';
+const NEGATIVE =
+  'A thickness is a number from 0 on, in the units of x, y and z, a length of the printed part such as `2 mm`, or a formula such as `0.1 + 0.05z`.';
 
-/** @param {Engine} engine @param {Description} description */
-export function createSolid(engine, { settings }) {
+/** @param {Engine} engine @param {Description} description @param {Print} print */
+export function createSolid(engine, { settings }, print) {
   const chosen = computed(() => engine.state.value.settings);
   const about = (/** @type {string} */ name) => {
     const { label, help } = /** @type {SettingInfo} */ (settings.find((info) => info.name === name));
@@ -57,7 +63,12 @@ export function createSolid(engine, { settings }) {
   const thickness = h('label', { class: 'check' }, 'Thickness', box);
   async function commit() {
     const text = box.value.trim();
-    const number = text === '' ? 0 : await engine.readNumber(text);
+    const wallMm = millimetresOf(text);
+    const number = text === '' ? 0 : wallMm === null ? await engine.readNumber(text) : print.thickness(wallMm);
+    if (wallMm !== null && number === null) {
+      wrong.value = `A wall of ${formatSignificant(wallMm)} mm does not fit a part of ${formatSignificant(print.sizeMm.value)} mm.`;
+      return;
+    }
     if (number === null) wrong.value = (await engine.thicknessFault(text)) ?? '';
     else wrong.value = number < 0 ? NEGATIVE : '';
     if (wrong.value !== '') return;
@@ -69,6 +80,10 @@ export function createSolid(engine, { settings }) {
     // What is typed is taken as it is; a number from elsewhere is shown with six digits, and stays what it is.
     box.value = typeof given === 'number' ? String(Number(given.toPrecision(6)) || '') : (given ?? '');
     wrong.value = '';
+  });
+  const aboutThickness = () => ({
+    title: about(THICKNESS).title,
+    text: `${about(THICKNESS).text} 2 mm is that of a part of ${formatSignificant(print.sizeMm.value)} mm, its size in the panel of the mesh.`,
   });
   const help = () => ({
     title: 'Closed',
@@ -92,7 +107,7 @@ export function createSolid(engine, { settings }) {
       { class: 'section-head', hidden: () => Boolean(engine.field.value?.model) },
       explain(closed, help, { side: 'above' }),
       explain(periodic, () => ({ ...about(CELL), title: 'Periodic' }), { side: 'above' }),
-      explain(thickness, () => about(THICKNESS), { side: 'above' }),
+      explain(thickness, aboutThickness, { side: 'above' }),
     ),
     h('p', { class: 'fault-line', id: told, role: 'alert', hidden: () => wrong.value === '' }, () =>
       marked(wrong.value),

@@ -1,13 +1,15 @@
 /** The formula in a native text area, which is available before the full editor has loaded and where it cannot load. */
 import { h } from '../dom.js';
 
-/** @import { Editor } from './types.js' */
+/** @import { Change, Editor } from './types.js' */
 
 /**
- * @param {{ text: string, change: (text: string) => void, finish: () => void, focused: () => void }} options
+ * @param {{ text: string, change: Change, finish: () => void, focused: () => void }} options
  * @returns {Editor}
  */
 export function createTextarea({ text, change, finish, focused }) {
+  /** Whether a text is pasted over all of the one before. */
+  let whole = false;
   const area = h('textarea', {
     class: 'code',
     rows: 1,
@@ -19,9 +21,13 @@ export function createTextarea({ text, change, finish, focused }) {
     'aria-describedby': 'formula-fault',
     prop: { value: text },
     on: {
-      input: () => {
+      paste: () => {
+        whole = area.selectionStart === 0 && area.selectionEnd === area.value.length;
+      },
+      input: (event) => {
         grow();
-        change(area.value);
+        change(area.value, whole && event instanceof InputEvent && event.inputType === 'insertFromPaste');
+        whole = false;
       },
       focus: focused,
       keydown: (event) => {
@@ -53,7 +59,7 @@ export function createTextarea({ text, change, finish, focused }) {
     replace(start, end, inserted) {
       area.setRangeText(inserted, start, end, 'end');
       grow();
-      change(area.value);
+      change(area.value, false);
     },
     setFault(fault) {
       area.setAttribute('aria-invalid', String(fault !== null));

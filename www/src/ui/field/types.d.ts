@@ -3,13 +3,15 @@
 import type { ReadonlySignal } from '@preact/signals-core';
 import type { Description, FieldFault } from '../../engine/types.js';
 
+/** `whole`: the text was pasted over all of the one before */
+export type Change = (text: string, whole: boolean) => void;
 export interface CodeEditorOptions {
   text: string;
   selection: { anchor: number; head: number };
   functions: Functions;
   /** returns the names of the formula's parameters */
   names: () => string[];
-  change: (text: string) => void;
+  change: Change;
   /** the text is complete */
   finish: () => void;
 }
@@ -19,9 +21,13 @@ export interface FaultView {
   excerpt: { before: string; marked: string; after: string } | null;
   repairs: Repair[];
 }
+/** A surface that a text names. */
+export type Meant = { id: string; name: string };
 export type Repair = {
   label: string;
   declare?: string;
+  /** the surface to show in the place of the formula */
+  surface?: string;
   replace?: { start: number; end: number; text: string };
 };
 /** The interface of both editors. Offsets are UTF-16 code units. */
@@ -42,6 +48,8 @@ export interface Finding {
   words: ReadonlySignal<readonly string[]>;
   /** the present surface */
   chosen: ReadonlySignal<string | null>;
+  /** takes the surface of this id */
+  choose: (id: string) => void;
 }
 export type Entry = {
   id: string;

@@ -8,11 +8,14 @@ import sheet from './mesh.css?url';
 
 /**
  * @import { Engine } from '../../engine/types.js'
- * @import { Toast } from '../types.js'
+ * @import { Print, Toast } from '../types.js'
  */
 
-/** @param {Engine} engine @param {Toast} toast */
-export function createMeshButton(engine, toast) {
+/** Room that is left above the panel. */
+const MARGIN_PX = 8;
+
+/** @param {Engine} engine @param {Toast} toast @param {Print} print */
+export function createMeshButton(engine, toast, print) {
   /** @type {Promise<HTMLElement> | null} */
   let panel = null;
   const methodOf = () => engine.state.value.settings.method;
@@ -25,7 +28,11 @@ export function createMeshButton(engine, toast) {
       element.focus();
     };
     // It stays open while the picture is turned.
-    const holder = h('div', { class: 'menu', popover: 'manual' }, createMeshPanel(engine, { toast, close }));
+    const holder = h(
+      'div',
+      { class: 'menu mesh-holder', popover: 'manual' },
+      createMeshPanel(engine, { toast, close, print }),
+    );
     holder.addEventListener('keydown', (event) => {
       if (event.key !== 'Escape') return;
       event.stopPropagation();
@@ -49,12 +56,16 @@ export function createMeshButton(engine, toast) {
     panel ??= load();
     try {
       const holder = await panel;
+      Object.assign(holder.style, { bottom: '', maxHeight: '' });
       if (!holder.matches(':popover-open')) holder.showPopover();
       // Its right end is that of the button, so that it does not reach over the report, and it is above the levels.
       const { right, top, bottom } = element.getBoundingClientRect();
       const levels = query(document, '.panel-levels').getBoundingClientRect();
       const from = levels.height > 0 ? Math.min(top, levels.top) : top;
       place(holder, new DOMRect(right - holder.offsetWidth, from, holder.offsetWidth, bottom - from), 'above');
+      // Its lower end stays where it is when its content grows.
+      const end = holder.getBoundingClientRect().bottom;
+      Object.assign(holder.style, { top: 'auto', bottom: `${innerHeight - end}px`, maxHeight: `${end - MARGIN_PX}px` });
       query(holder, '.save').focus();
     } catch {
       panel = null;

@@ -1,83 +1,85 @@
-/** The panel of a mesh: the verdict on it, where it is open, and how it is saved. */
-import { computed } from '@preact/signals-core';
+/**
+ * The panel of a mesh: what it is for, the verdict on it, what is set for the surface, its size in a file, and how that
+ * is saved.
+ */
+import { computed, signal } from '@preact/signals-core';
 import { button } from '../button.js';
-import { h, uniqueId } from '../dom.js';
-import { verdictOf } from '../mesh-words.js';
+import { h, live, uniqueId } from '../dom.js';
+import { formatCount, formatSignificant, plural } from '../format.js';
+import { keptOf } from '../kept.js';
+import { figuresOf, verdictOf } from '../mesh-words.js';
 import { numberBox } from '../number.js';
+import { millimetresOf } from '../print.js';
+import { createSegmented } from '../segmented.js';
 import { createSelect } from '../select.js';
 import { saveMesh } from '../share.js';
 import { borderOf } from './borders.js';
 
 /**
  * @import { Engine, MeshAnswer, MeshFormat } from '../../engine/types.js'
- * @import { Toast } from '../types.js'
+ * @import { Print, Toast } from '../types.js'
  */
 
-/** File formats, with what is in them. @type {[MeshFormat, string][]} */
-const FORMATS = [
-  ['glb', 'For viewers. Includes normals and level colours; units are metres'],
-  ['3mf', 'For printers. Includes the unit'],
-  ['stl', 'Triangles only, no record of what they were made from'],
-  ['obj', 'Triangles and normals, as text'],
-  ['ply', 'Triangles and normals'],
+/** What a mesh is saved for. @typedef {'print' | 'view'} Use */
+/** @type {{ value: Use, label: string }[]} */
+const USES = [
+  { value: 'print', label: 'For printing' },
+  { value: 'view', label: 'For viewers' },
 ];
+/** File formats for each use, with what is in them; the usual one first. @type {Record<Use, [MeshFormat, string][]>} */
+const FORMATS = {
+  print: [
+    ['3mf', 'With its unit'],
+    ['stl', 'Triangles only. Programs take its numbers for millimetres'],
+  ],
+  view: [
+    ['glb', 'Normals, and levels as colours; in metres'],
+    ['obj', 'Triangles and normals, as text'],
+    ['ply', 'Triangles and normals'],
+    ['stl', 'Triangles only, no record of what they were made from'],
+    ['3mf', 'Triangles with their unit'],
+  ],
+};
 /** Units by their symbols; without one numbers stay what they are. */
 const UNITS = ['', 'mm', 'cm', 'm', 'in'];
 const AXES = ['z', 'y', 'x'];
 
 /**
  * @param {Engine} engine
- * @param {{ toast: Toast, close: () => void }} page
+ * @param {{ toast: Toast, close: () => void, print: Print }} page
  */
-export function createMeshPanel(engine, { toast, close }) {
+export function createMeshPanel(engine, { toast, close, print }) {
+  /** @type {import('../../engine/types.js').Signal<Use>} */
+  const use = signal('print');
   const made = computed(() => (engine.busy.value || engine.empty.value ? null : engine.mesh.value));
+  const isPrint = () => use.value === 'print';
+  const lines = viewLines(engine);
+  /** Scale and unit of the file. */
+  const ofFile = () => (isPrint() ? { scale: print.scale() ?? 1, unit: 'mm' } : lines.ofFile());
   const verdict = () => {
-    if (made.value) return verdictOf(made.value);
+    if (made.value) return verdictOf(made.value, ofFile());
     if (engine.partial.value && !engine.busy.value) return 'Stopped before the mesh was complete.';
     return engine.busy.value || !engine.empty.value ? 'Making the mesh …' : 'There is no surface to make a mesh of.';
   };
-  const note = h('p', { class: 'quiet' });
-  const format = createSelect({
-    choices: FORMATS.map(([value]) => ({ value, label: value.toUpperCase() })),
-    change: () => tell(),
-  });
-  const ways = engine.description.value?.vertices ?? [];
-  const vertices = createSelect({ choices: ways, change: () => tell() });
-  const verticesNote = h('p', { class: 'quiet' });
-  const verticesLine = line('Vertices', vertices);
-  /** Says what is in the file, and offers the ways to write its vertices. */
-  const tell = () => {
-    const [id, text] = FORMATS[format.selectedIndex];
-    note.textContent = text;
-    const fits = ways.map(({ formats }) => formats.includes(id));
-    [...vertices.options].forEach((option, k) => {
-      option.hidden = option.disabled = !fits[k];
-    });
-    if (!fits[vertices.selectedIndex]) vertices.selectedIndex = Math.max(0, fits.indexOf(true));
-    verticesLine.hidden = verticesNote.hidden = !fits.includes(true);
-    verticesNote.textContent = ways[vertices.selectedIndex]?.help ?? '';
-  };
-  tell();
-  const scale = numberBox({ name: 'Length of a unit of the formula', value: '1' });
-  const unit = createSelect({
-    name: 'Unit',
-    choices: UNITS.map((value) => ({ value, label: value || 'unspecified' })),
-  });
   const up = createSelect({ choices: AXES.map((value) => ({ value, label: value })) });
+  const formats = {
+    print: createFormat(engine, FORMATS.print),
+    view: createFormat(engine, FORMATS.view),
+  };
+  const chosen = () => formats[use.value];
   const save = async () => {
-    const factor = await engine.readNumber(scale.value);
-    if (factor === null || !(factor > 0 && factor < Infinity)) {
-      scale.focus();
-      toast({ id: 'save', kind: 'warn', text: 'The length of a unit must be a positive number.' });
+    const scale = isPrint() ? print.scale() : await lines.read();
+    if (scale === null) {
+      if (!isPrint()) toast({ id: 'save', kind: 'warn', text: 'The length of a unit must be a positive number.' });
       return;
     }
-    const chosen = FORMATS[format.selectedIndex][0];
     const placement = {
-      scale: factor,
-      unit: /** @type {'mm' | 'cm' | 'm' | 'in' | null} */ (unit.value || null),
+      scale,
+      unit: /** @type {'mm' | 'cm' | 'm' | 'in' | null} */ (ofFile().unit || null),
       up: /** @type {'x' | 'y' | 'z'} */ (up.value),
     };
-    void saveMesh(engine, toast, chosen, { placement, vertices: ways[vertices.selectedIndex]?.value ?? 'joined' });
+    const { format, vertices } = chosen();
+    void saveMesh(engine, toast, format.value, { placement, vertices: vertices() });
   };
   const id = uniqueId('mesh');
   return h(
@@ -89,20 +91,206 @@ export function createMeshPanel(engine, { toast, close }) {
       h('h2', { id }, 'Mesh'),
       button({ icon: 'close', 'aria-label': 'Close', press: close }),
     ),
+    createSegmented({
+      name: 'What the mesh is for',
+      choices: USES,
+      value: () => use.value,
+      change: (value) => {
+        use.value = value;
+      },
+    }),
     h('p', { class: 'verdict', role: 'status' }, verdict),
-    showing(engine, made),
-    line('1 unit =', scale, unit),
+    h('p', { class: 'quiet', hidden: () => !isPrint() || !nextOf(made.value) }, () => nextOf(made.value)),
+    h('div', { class: 'mesh-steps' }, showing(engine, made), leavingOut(engine, made)),
+    keptLines(engine),
+    h('div', { hidden: () => !isPrint() }, printLines(engine, { print, toast, made })),
+    h('div', { hidden: isPrint }, lines.elements),
     line('Up axis', up),
-    line('Format', format),
-    note,
-    verticesLine,
-    verticesNote,
+    h('div', { hidden: () => !isPrint() }, formats.print.elements),
+    h('div', { hidden: isPrint }, formats.view.elements),
+    h(
+      'details',
+      { class: 'details', hidden: () => !made.value },
+      h('summary', { class: 'disclose' }, 'Details'),
+      h('dl', { class: 'facts' }, () =>
+        made.value
+          ? figuresOf(made.value, ofFile()).map(([name, value]) => [h('dt', null, name), h('dd', null, value)])
+          : null,
+      ),
+    ),
     h(
       'div',
       { class: 'mesh-ends' },
       button({ press: close }, 'Back to particles'),
-      button({ class: 'save', off: () => !made.value, press: save }, 'Save mesh'),
+      button(
+        { class: 'save', off: () => !made.value, press: save },
+        () => `Save ${chosen().format.value.toUpperCase()}`,
+      ),
     ),
+  );
+}
+
+/** What helps where a mesh cannot be printed; nothing where it can. @param {MeshAnswer | null} mesh */
+function nextOf(mesh) {
+  if (!mesh?.components.some(({ open_edges }) => open_edges > 0)) return '';
+  const needs = 'A printer needs a closed surface:';
+  return mesh.unfilled > 0 ? `${needs} try smaller particles.` : `${needs} give it a wall, or close it with the box.`;
+}
+
+/**
+ * Creates the choice of a format and of the vertices in it.
+ * @param {Engine} engine
+ * @param {[MeshFormat, string][]} formats
+ */
+function createFormat(engine, formats) {
+  const format = signal(formats[0][0]);
+  const ways = engine.description.value?.vertices ?? [];
+  const way = signal(ways[0]);
+  const fits = () => ways.filter((one) => one.formats.includes(format.value));
+  const select = createSelect({
+    choices: formats.map(([value]) => ({ value, label: value.toUpperCase() })),
+    value: () => format.value,
+    change: (value) => {
+      format.value = value;
+      if (!fits().includes(way.value)) way.value = ways[0];
+    },
+  });
+  const vertices = createSelect({
+    choices: () => fits(),
+    value: () => way.value?.value ?? '',
+    change: (value) => {
+      way.value = ways.find((one) => one.value === value) ?? ways[0];
+    },
+  });
+  const verticesLine = line('Vertices', vertices);
+  live(verticesLine, () => {
+    verticesLine.hidden = fits().length === 0;
+  });
+  return {
+    format,
+    vertices: () => way.value?.value ?? 'joined',
+    elements: [
+      line('Format', select),
+      h('p', { class: 'quiet' }, () => formats.find(([value]) => value === format.value)?.[1]),
+      verticesLine,
+      h('p', { class: 'quiet', hidden: () => fits().length === 0 }, () => way.value?.help),
+    ],
+  };
+}
+
+/**
+ * Creates the lines of a part that is printed: its size, and its wall.
+ * @param {Engine} engine
+ * @param {{ print: Print, toast: Toast, made: { readonly value: MeshAnswer | null } }} parts
+ */
+function printLines(engine, { print, toast, made }) {
+  const refuse = (/** @type {HTMLInputElement} */ box, /** @type {string} */ text) => {
+    box.focus();
+    toast({ id: 'size', kind: 'warn', text });
+  };
+  /** A length that was typed, in millimetres unless it has another unit. @param {HTMLInputElement} box */
+  const read = async ({ value }) =>
+    value.trim() === '' ? 0 : (millimetresOf(value) ?? (await engine.readNumber(value)));
+  const size = numberBox({ name: 'Longest side in millimetres' });
+  const showSize = () => {
+    size.value = formatSignificant(print.sizeMm.value, 4);
+  };
+  live(size, showSize);
+  size.addEventListener('change', async () => {
+    const given = await read(size);
+    if (given !== null && given > 0 && given < Infinity) print.sizeMm.value = given;
+    else refuse(size, 'The size is a positive length, such as 40 or 1.5 in.');
+    showSize();
+  });
+  const wall = numberBox({ name: 'Wall in millimetres', placeholder: 'none' });
+  /** The wall of the last mesh, as long as the next one is made. */
+  let last = { text: '', placeholder: 'none' };
+  const shown = computed(() => {
+    if (!made.value) return last;
+    const present = print.wall();
+    last = {
+      text: present ? formatSignificant(present, 2) : '',
+      placeholder: present === null ? 'varies' : 'none',
+    };
+    return last;
+  });
+  const showWall = () => {
+    wall.value = shown.value.text;
+    wall.placeholder = shown.value.placeholder;
+  };
+  live(wall, showWall);
+  wall.addEventListener('change', async () => {
+    const given = await read(wall);
+    const thickness = given === null || !(given >= 0) ? null : given === 0 ? 0 : print.thickness(given);
+    if (thickness === null) {
+      refuse(wall, `The wall is a length that fits a part of ${formatSignificant(print.sizeMm.value)} mm, such as 2.`);
+      showWall();
+    } else if (thickness === 0) engine.resetSetting('thickness');
+    else engine.setSetting('thickness', thickness);
+  });
+  const wallLine = line('Wall', wall, h('span', { class: 'unit' }, 'mm'));
+  // A surface from points takes no thickness.
+  live(wallLine, () => {
+    wallLine.hidden = Boolean(engine.field.value?.model);
+  });
+  return [line('Size', size, h('span', { class: 'unit' }, 'mm along the longest side')), wallLine];
+}
+
+/** Creates the lines of the scale and the unit of a file for viewers. @param {Engine} engine */
+function viewLines(engine) {
+  const factor = signal(1);
+  const unit = signal('');
+  const scale = numberBox({ name: 'Length of a unit of the formula', value: '1' });
+  /** The length in the box; null if it is none. */
+  const read = async () => {
+    const given = await engine.readNumber(scale.value);
+    if (given === null || !(given > 0 && given < Infinity)) {
+      scale.focus();
+      return null;
+    }
+    factor.value = given;
+    return given;
+  };
+  scale.addEventListener('change', () => void read());
+  const units = createSelect({
+    name: 'Unit',
+    choices: UNITS.map((value) => ({ value, label: value || 'unspecified' })),
+    value: () => unit.value,
+    change: (value) => {
+      unit.value = value;
+    },
+  });
+  return { elements: line('1 unit =', scale, units), read, ofFile: () => ({ scale: factor.value, unit: unit.value }) };
+}
+
+/** Creates a line for everything that is set for the surface, with what ends it. @param {Engine} engine */
+function keptLines(engine) {
+  const kept = computed(() => keptOf(engine));
+  const texts = computed(() => JSON.stringify(kept.value.map(({ text }) => text)));
+  return h(
+    'ul',
+    { class: 'mesh-kept', 'aria-label': 'Set for this surface', hidden: () => kept.value.length === 0 },
+    () => {
+      void texts.value;
+      return kept
+        .peek()
+        .map(({ text, end, act }) =>
+          h('li', null, h('span', null, text), button({ icon: 'close', 'aria-label': end, title: end, press: act })),
+        );
+    },
+  );
+}
+
+/**
+ * Creates the button that leaves the loose chips out.
+ * @param {Engine} engine
+ * @param {{ readonly value: MeshAnswer | null }} made
+ */
+function leavingOut(engine, made) {
+  const chips = () => made.value?.bodies.filter((body) => body.is_chip).length ?? 0;
+  return button(
+    { hidden: () => chips() === 0, press: () => engine.leaveOutChips() },
+    () => `Leave out ${plural(chips(), 'loose chip')}`,
   );
 }
 
@@ -121,9 +309,10 @@ function showing(engine, made) {
     engine.pointOut(borderOf(mesh, index, engine.columns));
     last = { mesh, next: (index + 1) % mesh.loops.length };
   };
-  return button({ hidden: () => !made.value?.loops.length, press }, () =>
-    (made.value?.loops.length ?? 0) > 1 ? 'Show the next border' : 'Show them',
-  );
+  return button({ hidden: () => !made.value?.loops.length, press }, () => {
+    const count = made.value?.loops.length ?? 0;
+    return count > 1 ? `Show the next of ${formatCount(count)} borders` : 'Show the border';
+  });
 }
 
 /** @param {string} label @param {...HTMLElement} inputs */

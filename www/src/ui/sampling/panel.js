@@ -4,6 +4,7 @@ import { button } from '../button.js';
 import { fill, h, once, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 import { plural } from '../format.js';
+import { createTrack } from '../track.js';
 import { createSetting } from './setting.js';
 import { arrange, countChanged, isDue } from './settings.js';
 
@@ -38,29 +39,6 @@ export function mountSampling(body, engine, { settings }, { head }) {
   );
 }
 
-/** Creates the progress bar. @param {Engine} engine */
-function createTrack({ busy, reveal, progress, loading }) {
-  // The bar follows the reveal of the picture while it lasts, and otherwise the run and its report.
-  const works = computed(() => busy.value || progress.value.phase === 'quality');
-  const growing = computed(() => works.value || reveal.value !== null || loading.value !== null);
-  const fraction = computed(() => {
-    if (loading.value) return loading.value.fraction;
-    const { particles, fraction: done } = progress.value;
-    const share = reveal.value ? reveal.value.particles / Math.max(1, particles) : works.value ? done : 0;
-    return Math.round(Math.min(1, share) * 200) / 200;
-  });
-  return h('div', {
-    class: 'progress',
-    role: 'progressbar',
-    'aria-label': 'Sampling',
-    'aria-valuemin': 0,
-    'aria-valuemax': 100,
-    'aria-valuenow': () => Math.round(fraction.value * 100),
-    data: { busy: () => growing.value },
-    style: { '--fraction': () => fraction.value },
-  });
-}
-
 /** @param {Engine} engine */
 function createActions(engine) {
   const { busy, loading, progress } = engine;
@@ -80,7 +58,7 @@ function createActions(engine) {
       { class: () => (idle() ? 'in-tabs' : 'in-tabs works'), off: idle, press: () => engine.stop() },
     ],
     [
-      'Generate only',
+      'Without relaxing',
       'Places the particles level by level and leaves them unrelaxed. Key G.',
       { press: () => engine.generateOnly() },
     ],

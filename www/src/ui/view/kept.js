@@ -6,11 +6,11 @@ import { keptOf } from '../kept.js';
 
 /** @import { Engine } from '../../engine/types.js' */
 
-/** @param {Engine} engine */
-export function createKept(engine) {
+/** @param {Engine} engine @param {() => boolean} [isWanted] */
+export function createKept(engine, isWanted = () => true) {
   const kept = computed(() => keptOf(engine));
   const texts = computed(() => JSON.stringify(kept.value.map(({ text }) => text)));
-  return h('div', { class: 'kept', role: 'status', hidden: () => kept.value.length === 0 }, () => {
+  return h('div', { class: 'kept', role: 'status', hidden: () => kept.value.length === 0 || !isWanted() }, () => {
     // While a slider moves the buttons stay the same elements.
     void texts.value;
     return kept

@@ -6,6 +6,7 @@ import { button } from '../button.js';
 import { h, live, marked } from '../dom.js';
 import { explain } from '../explain.js';
 import { verdictOf } from '../mesh-words.js';
+import { createTrack } from '../track.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
 import { createKept } from './kept.js';
 
@@ -52,7 +53,15 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   const mesh = computed(() => (told.value ? '' : meshOf(engine)));
   const whole = computed(() => [text.value, told.value?.text, mesh.value].filter(Boolean).join('. '));
   const caption = h('p', { class: 'caption', 'aria-hidden': 'true' });
-  view.append(empty, h('div', { class: 'foot' }, createKept(engine), createChip(engine), caption, hint), spoken);
+  // The panel of the mesh, which would cover this, says the same.
+  const isAlone = () => engine.meshing.value === null;
+  view.append(
+    empty,
+    h('div', { class: 'foot' }, createKept(engine, isAlone), createChip(engine), caption, hint),
+    // In a frame of another page there is no panel that shows it.
+    h('div', { class: 'framed-track' }, createTrack(engine)),
+    spoken,
+  );
   caption.append(
     h('span', null, () => (engine.loading.value ? loadingOf(engine.loading.value) : text.value)),
     h('span', { class: 'detail' }, () => (engine.loading.value ? '' : told.value?.text)),
@@ -91,7 +100,7 @@ function meshOf(engine) {
 
 /** Title and advice of the empty state, by the reason for it. @type {Record<string, [string, string] | undefined>} */
 const EMPTY = {
-  constant: ['The formula is constant', 'Let it change with x, y or z.'],
+  constant: ['There is no x, y or z in it', 'Let the formula change with them.'],
   undefined: ['Undefined in the whole box', 'Look for the root or logarithm of a negative number, or move the box.'],
 };
 
@@ -118,9 +127,18 @@ function emptyState(engine) {
       'div',
       { class: 'empty-actions' },
       stop_reason === 'no_surface' && !nowhere ? button({ press: () => enlarge(engine) }, 'Double the box') : null,
-      button({ press: () => engine.setSurface(engine.state.peek().surface) }, 'Restore the gallery formula'),
+      button(
+        { press: () => engine.setSurface(engine.state.peek().surface) },
+        `Back to the ${nameOf(engine, engine.state.peek().surface)}`,
+      ),
     ),
   ];
+}
+
+/** The name of a surface in a sentence. @param {Engine} engine @param {string} id */
+function nameOf({ description }, id) {
+  const { surfaces = [], models = [] } = description.peek() ?? {};
+  return [...surfaces, ...models].find((entry) => entry.id === id)?.name ?? 'file';
 }
 
 /**

@@ -48,6 +48,9 @@ test('a page with the picture in a frame sets its state, reads it and gets the r
     .locator('body')
     .evaluate(() => /** @type {any} */ (window).marchingParticles.status());
   expect(backend).toBe('canvas2d');
+  // Without panels the bar alone shows that it works.
+  await expect(frame.locator('.framed-track .progress')).toHaveCount(1);
+  await expect(frame.locator('.framed-track')).toBeVisible();
   for (const part of ['.panel-field', '.panel-report', '.panel-levels', '.toolbar', '.legend', '.unhide'])
     await expect(frame.locator(part)).toBeHidden();
   server.close();

@@ -62,7 +62,7 @@ for (const { tag, sizes } of WINDOWS) {
 /** @param {Page} page @param {number} width @param {number} height */
 async function expectNoOverflow(page, width, height) {
   const compact = width < 720 || height < 480;
-  for (const tab of compact ? ['Sampling', 'Report', 'Field'] : ['']) {
+  for (const tab of compact ? ['Sampling', 'Report', 'Surface'] : ['']) {
     const button = page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: tab });
     // A press on the tab of an open panel closes it.
     if (tab && !(await page.locator(`#panel-${tab.toLowerCase()}`).isVisible())) await button.click();
@@ -104,7 +104,7 @@ async function expectAccessible(page) {
 
 test('axe finds nothing at 390 by 844', async ({ page }) => {
   await open(page, { width: 390, height: 844, hash: COARSE });
-  for (const tab of ['Sampling', 'Report', 'Field']) {
+  for (const tab of ['Sampling', 'Report', 'Surface']) {
     await page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: tab }).click();
     await expectAccessible(page);
   }
@@ -284,7 +284,7 @@ test('without its style sheet the page still has all its controls', { tag: '@all
   await page.goto('/?backend=canvas2d');
   await settled(page);
   await expect(page.locator('#formula')).toBeAttached();
-  await expect(page.getByRole('button', { name: 'Generate only' })).toBeAttached();
+  await expect(page.getByRole('button', { name: 'Without relaxing' })).toBeAttached();
 });
 
 test('a style sheet that comes after the script finds everything in its place', { tag: '@all' }, async ({ page }) => {

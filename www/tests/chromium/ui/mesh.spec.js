@@ -1,3 +1,4 @@
+import { stat } from 'node:fs/promises';
 import { expect, test } from '@playwright/test';
 import { link } from '../engine/browser.js';
 import { afresh, open, settled, state, typeFormula } from './helpers.js';
@@ -7,19 +8,28 @@ test('the mesh', async ({ page }) => {
   await test.step('one press makes a mesh, tells whether it is closed, and every format is saved under its name', async () => {
     await page.getByRole('button', { name: 'Make a mesh' }).click();
     const panel = page.getByRole('region', { name: 'Mesh' });
-    await expect(panel.locator('.verdict')).toHaveText(/^Watertight · Euler number 2 · volume [\d.]+ · smallest angle/);
+    await expect(panel.locator('.verdict')).toHaveText(/^Closed · 1 part · 40\s×\s28(\.\d)?\s×\s20(\.\d)?\smm$/);
     const made = await state(page);
     expect(made.view.draw).toBe('mesh');
     expect(made.settings.method).toBeUndefined();
-    await expect(panel.getByRole('button', { name: 'Save mesh' })).toBeFocused();
-    for (const format of ['glb', '3mf', 'stl', 'obj', 'ply']) {
-      await panel.getByLabel('Format').selectOption(format);
-      const [file] = await Promise.all([
-        page.waitForEvent('download'),
-        panel.getByRole('button', { name: 'Save mesh' }).click(),
-      ]);
-      expect(file.suggestedFilename()).toMatch(new RegExp(`^ellipsoid-\\d+-mesh\\.${format}$`));
+    await expect(panel.getByRole('button', { name: 'Save 3MF' })).toBeFocused();
+    await panel.getByText('Details').click();
+    await expect(panel.locator('.facts')).toContainText('Euler number2');
+    for (const [use, formats] of /** @type {const} */ ([
+      ['For printing', ['3mf', 'stl']],
+      ['For viewers', ['glb', 'obj', 'ply', 'stl', '3mf']],
+    ])) {
+      await panel.getByRole('radio', { name: use }).check();
+      for (const format of formats) {
+        await panel.getByRole('combobox', { name: 'Format' }).selectOption(format);
+        const [file] = await Promise.all([
+          page.waitForEvent('download'),
+          panel.getByRole('button', { name: `Save ${format.toUpperCase()}` }).click(),
+        ]);
+        expect(file.suggestedFilename()).toMatch(new RegExp(`^ellipsoid-\\d+-mesh\\.${format}$`));
+      }
     }
+    await panel.getByRole('radio', { name: 'For printing' }).check();
     const [bottom, levels] = await Promise.all([panel.boundingBox(), page.locator('.panel-levels').boundingBox()]);
     expect((bottom?.y ?? 0) + (bottom?.height ?? 0)).toBeLessThanOrEqual(levels?.y ?? 0);
     await page.keyboard.press('Escape');
@@ -42,9 +52,55 @@ test('the mesh', async ({ page }) => {
     await afresh(page, { hash: link({ surface: 'schwarz-p', settings: { radius_share: 0.02 } }) });
     await page.getByRole('button', { name: 'Make a mesh' }).click();
     const panel = page.getByRole('region', { name: 'Mesh' });
-    await expect(panel.locator('.verdict')).toHaveText(/^[\d,]+ open edges · /);
-    await panel.getByRole('button', { name: 'Show the next border' }).click();
+    await expect(panel.locator('.verdict')).toHaveText(/^Open: [\d,]+ open edges · /);
+    await expect(panel).toContainText('A printer needs a closed surface');
+    await panel.getByRole('button', { name: /^Show the next of \d+ borders$/ }).click();
     await expect(page.locator('polygon.marked')).toBeVisible();
+    await page.keyboard.press('Escape');
+  });
+
+  await test.step('a part has its size and its wall in millimetres, and what is set for it stands in the panel', async () => {
+    await afresh(page, { hash: link({ surface: 'gyroid', settings: { radius_share: 0.015, box_faces: 'closed' } }) });
+    await page.getByRole('button', { name: 'Make a mesh' }).click();
+    const panel = page.getByRole('region', { name: 'Mesh' });
+    const [size, wall] = ['Longest side', 'Wall'].map((name) => panel.getByRole('spinbutton', { name }));
+    const made = () => expect(panel.locator('.verdict')).toHaveText(/^Closed · /);
+    await made();
+    await size.fill('6 cm');
+    await size.press('Enter');
+    await expect(panel.locator('.verdict')).toHaveText(/60\s×\s60\s×\s60\smm$/);
+    await wall.fill('3');
+    await wall.press('Enter');
+    await settled(page);
+    await made();
+    await expect(wall).toHaveValue('3');
+    const { settings } = await state(page);
+    const { min, max } = (await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.field.value))
+      .bounds;
+    expect(settings.thickness / (max[0] - min[0])).toBeCloseTo(3 / 60, 3);
+    const kept = panel.locator('.mesh-kept li');
+    await expect(kept).toHaveText([/^Thickness /, 'Closed by the box']);
+    await expect(page.locator('.foot .kept')).toBeHidden();
+    await panel.getByRole('button', { name: 'End the thickness' }).click();
+    await expect(kept).toHaveText(['Closed by the box']);
+    expect((await state(page)).settings.thickness).toBeUndefined();
+    await page.keyboard.press('Escape');
+  });
+
+  await test.step('loose chips are counted, and leave the picture and the file by one press', async () => {
+    const formula = 'min(hypot(x, y, z) - 1, hypot(x - 1.5, y, z) - 0.1, hypot(x + 1.5, y, z) - 0.1)';
+    await afresh(page, { hash: link({ formula, settings: { radius_share: 0.01 } }) });
+    await page.getByRole('button', { name: 'Make a mesh' }).click();
+    const panel = page.getByRole('region', { name: 'Mesh' });
+    await expect(panel.locator('.verdict')).toHaveText(/^Closed · 1 part and 2 loose chips · 60\s×\s/);
+    const size = async () => {
+      const [file] = await Promise.all([page.waitForEvent('download'), panel.locator('.save').click()]);
+      return (await stat(await file.path())).size;
+    };
+    const before = await size();
+    await panel.getByRole('button', { name: 'Leave out 2 loose chips' }).click();
+    await expect(panel.locator('.verdict')).toHaveText(/^Closed · 1 part · 60\s×\s60\s×\s60\smm$/);
+    expect(await size()).toBeLessThan(before);
     await page.keyboard.press('Escape');
   });
 
@@ -59,7 +115,7 @@ test('the mesh', async ({ page }) => {
     await expect(page.getByRole('button', { name: 'Edges' })).toHaveAttribute('aria-pressed', 'false');
     expect((await state(page)).view).toMatchObject({ draw: 'mesh', faces: 'flat', edges: false, marks: true });
     await page.keyboard.press('Escape');
-    await expect(page.locator('.caption .joined')).toHaveText(/^Watertight · Euler number 2/);
+    await expect(page.locator('.caption .joined')).toHaveText(/^Closed · 1 part/);
     await page.locator('#stage').click({ position: { x: 5, y: 5 } });
     await page.keyboard.press('m');
     await expect(page.locator('.caption .joined')).toBeEmpty();

@@ -158,7 +158,7 @@ test('at rest there are few controls in view; the others come with the pointer o
   // The invitation: formula, sliders, gallery, timeline, a mesh.
   for (const name of ['Formula', 'Semi-axis along x a', 'Sphere', 'Timeline, by levels', 'Play', 'Make a mesh'])
     expect(atFirst).toContain(name);
-  for (const name of ['Run', 'Stop', 'Generate only', 'Relax one step', 'Uniform', 'Zoom in', 'First level'])
+  for (const name of ['Run', 'Stop', 'Without relaxing', 'Relax one step', 'Uniform', 'Zoom in', 'First level'])
     expect(atFirst).not.toContain(name);
 
   const seen = async () => {
@@ -194,7 +194,7 @@ test('at rest there are few controls in view; the others come with the pointer o
 
   await test.step('the sampling part has the rest', async () => {
     await page.getByRole('button', { name: 'Unfold sampling' }).click();
-    for (const name of ['Run', 'Stop', 'Generate only', 'Relax one step'])
+    for (const name of ['Run', 'Stop', 'Without relaxing', 'Relax one step'])
       await expect(page.locator('#panel-sampling').getByRole('button', { name, exact: true })).toBeVisible();
     await expect(page.getByRole('radio', { name: 'Adaptive' })).toBeVisible();
   });

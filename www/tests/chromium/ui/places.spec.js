@@ -90,7 +90,7 @@ test('places that are pointed out', { tag: '@all' }, async ({ page }) => {
     });
     expect(disabled).toEqual({ before: false, during: false });
     await settled(page);
-    await page.getByRole('button', { name: 'Generate only' }).click();
+    await page.getByRole('button', { name: 'Without relaxing' }).click();
     await expect(page.locator('.marks .marked')).toHaveCount(0);
     // Without a relaxation the places are those of the front.
     await page.getByRole('button', { name: /^Closest pair .*show it/ }).click();

@@ -298,7 +298,9 @@ test('a file and the number of its points', { tag: '@all' }, async ({ page }) =>
     await dropped(page, { name: 'ball.ply', text: spherePly(900) });
     await expect(page.getByRole('heading', { name: 'ball.ply' })).toBeVisible();
     await settled(page);
-    const fitted = page.locator('.model > .quiet');
+    await expect(page.locator('.model > .quiet')).toContainText('A smooth surface through 900 points');
+    await page.locator('.model .details > summary').click();
+    const fitted = page.locator('.model .details > .quiet');
     await expect(fitted).toContainText('f is fitted to 900 points, with 200 as centres');
     await expect(page.locator('.story')).toContainText('The surface that is fitted to the points of this file.');
     const slider = page.getByRole('slider', { name: 'Centres' });

@@ -139,7 +139,7 @@ test('the run and its buttons', { tag: '@all' }, async ({ page }) => {
   await test.step('generate only leaves the front unrelaxed; relax one step moves it', async () => {
     await afresh(page);
     const relaxed = await report(page);
-    await page.getByRole('button', { name: 'Generate only' }).click();
+    await page.getByRole('button', { name: 'Without relaxing' }).click();
     await settled(page);
     const front = await report(page);
     expect(front.count).toBe(relaxed.count);
@@ -164,7 +164,7 @@ test('the run and its buttons', { tag: '@all' }, async ({ page }) => {
     await afresh(page);
     await openFigures(page);
     const cells = page.locator('tr', { has: page.getByRole('button', { name: 'Six neighbours' }) }).locator('td');
-    await page.getByRole('button', { name: 'Generate only' }).click();
+    await page.getByRole('button', { name: 'Without relaxing' }).click();
     await settled(page);
     await expect(cells.nth(0)).toHaveText('');
     await expect(cells.nth(1)).toHaveText(/\d/);
@@ -307,7 +307,7 @@ test('the report, what can be taken away, and what is said where there is no sur
     await expect(page.locator('.empty')).toBeHidden();
     expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().dimmed)).toBe(true);
     await typeFormula(page, 'x^2 + y^2 + z^2 + 1');
-    await page.getByRole('button', { name: 'Restore the gallery formula' }).click();
+    await page.getByRole('button', { name: /^Back to the / }).click();
     await settled(page);
     await expect(page.locator('.empty')).toBeHidden();
     expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().dimmed)).toBe(false);
@@ -393,7 +393,7 @@ test('a link to a formula without a surface in its box shows that box, whole', {
     expect(lowest).toBeLessThan(top);
   }
   const { distance } = (await state(page)).view.camera;
-  await page.getByRole('button', { name: 'Restore the gallery formula' }).click();
+  await page.getByRole('button', { name: /^Back to the / }).click();
   await settled(page);
   await atRest(page);
   expect((await state(page)).view.camera.distance).toBeLessThan(distance);

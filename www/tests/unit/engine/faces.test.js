@@ -37,6 +37,8 @@ const meshOf = (triangles) => ({
     inside: null,
     smallest_angle: null,
     loops: [],
+    bodies: [],
+    chips: [],
   },
 });
 

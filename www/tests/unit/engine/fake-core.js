@@ -242,13 +242,15 @@ export function fakeCore({
       if (joined < slices) return undefined;
       return {
         triangles: 1,
-        components: [{ triangles: 1, euler: 1, open_edges: 3 }],
+        components: [{ triangles: 1, euler: 1, open_edges: 3, body: 0 }],
         unfilled: 0,
         left_out: count - 3,
         volume: null,
         inside: null,
         smallest_angle: null,
         loops: [],
+        bodies: [{ area: 0.5, min: [0, 0, 0], max: [1, 1, 0], volume: null, is_chip: false }],
+        chips: [],
       };
     },
     triangles: () => Uint32Array.of(0, 1, 2),

@@ -57,6 +57,24 @@ describe('a fault in a formula', () => {
     expect(changeBetween('aa', 'aaa')).toEqual({ start: 2, end: 2, text: 'a' });
   });
 
+  it('offers another way to write the whole formula in one press', () => {
+    const text = 'r = 2cos(3θ)';
+    const mended = 'hypot(x, y) = 2cos(3 atan2(y, x))';
+    const view = describeFault(text, { ...fault, start: 0, end: text.length, name: null, suggestion: mended });
+    expect(view?.repairs).toEqual([
+      { label: `Write as ${mended}`, replace: { start: 0, end: text.length, text: mended } },
+    ]);
+  });
+
+  it('asks for the surface that a text names, whatever else is wrong with it', () => {
+    const torus = { id: 'torus', name: 'Torus' };
+    const view = describeFault('the torus 2', fault, [torus]);
+    expect(view).toMatchObject({ tone: 'hint', message: 'Did you mean the Torus?' });
+    expect(view?.repairs).toEqual([{ label: 'Show the Torus', surface: 'torus' }]);
+    const knots = describeFault('knot', null, [torus, { id: 'a', name: 'Knot' }, { id: 'b', name: 'Links' }]);
+    expect(knots?.message).toBe('Did you mean the Torus, the Knot or the Links?');
+  });
+
   it('says insert where something is missing and remove where something is too much', () => {
     expect(describeFault('(x', { ...fault, start: 2, end: 2, name: null, suggestion: ')' })?.repairs[0].label).toBe(
       'Insert )',

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { FILE_SURFACE } from '../../../src/engine/constants.js';
-import { factsOf, fittedOf } from '../../../src/ui/field/facts.js';
+import { factsOf, fittedOf, plainOf } from '../../../src/ui/field/facts.js';
 import { carriesFiles, describeLoadingError, filesOf } from '../../../src/ui/field/files.js';
 import { storyOf } from '../../../src/ui/field/story.js';
 import { description } from '../engine/description.js';
@@ -60,6 +60,9 @@ describe('a model from points', () => {
       '95 % are nearer than 0.64%',
       'Largest distance 1.3%',
     ]);
+    expect(plainOf(info)).toBe(
+      'A smooth surface through 5,205 points, on average 0.22 % of their size away from them.',
+    );
     expect(fittedOf(info)).toContain('f is fitted to 5,205 points, with 400 as centres');
     expect(fittedOf({ ...info, points: 200, centres: 200 })).toContain('f interpolates all 200 points');
   });

@@ -1,0 +1,95 @@
+//! The option `--wall` beside `--size`: the thickness of a sheet as a share of the longest side of
+//! the mesh. That is known after a run, so a thickness that misses it is corrected.
+
+use crate::arguments::{Length, SampleArguments};
+use crate::failure::Failure;
+use crate::surface::{fit, refused_solid};
+use marching_particles::session::{Session, SolidSettings, Source};
+use marching_particles::{Bodies, Bounds, Run, Settings, Thickness, Unit};
+
+/// Largest relative difference from the wanted wall that is not corrected: printers do not resolve
+/// it.
+const CLOSE: f64 = 5e-3;
+/// Runs in which the thickness is corrected. A sheet grows by its thickness at most, so that each
+/// of them leaves the share of the wall of the difference.
+const CORRECTIONS: u32 = 2;
+
+impl SampleArguments {
+    /// The wanted wall: as a length of the formula, or as a share of the longest side.
+    pub(crate) fn wall_share(&self) -> Option<WallShare> {
+        let wall = self.wall?;
+        Some(match self.size {
+            Some(size) => WallShare::OfSide(wall.metres() / size.metres()),
+            None => {
+                let unit = self.unit.map_or(Unit::Millimetre, |(_, unit)| unit);
+                WallShare::Length(wall.metres() / Length { value: self.scale, unit }.metres())
+            }
+        })
+    }
+}
+
+/// What a wall is given by.
+#[derive(Clone, Copy)]
+pub(crate) enum WallShare {
+    Length(f64),
+    OfSide(f64),
+}
+
+/// A wall on the way to what is wanted.
+pub(crate) struct Wall {
+    share: WallShare,
+    solid: SolidSettings,
+    thickness: f64,
+    corrections: u32,
+}
+
+impl Wall {
+    /// Has the session take the thickness for a mesh that is as long as the box.
+    pub(crate) fn begin(
+        session: &mut Session,
+        solid: SolidSettings,
+        share: WallShare,
+        settings_in: &dyn Fn(&Bounds) -> Settings,
+    ) -> Result<Self, Failure> {
+        fit(session, settings_in, false)?;
+        let side = session.answer().bounds.size().max_element();
+        let mut wall = Self { share, solid, thickness: 0.0, corrections: 0 };
+        wall.take(session, side)?;
+        Ok(wall)
+    }
+
+    /// Has the session take the thickness for a longest side.
+    fn take(&mut self, session: &mut Session, side: f64) -> Result<(), Failure> {
+        self.thickness = self.wanted(side);
+        let solid = SolidSettings { thickness: Thickness::Number(self.thickness), ..self.solid.clone() };
+        session.choose(solid.clone()).map_err(|fault| refused_solid(&solid, fault))
+    }
+
+    fn wanted(&self, side: f64) -> f64 {
+        match self.share {
+            WallShare::Length(length) => length,
+            WallShare::OfSide(share) => share * side,
+        }
+    }
+
+    /// Looks at the mesh of the run. Returns whether another run is to be made, for which the
+    /// session then has the thickness.
+    pub(crate) fn corrects(&mut self, session: &mut Session, kept: Bodies) -> Result<bool, Failure> {
+        let Some(side) = longest_side(&session.run, kept).filter(|&side| side > 0.0) else {
+            return Ok(false);
+        };
+        let is_close = (self.wanted(side) / self.thickness - 1.0).abs() <= CLOSE;
+        if is_close || self.corrections == CORRECTIONS {
+            return Ok(false);
+        }
+        self.corrections += 1;
+        self.take(session, side)?;
+        Ok(true)
+    }
+}
+
+/// The longest side of the box around some bodies of the mesh of a run, once it is joined.
+fn longest_side(run: &Run<Source>, kept: Bodies) -> Option<f64> {
+    let bodies = run.mesh()?.bodies(run.particles());
+    Some(kept.size(&bodies).max_element())
+}

@@ -1,0 +1,28 @@
+/** The bar that shows how far a run has come. */
+import { computed } from '@preact/signals-core';
+import { h } from './dom.js';
+
+/** @import { Engine } from '../engine/types.js' */
+
+/** Creates the progress bar. @param {Engine} engine */
+export function createTrack({ busy, reveal, progress, loading }) {
+  // The bar follows the reveal of the picture while it lasts, and otherwise the run and its report.
+  const works = computed(() => busy.value || progress.value.phase === 'quality');
+  const growing = computed(() => works.value || reveal.value !== null || loading.value !== null);
+  const fraction = computed(() => {
+    if (loading.value) return loading.value.fraction;
+    const { particles, fraction: done } = progress.value;
+    const share = reveal.value ? reveal.value.particles / Math.max(1, particles) : works.value ? done : 0;
+    return Math.round(Math.min(1, share) * 200) / 200;
+  });
+  return h('div', {
+    class: 'progress',
+    role: 'progressbar',
+    'aria-label': 'Sampling',
+    'aria-valuemin': 0,
+    'aria-valuemax': 100,
+    'aria-valuenow': () => Math.round(fraction.value * 100),
+    data: { busy: () => growing.value },
+    style: { '--fraction': () => fraction.value },
+  });
+}
