@@ -4,7 +4,7 @@
 //! A mesh crosses between modules as plain data, a list of triangles: triples of particle indices,
 //! counter-clockwise seen from outside.
 //!
-//! * [`build`]: from points with normals to triangles.
+//! * [`triangulation`]: from points with normals to triangles.
 //! * [`facing`]: which side of a closed mesh is its inside.
 //! * [`bodies`]: the pieces of a mesh, and which of them are loose chips.
 //! * `stars`: the natural neighbours of points.

@@ -13,7 +13,7 @@
 //! 5. *Holes.* The borders of what is left are traced, and the polygons with few edges are cut into
 //!    triangles. Where that fails, a vertex is taken out, which makes the hole larger and its
 //!    border simpler. Where the field is at hand, it then says which of them are surface
-//!    ([`Triangulation::judged`]).
+//!    (`Triangulation::judged`).
 //! 6. *Points left out* go into the triangle below them.
 //! 7. *Borders* are freed of vertices where the surface touches itself.
 //!
