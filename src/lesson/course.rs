@@ -7,7 +7,6 @@ use super::dynamics::{Dynamics, largest_move};
 use super::event::Event;
 use super::log::Log;
 use super::settings::{LessonMethod, LessonPlacing, LessonSettings, QueueOrder};
-use crate::field::Field;
 use crate::paper::{ChildSlot, Circle, ImplicitSurface, Move, PaperRun, Particle};
 use crate::sampler::GapPolicy;
 use crate::sampler::sheet::UNCOVERED;
@@ -131,24 +130,6 @@ impl Course {
             left: 0,
             predicted: VecDeque::new(),
             dynamics: Vec::new(),
-        }
-    }
-
-    /// Goes on with another surface in the same box. The particles go there by Newton's method; one
-    /// that does not arrive within its radius, or comes to another side of the surface, is gone.
-    pub(super) fn follow(&mut self, field: Box<dyn Field>) {
-        let mut surface = ImplicitSurface::new(field, &self.run.surface.bounds);
-        surface.evaluations = self.run.surface.evaluations;
-        let run = PaperRun::new(surface, self.run.rules.clone(), Log::new(&self.setup.settings));
-        let before = core::mem::replace(&mut self.run, run);
-        self.run.seen.is_capped = before.seen.is_capped;
-        (self.kind, self.left, self.quiet) = (None, 0, 0);
-        (self.steps, self.interactions) = (0, 0);
-        for own in &before.particles {
-            if let Some((position, normal)) = self.run.come_back(own, own.p(), own.radius) {
-                let (position, normal) = (position.to_array(), normal.to_array());
-                self.run.particles.push(Particle { position, normal, height: 0.0, ..*own });
-            }
         }
     }
 

@@ -61,7 +61,7 @@ pub use settings::{
 
 use crate::field::Field;
 use crate::math::{Bounds, FNV_START, HEXAGONAL_CELL, fnv};
-use crate::paper::{ImplicitSurface, PaperRun, Particle, Push};
+use crate::paper::{ImplicitSurface, Particle};
 use crate::sampler::FateCounts;
 use course::{Course, Setup};
 use glam::DVec3;
@@ -201,24 +201,6 @@ impl Lesson {
         })
     }
 
-    /// Has the particles of a particle system follow its surface to that of `field`, in the same
-    /// box, and goes on with the system there. The run begins anew with them: what happened before
-    /// is looked at no longer.
-    ///
-    /// # Differs from Witkin and Heckbert 1994
-    ///
-    /// Their velocities have a term for the motion of the surface, which is integrated with the
-    /// others (§4.1). Here a particle is brought to the surface at once, since a slider moves by
-    /// steps. Where it does not arrive within its radius, it dies: they say nothing of it.
-    pub fn follow(&mut self, field: Box<dyn Field>) {
-        self.course.follow(field);
-        self.chapters = Vec::new();
-        self.snapshots = Snapshots::new();
-        self.lives = vec![Life::default(); self.course.run.particles.len()];
-        self.is_done = false;
-        (self.open, self.shown) = (None, Vec::new());
-    }
-
     /// Goes on with the run by up to `budget` units of work: a particle that is treated, or moved.
     /// How a run is divided into steps does not change it.
     pub fn step(&mut self, budget: u32) -> LessonProgress {
@@ -316,22 +298,6 @@ impl Lesson {
     #[must_use]
     pub fn particles(&self) -> &[Particle] {
         &self.shown
-    }
-
-    /// Returns the repulsion of a particle by each of its neighbours at the moment that was sought;
-    /// none if there is no such particle. The tangential part of the sum is the force of
-    /// [`Event::Moved`].
-    #[must_use]
-    pub fn pushes(&self, particle: u32) -> Vec<Push> {
-        if particle as usize >= self.shown.len() {
-            return Vec::new();
-        }
-        let PaperRun { surface, rules, .. } = &self.course.run;
-        let mut run = PaperRun::new(surface.clone(), rules.clone(), ());
-        for &shown in &self.shown {
-            run.enter(shown);
-        }
-        run.pushes(particle).collect()
     }
 
     /// The box that is sampled.

@@ -3,7 +3,6 @@
 
 use crate::field::model::SolvedModel;
 use crate::lesson::{self, LessonField};
-use crate::paper::Push;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::pointcloud::job;
 use crate::quality::Measurements;
@@ -95,7 +94,6 @@ fn types_of_the_page_are_those_of_the_core() {
     declarations.add::<lesson::Event>();
     declarations.add::<lesson::Life>();
     declarations.add::<lesson::Iterate>();
-    declarations.add::<Push>();
     let text: String = std::iter::once(HEAD.to_owned()).chain(declarations.found.into_values()).collect();
 
     hold("core-types.d.ts", &text);

@@ -43,7 +43,6 @@ mod surface;
 mod uniform;
 
 pub use particle::{Nearby, Particle};
-pub use relaxation::Push;
 pub use rules::{RadiusRule, Rules, sum_of_curvatures};
 pub use surface::ImplicitSurface;
 

@@ -2,21 +2,15 @@
 //! fission, death and adaptive radii; in non-uniform sampling (§5.4) forces between discs that
 //! overlap.
 
-use super::{Buckets, Nearby, Observer, PaperRun, Particle, RadiusRule};
+use super::{Buckets, Observer, PaperRun, Particle, RadiusRule};
 use glam::DVec3;
-use serde::Serialize;
 
 /// The repulsion of a particle by one neighbour.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonPush"))]
-pub struct Push {
-    /// The particle that pushes.
-    #[serde(flatten)]
-    pub near: Nearby,
+pub(crate) struct Push {
     /// Repulsion by that particle, along the offset between the two.
-    pub force: [f64; 3],
+    force: DVec3,
     /// Energy of the pair.
-    pub energy: f64,
+    pub(crate) energy: f64,
 }
 
 /// How a particle was moved, beside where it is now.
@@ -80,7 +74,7 @@ impl<O: Observer> PaperRun<O> {
 
     /// The force on a particle, in its tangent plane.
     pub(crate) fn force(&self, particle: u32) -> DVec3 {
-        let force: DVec3 = self.pushes(particle).map(|push| DVec3::from(push.force)).sum();
+        let force: DVec3 = self.pushes(particle).map(|push| push.force).sum();
         let normal = self.particles[particle as usize].n();
         force - normal * normal.dot(force)
     }
@@ -106,7 +100,7 @@ impl<O: Observer> PaperRun<O> {
             };
             let weight = same_sheet_weight(own.n().dot(other.n()));
             let force = (own.p() - other.p()) * (weight * push);
-            Push { near, force: force.to_array(), energy: weight * pair }
+            Push { force, energy: weight * pair }
         })
     }
 

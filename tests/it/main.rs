@@ -57,6 +57,7 @@ mod points_border;
 mod products;
 mod proof;
 mod quality;
+mod random_creases;
 mod random_solids;
 mod rbf;
 mod refine;

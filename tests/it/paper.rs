@@ -239,34 +239,6 @@ fn energy_falls_in_small_steps_and_not_in_large_ones() {
     assert!(large.windows(2).any(|pair| pair[1] > pair[0]), "{large:?}");
 }
 
-#[test]
-fn what_the_neighbours_push_with_adds_up_to_the_force_of_the_event() {
-    for settings in [coarse(), adaptive()] {
-        let mut run = run("ellipsoid", &settings);
-        let step = run.chapters().iter().find(|part| part.kind == ChapterKind::Relaxation { step: 2 });
-        let step = step.expect("a second step").clone();
-        let events = run.events(step.first_event, step.events);
-        let Event::StepBegins { energy, .. } = events[0] else { panic!("{:?}", events[0]) };
-        // Nothing has moved yet.
-        run.seek(step.first_event + 1);
-        let (mut most, mut sum) = (0, 0.0);
-        for event in &events {
-            let Event::Moved { particle, force, .. } = *event else { continue };
-            let pushes = run.pushes(particle);
-            let total = pushes.iter().fold(DVec3::ZERO, |sum, push| sum + DVec3::from(push.force));
-            let normal = run.particles()[particle as usize].n();
-            // To the last bit, since the sum is made in the same order.
-            assert_eq!((total - normal * normal.dot(total)).to_array(), force, "{settings:?}: {particle}");
-            sum += pushes.iter().map(|push| 0.5 * push.energy).sum::<f64>();
-            most = most.max(pushes.len());
-        }
-        let count = run.particles().len();
-        assert!((sum / count as f64 / energy - 1.0).abs() < 1e-9, "{sum} over {count}: {energy}");
-        assert!(most >= 6, "{most}");
-        assert!(run.pushes(count as u32).is_empty());
-    }
-}
-
 /// Figures 7 and 8, event by event.
 #[test]
 fn an_adaptive_child_is_pushed_until_it_touches_and_then_compared() {

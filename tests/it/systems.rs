@@ -1,11 +1,8 @@
 //! Tests of the two particle systems that the paper compares its methods with: they do what their
 //! sources say.
 
-use glam::DVec3;
-use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
-use marching_particles::lesson::{Event, Lesson, LessonMethod, LessonProgress as Progress, LessonSettings};
-use marching_particles::math::Bounds;
+use marching_particles::lesson::{Event, Lesson, LessonMethod, LessonSettings};
 use marching_particles::paper::Particle;
 use marching_particles::sampler::{LawKind, Sampling};
 
@@ -129,56 +126,4 @@ fn only_a_free_disc_divides_and_only_a_pressed_one_dies() {
         }
     }
     assert!(divided > 300 && died < divided, "{divided} divided, {died} died");
-}
-
-#[test]
-fn witkin_and_heckberts_particles_follow_a_surface_that_moves_and_stay_even() {
-    let ellipsoid = |a: f64| {
-        let field = Formula::parse("x^2/a^2 + y^2 + z^2 = 1").and_then(|formula| formula.with("a", a));
-        Box::new(field.expect("a formula"))
-    };
-    let bounds = Bounds::symmetric([2.2, 1.2, 1.2]);
-    let mut run = Lesson::new(ellipsoid(1.0), &bounds, &witkin_heckbert(0.12)).expect("valid settings");
-    while !run.step(10_000).is_done {}
-    let first = run.progress();
-    for frame in 1..=40 {
-        run.follow(ellipsoid(1.0 + 0.025 * f64::from(frame)));
-        let Progress { particles, steps, is_done, .. } = run.progress();
-        assert_eq!((steps, is_done), (0, false), "frame {frame}");
-        run.step(8 * particles);
-    }
-    while !run.step(10_000).is_done {}
-    run.seek(u32::MAX);
-    let (progress, particles) = (run.progress(), run.particles());
-    assert!(progress.is_settled && progress.evaluations > first.evaluations, "{progress:?}");
-    // The area has grown by 71 %.
-    let grown = particles.len() as f64 / f64::from(first.particles);
-    assert!((1.5..1.9).contains(&grown), "{grown} times as many");
-    for particle in particles {
-        let p = particle.p() / DVec3::new(2.0, 1.0, 1.0);
-        assert!((p.length() - 1.0).abs() < 0.01 * 0.12, "a particle is beside the surface: {p}");
-    }
-    assert!(nearest(particles).iter().all(|&far| far > 0.6));
-    // What is looked at again begins with the particles that were brought to the surface.
-    let chapters = run.chapters().len();
-    assert!(chapters > 0 && run.chapters()[0].before > 0);
-    let end = run.particles().to_vec();
-    run.seek(1);
-    run.seek(u32::MAX);
-    assert_eq!(run.particles(), end);
-}
-
-#[test]
-fn particles_whose_surface_has_gone_are_gone() {
-    let sphere = |r: f64| {
-        let field = Formula::parse("x^2 + y^2 + z^2 = r^2").and_then(|formula| formula.with("r", r));
-        Box::new(field.expect("a formula"))
-    };
-    let mut run =
-        Lesson::new(sphere(1.0), &Bounds::cube(1.2), &witkin_heckbert(0.12)).expect("valid settings");
-    while !run.step(10_000).is_done {}
-    run.follow(sphere(0.5));
-    assert_eq!(run.progress().particles, 0);
-    // The system begins again where a seed finds the surface, or ends.
-    while !run.step(10_000).is_done {}
 }

@@ -25,7 +25,6 @@ const TYPES: &str = r"import type {
   LessonIterate,
   LessonLife,
   LessonProgress,
-  LessonPush,
   LessonSettings,
   Pull,
 } from '../../engine/core-types.js';";
@@ -102,23 +101,6 @@ impl Lesson {
         self.begin(pulled.and_then(|field| Ok((field, bounds?))), settings)
     }
 
-    /// Has the particles of a particle system follow their surface to that of a formula,
-    /// `LessonField`, whose box does not count; to an `Answer` with `LessonProgress`, null before a
-    /// run.
-    #[wasm_bindgen(unchecked_return_type = "Answer<LessonProgress, Fault> | null")]
-    pub fn follow(
-        &mut self,
-        #[wasm_bindgen(unchecked_param_type = "LessonField")] field: JsValue,
-    ) -> JsValue {
-        let Some(run) = &mut self.run else { return JsValue::NULL };
-        answer(read::<LessonField>(field, FaultKind::Request).and_then(|field| formula(&field)).map(
-            |field| {
-                run.follow(field);
-                run.progress()
-            },
-        ))
-    }
-
     /// Goes on by up to `budget` units of work: `LessonProgress`; null before a run.
     #[wasm_bindgen(unchecked_return_type = "LessonProgress | null")]
     pub fn step(&mut self, budget: u32) -> JsValue {
@@ -149,13 +131,6 @@ impl Lesson {
     #[wasm_bindgen(unchecked_return_type = "LessonLife | null")]
     pub fn life(&self, particle: u32) -> JsValue {
         to_js(&self.run.as_ref().and_then(|run| run.life(particle)))
-    }
-
-    /// Returns the repulsion of a particle by each of its neighbours at the moment that was sought:
-    /// an array of `LessonPush`.
-    #[wasm_bindgen(unchecked_return_type = "LessonPush[]")]
-    pub fn pushes(&self, particle: u32) -> JsValue {
-        to_js(&self.run.as_ref().map(|run| run.pushes(particle)).unwrap_or_default())
     }
 
     /// Positions at the moment that was sought, three floats each.

@@ -776,18 +776,6 @@ export type LessonProgress = {
 /** The method that moves a child onto the surface (§4.3). */
 export type LessonProjection = "circle" | "newton";
 
-/** The repulsion of a particle by one neighbour. */
-export type LessonPush = {
-  /** Repulsion by that particle, along the offset between the two. */
-  force: [number, number, number],
-  /** Energy of the pair. */
-  energy: number,
-  /** Index of the particle. */
-  particle: number,
-  /** Distance to the particle. */
-  distance: number,
-};
-
 /** The choices of a run. `Default` gives those of the paper; where it names no value, those of the
 * fast sampler. */
 export type LessonSettings = {

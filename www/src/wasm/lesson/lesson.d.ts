@@ -10,7 +10,6 @@ import type {
     LessonIterate,
     LessonLife,
     LessonProgress,
-    LessonPush,
     LessonSettings,
     Pull,
 } from '../../engine/core-types.js';
@@ -42,12 +41,6 @@ export class Lesson {
      * Up to `count` events from number `first` on: an array of `LessonEvent`.
      */
     events(first: number, count: number): LessonEvent[];
-    /**
-     * Has the particles of a particle system follow their surface to that of a formula,
-     * `LessonField`, whose box does not count; to an `Answer` with `LessonProgress`, null before a
-     * run.
-     */
-    follow(field: LessonField): Answer<LessonProgress, Fault> | null;
     free(): void;
     /**
      * Numbers of the fronts.
@@ -78,11 +71,6 @@ export class Lesson {
      * Positions at the moment that was sought, three floats each.
      */
     positions(): Float32Array<ArrayBuffer>;
-    /**
-     * Returns the repulsion of a particle by each of its neighbours at the moment that was sought:
-     * an array of `LessonPush`.
-     */
-    pushes(particle: number): LessonPush[];
     /**
      * Repulsion radii.
      */
