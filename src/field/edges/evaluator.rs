@@ -66,8 +66,8 @@ impl Wall {
     }
 }
 
-/// The shortest step by which a place gets so much deeper within walls, by the ways into them: within
-/// the first three of which no two are parallel.
+/// The shortest step by which a place gets so much deeper within walls, by the ways into them:
+/// within the first three of which no two are parallel.
 fn step_within(walls: impl Iterator<Item = (f64, DVec3)>) -> DVec3 {
     let (mut across, mut step): (Vec<DVec3>, DVec3) = (Vec::new(), DVec3::ZERO);
     for (lacking, way) in walls {
