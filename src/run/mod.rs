@@ -131,8 +131,8 @@ enum Known {
     Survey,
 }
 
-/// What a run knows and does. Every call lends it the field of the run, whatever type that has, so
-/// that it is compiled once.
+/// The state of a run, without its field. Every call lends it the field, of whatever type that is,
+/// so that this code is compiled once.
 struct RunState {
     field: FieldState,
     /// The clip box, in the coordinates of the field.
@@ -154,7 +154,7 @@ struct RunState {
     meshing: Meshing,
 }
 
-/// What a run knows of its field.
+/// Facts about the field of a run.
 #[derive(Clone, Default)]
 struct FieldState {
     /// Calls of its functions before this run.

@@ -1,4 +1,4 @@
-//! What a run knows and does, whatever type its field has.
+//! The state of a run, without its field: the same code for fields of any type.
 
 use super::measuring::Measuring;
 use super::mesh::Meshing;

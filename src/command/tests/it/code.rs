@@ -46,7 +46,7 @@ fn printed(arguments: &[String], language: &str) -> String {
     if output.status.success() { text(output.stdout) } else { text(output.stderr) }
 }
 
-/// What a command that was printed samples.
+/// Runs a printed command and returns the digest of its sample.
 fn sampled_by_shell(command: &str) -> String {
     let arguments = command.trim_end().strip_prefix("marching-particles ").expect("a command");
     let script = format!("\"$0\" {arguments} --json --report none");

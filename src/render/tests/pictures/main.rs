@@ -63,7 +63,7 @@ fn bounds() -> Bounds {
     Bounds::new(DVec3::splat(-1.6), DVec3::splat(1.6))
 }
 
-/// Faces in the place of the particles, with a few marks.
+/// Writes the faces of a shape, drawn instead of particles, and a few marks.
 fn write_faces(state: &State, renderer: &mut Renderer) {
     state.shape.write_faces(renderer, 12, packed([0.85, 0.15, 0.1]));
 }
@@ -154,7 +154,7 @@ fn states() -> Vec<(&'static str, State)> {
     ]
 }
 
-/// How far two pictures are apart, in steps of 255. Drivers place edges differently by a part of a
+/// The difference between two pictures, in steps of 255. Drivers place edges differently by a part of a
 /// pixel, which cancels out in the mean of a block; a light, a colour or a radius changes it.
 #[derive(Clone, Copy, Debug)]
 struct Difference {
@@ -169,7 +169,7 @@ struct Difference {
 impl Difference {
     /// Pixels of a block each way.
     const BLOCK: usize = 20;
-    /// What pictures that count as equal have at most. The software drivers Mesa (LLVM) and
+    /// The largest difference at which two pictures count as equal. The software drivers Mesa (LLVM) and
     /// SwiftShader differ by 0.33, 0.13 and 1.9; the second test has changes that are larger.
     const MOST: Self = Self { pixels: 0.6, blocks: 0.2, worst: 4.0 };
 

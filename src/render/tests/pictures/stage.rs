@@ -1,4 +1,4 @@
-//! What pictures are drawn with: a device, a camera, the page's look, and shapes to draw.
+//! The stage of the pictures: a device, a camera, the page's look, and shapes to draw.
 
 use glam::DVec3;
 use glam::dcamera::rh::{proj::directx, view::look_to_mat4};
