@@ -15,7 +15,7 @@ use glam::DVec3;
 ///
 /// Edges, as those of the union of two bodies by `min`, are found in the values of f, on a grid of
 /// 64 cells along the longest side of the box: particles lie on them, and the mesh is closed along
-/// them. What is smaller than a few cells may be missed, and what fades out, or is computed in
+/// them. What is smaller than a cell may be missed, and what fades out, or is computed in
 /// single precision, is not found: the mesh is open there, and the report says where. A
 /// [`PiecewiseFn`](crate::PiecewiseFn) says where its edges are, and so do bodies that are given
 /// one by one and joined by [`union`](crate::union).

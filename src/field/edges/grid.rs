@@ -32,9 +32,8 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Samples the box with so many cells along its longest side.
-    pub(super) async fn sample(f: &Sampled<'_>, bounds: &Bounds, side: u32) -> Self {
-        let width = f.size / f64::from(side);
+    /// Samples a box with cells of this width.
+    pub(super) async fn sample(f: &Sampled<'_>, bounds: &Bounds, width: f64) -> Self {
         let cells = (bounds.size() / width + SHIFT + BEYOND).ceil();
         // Of two cells each one is a coarse one.
         let count = cells.to_array().map(|cells| 2 * (0.5 * cells).ceil() as usize + 1);

@@ -13,6 +13,9 @@
 //! 4. *Pieces* ([`evaluator`]). Within its region a piece is f. Beyond an edge it is the Taylor
 //!    polynomial from a place a little within.
 //!
+//! Where a third piece begins near an edge, or it stays unclear how the surface goes on, a finer
+//! grid is looked at around the place.
+//!
 //! What is smaller than a cell of the grid may be missed, so nothing is proven. An edge that fades
 //! out has one label on both sides; such a site is counted and left out.
 
@@ -41,6 +44,10 @@ use table::Seams;
 /// with the square.
 const SIDES: [u32; 2] = [32, 64];
 
+/// Maximum number of places that are looked at more closely: as many corners as a hundred and
+/// twenty boxes have. Each takes some 2,000 calls of f.
+const MOST_CLOSE: usize = 1_000;
+
 /// Finds out about the pieces of a field in a box, in the coordinates of the field: cells with
 /// which a search for edges can begin, and what is known of the pieces then, where they are not the
 /// field's own. None where the surface is smooth.
@@ -67,16 +74,17 @@ pub(crate) async fn known_in(
 /// there are none.
 async fn find(field: &dyn Field, bounds: &Bounds) -> Option<EdgeTable> {
     let sampled = Sampled::new(field, bounds)?;
-    let [few, many] = SIDES;
-    let grid = Grid::sample(&sampled, bounds, few).await;
-    let mut search = Search::new(&sampled, &grid);
-    search.run(true).await;
-    if search.sites.is_empty() {
+    let [few, many] = SIDES.map(|side| Search::new(&sampled, sampled.size / f64::from(side)));
+    let (mut first, mut search) = (few, many);
+    first.run(bounds, true).await;
+    if first.sites.is_empty() {
         return None;
     }
-    let grid = Grid::sample(&sampled, bounds, many).await;
-    let mut search = Search::new(&sampled, &grid);
-    search.run(false).await;
+    search.run(bounds, false).await;
+    let places = table::close_places(&search);
+    if places.len() <= MOST_CLOSE {
+        search.look_closely(&places).await;
+    }
     EdgeTable::new(search)
 }
 
@@ -91,7 +99,7 @@ pub(crate) fn seams_between(
     /// Number of times that the way from one label to the other is halved.
     const HALVINGS: u32 = 6;
     let sampled = Sampled::in_box(field, bounds);
-    let grid = slices::complete(Grid::sample(&sampled, bounds, SIDES[1]));
+    let grid = slices::complete(Grid::sample(&sampled, bounds, sampled.size / f64::from(SIDES[1])));
     let (points, of_edge) = slices::complete(grid.points(&sampled));
     let labels: Vec<u32> = points.iter().map(|&p| label(p)).collect();
     let mut seams = Seams::new(width);

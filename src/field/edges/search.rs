@@ -4,7 +4,7 @@
 use super::grid::Grid;
 use super::sampled::{Sampled, Taylor};
 use crate::math::newton::step_to_corner;
-use crate::math::{NONE, SHARP};
+use crate::math::{Bounds, NONE, SHARP};
 use crate::slices::{HEAVY, pause};
 use glam::DVec3;
 
@@ -30,6 +30,8 @@ const CLOSEST: f64 = 1e-5;
 /// Largest |f|/|∇f| at the place of an edge, as a share of the size of the box. Where it is larger
 /// the edge is rounded, or a third piece lies between.
 const OFF: f64 = 2e-7;
+/// How many times as fine a grid is in the small boxes that are looked at more closely.
+const CLOSER: f64 = 3.0;
 /// Maximum number of vertices between two that are looked at.
 const MOST_STEPS: u32 = 60;
 /// Maximum number of times that what is left of a way beside an edge is looked at by itself: strips
@@ -46,23 +48,41 @@ pub(super) struct RawSite {
 /// Vertices of the surface, and what is known of those beside each other.
 pub(super) struct Search<'a> {
     pub(super) f: &'a Sampled<'a>,
-    pub(super) grid: &'a Grid,
+    /// The side of a cell of the grid of the whole box.
+    pub(super) cell: f64,
     pub(super) vertices: Vec<Taylor>,
     /// The first of the vertices that lie on no edge of the grid.
     pub(super) inserted: usize,
     /// Pairs of vertices of one piece.
     pub(super) joined: Vec<[u32; 2]>,
     pub(super) sites: Vec<RawSite>,
+    /// Places between vertices at which it was not found out how the surface goes on.
+    pub(super) unclear: Vec<DVec3>,
 }
 
 impl<'a> Search<'a> {
-    pub(super) fn new(f: &'a Sampled<'a>, grid: &'a Grid) -> Self {
-        Self { f, grid, vertices: Vec::new(), inserted: 0, joined: Vec::new(), sites: Vec::new() }
+    pub(super) fn new(f: &'a Sampled<'a>, cell: f64) -> Self {
+        let (vertices, joined, sites, unclear) = Default::default();
+        Self { f, cell, vertices, inserted: 0, joined, sites, unclear }
     }
 
-    /// Looks at all links; with `is_first` only up to the first place of an edge.
-    pub(super) async fn run(&mut self, is_first: bool) {
-        let (points, of_edge) = self.grid.points(self.f).await;
+    /// Looks at the whole box; with `is_first` only up to the first place of an edge.
+    pub(super) async fn run(&mut self, bounds: &Bounds, is_first: bool) {
+        let grid = Grid::sample(self.f, bounds, self.cell).await;
+        self.look_at_links(&grid, is_first).await;
+    }
+
+    /// Looks more closely at small boxes around places.
+    pub(super) async fn look_closely(&mut self, places: &[DVec3]) {
+        for &place in places {
+            let around = Bounds::point(place).enlarged(self.cell);
+            let grid = Grid::sample(self.f, &around, self.cell / CLOSER).await;
+            self.look_at_links(&grid, false).await;
+        }
+    }
+
+    async fn look_at_links(&mut self, grid: &Grid, is_first: bool) {
+        let (points, of_edge) = grid.points(self.f).await;
         let mut of_point = Vec::with_capacity(points.len());
         for points in points.chunks(HEAVY) {
             pause().await;
@@ -71,8 +91,10 @@ impl<'a> Search<'a> {
                 of_point.push(jet.map_or(NONE, |jet| self.add(Taylor { p, jet })));
             }
         }
-        self.inserted = self.vertices.len();
-        for link in self.grid.links(self.f) {
+        if self.inserted == 0 {
+            self.inserted = self.vertices.len();
+        }
+        for link in grid.links(self.f) {
             if is_first && !self.sites.is_empty() {
                 return;
             }
@@ -131,7 +153,10 @@ impl<'a> Search<'a> {
                 (u, v) = (next_u, next_v);
                 continue;
             }
-            let Some(middle) = self.between(u, v, length) else { break };
+            let Some(middle) = self.between(u, v, length) else {
+                self.unclear.push(0.5 * (self.vertices[u as usize].p + self.vertices[v as usize].p));
+                break;
+            };
             let [of_u, of_v, normal] =
                 [self.vertices[u as usize], self.vertices[v as usize], middle].map(|vertex| vertex.normal());
             let middle = self.add(middle);
@@ -155,7 +180,10 @@ impl<'a> Search<'a> {
     /// Takes the place between two vertices that are close to each other as one of an edge, or as
     /// one of a piece that bends.
     fn finish(&mut self, u: u32, v: u32) {
-        let Some(position) = self.common(u, v) else { return };
+        let Some(position) = self.common(u, v) else {
+            self.unclear.push(self.vertices[u as usize].p);
+            return;
+        };
         let slopes = [u, v].map(|k| self.vertices[k as usize].slope(position).1);
         let [m, n] = slopes.map(DVec3::normalize_or_zero);
         if m.cross(n).length() < SHARP && m.dot(n) > 0.0 {
@@ -165,6 +193,8 @@ impl<'a> Search<'a> {
         let off = self.f.value(position).abs() / slopes[0].length().min(slopes[1].length());
         if off <= OFF * self.f.size {
             self.sites.push(RawSite { position, ends: [u, v] });
+        } else {
+            self.unclear.push(position);
         }
     }
 

@@ -1,7 +1,7 @@
 //! What was found: vertices and sites, each with its labels, by the cell in which they lie.
 
 use super::sampled::Taylor;
-use super::search::Search;
+use super::search::{RawSite, Search};
 use crate::math::{Bounds, Forest, NONE};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -66,7 +66,7 @@ impl EdgeTable {
             return None;
         }
         let label = labels(&search);
-        let (cell, size) = (search.grid.side, search.f.size);
+        let (cell, size) = (search.cell, search.f.size);
         let step = BESIDE * search.f.step;
         let (margin, clear) = (MARGIN * step, MARGIN * search.f.step);
         let Search { vertices, sites: raw, .. } = search;
@@ -195,25 +195,49 @@ impl Seams {
     }
 }
 
+/// Places that are to be looked at more closely: points of edges near which a third piece begins,
+/// or beside which a piece is too small to be one, and what was unclear; none within a cell of
+/// another.
+pub(super) fn close_places(search: &Search<'_>) -> Vec<DVec3> {
+    if search.sites.is_empty() {
+        return Vec::new();
+    }
+    let label = labels(search);
+    let cells = Cells::new(search.cell, search.sites.iter().map(|site| site.position));
+    let labels_of = |site: &RawSite| site.ends.map(|end| label[end as usize]);
+    let is_close = |site: &&RawSite| {
+        let own = labels_of(site);
+        let mut near = cells.around(site.position).map(|k| &search.sites[k as usize]);
+        own.contains(&NONE)
+            || near.any(|other| {
+                other.position.distance(site.position) <= search.cell
+                    && labels_of(other).iter().any(|label| !own.contains(label))
+            })
+    };
+    let mut kept: Vec<DVec3> = Vec::new();
+    let places = search.sites.iter().filter(is_close).map(|site| site.position);
+    for place in places.chain(search.unclear.iter().copied()) {
+        if kept.iter().all(|other| other.distance(place) > search.cell) {
+            kept.push(place);
+        }
+    }
+    kept
+}
+
 /// The label of each vertex: vertices that are joined have one, and the labels count by the first
 /// vertex of each.
 fn labels(search: &Search<'_>) -> Vec<u32> {
     let vertices = &search.vertices;
     let mut forest = Forest::new(vertices.len());
     search.joined.iter().for_each(|&[a, b]| forest.join(a, b));
-    // Strips thinner than a cell have vertices beside their edges alone.
-    let inserted = search.inserted..vertices.len();
-    let cells = Cells::new(search.grid.side, vertices[inserted.clone()].iter().map(|vertex| vertex.p));
-    for a in inserted.clone() {
-        for b in cells.around(vertices[a].p) {
-            let b = inserted.start as u32 + b;
-            let is_next = vertices[a].p.distance(vertices[b as usize].p) <= 1.5 * search.grid.side;
-            if b < a as u32
-                && is_next
-                && forest.find(a as u32) != forest.find(b)
-                && search.residual(a as u32, b) <= 0.01
-            {
-                forest.join(a as u32, b);
+    // Those on no edge of the first grid: strips thinner than a cell have vertices beside their
+    // edges alone, and no link leads from a closer look to the rest.
+    let cells = Cells::new(search.cell, vertices.iter().map(|vertex| vertex.p));
+    for a in search.inserted as u32..vertices.len() as u32 {
+        for b in cells.around(vertices[a as usize].p) {
+            let is_next = vertices[a as usize].p.distance(vertices[b as usize].p) <= 1.5 * search.cell;
+            if b < a && is_next && forest.find(a) != forest.find(b) && search.residual(a, b) <= 0.01 {
+                forest.join(a, b);
             }
         }
     }
