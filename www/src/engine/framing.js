@@ -33,9 +33,6 @@ export class Framing {
   /** Whether the formula was typed. That keeps the camera where it is as long as the formula has no surface. */
   #isTyped;
 
-  /** Whether the camera has moved back for the surface of the typed formula, whose report is still to come. */
-  #isWidened;
-
   #effects;
 
   /**
@@ -48,7 +45,6 @@ export class Framing {
     this.#viewer = viewer;
     this.#isWritten = false;
     this.#isTyped = false;
-    this.#isWidened = false;
     this.#isAnother = false;
     this.#angles = homeCamera();
     /** Whether the camera shows the whole box because there is no surface. */
@@ -58,14 +54,6 @@ export class Framing {
     this.#effects = [
       effect(() => {
         if (this.#rests() && this.#isWritten && !this.#waits()) queueMicrotask(() => this.#come());
-      }),
-      effect(() => {
-        // A large surface comes into view with its first particles. Its report can take seconds.
-        void store.revision.value;
-        if (!this.#isWritten || !this.#isTyped || this.#isWidened || columns.stale || columns.count === 0) return;
-        if (store.typing.peek() || !viewer.camera.state.fit) return;
-        this.#isWidened = true;
-        queueMicrotask(() => viewer.widen());
       }),
       effect(() => {
         if (store.trial.value !== 'shown' || !this.#rests() || this.#waits()) return;
@@ -98,7 +86,6 @@ export class Framing {
   written({ typed, another = false }) {
     this.#isWritten = true;
     this.#isTyped = typed;
-    this.#isWidened = false;
     if (typed) this.#viewer.linked = null;
     this.#isAnother = typed && (this.#isAnother || another);
   }

@@ -283,14 +283,6 @@ export class Viewer {
     this.moved();
   }
 
-  /** Moves back as far as the surface needs, if it does not fit into the picture. */
-  widen() {
-    const { ball, distance } = this.#fit();
-    if (distance <= this.camera.state.distance) return;
-    this.camera.fit(ball, { distance });
-    this.moved();
-  }
-
   /** Turns to where most of the surface is seen, about the vertical from these angles. @param {Angles} from */
   turnWide(from) {
     const { columns, camera } = this;
