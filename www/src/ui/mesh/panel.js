@@ -191,15 +191,24 @@ function printLines(engine, { print, toast, made }) {
   /** A length that was typed, in millimetres unless it has another unit. @param {HTMLInputElement} box */
   const read = async ({ value }) =>
     value.trim() === '' ? 0 : (millimetresOf(value) ?? (await engine.readNumber(value)));
-  const size = numberBox({ name: 'Longest side in millimetres' });
-  const showSize = () => {
-    size.value = formatSignificant(print.sizeMm.value, 4);
+  /** Shows a length in its box, unless another one is being typed there. @param {HTMLInputElement} box @param {string} text */
+  const show = (box, text) => {
+    if (box.matches(':focus') && box.value !== (box.dataset.shown ?? '')) return;
+    box.value = text;
+    box.dataset.shown = text;
   };
+  /** What is in a box is no longer being typed. @param {HTMLInputElement} box */
+  const taken = (box) => {
+    box.dataset.shown = box.value;
+  };
+  const size = numberBox({ name: 'Longest side in millimetres' });
+  const showSize = () => show(size, formatSignificant(print.sizeMm.value, 4));
   live(size, showSize);
   size.addEventListener('change', async () => {
     const given = await read(size);
     if (given !== null && given > 0 && given < Infinity) print.sizeMm.value = given;
     else refuse(size, 'The size is a positive length, such as 40 or 1.5 in.');
+    taken(size);
     showSize();
   });
   const wall = numberBox({ name: 'Wall in millimetres', placeholder: 'none' });
@@ -215,13 +224,14 @@ function printLines(engine, { print, toast, made }) {
     return last;
   });
   const showWall = () => {
-    wall.value = shown.value.text;
+    show(wall, shown.value.text);
     wall.placeholder = shown.value.placeholder;
   };
   live(wall, showWall);
   wall.addEventListener('change', async () => {
     const given = await read(wall);
     const thickness = given === null || !(given >= 0) ? null : given === 0 ? 0 : print.thickness(given);
+    taken(wall);
     if (thickness === null) {
       refuse(wall, `The wall is a length that fits a part of ${formatSignificant(print.sizeMm.value)} mm, such as 2.`);
       showWall();
