@@ -289,7 +289,7 @@ fn a_planet_of_value_noise_has_no_edge() {
         let sample = sampled(&formula, &Settings::with_count(2_000).seeded(seed).refined());
         assert_eq!(sample.report().proof.creases, None, "seed {seed}: {formula}");
         let Counted { components, euler, open, faults, .. } = Counted::of(&sample);
-        // Some bend too much for particles of this size, which is said, and are open here and there.
+        // Some bend too much for particles of this size, which is said, and are open in places.
         let is_refined = sample.report().growth.refined_levels.is_some();
         let wanted = if is_refined { (1, 2, 0, 0) } else { (1, euler, open, 0) };
         assert_eq!((components, euler, open, faults), wanted, "seed {seed}: {formula}");

@@ -154,8 +154,8 @@ fn states() -> Vec<(&'static str, State)> {
     ]
 }
 
-/// The difference between two pictures, in steps of 255. Drivers place edges differently by a part of a
-/// pixel, which cancels out in the mean of a block; a light, a colour or a radius changes it.
+/// The difference between two pictures, in steps of 255. Drivers place edges differently by a part
+/// of a pixel, which cancels out in the mean of a block; a light, a colour or a radius changes it.
 #[derive(Clone, Copy, Debug)]
 struct Difference {
     /// Mean over all pixels and channels.
@@ -169,8 +169,9 @@ struct Difference {
 impl Difference {
     /// Pixels of a block each way.
     const BLOCK: usize = 20;
-    /// The largest difference at which two pictures count as equal. The software drivers Mesa (LLVM) and
-    /// SwiftShader differ by 0.33, 0.13 and 1.9; the second test has changes that are larger.
+    /// The largest difference at which two pictures count as equal. The software drivers Mesa
+    /// (LLVM) and SwiftShader differ by 0.33, 0.13 and 1.9; the second test has changes that are
+    /// larger.
     const MOST: Self = Self { pixels: 0.6, blocks: 0.2, worst: 4.0 };
 
     fn between(a: &[u8], b: &[u8]) -> Self {

@@ -191,7 +191,11 @@ function printLines(engine, { print, toast, made }) {
   /** A length that was typed, in millimetres unless it has another unit. @param {HTMLInputElement} box */
   const read = async ({ value }) =>
     value.trim() === '' ? 0 : (millimetresOf(value) ?? (await engine.readNumber(value)));
-  /** Shows a length in its box, unless another one is being typed there. @param {HTMLInputElement} box @param {string} text */
+  /**
+   * Shows a length in its box, unless another one is being typed there.
+   * @param {HTMLInputElement} box
+   * @param {string} text
+   */
   const show = (box, text) => {
     if (box.matches(':focus') && box.value !== (box.dataset.shown ?? '')) return;
     box.value = text;
