@@ -1,4 +1,4 @@
-//! Fields given by functions of the program that say which of several smooth functions gives f.
+//! Fields put together of smooth functions of the program, which tell which of them gives f where.
 
 use super::differences::{self, Calls, Differences, Functions};
 use super::{Evaluator, Field, FieldError, Frame, Jet, MaybeSend, MaybeSync, Pieces, edges};
@@ -11,9 +11,9 @@ use glam::{DVec3, Vec3};
 ///
 /// f at a point is the value of its piece. Where the surface passes from one piece to another it
 /// has an edge: particles lie on it, and the mesh is closed along it, to the digits of the numbers.
-/// So the value of a piece is asked for also where another piece gives f, a few particles beyond
-/// the edge at most, and it should be smooth there. Equal labels are equal functions. f is to be
-/// continuous: where the values of two pieces differ at their border, the surface ends there.
+/// To find the edge the library evaluates a piece also a few particles beyond it, where another
+/// piece gives f; it should be smooth there, too. Pieces with equal labels are the same function. f
+/// should be continuous: where the values of two pieces differ at their border, the surface ends.
 ///
 /// Of a function that tells nothing about its pieces, [`FnField`](super::FnField), the edges are
 /// found in its values.
@@ -103,15 +103,15 @@ where
     }
 
     fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
-        PieceEvaluator::new(self, self, Frame::default()).value_and_gradient(p)
+        PiecewiseEvaluator::new(self, self, Frame::default()).value_and_gradient(p)
     }
 
     fn jet(&self, p: DVec3) -> Jet {
-        PieceEvaluator::new(self, self, Frame::default()).jet(p)
+        PiecewiseEvaluator::new(self, self, Frame::default()).jet(p)
     }
 
     fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
-        Box::new(PieceEvaluator::new(self, self, frame))
+        Box::new(PiecewiseEvaluator::new(self, self, frame))
     }
 
     fn calls(&self) -> Option<u64> {
@@ -124,7 +124,7 @@ where
 }
 
 /// The evaluator of a field that knows its pieces, or of one piece.
-struct PieceEvaluator<'a> {
+struct PiecewiseEvaluator<'a> {
     field: &'a dyn Field,
     functions: &'a dyn Functions,
     own: Differences<'a>,
@@ -135,14 +135,14 @@ struct PieceEvaluator<'a> {
     labels: Vec<u32>,
 }
 
-impl<'a> PieceEvaluator<'a> {
+impl<'a> PiecewiseEvaluator<'a> {
     fn new(field: &'a dyn Field, functions: &'a dyn Functions, frame: Frame) -> Self {
         let own = Differences::new(functions, frame);
         Self { field, functions, own, label: None, piece: None, labels: Vec::new() }
     }
 
-    /// Calls `call` with the evaluator of a piece for each range of points that one gives f at, so
-    /// that no difference reaches over an edge.
+    /// Calls `call` for each range of points with the same piece, with the evaluator of that piece.
+    /// So no difference reaches over an edge.
     fn on_pieces(
         &mut self,
         points: &[Vec3],
@@ -173,16 +173,16 @@ impl<'a> PieceEvaluator<'a> {
     }
 }
 
-impl Evaluator for PieceEvaluator<'_> {
+impl Evaluator for PiecewiseEvaluator<'_> {
     fn frame(&self) -> Frame {
         self.own.frame()
     }
 
     fn another(&self) -> Box<dyn Evaluator + '_> {
         let label = self.label;
-        Box::new(PieceEvaluator {
+        Box::new(PiecewiseEvaluator {
             label,
-            ..PieceEvaluator::new(self.field, self.functions, self.own.frame())
+            ..PiecewiseEvaluator::new(self.field, self.functions, self.own.frame())
         })
     }
 
@@ -229,14 +229,14 @@ impl Evaluator for PieceEvaluator<'_> {
     }
 }
 
-impl Pieces for PieceEvaluator<'_> {
+impl Pieces for PiecewiseEvaluator<'_> {
     fn label(&mut self, p: DVec3) -> u32 {
         self.functions.label(self.own.frame().place(p))
     }
 
     fn labels_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
-        /// Largest box, as a share of the diagonal of that of the run, of which some points tell
-        /// enough.
+        /// Largest box in which the labels at some points stand for all, as a share of the diagonal
+        /// of the box of the run.
         const SMALL: f64 = 0.125;
         /// Points along each of its sides.
         const SIDE: usize = 3;

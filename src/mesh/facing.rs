@@ -31,8 +31,8 @@ pub(crate) struct Facing {
     pub(crate) turned: Vec<bool>,
     /// Sign of f inside of the closed parts; none if there is no closed part.
     pub(crate) inside: Option<Inside>,
-    /// For each component the one whose body it bounds: itself, but for the wall of a hollow the
-    /// wall around that; empty where each is a body of its own.
+    /// The component that is the outer wall of each component's body: itself, or for the wall of a
+    /// hollow the wall around that. It is empty if no component has a hollow.
     pub(crate) body_of: Vec<u32>,
 }
 

@@ -159,7 +159,7 @@ struct RunState {
 struct FieldState {
     /// Calls of its functions before this run.
     calls: u64,
-    /// What is known of its pieces.
+    /// The pieces that were found, if the field has edges.
     pieces: Option<KnownPieces>,
 }
 

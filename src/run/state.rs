@@ -5,7 +5,7 @@ use super::mesh::Meshing;
 use super::plan::{Plan, Shares};
 use super::{Error, FieldState, Known, Measured, RunState, Sample, Start, Warning};
 use crate::extent::{self, Reach};
-use crate::field::edges::{KnownField, KnownPieces};
+use crate::field::edges::{EdgeTable, KnownField, KnownPieces};
 use crate::field::{Evaluator, Field, Frame};
 use crate::math::Bounds;
 use crate::particles::Particles;
@@ -27,7 +27,7 @@ impl FieldState {
     }
 
     /// The field that is sampled.
-    pub(super) fn function<'a>(&'a self, given: &'a dyn Field) -> KnownField<'a> {
+    pub(super) fn function<'a>(&'a self, given: &'a dyn Field) -> KnownField<&'a dyn Field, &'a EdgeTable> {
         KnownPieces::of(self.pieces.as_ref(), given)
     }
 
@@ -237,7 +237,7 @@ impl RunState {
 
     /// [`Run::evaluator`](super::Run::evaluator).
     pub(super) fn evaluator<'a>(&'a self, field: &'a dyn Field) -> Box<dyn Evaluator + 'a> {
-        self.field.function(field).at_work(self.sampler.frame())
+        self.field.function(field).into_evaluator(self.sampler.frame())
     }
 
     /// The clip box, counted from the origin of the particles.

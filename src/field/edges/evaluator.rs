@@ -1,4 +1,5 @@
-//! A function with known edges at work: f within the regions of its pieces, and the pieces beyond.
+//! The evaluator of a field whose edges were found. Within its region a piece is f; beyond its
+//! edges it is extrapolated.
 
 use super::sampled::{STENCIL, Taylor, jet_across, stencil};
 use super::table::{EdgeTable, Site};
@@ -6,37 +7,40 @@ use crate::field::{Evaluator, Field, Frame, Jet, Pieces};
 use crate::math::{Bounds, Sym3};
 use glam::{DVec3, Vec3};
 
-/// Largest distance to which a polynomial from a place within the region is taken, in margins.
-/// Farther away the polynomial of a vertex beside the edge is near enough.
+/// Largest distance, in margins, to which a piece is extrapolated from a place within its region.
+/// Farther away the jet of a vertex beside the edge, which takes no values of f, is exact enough.
 const FAR: f64 = 40.0;
-/// Number of times that a place is moved into the region of a piece, from one edge after another.
+/// Maximum number of moves that bring a place into the region of a piece.
 const MOVES: u32 = 12;
-/// Largest difference of f from a piece, as a share of the size of the box, at which the piece
-/// gives f as well as another one that differs less.
+/// Two pieces whose distances from f differ by no more than this share of the size of the box count
+/// as equally near to it.
 const SAME: f64 = 3e-10;
 
-/// How a piece is evaluated at a place.
+/// The way to evaluate a piece at a place.
 #[derive(Clone, Copy)]
 enum Plan {
-    /// It is f.
+    /// Evaluates f: the place is within the region of the piece.
     Whole,
-    /// By the polynomial from a place within its region.
+    /// Extrapolates from this place within the region.
     Around(DVec3),
-    /// By the polynomial of this vertex.
+    /// Extrapolates from this vertex.
     Vertex(u32),
 }
 
-/// An edge beside a place, as the piece of one label sees it.
+/// The border of the region of a piece at a site: there the piece equals the one beyond.
 struct Wall {
-    /// The other label.
+    /// The label beyond.
     beyond: u32,
-    /// Distance of the site.
+    /// Distance of the site from the place that is asked for.
     near: f64,
     /// The vertex of the piece beside the site.
     end: u32,
+    /// Where the site is.
     position: DVec3,
+    /// The piece, and the one beyond.
     own: Taylor,
     other: Taylor,
+    /// See [`Site::sign`].
     sign: f64,
 }
 
@@ -55,23 +59,23 @@ impl Wall {
         })
     }
 
-    /// The distance of a place from where the piece gives way to the other one, negative beyond it,
-    /// and the unit vector back into its region.
+    /// The distance of a place from the wall, negative beyond it, and the unit vector that leads
+    /// into the region.
     fn depth(&self, p: DVec3) -> (f64, DVec3) {
         let [(f, u), (g, v)] = [self.own.slope(p), self.other.slope(p)];
-        // The pieces may be of different steepness: what counts is where they are equal.
         let slope = (u - v) * self.sign;
         let length = slope.length();
         ((f - g) * self.sign / length, slope / length)
     }
 }
 
-/// The shortest step by which a place gets so much deeper within walls, by the ways into them:
-/// within the first three of which no two are parallel.
+/// The shortest step that makes a place deeper within several walls, each given with the depth that
+/// is lacking and the direction into the region. A wall nearly parallel to those before is ignored,
+/// and so is a fourth one.
 fn step_within(walls: impl Iterator<Item = (f64, DVec3)>) -> DVec3 {
     let (mut across, mut step): (Vec<DVec3>, DVec3) = (Vec::new(), DVec3::ZERO);
     for (lacking, way) in walls {
-        // The part of the way that leaves the depth within the walls before as it is.
+        // The part of the direction along the walls before, which keeps the depth within them.
         let free = across.iter().fold(way, |free, n| free - *n * free.dot(*n));
         let Some(free) = free.try_normalize().filter(|free| free.dot(way) > 0.05) else { continue };
         step += free * ((lacking - step.dot(way)) / free.dot(way));
@@ -81,7 +85,7 @@ fn step_within(walls: impl Iterator<Item = (f64, DVec3)>) -> DVec3 {
 }
 
 impl EdgeTable {
-    /// The edges beside a place that a piece has, the nearest of each other piece.
+    /// The walls of a piece around a place: for each neighbouring piece that at the nearest site.
     fn walls(&self, label: u32, p: DVec3) -> Vec<Wall> {
         let mut walls: Vec<Wall> = Vec::new();
         for wall in self.sites_near(p).filter_map(|site| Wall::new(self, site, label, p)) {
@@ -94,9 +98,9 @@ impl EdgeTable {
         walls
     }
 
-    /// The walls that bound the region of a piece at a place, each with the place's depth within it
-    /// and the way farther in. Where a region has a reflex angle at a corner, it lies within one
-    /// wall or within the other, so that only the deeper one bounds it.
+    /// The walls that bound the region of a piece at a place: the index of each, the depth within
+    /// it and the direction into the region. Where the region has a reflex angle at a corner, being
+    /// within one of both walls is enough, so only the deeper one bounds it.
     fn bounding(walls: &[Wall], p: DVec3) -> Vec<(usize, f64, DVec3)> {
         let depths: Vec<(f64, DVec3)> = walls.iter().map(|wall| wall.depth(p)).collect();
         let is_reflex = |a: &Wall, b: &Wall| a.depth(b.position).0 < 0.0 && b.depth(a.position).0 < 0.0;
@@ -107,13 +111,14 @@ impl EdgeTable {
         bounding.map(|k| (k, depths[k].0, depths[k].1)).collect()
     }
 
-    /// How a piece is evaluated at a place.
+    /// Plans how to evaluate a piece at a place: moves the place into the region of the piece, and
+    /// extrapolates from there.
     fn plan(&self, label: u32, q: DVec3) -> Plan {
         let walls = self.walls(label, q);
         let Some(nearest) = walls.iter().min_by(|a, b| a.near.total_cmp(&b.near)) else { return Plan::Whole };
         let beside = Plan::Vertex(nearest.end);
         let mut p = q;
-        // The walls that the place was beyond so far, the last one first.
+        // The walls that have moved the place, the last one first.
         let mut passed: Vec<usize> = Vec::new();
         for _ in 0..MOVES {
             let bounding = Self::bounding(&walls, p);
@@ -140,33 +145,36 @@ impl EdgeTable {
         beside
     }
 
-    /// Whether differences at a place may reach over an edge.
+    /// Whether differences at a place could reach over an edge.
     fn is_beside_edge(&self, p: DVec3) -> bool {
         self.sites_near(p).any(|site| {
             let depth = Wall::new(self, site, site.sides[0].label, p).map(|wall| wall.depth(p).0);
-            // NaN where both functions are the same.
+            // It is NaN where both pieces have the same gradient.
             depth.is_some_and(|depth| depth.is_nan() || depth.abs() < self.clear)
         })
     }
 }
 
-/// A function with known edges, or one of its pieces.
-pub(crate) struct EdgedEvaluator<'a> {
+/// The evaluator of f, or of one of its pieces.
+pub(super) struct EdgedEvaluator<'a> {
     field: &'a dyn Field,
     table: &'a EdgeTable,
     frame: Frame,
+    /// The evaluator of f without its edges.
     whole: Box<dyn Evaluator + 'a>,
     /// The piece that is evaluated; none for f.
     label: Option<u32>,
+    /// The evaluator of a piece, once one has been asked for.
     piece: Option<Box<Self>>,
-    /// Points of a batch at which it is not f that is evaluated, with how and by which piece.
-    planned: Vec<(usize, u32, Plan)>,
+    /// The points of a batch that need extrapolation, by their index, each with its plan.
+    planned: Vec<(usize, Plan)>,
+    /// The stencils of the planned points, and the values of f there.
     places: Vec<DVec3>,
     values: Vec<f64>,
 }
 
 impl<'a> EdgedEvaluator<'a> {
-    pub(crate) fn new(field: &'a dyn Field, table: &'a EdgeTable, frame: Frame) -> Self {
+    pub(super) fn new(field: &'a dyn Field, table: &'a EdgeTable, frame: Frame) -> Self {
         Self::of(field, table, frame, None)
     }
 
@@ -176,9 +184,11 @@ impl<'a> EdgedEvaluator<'a> {
         Self { field, table, frame, whole, label, piece: None, planned, places, values }
     }
 
-    /// Plans the points at which f, or differences of it, are not what is asked for. f itself has a
-    /// gradient everywhere but beside edges, where it is that of the piece there.
-    fn plan(&mut self, points: impl Iterator<Item = DVec3>) {
+    /// Plans the points of a batch that need extrapolation, and returns whether any of them do not.
+    /// Beside an edge the gradient of f is that of the piece there, since differences of f would
+    /// reach over the edge.
+    fn plan(&mut self, points: impl ExactSizeIterator<Item = DVec3>) -> bool {
+        let count = points.len();
         self.planned.clear();
         for (k, p) in points.enumerate() {
             let place = self.frame.place(p);
@@ -189,17 +199,18 @@ impl<'a> EdgedEvaluator<'a> {
             };
             let plan = self.table.plan(label, place);
             if !matches!(plan, Plan::Whole) {
-                self.planned.push((k, label, plan));
+                self.planned.push((k, plan));
             }
         }
+        self.planned.len() < count
     }
 
-    /// Calls `store` with the index of each planned point and the jet of its piece there, in the
-    /// coordinates of the field.
+    /// Calls `store` with the index of each planned point and the jet of its piece there, as the
+    /// field gives it. `point` returns a point of the batch.
     fn planned_jets(&mut self, point: impl Fn(usize) -> DVec3, mut store: impl FnMut(usize, Jet)) {
-        let step = self.step();
+        let step = self.table.step;
         self.places.clear();
-        for (_, _, plan) in &self.planned {
+        for (_, plan) in &self.planned {
             if let Plan::Around(p) = plan {
                 self.places.extend(stencil(*p, step));
             }
@@ -207,7 +218,7 @@ impl<'a> EdgedEvaluator<'a> {
         self.values.resize(self.places.len(), 0.0);
         self.field.values(&self.places, &mut self.values);
         let mut stencils = self.values.as_chunks::<STENCIL>().0.iter();
-        for &(k, _, plan) in &self.planned {
+        for &(k, plan) in &self.planned {
             let taylor = match plan {
                 Plan::Around(p) => {
                     let own = stencils.next().expect("a stencil for each place");
@@ -220,13 +231,10 @@ impl<'a> EdgedEvaluator<'a> {
         }
     }
 
-    fn step(&self) -> f64 {
-        self.table.step
-    }
-
-    /// The jet of a piece at a place, by its plan.
+    /// The jet of a piece at a place where the value of f is `whole`; within its region the value
+    /// alone.
     fn piece_jet(&self, label: u32, q: DVec3, whole: f64) -> Jet {
-        let step = self.step();
+        let step = self.table.step;
         let taylor = match self.table.plan(label, q) {
             Plan::Whole => return Jet { value: whole, ..Jet::default() },
             Plan::Around(p) => {
@@ -239,31 +247,21 @@ impl<'a> EdgedEvaluator<'a> {
         taylor.jet(q)
     }
 
-    /// The label of the piece that gives f at a place.
+    /// The label of the piece that gives f at a place: that of the piece nearest to f; of several
+    /// equally near ones, that of the nearest vertex.
     fn label_at(&self, p: DVec3) -> u32 {
-        let nearest = self.table.nearest(p);
-        let mut labels: Vec<(u32, f64)> =
-            nearest.iter().map(|(&label, &(distance, _))| (label, distance)).collect();
-        for site in self.table.sites_near(p) {
-            for side in site.sides {
-                if labels.iter().all(|&(known, _)| known != side.label) {
-                    labels.push((side.label, site.position.distance_squared(p)));
-                }
-            }
-        }
+        let labels = self.table.labels_near(p);
         match labels[..] {
             [] => return 0,
             [(label, _)] => return label,
             _ => {}
         }
-        labels.sort_by(|a, b| a.1.total_cmp(&b.1));
         let whole = self.field.value(p);
         let mut best = (f64::INFINITY, labels[0].0);
         for (label, _) in labels {
             let jet = self.piece_jet(label, p, whole);
             let slope = jet.gradient.length();
             let off = if jet.value == whole { 0.0 } else { (jet.value - whole).abs() / slope };
-            // The nearest of those that are f counts.
             if off < best.0 - SAME * self.table.size {
                 best = (off, label);
             }
@@ -282,17 +280,20 @@ impl Evaluator for EdgedEvaluator<'_> {
     }
 
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
-        self.whole.values(points, value);
-        if self.label.is_some() {
-            self.plan(points.iter().map(|p| p.as_dvec3()));
-            let frame = self.frame;
-            self.planned_jets(|k| points[k].as_dvec3(), |k, jet| value[k] = frame.value(jet.value));
+        if self.label.is_none() {
+            return self.whole.values(points, value);
         }
+        if self.plan(points.iter().map(|p| p.as_dvec3())) {
+            self.whole.values(points, value);
+        }
+        let frame = self.frame;
+        self.planned_jets(|k| points[k].as_dvec3(), |k, jet| value[k] = frame.value(jet.value));
     }
 
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
-        self.whole.gradients(points, value, gradient);
-        self.plan(points.iter().map(|p| p.as_dvec3()));
+        if self.plan(points.iter().map(|p| p.as_dvec3())) {
+            self.whole.gradients(points, value, gradient);
+        }
         let frame = self.frame;
         self.planned_jets(
             |k| points[k].as_dvec3(),
@@ -307,8 +308,9 @@ impl Evaluator for EdgedEvaluator<'_> {
         gradient: &mut [Vec3],
         hessian: &mut [Sym3<f32>],
     ) {
-        self.whole.hessians(points, value, gradient, hessian);
-        self.plan(points.iter().map(|p| p.as_dvec3()));
+        if self.plan(points.iter().map(|p| p.as_dvec3())) {
+            self.whole.hessians(points, value, gradient, hessian);
+        }
         let frame = self.frame;
         self.planned_jets(
             |k| points[k].as_dvec3(),
@@ -317,8 +319,7 @@ impl Evaluator for EdgedEvaluator<'_> {
     }
 
     fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
-        self.plan(core::iter::once(p));
-        if self.planned.is_empty() {
+        if self.plan(core::iter::once(p)) {
             return self.whole.value_and_gradient(p);
         }
         let (frame, mut found) = (self.frame, (f64::NAN, DVec3::NAN));
@@ -327,8 +328,7 @@ impl Evaluator for EdgedEvaluator<'_> {
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {
-        self.plan(core::iter::once(p));
-        if self.planned.is_empty() {
+        if self.plan(core::iter::once(p)) {
             return self.whole.jet(p);
         }
         let (frame, mut found) = (self.frame, Jet::default());
@@ -337,8 +337,9 @@ impl Evaluator for EdgedEvaluator<'_> {
     }
 
     fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
-        self.whole.exact_gradients(points, value, gradient);
-        self.plan(points.iter().map(|p| p.as_dvec3()));
+        if self.plan(points.iter().map(|p| p.as_dvec3())) {
+            self.whole.exact_gradients(points, value, gradient);
+        }
         let frame = self.frame;
         self.planned_jets(
             |k| points[k].as_dvec3(),
@@ -357,7 +358,7 @@ impl Pieces for EdgedEvaluator<'_> {
     }
 
     fn labels_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
-        self.table.labels_in(&self.frame.outward(bounds))
+        Some(self.table.labels_in(&self.frame.outward(bounds)))
     }
 
     fn piece(&mut self, label: u32) -> &mut dyn Evaluator {

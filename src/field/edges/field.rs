@@ -1,23 +1,27 @@
-//! Fields with what was found out about their pieces.
+//! What a run knows of the pieces of its field, and the field with that knowledge.
 
 use super::evaluator::EdgedEvaluator;
 use super::table::EdgeTable;
-use crate::field::{Evaluator, Facts, Field, FieldError, Frame, Jet, Piecewise};
+use crate::field::{Evaluator, Facts, Field, FieldError, Frame, Jet, MaybeSend, MaybeSync, Piecewise};
+use core::ops::Deref;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// What was found out about the pieces of a field in a box.
+/// The result of looking for the pieces of a field in a box.
 #[derive(Clone)]
 pub(crate) enum KnownPieces {
-    /// The field with its own pieces.
+    /// The field tells its pieces itself. This copy of it has joined those that meet smoothly.
     Own(Arc<dyn Piecewise>),
-    /// Edges found in its values.
+    /// The edges were found in the values of the field.
     Edges(Arc<EdgeTable>),
 }
 
 impl KnownPieces {
-    /// A field, with what is known of it.
-    pub(crate) fn of<'a>(known: Option<&'a Self>, field: &'a dyn Field) -> KnownField<'a> {
+    /// Returns the field to evaluate: `field`, or the copy of it that is known.
+    pub(crate) fn of<'a>(
+        known: Option<&'a Self>,
+        field: &'a dyn Field,
+    ) -> KnownField<&'a dyn Field, &'a EdgeTable> {
         match known {
             None => KnownField { field, table: None },
             Some(Self::Own(own)) => KnownField { field: &**own, table: None },
@@ -25,25 +29,25 @@ impl KnownPieces {
         }
     }
 
-    /// [`KnownPieces::of`] of a field that is shared.
+    /// [`KnownPieces::of`], for a field that is shared.
     pub(crate) fn of_shared(&self, field: impl FnOnce() -> Arc<dyn Field>) -> Arc<dyn Field> {
         match self {
             Self::Own(own) => Arc::<dyn Piecewise>::clone(own),
-            Self::Edges(table) => Arc::new(EdgedField { field: field(), table: Arc::clone(table) }),
+            Self::Edges(table) => Arc::new(KnownField { field: field(), table: Some(Arc::clone(table)) }),
         }
     }
 }
 
-/// A field with what is known of its pieces.
+/// A field with the edges that were found in its values, if there are any.
 #[derive(Clone, Copy)]
-pub(crate) struct KnownField<'a> {
-    field: &'a dyn Field,
-    table: Option<&'a EdgeTable>,
+pub(crate) struct KnownField<F, T> {
+    field: F,
+    table: Option<T>,
 }
 
-impl<'a> KnownField<'a> {
-    /// [`Field::evaluator`].
-    pub(crate) fn at_work(self, frame: Frame) -> Box<dyn Evaluator + 'a> {
+impl<'a> KnownField<&'a dyn Field, &'a EdgeTable> {
+    /// [`Field::evaluator`], for as long as the field and the table are borrowed.
+    pub(crate) fn into_evaluator(self, frame: Frame) -> Box<dyn Evaluator + 'a> {
         match self.table {
             None => self.field.evaluator(frame),
             Some(table) => Box::new(EdgedEvaluator::new(self.field, table, frame)),
@@ -51,7 +55,11 @@ impl<'a> KnownField<'a> {
     }
 }
 
-impl Field for KnownField<'_> {
+impl<F, T> Field for KnownField<F, T>
+where
+    F: Field,
+    T: Deref<Target = EdgeTable> + MaybeSend + MaybeSync,
+{
     fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
         self.field.value_and_gradient(p)
     }
@@ -69,53 +77,8 @@ impl Field for KnownField<'_> {
     }
 
     fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
-        self.at_work(frame)
-    }
-
-    fn facts(&self) -> Facts {
-        self.field.facts()
-    }
-
-    fn calls(&self) -> Option<u64> {
-        self.field.calls()
-    }
-
-    fn failure(&self) -> Option<FieldError> {
-        self.field.failure()
-    }
-}
-
-/// A field with edges that were found in its values.
-struct EdgedField {
-    field: Arc<dyn Field>,
-    table: Arc<EdgeTable>,
-}
-
-impl EdgedField {
-    fn known(&self) -> KnownField<'_> {
-        KnownField { field: &*self.field, table: Some(&self.table) }
-    }
-}
-
-impl Field for EdgedField {
-    fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
-        self.field.value_and_gradient(p)
-    }
-
-    fn value(&self, p: DVec3) -> f64 {
-        self.field.value(p)
-    }
-
-    fn values(&self, points: &[DVec3], f: &mut [f64]) {
-        self.field.values(points, f);
-    }
-
-    fn jet(&self, p: DVec3) -> Jet {
-        self.field.jet(p)
-    }
-
-    fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
-        self.known().at_work(frame)
+        let field: &dyn Field = &self.field;
+        KnownField { field, table: self.table.as_deref() }.into_evaluator(frame)
     }
 
     fn facts(&self) -> Facts {

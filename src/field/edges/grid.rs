@@ -1,6 +1,6 @@
 //! A grid of values, and the points of the surface on its edges.
 
-use super::sampled::Sampled;
+use super::sampled::{Bracket, Sampled};
 use crate::math::{Bounds, NONE};
 use crate::slices::{HEAVY, pause};
 use glam::DVec3;
@@ -8,24 +8,24 @@ use glam::DVec3;
 /// A node, by its number along each axis.
 type Node = [usize; 3];
 
-/// Where the grid begins, in cells before the box. It is no simple fraction, so that no face of a
-/// typical solid lies on the nodes.
+/// Distance from the first node to the box, in cells. These numbers are no simple fractions, so
+/// that the faces of a typical solid do not lie on nodes.
 const SHIFT: DVec3 = DVec3::new(1.381_966, 1.430_519, 1.302_776);
 /// Cells that are sampled beyond the box.
 const BEYOND: f64 = 1.5;
 /// Largest |f| at a corner of a coarse cell through which the surface may pass, as a share of the
 /// difference of the values there.
 const NEAR: f64 = 0.5;
-/// Number of evaluations that bring a point onto the surface along an edge of the grid.
+/// Maximum number of evaluations that find the zero of f on an edge of the grid.
 const STEPS: u32 = 24;
 /// A point is on the surface when it moves less than this share of a cell.
 const AT_REST: f64 = 1e-12;
 
-/// Values of f at the nodes of a grid, as far as the surface may be near.
+/// Values of f at the nodes of a grid; NaN in cells through which the surface cannot pass.
 pub(super) struct Grid {
     lo: DVec3,
     /// The side of a cell.
-    pub(super) side: f64,
+    side: f64,
     /// Number of nodes along each axis.
     count: Node,
     values: Vec<f64>,
@@ -35,7 +35,7 @@ impl Grid {
     /// Samples a box with cells of this width.
     pub(super) async fn sample(f: &Sampled<'_>, bounds: &Bounds, width: f64) -> Self {
         let cells = (bounds.size() / width + SHIFT + BEYOND).ceil();
-        // Of two cells each one is a coarse one.
+        // An even number of cells: two of them make a coarse one.
         let count = cells.to_array().map(|cells| 2 * (0.5 * cells).ceil() as usize + 1);
         let mut grid = Self {
             lo: bounds.lo() - width * SHIFT,
@@ -136,18 +136,12 @@ impl Grid {
         (points, of_edge)
     }
 
-    /// The zeros of f on edges, by the Illinois method (M. Dowell and P. Jarratt, "A modified
-    /// regula falsi method for computing the root of an equation", 1971).
+    /// The zeros of f on edges of the grid, each given with the values at its ends.
     fn zeros(&self, f: &Sampled<'_>, edges: &[(usize, [f64; 2])]) -> Vec<DVec3> {
-        struct Bracket {
-            at: [f64; 2],
-            value: [f64; 2],
-            last: usize,
-            root: f64,
-        }
         let mut open: Vec<usize> = (0..edges.len()).collect();
-        let new = |&(_, value): &(usize, [f64; 2])| Bracket { at: [0.0, 1.0], value, last: 2, root: 0.5 };
-        let mut brackets: Vec<Bracket> = edges.iter().map(new).collect();
+        let mut brackets: Vec<Bracket> =
+            edges.iter().map(|&(_, values)| Bracket::new([0.0, 1.0], values)).collect();
+        let mut roots = vec![0.5; edges.len()];
         let place = |k: usize, share: f64| {
             let (edge, _) = edges[k];
             self.place(self.node(edge / 3)) + DVec3::AXES[edge % 3] * (share * self.side)
@@ -157,29 +151,19 @@ impl Grid {
             if open.is_empty() {
                 break;
             }
+            open.iter().for_each(|&k| roots[k] = brackets[k].root());
             places.clear();
-            for &k in &open {
-                let Bracket { at, value, root, .. } = &mut brackets[k];
-                *root = (at[0] * value[1] - at[1] * value[0]) / (value[1] - value[0]);
-                places.push(place(k, *root));
-            }
+            places.extend(open.iter().map(|&k| place(k, roots[k])));
             values.resize(places.len(), 0.0);
             f.field.values(&places, &mut values);
             let mut values = values.iter();
             open.retain(|&k| {
                 let value = *values.next().expect("a value for each place");
-                let Bracket { at, value: ends, last, root } = &mut brackets[k];
-                let side = usize::from((value < 0.0) != (ends[0] < 0.0));
-                let moved = (at[side] - *root).abs();
-                (at[side], ends[side]) = (*root, value);
-                if *last == side {
-                    ends[1 - side] *= 0.5;
-                }
-                *last = side;
-                value != 0.0 && value.is_finite() && moved > AT_REST && (at[1] - at[0]).abs() > AT_REST
+                let moved = brackets[k].narrow(roots[k], value);
+                moved > AT_REST && brackets[k].width() > AT_REST
             });
         }
-        (0..edges.len()).map(|k| place(k, brackets[k].root)).collect()
+        (0..edges.len()).map(|k| place(k, roots[k])).collect()
     }
 
     /// Pairs of edges between which the surface passes through a face of a cell.

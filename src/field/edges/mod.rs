@@ -1,23 +1,22 @@
-//! Edges of a function that nobody can look into, found in its values.
+//! Edges of a black box: a field of which only values are known.
 //!
-//! The code of a distance with `min` and `max` in it is smooth nearly everywhere, and its gradient
-//! jumps where another operand is taken. Nothing but values of f is asked for:
+//! Code with `min` and `max` in it is smooth nearly everywhere, and its gradient jumps where
+//! another operand is taken. The search evaluates f and nothing else:
 //!
-//! 1. *Vertices* ([`grid`]). f is sampled on a grid; where it changes its sign along an edge of the
-//!    grid there is a point of the surface, at which ten differences give a second-order jet.
-//! 2. *Links* ([`search`]). Two vertices beside each other are on one smooth piece of the surface
-//!    if the jet of each foretells the normal of the other. Where it does not the surface between
-//!    them is followed down to a ten-thousandth of the box: either it only bends there, or there is
-//!    a *site*, a point of an edge with a jet on either side.
-//! 3. *Labels* ([`table`]). Vertices that are linked, over any number of others, have one label.
-//! 4. *Pieces* ([`evaluator`]). Within its region a piece is f. Beyond an edge it is the Taylor
-//!    polynomial from a place a little within.
+//! 1. *Vertices* ([`grid`]). Where f changes its sign along an edge of a grid there is a point of
+//!    the surface. Thirteen values around it give a second-order jet.
+//! 2. *Links* ([`search`]). Two neighbouring vertices are on one smooth piece of the surface if the
+//!    jet of each predicts the normal of the other. Where they disagree, the search narrows the way
+//!    between them to a ten-thousandth of the box. It finds that the surface only bends there, or a
+//!    *site*: a point of an edge, with a jet on either side.
+//! 3. *Closer looks*. Around corners, and where the search was inconclusive, it is repeated on a
+//!    grid three times as fine.
+//! 4. *Labels* ([`table`]). All vertices that are joined, directly or by others, have one label.
+//! 5. *Pieces* ([`evaluator`]). Within its region a piece is f. Beyond an edge it is the Taylor
+//!    polynomial around a place a little within.
 //!
-//! Where a third piece begins near an edge, or it stays unclear how the surface goes on, a finer
-//! grid is looked at around the place.
-//!
-//! What is smaller than a cell of the grid may be missed, so nothing is proven. An edge that fades
-//! out has one label on both sides; such a site is counted and left out.
+//! The search may miss what is smaller than a cell of the grid, so nothing is proven. An edge that
+//! fades out has one label on both sides and is left out.
 
 mod evaluator;
 mod field;
@@ -27,7 +26,7 @@ mod search;
 mod table;
 
 pub(crate) use field::{KnownField, KnownPieces};
-use table::EdgeTable;
+pub(crate) use table::EdgeTable;
 
 use super::{Field, Frame};
 use crate::math::Bounds;
@@ -39,18 +38,18 @@ use search::Search;
 use std::sync::Arc;
 use table::Seams;
 
-/// Cells along the longest side of the box with which it is found out whether there is an edge at
-/// all, and those with which edges are found. Fewer miss more of what is small; the calls of f grow
-/// with the square.
+/// Cells along the longest side of the box: of the grid that tells whether there is an edge at all,
+/// and of the grid on which edges are searched. Fewer miss more of what is small; the calls of f
+/// grow with the square.
 const SIDES: [u32; 2] = [32, 64];
 
-/// Maximum number of places that are looked at more closely: as many corners as a hundred and
-/// twenty boxes have. Each takes some 2,000 calls of f.
+/// Maximum number of closer looks, each of which takes some 2,000 calls of f: as many as 120 boxes
+/// have corners. A surface with more is not looked at more closely at all.
 const MOST_CLOSE: usize = 1_000;
 
-/// Finds out about the pieces of a field in a box, in the coordinates of the field: cells with
-/// which a search for edges can begin, and what is known of the pieces then, where they are not the
-/// field's own. None where the surface is smooth.
+/// Finds the pieces of a field in a box, in the coordinates of the field. Returns cells from which
+/// the edges can be traced, and what the evaluators are to know, if that is more than the field
+/// itself tells; none if the surface is smooth.
 pub(crate) async fn known_in(
     field: &dyn Field,
     bounds: &Bounds,
@@ -70,12 +69,11 @@ pub(crate) async fn known_in(
     Some((table.seams(bounds, width), Some(KnownPieces::Edges(Arc::new(table)))))
 }
 
-/// Finds the edges of the surface of a field in a box, in the coordinates of the field; none if
-/// there are none.
+/// Finds the edges of the surface of a field in a box, in the coordinates of the field. Returns no
+/// table for a surface without edges.
 async fn find(field: &dyn Field, bounds: &Bounds) -> Option<EdgeTable> {
     let sampled = Sampled::new(field, bounds)?;
-    let [few, many] = SIDES.map(|side| Search::new(&sampled, sampled.size / f64::from(side)));
-    let (mut first, mut search) = (few, many);
+    let [mut first, mut search] = SIDES.map(|side| Search::new(&sampled, sampled.size / f64::from(side)));
     first.run(bounds, true).await;
     if first.sites.is_empty() {
         return None;
@@ -88,8 +86,8 @@ async fn find(field: &dyn Field, bounds: &Bounds) -> Option<EdgeTable> {
     EdgeTable::new(search)
 }
 
-/// Cells of a box in which the surface of a field passes from one label to another: one for each
-/// two labels within some widths of each other.
+/// Cells of a box in which the label changes on the surface of a field, from which its edges can be
+/// traced. Each pair of labels has one cell within some widths.
 pub(crate) fn seams_between(
     field: &dyn Field,
     label: &dyn Fn(DVec3) -> u32,

@@ -1,42 +1,42 @@
-//! The function whose values are asked for, and its jets by differences.
+//! Evaluation of the black box: values, second-order jets by differences, roots along a line.
 
 use crate::field::{Field, Jet};
 use crate::math::{Bounds, Sym3};
 use glam::DVec3;
 
-/// Length of the steps of differences, as a share of the size of the box. Larger: they reach beyond
-/// edges more often. Smaller: rounding takes digits of the second derivatives.
+/// Step of the differences, as a share of the size of the box. Larger steps reach over edges more
+/// often; smaller ones lose digits of the second derivatives by rounding.
 const STEP: f64 = 1e-4;
-/// Shares of that length that are tried where f is not smooth within it.
+/// Shares of the step that are tried in turn until f is smooth within one.
 const SHARES: [f64; 4] = [1.0, 0.1, 0.01, 0.001];
-/// Largest noise of f, as a share of the size of the box, with which edges are found. With more, as
-/// in single precision, second differences over the longest step are nothing but noise.
+/// Largest [noise] of f, as a share of the size of the box, at which edges are searched. With more,
+/// as of a function in single precision, second differences are nothing but noise.
 const MOST_NOISE: f64 = 1e-10;
-/// Places along the diagonals of the box at which the noise of f is looked at.
+/// Places on each half diagonal of the box at which the noise of f is measured.
 const LISTENED: usize = 4;
-/// Largest change of the slope over a step, as a share of the slope, of a function that is smooth
-/// there: it bends within forty steps.
+/// Largest change of the slope over a step, as a share of the slope, that counts as smooth: a
+/// radius of curvature of 250 steps.
 const MOST_BENT: f64 = 0.004;
 /// Number of values of a jet.
 pub(super) const STENCIL: usize = 13;
 
-/// A function with the box in which it is looked at.
+/// A field, with the lengths that the search in a box uses.
 pub(super) struct Sampled<'a> {
     pub(super) field: &'a dyn Field,
     /// The longest side of the box.
     pub(super) size: f64,
-    /// Length of the steps of differences.
+    /// Step of the differences.
     pub(super) step: f64,
 }
 
 impl<'a> Sampled<'a> {
-    /// None if the values of f are too noisy.
+    /// Returns nothing for a field whose values are too noisy.
     pub(super) fn new(field: &'a dyn Field, bounds: &Bounds) -> Option<Self> {
         let sampled = Self::in_box(field, bounds);
         (noise(field, bounds, sampled.size) <= MOST_NOISE * sampled.size).then_some(sampled)
     }
 
-    /// A field with its box.
+    /// A field however noisy it is.
     pub(super) fn in_box(field: &'a dyn Field, bounds: &Bounds) -> Self {
         let size = bounds.size().max_element();
         Self { field, size, step: STEP * size }
@@ -46,8 +46,8 @@ impl<'a> Sampled<'a> {
         self.field.value(p)
     }
 
-    /// The jets at these points, with the largest of four steps, each a tenth of the one before,
-    /// within which f is smooth; none where it is smooth within none.
+    /// The jets at these points, each by the largest share of `step` within which f is smooth; none
+    /// where there is no such share.
     pub(super) fn jets(&self, points: &[DVec3], step: f64) -> Vec<Option<Jet>> {
         let mut found: Vec<Option<Jet>> = vec![None; points.len()];
         let mut open: Vec<usize> = (0..points.len()).collect();
@@ -75,9 +75,10 @@ impl<'a> Sampled<'a> {
     }
 }
 
-/// The median of third differences of f over its slope: over a millionth of the box a function that
-/// has no noise has none.
+/// The noise of f as a length: its rounding errors over its slope. It is the median of third
+/// differences at 32 places, which vanish for exact values so close to each other.
 fn noise(field: &dyn Field, bounds: &Bounds, size: f64) -> f64 {
+    /// Distance between values, as a share of the size of the box.
     const APART: f64 = 1e-6;
     const STEPS: usize = 8;
     let corners = bounds.corners();
@@ -102,7 +103,7 @@ fn noise(field: &dyn Field, bounds: &Bounds, size: f64) -> f64 {
 }
 
 /// The places whose values make a jet: the point, both ways along each axis, and both ways along
-/// the diagonal of each two axes.
+/// the diagonal of each pair of axes.
 pub(super) fn stencil(p: DVec3, step: f64) -> [DVec3; STENCIL] {
     let [x, y, z] = DVec3::AXES.map(|axis| axis * step);
     [
@@ -122,8 +123,8 @@ pub(super) fn stencil(p: DVec3, step: f64) -> [DVec3; STENCIL] {
     ]
 }
 
-/// The jet that the values at the places of [`stencil`] make; none where the slope jumps between
-/// them.
+/// The jet by differences of the values at the places of [`stencil`]; none if the slope jumps
+/// between them.
 fn jet(f: &[f64; STENCIL], step: f64) -> Option<Jet> {
     let jet = jet_across(f, step);
     let most = MOST_BENT * step * jet.gradient.length();
@@ -139,7 +140,7 @@ fn jet(f: &[f64; STENCIL], step: f64) -> Option<Jet> {
     (bends.into_iter().all(is_straight) && mixed.into_iter().all(is_straight)).then_some(jet)
 }
 
-/// The jet that the values at the places of [`stencil`] make, smooth or not.
+/// The jet by differences of the values at the places of [`stencil`], smooth or not.
 pub(super) fn jet_across(f: &[f64; STENCIL], step: f64) -> Jet {
     let along = |k: usize| (f[k] - f[k + 1]) / (2.0 * step);
     let twice = |k: usize| (f[k] - 2.0 * f[0] + f[k + 1]) / (step * step);
@@ -158,6 +159,46 @@ pub(super) fn jet_across(f: &[f64; STENCIL], step: f64) -> Jet {
             yz: mixed(11, 3, 5),
             zz: twice(5),
         },
+    }
+}
+
+/// An interval of a line at whose ends f has different signs. The Illinois method narrows it (M.
+/// Dowell and P. Jarratt, "A modified regula falsi method for computing the root of an equation",
+/// 1971).
+pub(super) struct Bracket {
+    at: [f64; 2],
+    /// Values of f at the ends. That of an end that stays is halved each time.
+    value: [f64; 2],
+    /// The end that was replaced last; 2 at the beginning.
+    last: usize,
+}
+
+impl Bracket {
+    pub(super) fn new(at: [f64; 2], value: [f64; 2]) -> Self {
+        Self { at, value, last: 2 }
+    }
+
+    /// The zero of the straight line through both ends: where f is to be evaluated next.
+    pub(super) fn root(&self) -> f64 {
+        let ([a, b], [f, g]) = (self.at, self.value);
+        (a * g - b * f) / (g - f)
+    }
+
+    /// Replaces an end by the value of f at [`Bracket::root`]. Returns how far the end has moved; 0
+    /// where f is zero or undefined.
+    pub(super) fn narrow(&mut self, root: f64, value: f64) -> f64 {
+        let side = usize::from((value < 0.0) != (self.value[0] < 0.0));
+        let moved = (self.at[side] - root).abs();
+        (self.at[side], self.value[side]) = (root, value);
+        if self.last == side {
+            self.value[1 - side] *= 0.5;
+        }
+        self.last = side;
+        if value == 0.0 || !value.is_finite() { 0.0 } else { moved }
+    }
+
+    pub(super) fn width(&self) -> f64 {
+        (self.at[1] - self.at[0]).abs()
     }
 }
 

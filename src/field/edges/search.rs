@@ -1,41 +1,44 @@
-//! The search for edges: vertices of one smooth piece are linked, and where a link fails the place
-//! is followed in which one piece gives way to another.
+//! The search for edges. It joins neighbouring vertices whose jets agree. Where they disagree it
+//! narrows the way between them, down to the point at which one piece gives way to another.
 
 use super::grid::Grid;
-use super::sampled::{Sampled, Taylor};
+use super::sampled::{Bracket, Sampled, Taylor};
 use crate::math::newton::step_to_corner;
 use crate::math::{Bounds, NONE, SHARP};
 use crate::slices::{HEAVY, pause};
 use glam::DVec3;
 
-/// Largest difference of a normal from the one that is foretold, between vertices of one piece.
+/// Largest [residual](Search::residual) between two vertices of one piece.
 const ALIKE: f64 = 0.03;
-/// The same once the way between them has been halved, where a jet foretells more.
-const ALIKE_NEAR: f64 = 0.01;
-/// Largest |f|/|∇f| at the foretold place of an edge, as a share of the distance between the
-/// vertices beside it.
-const FORETOLD: f64 = 0.02;
+/// The same for vertices nearer to each other than neighbours of the grid, where a jet predicts
+/// more exactly.
+pub(super) const ALIKE_NEAR: f64 = 0.01;
+/// Largest distance |f|/|∇f| of the surface from the predicted place of an edge, as a share of the
+/// distance between the vertices beside it.
+const PREDICTED: f64 = 0.02;
 /// Largest distance of the edge of a blade from the middle of vertices on both sides of it, over
 /// the distance between them: no cell of the grid sees both sides nearer to a sharp one.
 const BLADE: f64 = 4.0;
-/// Distance of new vertices from the foretold place of an edge, as a share of that distance.
+/// Distance of new vertices from the predicted place of an edge, as a share of the same distance.
 const BESIDE: f64 = 0.1;
-/// Distance between the vertices on both sides of an edge at which its place is taken, as a share
-/// of the size of the box.
+/// Distance between two vertices at which the search between them ends, as a share of the size of
+/// the box, if neither piece turns by more than [`LITTLE_BENT`] over it.
 const CLOSE: f64 = 4e-4;
-/// Largest angle by which a piece turns over that distance.
+/// An angle in radians, see [`CLOSE`].
 const LITTLE_BENT: f64 = 0.05;
-/// Distance at which the place is taken however much the pieces turn.
+/// Distance between two vertices at which the search ends in any case, as a share of that size.
 const CLOSEST: f64 = 1e-5;
-/// Largest |f|/|∇f| at the place of an edge, as a share of the size of the box. Where it is larger
-/// the edge is rounded, or a third piece lies between.
+/// Largest distance |f|/|∇f| of the surface from a point of an edge, as a share of the size of the
+/// box. Where it is larger the edge is rounded, or a third piece lies between.
 const OFF: f64 = 2e-7;
-/// How many times as fine a grid is in the small boxes that are looked at more closely.
+/// Ratio of the cells of the grid to those of a closer look.
 const CLOSER: f64 = 3.0;
-/// Maximum number of vertices between two that are looked at.
+/// Maximum number of times that the way between two vertices is shortened.
 const MOST_STEPS: u32 = 60;
-/// Maximum number of times that what is left of a way beside an edge is looked at by itself: strips
-/// thinner than a cell have several edges there.
+/// Maximum number of evaluations that find the surface half-way between two vertices.
+const MOST_EVALUATIONS: u32 = 40;
+/// Maximum depth of searches within a search: the part of a way that is left aside may have an edge
+/// of its own, as in a strip thinner than a cell.
 const DEEPEST: u32 = 3;
 
 /// A point of an edge, with the vertices on both sides of it.
@@ -45,7 +48,7 @@ pub(super) struct RawSite {
     pub(super) ends: [u32; 2],
 }
 
-/// Vertices of the surface, and what is known of those beside each other.
+/// Vertices of the surface, and how the surface continues from one to the next.
 pub(super) struct Search<'a> {
     pub(super) f: &'a Sampled<'a>,
     /// The side of a cell of the grid of the whole box.
@@ -56,7 +59,7 @@ pub(super) struct Search<'a> {
     /// Pairs of vertices of one piece.
     pub(super) joined: Vec<[u32; 2]>,
     pub(super) sites: Vec<RawSite>,
-    /// Places between vertices at which it was not found out how the surface goes on.
+    /// Places between two vertices where the search found neither a smooth piece nor an edge.
     pub(super) unclear: Vec<DVec3>,
 }
 
@@ -66,13 +69,13 @@ impl<'a> Search<'a> {
         Self { f, cell, vertices, inserted: 0, joined, sites, unclear }
     }
 
-    /// Looks at the whole box; with `is_first` only up to the first place of an edge.
+    /// Searches the box. With `is_first` it ends at the first point of an edge.
     pub(super) async fn run(&mut self, bounds: &Bounds, is_first: bool) {
         let grid = Grid::sample(self.f, bounds, self.cell).await;
         self.look_at_links(&grid, is_first).await;
     }
 
-    /// Looks more closely at small boxes around places.
+    /// Searches small boxes around places on finer grids.
     pub(super) async fn look_closely(&mut self, places: &[DVec3]) {
         for &place in places {
             let around = Bounds::point(place).enlarged(self.cell);
@@ -115,18 +118,19 @@ impl<'a> Search<'a> {
         self.vertices.len() as u32 - 1
     }
 
-    fn distance(&self, a: u32, b: u32) -> f64 {
+    pub(super) fn distance(&self, a: u32, b: u32) -> f64 {
         self.vertices[a as usize].p.distance(self.vertices[b as usize].p)
     }
 
-    /// How far the jets of two vertices are from those of one smooth function: the larger of the
-    /// difference of the normal that one foretells for the other, and of twice the distance by
-    /// which it misses that, over the distance between them.
+    /// How badly each of two jets predicts the other one: the error of the unit normal, or twice
+    /// the error of the position over the distance between the vertices, whichever is larger. It is
+    /// 0 for a quadratic function.
     pub(super) fn residual(&self, a: u32, b: u32) -> f64 {
         residual(&self.vertices[a as usize], &self.vertices[b as usize], self.f.size)
     }
 
-    /// Looks how the surface goes on from one vertex to another.
+    /// Finds out how the surface continues from one vertex to another: the two are joined, or a
+    /// point of an edge lies between them, or the place is unclear.
     fn look(&mut self, a: u32, b: u32, depth: u32) {
         let (mut u, mut v) = (a, b);
         let mut left: Vec<[u32; 2]> = Vec::new();
@@ -143,11 +147,11 @@ impl<'a> Search<'a> {
                 self.finish(u, v);
                 break;
             }
-            let foretold = self.foretold(u, v, length).and_then(|place| {
+            let predicted = self.predicted(u, v, length).and_then(|place| {
                 let [next_u, next_v] = [u, v].map(|k| self.beside(k, place, BESIDE * length));
                 next_u.zip(next_v)
             });
-            if let Some((next_u, next_v)) = foretold {
+            if let Some((next_u, next_v)) = predicted {
                 let [next_u, next_v] = [next_u, next_v].map(|vertex| self.add(vertex));
                 self.joined.extend([[u, next_u], [v, next_v]]);
                 (u, v) = (next_u, next_v);
@@ -177,8 +181,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Takes the place between two vertices that are close to each other as one of an edge, or as
-    /// one of a piece that bends.
+    /// Ends the search between two vertices close to each other: where their normals agree to a
+    /// degree the piece only bends, else there is an edge.
     fn finish(&mut self, u: u32, v: u32) {
         let Some(position) = self.common(u, v) else {
             self.unclear.push(self.vertices[u as usize].p);
@@ -220,20 +224,20 @@ impl<'a> Search<'a> {
         (p.distance(middle) <= reach).then_some(p)
     }
 
-    /// The place between two vertices at which their polynomials foretell an edge, where f is
-    /// nearly zero there.
-    fn foretold(&self, u: u32, v: u32, length: f64) -> Option<DVec3> {
+    /// The point of an edge that the polynomials of two vertices predict; none if f is not nearly
+    /// zero there.
+    fn predicted(&self, u: u32, v: u32, length: f64) -> Option<DVec3> {
         let place = self.common(u, v)?;
         let value = self.f.value(place).abs();
         let is_near = [u, v].into_iter().all(|k| {
             let slope = self.vertices[k as usize].jet.gradient.length();
-            value <= FORETOLD * length * slope
+            value <= PREDICTED * length * slope
         });
         is_near.then_some(place)
     }
 
-    /// A new vertex on the piece of another one, at a distance from the foretold place of an edge;
-    /// none if what is there is no such piece.
+    /// A new vertex on the piece of another one, at a distance from the predicted point of an edge;
+    /// none if another piece gives f there.
     fn beside(&self, k: u32, place: DVec3, distance: f64) -> Option<Taylor> {
         let vertex = &self.vertices[k as usize];
         let normal = vertex.slope(place).1.normalize_or_zero();
@@ -255,32 +259,16 @@ impl<'a> Search<'a> {
         let middle = 0.5 * (u.p + v.p);
         let way = (u.normal() + v.normal()).normalize_or(u.normal());
         let at = |t: f64| self.f.value(middle + way * t);
-        // A change of the sign along the mean normal, and its place by the Illinois method.
-        let mut ends = [[0.0, at(0.0)]; 2];
-        for reach in [0.125, 0.25, 0.5, 1.0, 2.0, 4.0].into_iter().filter(|&r| r <= reach(u, v)) {
-            let t = -reach * length * ends[0][1].signum();
-            let value = at(t);
-            if (value < 0.0) != (ends[0][1] < 0.0) {
-                ends[1] = [t, value];
-                break;
-            }
-        }
-        if (ends[1][1] < 0.0) == (ends[0][1] < 0.0) {
-            return None;
-        }
-        let (mut last, mut root) = (2, 0.0);
-        for _ in 0..40 {
-            let [[a, f], [b, g]] = ends;
-            root = (a * g - b * f) / (g - f);
-            let value = at(root);
-            let side = usize::from((value < 0.0) != (f < 0.0));
-            let moved = (ends[side][0] - root).abs();
-            ends[side] = [root, value];
-            if last == side {
-                ends[1 - side][1] *= 0.5;
-            }
-            last = side;
-            if value == 0.0 || !value.is_finite() || moved <= 1e-14 * self.f.size {
+        // Tries farther and farther places, on the side on which f should change its sign.
+        let value = at(0.0);
+        let reaches = [0.125, 0.25, 0.5, 1.0, 2.0, 4.0].into_iter().filter(|&r| r <= reach(u, v));
+        let mut tried = reaches.map(|reach| -reach * length * value.signum()).map(|t| (t, at(t)));
+        let (t, other) = tried.find(|(_, other)| (*other < 0.0) != (value < 0.0))?;
+        let mut bracket = Bracket::new([0.0, t], [value, other]);
+        let mut root = 0.0;
+        for _ in 0..MOST_EVALUATIONS {
+            root = bracket.root();
+            if bracket.narrow(root, at(root)) <= 1e-14 * self.f.size {
                 break;
             }
         }

@@ -1,27 +1,27 @@
-//! What was found: vertices and sites, each with its labels, by the cell in which they lie.
+//! The result of the search: vertices and sites with their labels, and look-ups by place.
 
 use super::sampled::Taylor;
-use super::search::{RawSite, Search};
+use super::search::{ALIKE_NEAR, RawSite, Search};
 use crate::math::{Bounds, Forest, NONE};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Fewer vertices than these are no piece by themselves.
+/// Smallest number of vertices of a piece. Fewer have no label.
 const FEWEST: usize = 8;
-/// Largest distance of the sites that count beside a place, in cells of the grid.
-pub(super) const NEAR: f64 = 2.0;
-/// Length of the steps of differences beside an edge, as a share of those of the search. Larger: a
-/// piece is known less exactly beyond its edge, by the third power. Smaller: rounding takes digits.
+/// Distance up to which the sites around a place are taken into account, in cells of the grid.
+const NEAR: f64 = 2.0;
+/// Step of the differences beside an edge, as a share of that of the search. The error of a piece
+/// beyond its edge grows with the third power of the step; a smaller one loses digits by rounding.
 const BESIDE: f64 = 0.1;
-/// Distance from an edge, in steps of differences, from which on these do not reach over it.
+/// Smallest distance from an edge, in steps, at which differences do not reach over it.
 const MARGIN: f64 = 5.0;
 
-/// A point of an edge, as one of the two pieces sees it.
+/// One of the two pieces that meet at a site.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side {
     /// The label of the piece.
     pub(super) label: u32,
-    /// The vertex of the piece that is nearest.
+    /// The vertex of the piece at which the search ended, the nearest to the site.
     pub(super) end: u32,
 }
 
@@ -29,10 +29,9 @@ pub(super) struct Side {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Site {
     pub(super) position: DVec3,
-    /// Its sides, by their labels.
+    /// The piece with the smaller label first.
     pub(super) sides: [Side; 2],
-    /// 1 or −1: each piece gives f where this times its own function less the other one is
-    /// positive, as in a maximum or in a minimum.
+    /// 1 if f is the larger one of the two pieces here, as in a maximum; −1 if it is the smaller.
     pub(super) sign: f64,
 }
 
@@ -40,18 +39,18 @@ pub(super) struct Site {
 #[derive(Debug)]
 pub(crate) struct EdgeTable {
     pub(super) vertices: Vec<Taylor>,
-    /// The label of each vertex; [`NONE`] where that is not known.
+    /// The label of each vertex, or [`NONE`].
     pub(super) label: Vec<u32>,
     pub(super) sites: Vec<Site>,
     /// Number of labels.
     count: u32,
     /// The size of the box.
     pub(super) size: f64,
-    /// Length of the steps of differences beside an edge.
+    /// Step of the differences beside an edge.
     pub(super) step: f64,
-    /// Distance from an edge from which on these do not reach over it.
+    /// Smallest distance from an edge at which these do not reach over it.
     pub(super) margin: f64,
-    /// Distance from an edge from which on no differences do.
+    /// Smallest distance from an edge at which no differences do.
     pub(super) clear: f64,
     /// The side of a cell of the grid.
     pub(super) cell: f64,
@@ -78,7 +77,8 @@ impl EdgeTable {
                 continue;
             }
             sides.sort_by_key(|side| side.label);
-            // On its own side of the edge a piece is zero at its vertex.
+            // At a vertex of its own a piece is zero, so the sign of the other one tells which is
+            // larger.
             let [of_first, of_second] = [0, 1].map(|k: usize| {
                 let [own, other] = [sides[k], sides[1 - k]].map(|side| &vertices[side.end as usize]);
                 other.slope(own.p).0 / other.jet.gradient.length()
@@ -108,36 +108,47 @@ impl EdgeTable {
         self.sites.iter().map(|site| site.position)
     }
 
-    /// The sites that count beside a place.
+    /// The sites around a place.
     pub(super) fn sites_near(&self, p: DVec3) -> impl Iterator<Item = &Site> + '_ {
         let reach = NEAR * self.cell;
         let near = self.sites_by_cell.around(p).map(|k| &self.sites[k as usize]);
         near.filter(move |site| site.position.distance_squared(p) <= reach * reach)
     }
 
-    /// The nearest vertex with each label in the cells around a place, by its label.
-    pub(super) fn nearest(&self, p: DVec3) -> BTreeMap<u32, (f64, u32)> {
-        let mut nearest = BTreeMap::new();
+    /// The labels around a place, each with the squared distance of its nearest vertex, the nearest
+    /// first; of a label that has none there, with that of its nearest site.
+    pub(super) fn labels_near(&self, p: DVec3) -> Vec<(u32, f64)> {
+        let mut near: BTreeMap<u32, f64> = BTreeMap::new();
         for k in self.by_cell.around(p) {
             let label = self.label[k as usize];
             if label != NONE {
                 let distance = self.vertices[k as usize].p.distance_squared(p);
-                let known = nearest.entry(label).or_insert((f64::INFINITY, NONE));
-                if distance < known.0 {
-                    *known = (distance, k);
+                near.entry(label).and_modify(|known| *known = known.min(distance)).or_insert(distance);
+            }
+        }
+        let mut labels: Vec<(u32, f64)> = near.into_iter().collect();
+        for site in self.sites_near(p) {
+            for side in site.sides {
+                if labels.iter().all(|&(known, _)| known != side.label) {
+                    labels.push((side.label, site.position.distance_squared(p)));
                 }
             }
         }
-        nearest
+        labels.sort_by(|a, b| a.1.total_cmp(&b.1));
+        labels
     }
 
-    /// The labels of pieces that may have points in a box, ascending; none if it holds most of the
-    /// surface.
-    pub(super) fn labels_in(&self, bounds: &Bounds) -> Option<Vec<u32>> {
-        let around = bounds.enlarged(0.6 * self.cell);
+    /// The labels of the pieces that may have points in a box, ascending; all of them for a large
+    /// box.
+    pub(super) fn labels_in(&self, bounds: &Bounds) -> Vec<u32> {
+        /// Largest number of cells that are looked through.
+        const MOST_CELLS: f64 = 4096.0;
+        /// Room around the box, in cells: vertices are up to a cell apart.
+        const ROOM: f64 = 0.6;
+        let around = bounds.enlarged(ROOM * self.cell);
         let cells = (around.size() / self.cell).ceil() + 1.0;
-        if cells.element_product() > 4096.0 {
-            return Some((0..self.count).collect());
+        if cells.element_product() > MOST_CELLS {
+            return (0..self.count).collect();
         }
         let mut found = Vec::new();
         let mut add = |label: u32| {
@@ -157,10 +168,10 @@ impl EdgeTable {
             }
         }
         found.sort_unstable();
-        Some(found)
+        found
     }
 
-    /// Small cells around points of the edges.
+    /// Cells of a box from which the edges can be traced, see [`Seams`].
     pub(crate) fn seams(&self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
         let mut seams = Seams::new(width);
         for site in self.sites.iter().filter(|site| bounds.holds(site.position)) {
@@ -170,7 +181,8 @@ impl EdgeTable {
     }
 }
 
-/// Small cells around points of edges: one for each two labels within some widths of each other.
+/// Small cells around points of edges, from which these can be traced. Each pair of labels has one
+/// cell within some widths.
 pub(super) struct Seams {
     width: f64,
     known: BTreeMap<[u32; 2], Vec<DVec3>>,
@@ -183,9 +195,10 @@ impl Seams {
     }
 
     pub(super) fn add(&mut self, labels: [u32; 2], place: DVec3) {
+        /// Smallest distance between cells of one pair, in widths.
         const APART: f64 = 6.0;
-        /// From a place to the middle of its cell, in widths. It is off the faces of a solid, where
-        /// three pieces may be equal.
+        /// Offset of the middle of a cell from the edge, in widths, so that it is on no face of a
+        /// solid: beside a corner three pieces are equal there.
         const ASIDE: DVec3 = DVec3::new(0.131, 0.083, -0.057);
         let known = self.known.entry(labels).or_default();
         if known.iter().all(|p| p.distance(place) > APART * self.width) {
@@ -195,9 +208,8 @@ impl Seams {
     }
 }
 
-/// Places that are to be looked at more closely: points of edges near which a third piece begins,
-/// or beside which a piece is too small to be one, and what was unclear; none within a cell of
-/// another.
+/// The places for closer looks, at least a cell apart: points of edges with a third piece nearby,
+/// or with a piece of too few vertices beside them, and places that were unclear.
 pub(super) fn close_places(search: &Search<'_>) -> Vec<DVec3> {
     if search.sites.is_empty() {
         return Vec::new();
@@ -224,19 +236,20 @@ pub(super) fn close_places(search: &Search<'_>) -> Vec<DVec3> {
     kept
 }
 
-/// The label of each vertex: vertices that are joined have one, and the labels count by the first
-/// vertex of each.
+/// The label of each vertex. Vertices that are joined, directly or by others, have the same one;
+/// the labels are numbered in the order of their first vertices.
 fn labels(search: &Search<'_>) -> Vec<u32> {
     let vertices = &search.vertices;
     let mut forest = Forest::new(vertices.len());
     search.joined.iter().for_each(|&[a, b]| forest.join(a, b));
-    // Those on no edge of the first grid: strips thinner than a cell have vertices beside their
-    // edges alone, and no link leads from a closer look to the rest.
+    // No link leads to the vertices beside edges of a strip thinner than a cell, or from a closer
+    // look to the rest: they are joined with neighbours whose jets agree.
     let cells = Cells::new(search.cell, vertices.iter().map(|vertex| vertex.p));
     for a in search.inserted as u32..vertices.len() as u32 {
         for b in cells.around(vertices[a as usize].p) {
-            let is_next = vertices[a as usize].p.distance(vertices[b as usize].p) <= 1.5 * search.cell;
-            if b < a && is_next && forest.find(a) != forest.find(b) && search.residual(a, b) <= 0.01 {
+            let is_next = search.distance(a, b) <= 1.5 * search.cell;
+            let are_apart = b < a && is_next && forest.find(a) != forest.find(b);
+            if are_apart && search.residual(a, b) <= ALIKE_NEAR {
                 forest.join(a, b);
             }
         }
@@ -256,13 +269,13 @@ fn labels(search: &Search<'_>) -> Vec<u32> {
     label
 }
 
-/// Numbers of points, by the cell in which each lies.
+/// Indices of points, sorted by the cell in which each lies.
 #[derive(Debug)]
 struct Cells {
     lo: DVec3,
     side: f64,
     count: [usize; 3],
-    /// Where the points of each cell begin.
+    /// The first of the points of each cell.
     start: Vec<u32>,
     points: Vec<u32>,
 }
@@ -294,7 +307,7 @@ impl Cells {
         (z * self.count[1] + y) * self.count[0] + x
     }
 
-    /// The points in cells from one to another.
+    /// The points in the cells of a range along each axis.
     fn between(&self, lo: [i64; 3], hi: [i64; 3]) -> impl Iterator<Item = u32> + '_ {
         let range = |axis: usize| {
             let last = self.count[axis] as i64 - 1;

@@ -68,7 +68,7 @@ pub struct Triangulation {
     pub(crate) turned: Vec<bool>,
     /// The holes that were filled, by rows.
     pub(crate) filled: Vec<Fill>,
-    /// For each component the one whose body it bounds; empty where each is a body of its own.
+    /// The component that is the outer wall of each component's body; empty if none has a hollow.
     pub(crate) body_of: Vec<u32>,
 }
 

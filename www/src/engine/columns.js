@@ -370,11 +370,20 @@ export function withoutChips({ triangles, about }) {
   // The chips are the smallest bodies, and the last ones.
   const bodies = about.bodies.filter((body) => !body.is_chip);
   const components = about.components.filter(({ body }) => body < bodies.length);
-  const volumes = bodies.map(({ volume }) => volume ?? Number.NaN);
-  const volume = about.volume === null ? null : volumes.reduce((sum, one) => sum + one, 0);
+  // A mesh whose parts touch has no volume, whatever is left out; an open chip takes the volume
+  // from the others only
+  // as long as it is there.
+  const isOpen = about.components.some(({ open_edges }) => open_edges > 0);
+  const isUnknown = (about.volume === null && !isOpen) || bodies.some(({ volume }) => volume === null);
+  const volume = isUnknown ? null : bodies.reduce((sum, one) => sum + Number(one.volume), 0);
+  // The holes that could not be filled come first among the borders.
+  const rows = new Set(kept);
+  const isKept = (/** @type {number[]} */ [row]) => rows.has(row);
+  const loops = about.loops.filter(isKept);
+  const unfilled = about.loops.slice(0, about.unfilled).filter(isKept).length;
   return {
     triangles: kept,
-    about: { ...about, triangles: kept.length / 3, bodies, components, volume, chips: [] },
+    about: { ...about, triangles: kept.length / 3, bodies, components, volume, loops, unfilled, chips: [] },
     leavesOutChips: true,
   };
 }

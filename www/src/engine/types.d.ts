@@ -354,8 +354,8 @@ export interface EngineCommands {
   cancelLoading: () => void;
   /**
    * a formula that names {@link MODEL} keeps the model shown, another one leaves it; `typing`: more
-   * keys may follow, so that the text is sampled once they pause; without it, at once; `whole`: nothing of the formula
-   * before stays, and what was set for it ends with it, as when another surface is chosen
+   * keys may follow, so that the text is sampled once they pause; without it, at once; `whole`: the
+   * text replaces all of the formula before, and what was set for that ends
    */
   setFormula: (text: string, options?: { typing?: boolean; whole?: boolean }) => void;
   /** `live` during a drag; call once more without it at the end */

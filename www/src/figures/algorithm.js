@@ -8,6 +8,6 @@ export const algorithmList = (now, lines = ALGORITHM) =>
     'ol',
     { class: 'algorithm' },
     lines.map(({ depth, text }, k) =>
-      h('li', { 'data-depth': depth, 'data-line': k, 'aria-current': k === now ? 'step' : null }, text),
+      h('li', { 'data-depth': depth, 'aria-current': k === now ? 'step' : null }, text),
     ),
   );

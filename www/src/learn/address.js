@@ -1,5 +1,6 @@
 /**
- * The fragment of the lesson's address: the stop, then what is carried along, such as `#rings&surface=…&task=…`.
+ * The fragment of the lesson's address: the stop, then what is carried along, such as
+ * `#rings&surface=…&task=…`.
  * A stop alone is an ordinary anchor, which works without scripts.
  */
 
@@ -8,7 +9,10 @@ const PARTS = ['surface', 'task', 'on', 'left', 'right', 'particle'];
 /** The stops of comparisons begin with this; only theirs have a surface and the values of the two sides. */
 export const BENCH = 'what-if';
 const OF_BENCH = ['on', 'left', 'right'];
-/** Stops that the lesson once had, and what is nearest to them by its content. @type {Record<string, string>} */
+/**
+ * Stops that the lesson once had, and what is nearest to them by its content.
+ * @type {Record<string, string>}
+ */
 const GONE = {
   race: 'cost',
   moving: 'cost',
@@ -57,7 +61,8 @@ export const titleOf = (stop) =>
   stop?.querySelector(':is(.predict-question, .challenge-title, h2, caption)')?.textContent ?? '';
 
 /**
- * Returns the stop that a name means: the one of this name, else the one that has taken its place, else the one whose
+ * Returns the stop that a name means: the one of this name, else the one that has taken its place,
+ * else the one whose
  * name is nearest to it by the letters that have to be changed; null for an empty name.
  * @param {string} name @param {readonly string[]} stops  at least one
  */

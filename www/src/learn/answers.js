@@ -6,8 +6,10 @@ import { signal } from '@preact/signals-core';
  * @import { Guessed } from './types.js'
  */
 
-/** The name under which it is kept what the pairs that are drawn follow from. */
+/** The name of the text from which pairs are drawn, among what the browser keeps. */
 const SERIES = 'series';
+/** The names of what is no answer. */
+const NO_ANSWERS = [SERIES, 'judge-at', 'judge-count'];
 
 /** The predictions that were made. A figure shows what would give an answer away only after its prediction. */
 export class Stops {
@@ -41,7 +43,7 @@ export class Stops {
 
   /** Whether there is something to forget. */
   isBegun() {
-    return this.outcomes.size > 0 || Object.keys(this.#more).some((name) => name !== SERIES);
+    return this.outcomes.size > 0 || Object.keys(this.#more).some((name) => !NO_ANSWERS.includes(name));
   }
 
   /** What the pairs that are drawn follow from: the same as before, in this browser. */

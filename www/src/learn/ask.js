@@ -1,5 +1,6 @@
 /**
- * Asks a question: takes a guess for each of its parts, round by round, and shows what the run says. Nothing is scored
+ * Asks a question: takes a guess for each of its parts, round by round, and shows what the run
+ * says. Nothing is scored
  * or sent, and every question may be skipped.
  */
 import { button } from '../ui/button.js';
@@ -21,7 +22,8 @@ const CLOSE = 0.1;
 export const seenOf = (id) => `${id}-seen`;
 
 /**
- * Puts a question before what an element holds, and its form behind that. An answer that was kept stands there at once,
+ * Puts a question before what an element holds, and its form behind that. An answer that was kept
+ * stands there at once,
  * and is asked for again when the question comes near.
  * @param {HTMLElement} host @param {string} id @param {Question<any>} about
  * @param {{ lab: Promise<Lab>, stops: Stops }} context
@@ -142,7 +144,12 @@ const enter = (id, about, stops) =>
     return { part, stop, asked, input, isFirst: about.rounds[0].includes(part) };
   });
 
-/** What is said of a guess. @param {Part<any>} part @param {string | number} guess @param {string | number} right */
+/**
+ * What is said of a guess.
+ * @param {Part<any>} part
+ * @param {string | number} guess
+ * @param {string | number} right
+ */
 function judge({ kind }, guess, right) {
   if (kind === 'choice') return guess === right ? 'As you said.' : 'You said otherwise.';
   if (kind === 'pick') return guess === right ? 'Exactly there.' : '';

@@ -125,7 +125,8 @@ export async function createBench(
 }
 
 /**
- * The surfaces on which runs may be compared, and the lab of each: that of the lesson, and those of the gallery.
+ * The surfaces on which runs may be compared, and the lab of each: that of the lesson, and those of
+ * the gallery.
  * @param {Lab} lab
  */
 async function surfacesOf(lab) {

@@ -78,7 +78,10 @@ export async function mountCollect(host) {
     write(refused, equal);
   }
 
-  /** @param {readonly string[]} [refused]  names of files @param {readonly string[]} [equal]  to another one */
+  /**
+   * @param {readonly string[]} [refused]  names of files
+   * @param {readonly string[]} [equal]  to another one
+   */
   function write(refused = [], equal = []) {
     told.textContent = [
       `${plural(works.size, 'work')} collected.`,

@@ -17,7 +17,8 @@ import { mountTerms } from './terms.js';
 import { stopsOfBench } from './whatifs.js';
 
 const { subject, notice, parts, lab } = openSubject();
-const own = kept(`lesson.${packed(subject.surface)}`);
+// The pairs of an assignment are others than those that a reader draws alone, and so are the answers.
+const own = kept(['lesson', packed(subject.surface), ...(parts.task ? [parts.task] : [])].join('.'));
 const stops = new Stops(own.text, own.keep);
 /** The part for teachers, which is loaded when it is asked for. */
 const teach = () => import('./teach.js');

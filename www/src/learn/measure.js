@@ -117,7 +117,8 @@ export function asFineEverywhere(radii) {
 }
 
 /**
- * Whether a place that is pressed, by the particle that will lie there, is bare: the front has not come so far.
+ * Whether a place that is pressed, by the particle that will lie there, is bare: the front has not
+ * come so far.
  * @param {number} count  the first so many particles are there @param {number} particle
  */
 export const isBare = (count, particle) => particle >= count;

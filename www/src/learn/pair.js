@@ -107,7 +107,10 @@ export function createPair() {
     },
     show: (/** @type {Pair} */ about) => compare(about),
   };
-  /** @typedef {{ lab: Lab, sides: readonly [Side, Side], whatIf: Pick<WhatIf, 'colouring' | 'decides'> }} Pair */
+  /**
+   * @typedef {{ lab: Lab, sides: readonly [Side, Side], whatIf: Pick<WhatIf, 'colouring' |
+   *   'decides'> }} Pair
+   */
   const compare = latest(async (/** @type {Pair} */ { lab, sides, whatIf: { colouring, decides } }, isOld) => {
     status.textContent = 'Running both';
     element.ariaBusy = 'true';

@@ -1,6 +1,8 @@
 /**
- * Pairs of samplings that the learner judges: the one at the beginning, and those that are drawn at random, each for a
- * purpose that a story tells. A figure that differs by no more than chance is a tie. A pair whose difference is near
+ * Pairs of samplings that the learner judges: the one at the beginning, and those that are drawn at
+ * random, each for a
+ * purpose that a story tells. A figure that differs by no more than chance is a tie. A pair whose
+ * difference is near
  * chance is not asked about.
  */
 import { adaptiveRun } from './adaptive.js';
@@ -93,7 +95,13 @@ const MOST_TRIALS = 6;
 /** A difference between these shares of chance is neither clear nor clearly a tie. */
 const UNCLEAR = [0.75, 1.25];
 
-/** The run of a side. @param {Lab} lab @param {Judged} pair @param {JudgedSide} of @returns {Promise<LabRun>} */
+/**
+ * The run of a side.
+ * @param {Lab} lab
+ * @param {Judged} pair
+ * @param {JudgedSide} of
+ * @returns {Promise<LabRun>}
+ */
 function runOf(lab, { surface, particles }, { settings, isAdaptive = false }) {
   const own = lab.on(surface);
   return isAdaptive ? adaptiveRun(own, 'chord_error', settings, particles) : own.run(settings, { particles });
@@ -116,7 +124,10 @@ export const scoresOf = async (lab, pair) =>
  */
 export const winnerOf = (scores, key) => ['alike', 'a', 'b'][bestOf(scores, rowOf(key)) + 1];
 
-/** Where so few have six neighbours in both, the surface bends too much within 2r for the figures to say anything. */
+/**
+ * Where so few have six neighbours in both, the surface bends too much within 2r for the figures to
+ * say anything.
+ */
 const LEAST_ORDER = 0.6;
 
 /**
@@ -156,7 +167,8 @@ export const drawable = (gallery) =>
 const TIES = 0.3;
 
 /**
- * The pair with a number of a series, which begins with a text. Every third compares one size with many, and asks for
+ * The pair with a number of a series, which begins with a text. Every third compares one size with
+ * many, and asks for
  * the widest gap to a mesh, too. The purposes take turns, as far as they are clear.
  * @param {Lab} lab @param {readonly SurfaceInfo[]} surfaces @param {string} series @param {number} number  from 0
  */

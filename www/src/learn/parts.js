@@ -3,7 +3,7 @@
 import { signal } from '@preact/signals-core';
 import { clamp } from '../engine/vector.js';
 import { button } from '../ui/button.js';
-import { draw, endsOf, floorOf, footOf, scaleOf } from '../ui/chart.js';
+import { draw, floorOf, footOf, scaleOf } from '../ui/chart.js';
 import { h, reducedMotion, uniqueId } from '../ui/dom.js';
 import { icon } from '../ui/icons.js';
 import { createRange } from '../ui/range.js';
@@ -78,11 +78,11 @@ export function createPlay(range, { label, totalMs }) {
 
 /**
  * A chart with what it says below it. It is drawn anew after every change of the signals that `chart` reads.
- * @param {{ hidden: () => boolean, chart: () => Drawn, label: string | (() => string), words: Children,
- *   press?: (at: number) => void }} about  `label`: the chart for those who do not see it; `press`: called with the
- *   place that is pressed
+ * @param {{ hidden: () => boolean, chart: () => Drawn, label: string, words: Children,
+ *   press: (at: number) => void }} about  `label`: the chart for those who do not see it; `press`:
+ *   called with the place that is pressed
  */
-export function createChart({ hidden, chart, label, words, press = () => {} }) {
+export function createChart({ hidden, chart, label, words, press }) {
   /** @param {MouseEvent & { currentTarget: Element }} event */
   const click = ({ clientX, currentTarget }) => {
     const { left, width } = currentTarget.getBoundingClientRect();
@@ -99,11 +99,6 @@ export function createChart({ hidden, chart, label, words, press = () => {} }) {
       h('span', null, () => floorOf(chart())),
     ),
     h('div', { class: 'plot', role: 'img', 'aria-label': label, on: { click } }, () => draw(chart())),
-    h('div', { class: 'plot-ends', 'aria-hidden': 'true' }, () =>
-      endsOf(chart()).map(({ fate, words: value, top }) =>
-        h('span', { class: `end-${fate}`, style: { top: `${100 * top}%` } }, value),
-      ),
-    ),
     h('div', { class: 'plot-foot', 'aria-hidden': 'true' }, () => footOf(chart())),
     h('p', { class: 'figure-count' }, words),
   );

@@ -1,5 +1,6 @@
 /**
- * The questions of the lesson as data: what is asked, what is measured for the answer, what is right, and what is said.
+ * The questions of the lesson as data: what is asked, what is measured for the answer, what is
+ * right, and what is said.
  * `ask.js` reads them.
  */
 import { distance, triple } from '../engine/vector.js';
@@ -190,7 +191,10 @@ export const partsOf = ({ rounds }) => rounds.flat();
 /** The name under which the answer of a part is kept. @param {string} id @param {{ name: string }} part */
 export const stopOf = (id, { name }) => (name ? `${id}-${name}` : id);
 
-/** The choices of a guess that a learner has saved, by the name under which it is kept. @param {string} stop */
+/**
+ * The choices of a guess that a learner has saved, by the name under which it is kept.
+ * @param {string} stop
+ */
 export function choicesOf(stop) {
   if (Object.hasOwn(QUESTIONS, stop)) return partsOf(QUESTIONS[stop])[0].choices ?? [];
   if (/^judge-\d+-figure$/.test(stop)) return FIGURES;

@@ -118,11 +118,15 @@ export async function scoreOf(lab, particles, { evaluations, isAdaptive }) {
   };
 }
 
-/** Two particles are beside each other where they are no farther apart than this, over the sum of their radii. */
+/**
+ * Two particles are beside each other where they are no farther apart than this, over the sum of
+ * their radii.
+ */
 const BESIDE = 1.4;
 
 /**
- * The widest gap between the surface and the edges of a mesh of its particles, over the longest side of their box. Over
+ * The widest gap between the surface and the edges of a mesh of its particles, over the longest
+ * side of their box. Over
  * an edge the surface is an arc, which turns by as much as the normals at its ends; null without an edge.
  * @param {LessonParticles} particles
  */
@@ -180,7 +184,11 @@ function nearestTo(positions, place) {
 /** A figure of a score as it is written. @param {keyof ScoreFigures} key @param {Score} score */
 export const written = (key, score) => (score[key] === null ? MISSING : rowOf(key).write(Number(score[key])));
 
-/** By how much a figure differs among scores. @param {keyof ScoreFigures} key @param {readonly Score[]} scores */
+/**
+ * By how much a figure differs among scores.
+ * @param {keyof ScoreFigures} key
+ * @param {readonly Score[]} scores
+ */
 export function widthOf(key, scores) {
   const values = scores.map((score) => Number(score[key]));
   return Math.max(...values) - Math.min(...values);

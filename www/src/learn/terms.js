@@ -1,5 +1,6 @@
 /**
- * Terms of the text that a figure of their chapter can mark: while one is hovered, focused or pressed, the figure shows
+ * Terms of the text that a figure of their chapter can mark: while one is hovered, focused or
+ * pressed, the figure shows
  * what it means.
  */
 import { signal } from '@preact/signals-core';

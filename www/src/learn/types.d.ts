@@ -9,11 +9,12 @@ import type { Lab } from './lab.js';
 
 export type { Lab, Stops };
 
-/**
- * The controls of its bench that an assignment may lock.
- */
+/** The controls of the bench that an assignment may lock. */
 export type Control = 'what' | 'left' | 'right';
-/** The comparison on the bench. `on`: the name of a surface of the gallery; that of the lesson if it is empty. */
+/**
+ * The comparison on the bench. `on`: the name of a surface of the gallery; that of the lesson if it
+ * is empty.
+ */
 export type Setup = { what: string; on: string; left: string; right: string };
 /** One of several choices that are made at once. Its values, or the range of its numbers. */
 export interface Knob {
@@ -46,7 +47,8 @@ export interface WhatIf {
 }
 export type Choices = readonly { value: string; label: string }[];
 /**
- * What a question asks for. `choice`: one of several; `number`: a count; `pick`: a particle pressed in the figure
+ * What a question asks for. `choice`: one of several; `number`: a count; `pick`: a particle pressed
+ * in the figure
  * before it. `F`: what is measured for the answer.
  */
 export interface Part<F> {
@@ -219,7 +221,7 @@ export type Figure = { stage: HTMLElement; load: () => Promise<void>; ready: Pro
 
 export type Law = LessonSettings['law'];
 export type Subject = { surface: FormulaSurface; isOwn: boolean; from: string; notice: string };
-/** The input of a figure: the runs, the predictions that were made, and what the pairs that are drawn follow from. */
+/** The input of a figure: the runs, the learner's answers, and the text from which pairs are drawn. */
 export type Context = { lab: Promise<Lab>; stops: Stops; series: string };
 /**
  * A slot in its plane, from p: places are (along V, along N). `bend` is that of the surface towards

@@ -238,14 +238,14 @@ function pictureOf(engine, motion, toast) {
 }
 
 /**
- * Has Escape stop a run wherever the focus is, but where it closes a dialog or the list of completions.
+ * Makes Escape stop a run wherever the focus is, unless it has a dialog or a list of completions to close.
  * @param {Engine} engine
  * @param {Motion} motion
  */
 function stopByEscape(engine, motion) {
   const stop = (/** @type {KeyboardEvent} */ event) => {
     if (event.key !== 'Escape' || event.isComposing || !(engine.busy.peek() || engine.loading.peek())) return;
-    // It takes back what is being dragged.
+    // Escape then takes back the drag.
     if (engine.dragging.peek()) return;
     const within = event.composedPath();
     const isCompleting = within.some(

@@ -34,28 +34,6 @@ export function footOf({ rows, first, ends: named }) {
 
 /** The largest value is drawn at this share of the height. */
 const RISE = 0.94;
-/**
- * Smallest distance of two labels, as a share of the height: a line of text in the lowest chart
- * that has several.
- */
-const APART = 0.2;
-
-/** The value at the end of each line, and the share of the height above it. @param {Drawn} chart */
-export function endsOf(chart) {
-  if (chart.kind !== 'line') return [];
-  const { floor = 0 } = chart;
-  const high = mostOf(chart) - floor;
-  const found = chart.rows
-    .filter(({ counts }) => counts.length > 0)
-    .map(({ fate, counts }) => ({ fate, value: counts[counts.length - 1] }))
-    .sort((a, b) => b.value - a.value);
-  const tops = found.map(({ value }) => 1 - RISE * ((value - floor) / high));
-  // Of two that are too near the upper one gives way, too, by half of what is missing.
-  for (let k = 1; k < tops.length; k += 1)
-    tops[k - 1] = Math.max(0, tops[k - 1] - Math.max(0, APART - (tops[k] - tops[k - 1])) / 2);
-  for (let k = 1; k < tops.length; k += 1) tops[k] = Math.max(tops[k], tops[k - 1] + APART);
-  return found.map(({ fate, value }, k) => ({ fate, words: chart.format(value), top: tops[k] }));
-}
 
 /** @param {Drawn} chart */
 export function draw(chart) {

@@ -1,5 +1,6 @@
 /**
- * A part to be printed: its size in millimetres, and the thickness of the formula that gives a wall of so many of them.
+ * A part to be printed: its size in millimetres, and the thickness of the formula that gives a wall
+ * of so many of them.
  */
 import { signal } from '@preact/signals-core';
 
@@ -22,7 +23,11 @@ export function millimetresOf(text) {
   return Number(digits.replace(',', '.')) * MM[unit];
 }
 
-/** The sides of the box around some bodies. @param {readonly Pick<Body, 'min' | 'max'>[]} bodies @returns {Vec3} */
+/**
+ * The sides of the box around some bodies.
+ * @param {readonly Pick<Body, 'min' | 'max'>[]} bodies
+ * @returns {Vec3}
+ */
 export const sidesOf = (bodies) =>
   /** @type {Vec3} */ (
     [0, 1, 2].map((k) =>
@@ -33,7 +38,8 @@ export const sidesOf = (bodies) =>
   );
 
 /**
- * The longest side of a box around a sheet, and at how many of its two ends the sheet ends by itself, so that a thicker
+ * The longest side of a box around a sheet, and at how many of its two ends the sheet ends by
+ * itself, so that a thicker
  * one reaches farther.
  * @param {Pick<Bounds, 'min' | 'max'>} around
  * @param {Bounds | null} box  that cuts the surface
@@ -49,7 +55,8 @@ export function spanOf({ min, max }, box) {
 }
 
 /**
- * The thickness of a sheet whose wall is as thick as wanted once its longest side has the wanted size: each free end
+ * The thickness of a sheet whose wall is as thick as wanted once its longest side has the wanted
+ * size: each free end
  * moves by half of the thickness. Null where the wall alone is larger than that.
  * @param {number} wallMm @param {number} sizeMm
  * @param {Span & { thickness: number }} present

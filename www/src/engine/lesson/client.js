@@ -3,7 +3,7 @@
  * events.
  *
  * ```js
- * const lesson = new LessonClient({ spawn: spawnLesson });
+ * const lesson = new LessonClient();
  * const progress = await lesson.start({ formula, parameters, bounds }, { radius: 0.05 });
  * const [first] = await lesson.ask('chapters', { first: 0 });
  * const events = await lesson.ask('events', { first: first.first_event, count: first.events });
@@ -38,8 +38,7 @@ export class LessonError extends Error {
 }
 
 /** Starts the worker of the lesson, which loads its bundle when it is first asked something. @returns {WorkerLike} */
-export const spawnLesson = () =>
-  new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'lesson' });
+const spawnLesson = () => new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'lesson' });
 
 export class LessonClient {
   #onProgress;

@@ -104,7 +104,5 @@ function answer(lesson, question) {
     }
     case 'newton':
       return lesson.newton(Float64Array.from(question.ask.start), question.ask.reach);
-    case 'digest':
-      return lesson.digest();
   }
 }

@@ -40,8 +40,6 @@ export interface Questions {
   section: { ask: Plane; answer: Float32Array };
   /** Newton's method in space from a point */
   newton: { ask: { start: Vec3; reach: number }; answer: LessonIterate[] };
-  /** of the particles at the moment that was sought */
-  digest: { ask: object; answer: string };
 }
 export type ToLesson =
   | { type: 'start'; id: number; surface: Surface; settings: Partial<LessonSettings> }

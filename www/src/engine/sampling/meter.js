@@ -21,7 +21,10 @@ export class Meter {
   /** @type {RequestWorker<ToWorker, FromWorker>} */
   #worker;
 
-  /** The surfaces of the gallery, once a worker has told them: it begins with that. @type {SurfaceInfo[] | null} */
+  /**
+   * The surfaces of the gallery, once a worker has told them: it begins with that.
+   * @type {SurfaceInfo[] | null}
+   */
   #surfaces = null;
 
   /** Requests for them. @type {number[]} */

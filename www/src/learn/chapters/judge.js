@@ -1,5 +1,6 @@
 /**
- * Two samplings that the learner judges, side by side under one camera: by eye, then by figures, then with marks. Those
+ * Two samplings that the learner judges, side by side under one camera: by eye, then by figures,
+ * then with marks. Those
  * at the end of the lesson are drawn at random.
  */
 import { signal } from '@preact/signals-core';
@@ -58,9 +59,12 @@ async function picturesOf(lab, pair, { stops, id, key }) {
     const also = /** @type {(keyof ScoreFigures)[]} */ (FIGURES.map(({ value }) => value));
     if (key && scores.value.length > 0) scorecard.tell(names, scores.value, { isMarked: now, keys: [key], also });
   });
-  scoresOf(lab, pair).then((found) => {
-    scores.value = found;
-  });
+  scoresOf(lab, pair).then(
+    (found) => {
+      scores.value = found;
+    },
+    (error) => box.append(h('p', { class: 'figure-status' }, reasonOf(error))),
+  );
   return [h('div', { class: 'pair' }, figures), createMarkKey({ hidden: () => !isOpen() }), box];
 }
 
@@ -72,8 +76,10 @@ export async function draws({ lab, stops, series }) {
   const at = signal(-1);
   const count = signal(Number(stops.more(COUNT) ?? 0));
   const status = signal('');
+  const isBusy = signal(false);
   /** @param {number} number */
   async function go(number) {
+    isBusy.value = true;
     status.value = 'A pair is being drawn';
     try {
       const found = await drawn(own, drawable(await own.gallery()), series, number);
@@ -89,9 +95,10 @@ export async function draws({ lab, stops, series }) {
       status.value = '';
     } catch (error) {
       status.value = reasonOf(error);
+    } finally {
+      isBusy.value = false;
     }
   }
-  const isBusy = () => status.value.startsWith('A pair');
   const turn = (
     /** @type {string | (() => string)} */ words,
     /** @type {1 | -1} */ by,
@@ -101,7 +108,7 @@ export async function draws({ lab, stops, series }) {
       {
         class: by < 0 ? 'plain' : null,
         hidden,
-        disabled: isBusy,
+        disabled: () => isBusy.value,
         press: () => void go(at.peek() + by),
       },
       words,
@@ -133,7 +140,9 @@ const idOf = (number) => `judge-${number + 1}`;
 
 /** How many guesses were right so far. @param {Stops} stops @param {number} count  of pairs */
 function tallyOf(stops, count) {
-  const judged = Array.from({ length: count }, (_, number) => idOf(number)).filter((id) => stops.isOpen(id));
+  // A pair of an earlier visit is open once it is shown again; its guesses are kept.
+  const isJudged = (/** @type {string} */ id) => stops.isOpen(id) || stops.outcomes.has(`${id}-eye`);
+  const judged = Array.from({ length: count }, (_, number) => idOf(number)).filter(isJudged);
   if (judged.length === 0) return '';
   const right = (/** @type {string[]} */ ...parts) =>
     judged.filter((id) =>

@@ -71,7 +71,8 @@ function widthWords(key, scores) {
 const ROOM = 1.25;
 
 /**
- * A figure of several runs as dots, around the first. The band behind them is as wide as what tables call chance.
+ * A figure of several runs as dots, around the first. The band behind them is as wide as what
+ * tables call chance.
  * @param {typeof DECIDING[number]} key @param {readonly Score[]} scores
  */
 function dotsOf(key, scores) {

@@ -149,7 +149,7 @@ async function asked(own) {
   return { usual, first: ((found?.index ?? 0) + 0.5) / radii.length };
 }
 
-/** A particle amid the front, and the fates of all children. @param {Context} context */
+/** A particle of a run, event by event. @param {Context} context */
 export async function whoWasFirst({ lab }) {
   await loadSheet(sheet);
   const own = await lab;

@@ -8,7 +8,8 @@ const MOST = 3;
 const SHORTEST = 3;
 
 /**
- * Returns the surfaces whose name, or a word by which people look for them, is in a text of words; the nearest first.
+ * Returns the surfaces whose name, or a word by which people look for them, is in a text of words;
+ * the nearest first.
  * @param {Pick<Description, 'surfaces' | 'models'>} description
  * @param {string} text
  */

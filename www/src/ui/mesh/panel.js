@@ -1,5 +1,6 @@
 /**
- * The panel of a mesh: what it is for, the verdict on it, what is set for the surface, its size in a file, and how that
+ * The panel of a mesh: what it is for, the verdict on it, what is set for the surface, its size in
+ * a file, and how that
  * is saved.
  */
 import { computed, signal } from '@preact/signals-core';
@@ -26,7 +27,10 @@ const USES = [
   { value: 'print', label: 'For printing' },
   { value: 'view', label: 'For viewers' },
 ];
-/** File formats for each use, with what is in them; the usual one first. @type {Record<Use, [MeshFormat, string][]>} */
+/**
+ * File formats for each use, with what is in them; the usual one first.
+ * @type {Record<Use, [MeshFormat, string][]>}
+ */
 const FORMATS = {
   print: [
     ['3mf', 'With its unit'],
@@ -53,6 +57,7 @@ export function createMeshPanel(engine, { toast, close, print }) {
   const use = signal('print');
   const made = computed(() => (engine.busy.value || engine.empty.value ? null : engine.mesh.value));
   const isPrint = () => use.value === 'print';
+  const next = () => nextOf(made.value, Boolean(engine.field.value?.model));
   const lines = viewLines(engine);
   /** Scale and unit of the file. */
   const ofFile = () => (isPrint() ? { scale: print.scale() ?? 1, unit: 'mm' } : lines.ofFile());
@@ -100,7 +105,7 @@ export function createMeshPanel(engine, { toast, close, print }) {
       },
     }),
     h('p', { class: 'verdict', role: 'status' }, verdict),
-    h('p', { class: 'quiet', hidden: () => !isPrint() || !nextOf(made.value) }, () => nextOf(made.value)),
+    h('p', { class: 'quiet', hidden: () => !isPrint() || !next() }, next),
     h('div', { class: 'mesh-steps' }, showing(engine, made), leavingOut(engine, made)),
     keptLines(engine),
     h('div', { hidden: () => !isPrint() }, printLines(engine, { print, toast, made })),
@@ -130,11 +135,18 @@ export function createMeshPanel(engine, { toast, close, print }) {
   );
 }
 
-/** What helps where a mesh cannot be printed; nothing where it can. @param {MeshAnswer | null} mesh */
-function nextOf(mesh) {
+/**
+ * What helps where a mesh cannot be printed; nothing where it can.
+ * @param {MeshAnswer | null} mesh
+ * @param {boolean} isOfPoints  whether it is of a surface through points, which takes no wall and no box
+ */
+function nextOf(mesh, isOfPoints) {
   if (!mesh?.components.some(({ open_edges }) => open_edges > 0)) return '';
-  const needs = 'A printer needs a closed surface:';
-  return mesh.unfilled > 0 ? `${needs} try smaller particles.` : `${needs} give it a wall, or close it with the box.`;
+  const needs = 'A printer needs a closed surface';
+  if (mesh.unfilled > 0) return `${needs}: try smaller particles.`;
+  return isOfPoints
+    ? `${needs}; this one ends with its points.`
+    : `${needs}: give it a wall, or close it with the box.`;
 }
 
 /**
@@ -209,7 +221,10 @@ function printLines(engine, { print, toast, made }) {
   const showSize = () => show(size, formatSignificant(print.sizeMm.value, 4));
   live(size, showSize);
   size.addEventListener('change', async () => {
+    const { value } = size;
     const given = await read(size);
+    // Something else has been typed meanwhile.
+    if (size.value !== value) return;
     if (given !== null && given > 0 && given < Infinity) print.sizeMm.value = given;
     else refuse(size, 'The size is a positive length, such as 40 or 1.5 in.');
     taken(size);
@@ -233,7 +248,9 @@ function printLines(engine, { print, toast, made }) {
   };
   live(wall, showWall);
   wall.addEventListener('change', async () => {
+    const { value } = wall;
     const given = await read(wall);
+    if (wall.value !== value) return;
     const thickness = given === null || !(given >= 0) ? null : given === 0 ? 0 : print.thickness(given);
     taken(wall);
     if (thickness === null) {

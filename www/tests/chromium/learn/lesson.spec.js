@@ -465,7 +465,7 @@ test('pairs are drawn from the gallery and judged by eye, then by the figure of 
   await expect(question.getByText('seven or more')).toBeVisible();
   await expect.poll(() => fingerprint(question.locator('.picture').first())).not.toBe(plain);
   await expect(stage).toContainText(/Right by eye: [01] of 1 pair; by the figures: [01]\./);
-  // The next one compares one size with many, and the one before is there again.
+  // The one before is there again.
   await stage.getByRole('button', { name: 'Another pair' }).click();
   await expect(page.locator('#judge-2')).toBeVisible();
   await stage.getByRole('button', { name: 'The pair before' }).click();

@@ -133,7 +133,8 @@ test('the whole disc of a particle counts as the particle, and its number is und
     svg.dispatchEvent(new MouseEvent('click', { bubbles: true, clientX: left + width / 2, clientY: top + height / 2 }));
   });
   await expect(figure.locator('.told').last()).toHaveText('That is particle B itself.');
-  // Slot 1 of particle B holds a particle: all over its disc a press is that particle, though the slot lies on it.
+  // Slot 1 of particle B holds a particle: all over its disc a press is that particle, though the
+  // slot lies on it.
   for (const [dx, dy] of [
     [0, 0],
     [0.6, 0.6],

@@ -69,7 +69,7 @@ test('a reader loads nothing of what is for a class', { tag: '@all' }, async ({ 
   await openLesson(page);
   await live(page, 'opening');
   await live(page, 'rings');
-  expect(loaded.filter((path) => /\/(teach|paper|collect)-/.test(path))).toEqual([]);
+  expect(loaded.filter((path) => /\/teach-/.test(path))).toEqual([]);
   await teachers(page, 'Assignment');
   await expect(page.getByRole('dialog')).toBeVisible();
   expect(loaded.filter((path) => /\/teach-/.test(path))).toHaveLength(1);

@@ -18,8 +18,8 @@ const ANSWER_WORDS = 45;
 const QUESTION_S = 30;
 const FIGURE_S = 90;
 /**
- * Seconds for what takes longer: seeds, slots of the plane and of the cap, both modes of the bench, three pairs that are
- * drawn, events.
+ * Seconds for what takes longer: seeds, slots of the plane and of the cap, a comparison and *Make it
+ * fail*, three pairs that are drawn, events.
  */
 const MORE_S = /** @type {Record<string, number>} */ ({ why: 30, plane: 120, 'what-if': 180, judge: 240, first: 150 });
 /** Chapters that the lesson can do without. */
