@@ -9,6 +9,8 @@ use crate::math::Bounds;
 /// The grid is laid again over what it found, with a cell around it, until that fills this share of
 /// it: further grids would hardly be smaller.
 const FULL: f64 = 0.6;
+/// Cells of a larger grid by which it may show the surface farther out than a smaller one did.
+const NEAR: f64 = 2.1;
 
 /// Finds the smallest cube through whose faces the surface does not pass, and its box in it. The
 /// surface goes on if the grid of a larger cube shows more, or a thin part leads out of the largest
@@ -38,8 +40,9 @@ async fn find_by(field: &mut dyn Evaluator, counted: Counted) -> Option<Extent> 
         let extent = settle(field, cube, found, counted).await;
         for half in halves {
             let cube = Bounds::cube(half);
-            // What a grid finds is less than two cells away, of which one is room.
-            let near = extent.bounds.enlarged(2.0 * cube.size().x / CELLS as f64);
+            // What a grid finds is less than two cells away, of which one is room, or a jump of f next
+            // to the surface that passes for a zero on this grid.
+            let near = extent.bounds.enlarged(NEAR * cube.size().x / CELLS as f64);
             let all = changes(field, &cube, counted).await;
             if all.is_some_and(|all| near.joined(&all.hull) != near) {
                 return Some(Extent { bounds: extent.with_room(|_| 0.0), reach: Reach::Endless });
