@@ -1,5 +1,7 @@
 //! Errors of the core as exceptions of Python.
 
+use marching_particles::field::formula::Thickness;
+use marching_particles::session::{Condition, Fault, Setting, SolidSettings};
 use marching_particles::{Error, FieldError, FormulaError, FormulaErrorKind, JobError, SettingsError};
 use pyo3::PyErr;
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
@@ -28,6 +30,40 @@ pub(crate) fn of_formula(error: &FormulaError, text: &str) -> PyErr {
         error.suggestion.clone(),
         choices,
     ))
+}
+
+/// The exception of what a session refuses: of the formula of a thickness, or of a setting.
+pub(crate) fn of_fault(fault: &Fault, solid: &SolidSettings) -> PyErr {
+    let Thickness::Formula(text) = &solid.thickness else {
+        return PyValueError::new_err(fault.message.clone());
+    };
+    // Python counts characters where the session counts UTF-16 code units.
+    let characters = |unit: u32| {
+        let before: Vec<u16> = text.encode_utf16().take(unit as usize).collect();
+        String::from_utf16_lossy(&before).chars().count()
+    };
+    let span = Some((characters(fault.start), characters(fault.end)));
+    let choices = fault.choices.to_vec();
+    python::FormulaError::new_err((
+        fault.message.clone(),
+        text.clone(),
+        span,
+        fault.suggestion.clone(),
+        choices,
+    ))
+}
+
+/// The exception of an argument that has no effect beside the others.
+pub(crate) fn without_effect(setting: &Setting, condition: Condition) -> PyErr {
+    let needed = match (condition.name, condition.value, condition.equal) {
+        ("sampling", "adaptive", _) => "without adaptive=True",
+        ("sampling", ..) => "with adaptive=True",
+        ("size_mode", ..) => "beside count",
+        ("box_faces", ..) => "without closed=True",
+        (_, _, true) => "without law=\"chord_error\"",
+        (_, _, false) => "without law=\"max_curvature\" or \"sum_of_curvatures\"",
+    };
+    PyValueError::new_err(format!("{} has no effect {needed}", setting.argument()))
 }
 
 /// The exception of a run.

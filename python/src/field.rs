@@ -3,8 +3,10 @@
 use crate::errors;
 use marching_particles::glam::DVec3;
 use marching_particles::pointcloud::job::Job;
+use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{BatchField, Bounds, Combined, Formula};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2, PyReadonlyArrayDyn};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -17,8 +19,10 @@ type Shared = Arc<dyn marching_particles::Field>;
 /// A field, with the box of its surface where it is known.
 #[pyclass(frozen, module = "marching_particles._core")]
 pub(crate) struct Field {
-    pub(crate) field: Shared,
-    pub(crate) bounds: Option<Bounds>,
+    field: Shared,
+    bounds: Option<Bounds>,
+    /// The request for a formula by itself; none for other fields.
+    formula: Option<FieldRequest>,
 }
 
 #[pymethods]
@@ -27,10 +31,13 @@ impl Field {
     #[staticmethod]
     fn formula(text: &str, parameters: Vec<(String, f64)>) -> PyResult<Self> {
         let mut formula = Formula::parse(text).map_err(|error| errors::of_formula(&error, text))?;
-        for (name, value) in parameters {
-            formula = formula.with(&name, value).map_err(|error| errors::of_formula(&error, text))?;
+        for (name, value) in &parameters {
+            formula = formula.with(name, *value).map_err(|error| errors::of_formula(&error, text))?;
         }
-        Ok(Self { field: Arc::new(formula), bounds: None })
+        let parameters = parameters.into_iter().collect();
+        let request =
+            FieldRequest { formula: Some(text.to_owned()), parameters, ..FieldRequest::default() };
+        Ok(Self { formula: Some(request), ..Self::new(Arc::new(formula), None) })
     }
 
     /// The field of a function that takes an array of points (n, 3) and returns a float64 array of
@@ -45,7 +52,7 @@ impl Field {
                 call(&gradients, points, bytemuck::cast_slice_mut(out))
             })),
         };
-        Self { field, bounds: None }
+        Self::new(field, None)
     }
 
     /// The field of a surface through points, with the report on it as JSON.
@@ -68,7 +75,7 @@ impl Field {
             let fit = job.complete().map_err(raised)?;
             let report = serde_json::to_string(&fit.info).expect("a report is data");
             let field = if is_cut { fit.field() } else { fit.field().untrimmed() };
-            Ok((Self { field: Arc::new(field), bounds: Some(fit.bounds) }, report))
+            Ok((Self::new(Arc::new(field), Some(fit.bounds)), report))
         })
     }
 
@@ -100,6 +107,12 @@ impl Field {
         Self::combined(marching_particles::offset(Arc::clone(&self.field), distance), bounds)
     }
 
+    /// Whether it is a formula by itself.
+    #[getter]
+    fn is_formula(&self) -> bool {
+        self.formula.is_some()
+    }
+
     /// Corners of the box of the surface, if it is known.
     #[getter]
     fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
@@ -108,8 +121,22 @@ impl Field {
 }
 
 impl Field {
+    fn new(field: Shared, bounds: Option<Bounds>) -> Self {
+        Self { field, bounds, formula: None }
+    }
+
+    /// Gives the field to a session, in this box, in its own or in one that is to be fitted.
+    pub(crate) fn take(&self, session: &mut Session, bounds: Option<Bounds>) -> PyResult<()> {
+        let bounds = bounds.or(self.bounds);
+        let taken = match &self.formula {
+            Some(request) => session.set_field(&FieldRequest { bounds, ..request.clone() }),
+            None => session.set_function(Arc::clone(&self.field), bounds),
+        };
+        taken.map(drop).map_err(|fault| PyValueError::new_err(fault.to_string()))
+    }
+
     fn combined(field: Combined, bounds: Option<Bounds>) -> Self {
-        Self { field: Arc::new(field), bounds }
+        Self::new(Arc::new(field), bounds)
     }
 
     fn with(

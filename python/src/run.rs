@@ -2,76 +2,112 @@
 
 use crate::errors;
 use crate::field::Field;
-use marching_particles::{Bounds, Measured, Radius, Run, Settings, Vertices, Warning};
+use marching_particles::session::{Asked, Fault, Lengths, Session, SolidSettings, without_effect};
+use marching_particles::{Bounds, Measured, RecordText, Settings, Vertices, Warning};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use serde::Deserialize;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
 /// Units of work between two looks for Ctrl-C: milliseconds of a formula.
 const BUDGET: u32 = 5_000;
-/// Slices of a measurement between two looks, of 10 to 50 microseconds each.
-const REPORT_SLICES: u32 = 500;
+/// Slices of the search for a box between two looks, of 10 to 50 microseconds each.
+const SLICES: u32 = 500;
+
+/// What a program asks for beside the field, as its Python half gives it in JSON.
+#[derive(Deserialize)]
+struct Options {
+    settings: Settings,
+    lengths: Lengths,
+    solid: SolidSettings,
+    /// The settings that were given, by their names in the table.
+    given: Vec<String>,
+}
 
 /// Samples a field. The GIL is released but for calls of functions of Python.
 #[pyfunction]
-#[pyo3(signature = (field, *, count, radius, share, bounds, adaptive, refined, seed, measure, progress))]
-#[expect(clippy::too_many_arguments, reason = "they are named, and Python's")]
+#[pyo3(signature = (field, options, *, bounds, measure, progress))]
 pub(crate) fn sample(
     py: Python<'_>,
     field: &Field,
-    count: Option<u32>,
-    radius: Option<f64>,
-    share: Option<f64>,
+    options: &str,
     bounds: Option<([f64; 3], [f64; 3])>,
-    adaptive: bool,
-    refined: bool,
-    seed: u64,
     measure: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Sample> {
-    let radius = radius.map(Radius::Length).or(share.map(Radius::Share));
-    let mut settings = match (count, radius) {
-        (Some(count), _) => Settings::with_count(count),
-        (None, Some(radius)) => Settings::with_radius(radius),
-        (None, None) => Settings::default(),
+    let options: Options =
+        serde_json::from_str(options).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let given: Vec<&str> = options.given.iter().map(String::as_str).collect();
+    if let Some((setting, condition)) = without_effect(&given, &options.settings, &options.solid) {
+        return Err(errors::without_effect(&setting, condition));
     }
-    .seeded(seed);
-    settings = if adaptive { settings.adaptive() } else { settings };
-    settings = if refined { settings.refined() } else { settings };
-    settings.bounds = bounds.map(|(min, max)| Bounds { min, max }).or(field.bounds);
-    py.detach(|| run(field, &settings, measure, progress.as_ref()))
+    let bounds = bounds.map(|(min, max)| Bounds { min, max });
+    let measured = if measure { Measured::Particles } else { Measured::Nothing };
+    py.detach(|| run(field, options, bounds, measured, progress.as_ref()))
 }
 
-fn run(field: &Field, settings: &Settings, measure: bool, progress: Option<&Py<PyAny>>) -> PyResult<Sample> {
+fn run(
+    field: &Field,
+    Options { settings, lengths, solid, .. }: Options,
+    bounds: Option<Bounds>,
+    measured: Measured,
+    progress: Option<&Py<PyAny>>,
+) -> PyResult<Sample> {
     let raised = |error| errors::of_run(&error);
-    let mut run = Run::start(&*field.field, settings).map_err(raised)?;
-    let measured = if measure { Measured::Particles } else { Measured::Nothing };
-    run.plan(measured, false);
     let tell = |fraction: f64| {
         Python::attach(|py| {
             py.check_signals()?;
             progress.map_or(Ok(()), |progress| progress.call1(py, (fraction,)).map(drop))
         })
     };
+    let mut session = Session::without_surface();
+    field.take(&mut session, bounds)?;
+    let refused = |fault: Fault| errors::of_fault(&fault, &solid);
+    session.choose(solid.clone()).map_err(refused)?;
+    let asked = Asked { settings, lengths };
+    let within = |bounds: &Bounds| asked.within(bounds);
+    while session.fit(&within, false, SLICES).is_none() {
+        session.run.check_field().map_err(raised)?;
+        tell(0.0)?;
+    }
+    let settings = within(&session.run.bounds());
+    session.start(&settings).map_err(|error| raised(error.into()))?;
+    session.run.plan(measured, false);
     loop {
-        let now = run.step(BUDGET);
+        let now = session.run.step(BUDGET);
         if now.stop_reason.is_some() {
             break;
         }
         tell(now.fraction)?;
     }
-    run.check_field().map_err(raised)?;
-    if run.count() > 0 {
-        let mut reporting = run.measure(measured);
-        while reporting.step(REPORT_SLICES).is_none() {
-            tell(reporting.fraction())?;
-        }
-    }
-    let sample = run.finish_with(measured).map_err(raised)?;
+    session.run.check_field().map_err(raised)?;
+    let record = session.record(None).map(|made| serde_json::to_string(&made).expect("a record is data"));
+    let sample = session.finish(measured, |fraction| Ok::<(), Ended>(tell(fraction)?))?;
     tell(1.0)?;
-    Ok(Sample(sample))
+    Ok(Sample(sample.recorded(record.map_or_else(RecordText::default, |json| RecordText::new(&json)))))
+}
+
+/// Why a measurement has ended: an exception, or the error of the run as one.
+struct Ended(PyErr);
+
+impl From<marching_particles::Error> for Ended {
+    fn from(error: marching_particles::Error) -> Self {
+        Self(errors::of_run(&error))
+    }
+}
+
+impl From<PyErr> for Ended {
+    fn from(raised: PyErr) -> Self {
+        Self(raised)
+    }
+}
+
+impl From<Ended> for PyErr {
+    fn from(Ended(raised): Ended) -> Self {
+        raised
+    }
 }
 
 /// The particles of a run. Every method makes its arrays anew: the Python half keeps them.
@@ -129,7 +165,7 @@ impl Sample {
 
     /// Points, normals and faces of the mesh with one vertex for each particle, and the row that
     /// each vertex is.
-    fn weld<'py>(&self, py: Python<'py>) -> PyResult<Mesh<'py>> {
+    fn mesh<'py>(&self, py: Python<'py>) -> PyResult<Mesh<'py>> {
         let mesh = py.detach(|| self.0.buffers(Vertices::Joined));
         let points = mesh.positions.iter().map(|p| p.to_array()).collect();
         let normals = mesh.normals.iter().map(|n| n.to_array()).collect();
@@ -158,8 +194,8 @@ impl Sample {
         (bounds.min, bounds.max)
     }
 
-    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        py.detach(|| self.0.save(path)).map_err(|error| match error.kind() {
+    fn save(&self, py: Python<'_>, path: PathBuf, is_mesh: bool) -> PyResult<()> {
+        py.detach(|| if is_mesh { self.0.save_mesh(path) } else { self.0.save(path) }).map_err(|error| match error.kind() {
             ErrorKind::InvalidInput => PyValueError::new_err(error.to_string()),
             _ => error.into(),
         })

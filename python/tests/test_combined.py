@@ -22,8 +22,8 @@ def moved(x):
 
 
 def euler(sample):
-    """The Euler number of the welded mesh, which must be closed."""
-    mesh = sample.weld()
+    """The Euler number of the mesh, which must be closed."""
+    mesh = sample.mesh()
     edges = np.sort(np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]]))
     edges, uses = np.unique(edges, axis=0, return_counts=True)
     assert (uses == 2).all()

@@ -159,7 +159,7 @@ def test_a_model_goes_through_its_points():
 
 def test_an_edge_has_rows_on_both_sides_and_is_welded():
     cube = mp.sample("max(|x|, |y|, |z|) = 1", count=1000)
-    mesh = cube.weld()
+    mesh = cube.mesh()
     assert len(cube.points) > len(mesh.points) == len(cube)
     assert edges_twice(mesh.faces) and not edges_twice(cube.faces)
     assert len(mesh.points) - 3 * len(mesh.faces) // 2 + len(mesh.faces) == 2
@@ -243,7 +243,7 @@ def test_the_stub_has_the_signatures_of_the_package():
         given = {argument.arg: ast.literal_eval(default) for argument, default in defaults}
         signature = inspect.signature(getattr(mp, name)).parameters.values()
         assert given == {p.name: p.default for p in signature if p.kind is p.KEYWORD_ONLY}
-    for kind in ("Sample", "Field", "Model", "Mesh", "Warning"):
+    for kind in ("Sample", "Field", "Model", "Mesh", "SampleWarning"):
         body = names[kind].body
         stated = {getattr(node, "name", None) or node.target.id for node in body}
         real = getattr(mp, kind)

@@ -8,7 +8,9 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
 use marching_particles::field::formula;
 use marching_particles::math::{Bounds, grouped, shortest_text};
 use marching_particles::sampler::COUNT_ROOM;
-use marching_particles::session::{Setting, SettingGroup, SettingKind, SettingValue, settings};
+use marching_particles::session::{
+    Setting, SettingGroup, SettingKind, SettingValue, SolidSettings, settings, without_effect,
+};
 use marching_particles::{FormulaErrorKind, Settings};
 use serde_json::{Map, Value as Json};
 use std::ops::RangeInclusive;
@@ -20,7 +22,6 @@ const UNIFORM: &str = "uniform";
 const SAMPLING: &str = "sampling";
 /// How the sizes follow the curvature.
 const LAW: &str = "radius_law";
-const BY_CHORD: &str = "chord_error";
 /// The option that asks for a number of particles, by which the measure of the size is chosen too.
 const COUNT: &str = "count";
 const SIZE_MODE: &str = "size_mode";
@@ -163,24 +164,21 @@ impl SamplingOptions {
 
     /// Checks that every setting that was given has an effect beside the others.
     pub(crate) fn check(&self) -> Result<(), Failure> {
-        let chosen =
-            |name, default: &'static str| self.values.get(name).and_then(Json::as_str).unwrap_or(default);
-        let is_adaptive = chosen(SAMPLING, UNIFORM) == ADAPTIVE;
-        let law = chosen(LAW, BY_CHORD);
-        for setting in &self.given {
-            let (option, by_chord) = (setting.option(), setting.needs(LAW, BY_CHORD));
-            let needed = if setting.needs(SAMPLING, ADAPTIVE) && !is_adaptive {
-                "--adaptive"
-            } else if by_chord && law != BY_CHORD {
-                "--law chord-error"
-            } else if setting.when.iter().any(|other| other.name == LAW) && !by_chord && law == BY_CHORD {
-                "--law max-curvature or --law sum-of-curvatures"
-            } else {
-                continue;
-            };
-            return Err(Failure::Usage(format!("--{option} has no effect without {needed}")));
+        let given: Vec<&str> = self.given.iter().map(|setting| setting.name).collect();
+        let values = self.settings(&Bounds::cube(1.0));
+        match without_effect(&given, &values, &SolidSettings::default()) {
+            None => Ok(()),
+            Some((setting, condition)) => {
+                let needed = match (condition.name, condition.equal) {
+                    (SAMPLING, _) => "--adaptive",
+                    (LAW, true) => "--law chord-error",
+                    (LAW, false) => "--law max-curvature or --law sum-of-curvatures",
+                    (name, _) => name,
+                };
+                let option = setting.option();
+                Err(Failure::Usage(format!("--{option} has no effect without {needed}")))
+            }
         }
-        Ok(())
     }
 
     /// Takes the refined method, unless the options say which method places the particles.

@@ -143,8 +143,12 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         made.surface.clone_from(&arguments.surface.surface);
     }
     bar.set_message("measuring");
-    let sample =
-        timed(&mut seconds.quality, || session.finish(measured, |fraction| set_fraction(&bar, fraction)));
+    let sample = timed(&mut seconds.quality, || {
+        session.finish(measured, |fraction| {
+            set_fraction(&bar, fraction);
+            Ok(())
+        })
+    });
     bar.finish_and_clear();
     let sample = sample.map_err(|error| match error {
         Error::Nothing { reason: StopReason::NoSurface, .. } if reach == Some(Reach::Nowhere) => {

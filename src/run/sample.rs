@@ -2,7 +2,9 @@
 
 use super::mesh::joined;
 use super::{Error, Report, Run, RunState, Warning};
-use crate::export::{self, Format, MeshBuffers, MeshFile, MeshFormat, ParticleFile, Vertices};
+use crate::export::{
+    self, Format, MeshBuffers, MeshFile, MeshFormat, ParticleFile, RecordText, Vertices,
+};
 use crate::field::IntoField;
 use crate::math::Bounds;
 use crate::mesh::stars::Sheets;
@@ -63,6 +65,7 @@ pub struct Sample {
     /// The sheets of the particles, where they were measured.
     sheets: Option<Arc<Sheets>>,
     mesh: OnceLock<Triangulation>,
+    record: RecordText,
 }
 
 impl Sample {
@@ -74,6 +77,7 @@ impl Sample {
             measured: run.measuring.measured,
             sheets: run.measuring.sheets,
             report,
+            record: RecordText::default(),
             mesh: run.meshing.into_joined().map_or_else(OnceLock::new, OnceLock::from),
         }
     }
@@ -177,32 +181,60 @@ impl Sample {
         export::write_mesh(&file.into(), &self.particles, &self.measured, self.mesh(), &mut out)
     }
 
+    /// The sample with this record, which [`Sample::save`] and [`Sample::save_mesh`] put into the
+    /// files that have a place for it, and for CSV into a file beside it, whose name goes on with
+    /// `.json`.
+    #[must_use]
+    pub fn recorded(self, record: RecordText) -> Self {
+        Self { record, ..self }
+    }
+
     /// Writes a file of the format that its extension names: the mesh as `glb`, `3mf`, `stl` or
-    /// `obj`, the particles as `ply`, `csv`, `npy` or `xyz`. A PLY file of the mesh is what
-    /// [`Sample::write_mesh`] writes.
+    /// `obj`, the particles as `ply`, `csv`, `npy` or `xyz`. For a mesh as PLY there is
+    /// [`Sample::save_mesh`].
     ///
     /// # Errors
     ///
     /// If the extension is none of these, and the errors of the file.
     pub fn save(&self, path: impl AsRef<Path>) -> io::Result<()> {
         let path = path.as_ref();
-        let extension = path.extension().and_then(OsStr::to_str).unwrap_or_default();
-        let particles = Format::of_extension(extension);
-        let mesh = MeshFormat::of_extension(extension);
-        if particles.is_none() && mesh.is_none() {
-            let known = Format::ALL.iter().map(|(name, _)| *name);
-            let meshes = MeshFormat::ALL.iter().map(|(name, _)| *name);
-            let names: Vec<&str> = meshes.filter(|name| *name != "ply").chain(known).collect();
-            let message = format!("{} has none of the extensions {}", path.display(), names.join(", "));
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+        match (of_path(path, Format::of_extension), of_path(path, MeshFormat::of_extension)) {
+            (Some(format), _) => self.save_particles(path, format),
+            (None, Some(_)) => self.save_mesh(path),
+            (None, None) => {
+                let known = Format::ALL.iter().map(|(name, _)| *name);
+                let meshes = MeshFormat::ALL.iter().map(|(name, _)| *name);
+                Err(no_format(path, meshes.filter(|name| *name != "ply").chain(known).collect()))
+            }
         }
-        let mut file = BufWriter::new(File::create(path)?);
-        match (particles, mesh) {
-            (Some(format), _) => self.write(format, &mut file)?,
-            (None, Some(format)) => self.write_mesh(format, &mut file)?,
-            (None, None) => {}
+    }
+
+    fn save_particles(&self, path: &Path, format: Format) -> io::Result<()> {
+        let file = ParticleFile { format, record: self.record.clone() };
+        written(path, |out| self.write(file, out))?;
+        match self.record.document() {
+            Some(document) if format == Format::Csv => {
+                let mut beside = path.as_os_str().to_owned();
+                beside.push(".json");
+                written(beside.as_ref(), |out| out.write_all(document.as_bytes()))
+            }
+            _ => Ok(()),
         }
-        file.flush()
+    }
+
+    /// Writes the mesh to a file of the format that its extension names: `glb`, `3mf`, `stl`, `obj`
+    /// or `ply`.
+    ///
+    /// # Errors
+    ///
+    /// If the extension is none of these, and the errors of the file.
+    pub fn save_mesh(&self, path: impl AsRef<Path>) -> io::Result<()> {
+        let path = path.as_ref();
+        let Some(format) = of_path(path, MeshFormat::of_extension) else {
+            return Err(no_format(path, MeshFormat::ALL.iter().map(|(name, _)| *name).collect()));
+        };
+        let file = MeshFile { record: self.record.clone(), ..format.into() };
+        written(path, |out| self.write_mesh(file, out))
     }
 
     /// Positions of the particles in the coordinates of the field, for a buffer of a graphics card.
@@ -223,4 +255,32 @@ impl Sample {
     pub fn indices(&self) -> &[[u32; 3]] {
         &self.mesh().triangles
     }
+}
+
+/// The format that the extension of a path names.
+fn of_path<T>(path: &Path, of_extension: impl Fn(&str) -> Option<T>) -> Option<T> {
+    of_extension(path.extension().and_then(OsStr::to_str).unwrap_or_default())
+}
+
+fn no_format(path: &Path, known: Vec<&str>) -> io::Error {
+    let message = format!("{} has none of the extensions {}", path.display(), known.join(", "));
+    io::Error::new(io::ErrorKind::InvalidInput, message)
+}
+
+/// Writes a file. The error names it, and its folder where that is missing.
+fn written(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let written = || {
+        let mut file = BufWriter::new(File::create(path)?);
+        write(&mut file)?;
+        file.flush()
+    };
+    written().map_err(|error| {
+        let why = match path.parent() {
+            Some(folder) if error.kind() == io::ErrorKind::NotFound => {
+                format!("there is no folder {}", folder.display())
+            }
+            _ => error.to_string(),
+        };
+        io::Error::new(error.kind(), format!("{} could not be written: {why}", path.display()))
+    })
 }

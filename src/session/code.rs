@@ -146,24 +146,15 @@ impl Program<'_> {
 
     /// Refuses what a package cannot say.
     fn check_plain(&self, language: Language) -> Result<(), String> {
-        let solid = &self.record.solid;
-        let others = self.others();
-        // The packages have no limit to raise.
-        let other = others.iter().find(|setting| setting.name != "max_particles");
-        let what = if self.is_closed() {
-            Some("close a solid by its box".to_owned())
-        } else if solid.sheet().is_some() {
-            Some("make a sheet of a thickness".to_owned())
-        } else if let Some(setting) = other {
-            Some(format!("set “{}” (--{})", setting.label, setting.option()))
-        } else if language == Language::JavaScript && self.settings.seed > LAST_SAFE {
-            Some(format!("take a seed above {LAST_SAFE}"))
-        } else {
-            None
-        };
-        what.map_or(Ok(()), |what| {
-            Err(format!("{} cannot {what}: Rust and the command line can", language.runner()))
-        })
+        if self.is_closed() && self.settings.bounds.is_some() {
+            let name = language.runner();
+            return Err(format!("{name} chooses the box around a closed solid itself: Rust can take another"));
+        }
+        if language == Language::JavaScript && self.settings.seed > LAST_SAFE {
+            let name = language.runner();
+            return Err(format!("{name} cannot take a seed above {LAST_SAFE}: Rust and the command line can"));
+        }
+        Ok(())
     }
 
     fn rust(&self) -> String {
@@ -259,15 +250,14 @@ impl Program<'_> {
         match (settings.size_mode, settings.radius) {
             (SizeMode::Count, _) => given.push(("count", settings.count.to_string())),
             _ if self.is_adaptive() => {}
-            (SizeMode::Radius, Some(length)) if is_python => given.push(("radius", shortest_text(length))),
-            // The package has no radius as a length, but the distance of neighbours, which is two.
-            (SizeMode::Radius, Some(length)) => given.push(("spacing", shortest_text(2.0 * length))),
-            (SizeMode::Radius, None) if is_python => {
+            (SizeMode::Radius, Some(length)) => given.push(("radius", shortest_text(length))),
+            (SizeMode::Radius, None) if settings.radius_share == Settings::DEFAULT.radius_share => {}
+            (SizeMode::Radius, None) => {
                 given.push(("radius", quoted(&percent_text(settings.radius_share), quote)));
             }
-            (SizeMode::Radius, None) => given.push(("radius", shortest_text(settings.radius_share))),
         }
-        if let Some(Bounds { min, max }) = self.sampled_box() {
+        // Around a closed solid the box is the one whose faces close it.
+        if let Some(Bounds { min, max }) = record.faces.or(self.sampled_box()) {
             let [min, max] = [min, max].map(|corner| corner.map(shortest_text).join(", "));
             given.push((
                 "bounds",
@@ -278,6 +268,17 @@ impl Program<'_> {
                 },
             ));
         }
+        if self.is_closed() {
+            given.push(("closed", yes.to_owned()));
+        }
+        if self.is_closed() && record.solid.box_cell == BoxCell::Periodic {
+            given.push(("periodic", yes.to_owned()));
+        }
+        match record.solid.sheet() {
+            Some(Thickness::Number(thickness)) => given.push(("thickness", shortest_text(*thickness))),
+            Some(Thickness::Formula(text)) => given.push(("thickness", quoted(text, quote))),
+            None => {}
+        }
         if self.is_adaptive() {
             given.push(("adaptive", yes.to_owned()));
         }
@@ -287,7 +288,20 @@ impl Program<'_> {
         if settings.seed != 0 {
             given.push(("seed", settings.seed.to_string()));
         }
-        Ok(given.into_iter().map(|(name, value)| format!("{name}{is}{value}")).collect())
+        // The packages have room for what is asked for.
+        for setting in self.others().into_iter().filter(|setting| setting.name != "max_particles") {
+            let value = match setting.default {
+                SettingValue::Number(share) if setting.is_share() => quoted(&percent_text(share), quote),
+                SettingValue::Number(number) => shortest_text(number),
+                SettingValue::Integer(whole) => whole.to_string(),
+                SettingValue::Choice(word) => quoted(word, quote),
+            };
+            given.push((setting.argument(), value));
+        }
+        let given = given.into_iter().map(|(name, value)| {
+            (if is_python { name.to_owned() } else { camel(name) }, value)
+        });
+        Ok(given.map(|(name, value)| format!("{name}{is}{value}")).collect())
     }
 
     fn javascript(&self) -> Result<String, String> {
@@ -381,6 +395,17 @@ impl Program<'_> {
         }
         Ok(format!("{}\n", words.join(" ")))
     }
+}
+
+/// A name in the camel case of JavaScript.
+fn camel(name: &str) -> String {
+    let mut words = name.split('_');
+    let mut text = words.next().unwrap_or_default().to_owned();
+    for word in words {
+        let (first, rest) = word.split_at(1);
+        text += &(first.to_uppercase() + rest);
+    }
+    text
 }
 
 /// A share in per cent, which is read as the same number: its decimal point moves by two digits.

@@ -1,6 +1,7 @@
 //! The session of a user: a field that is changed by requests, and runs on it. Commands go in,
 //! changes and reports come out; there is no clock, no GPU and no platform in here.
 
+mod asked;
 mod code;
 mod describe;
 mod fault;
@@ -8,6 +9,7 @@ mod fitting;
 mod record;
 mod setting;
 
+pub use asked::{Asked, Lengths};
 pub use code::{Code, Language};
 pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, describe};
 pub use fault::{Excess, Fault, FaultKind};
@@ -15,6 +17,7 @@ pub use fitting::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
 pub use record::{FileRecord, FileRequest};
 pub use setting::{
     Choice, Condition, Setting, SettingGroup, SettingKind, SettingScale, SettingValue, settings,
+    without_effect,
 };
 
 use crate::extent::{FALLBACK, Reach};
@@ -550,8 +553,12 @@ impl Session {
     ///
     /// # Errors
     ///
-    /// The error of [`Run::finish`].
-    pub fn finish(mut self, measured: Measured, mut tell: impl FnMut(f64)) -> Result<Sample, Error> {
+    /// The error of [`Run::finish`], and that of `tell`, which ends the measurement.
+    pub fn finish<E: From<Error>>(
+        mut self,
+        measured: Measured,
+        mut tell: impl FnMut(f64) -> Result<(), E>,
+    ) -> Result<Sample, E> {
         /// Slices between two calls, some 6 ms.
         const SLICES: u32 = 256;
         self.run.check_not_empty()?;
@@ -559,7 +566,7 @@ impl Session {
         let report = loop {
             match reporting.step(SLICES) {
                 Some(report) => break report,
-                None => tell(reporting.fraction()),
+                None => tell(reporting.fraction())?,
             }
         };
         drop(reporting);

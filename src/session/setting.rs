@@ -62,24 +62,48 @@ impl Setting {
             .any(|condition| condition.equal && (condition.name, condition.value) == (name, value))
     }
 
-    /// Name of its option of the command line, without the dashes. The options of the kind of
-    /// sampling and of the count choose by being there.
+    /// Name of its option of the command line, without the dashes.
     #[must_use]
     pub fn option(&self) -> String {
+        self.argument().replace('_', "-")
+    }
+
+    /// Name of its argument in Python; JavaScript has the same words in camel case. Those of the
+    /// kind of sampling, of the count and of the box choose by being there.
+    #[must_use]
+    pub fn argument(&self) -> &'static str {
         match self.name {
-            "box_mode" => "box".to_owned(),
-            "box_faces" => "closed".to_owned(),
-            "box_cell" => "periodic".to_owned(),
-            "sampling" => "adaptive".to_owned(),
-            "size_mode" => "count".to_owned(),
-            "radius_share" => "radius".to_owned(),
-            "radius_law" => "law".to_owned(),
-            "radius_min_share" => "radius-min".to_owned(),
-            "radius_max_share" => "radius-max".to_owned(),
-            "relax_steps" => "relax".to_owned(),
-            name => name.replace('_', "-"),
+            "box_mode" => "box",
+            "box_faces" => "closed",
+            "box_cell" => "periodic",
+            "sampling" => "adaptive",
+            "size_mode" => "count",
+            "radius_share" => "radius",
+            "radius_law" => "law",
+            "radius_min_share" => "radius_min",
+            "radius_max_share" => "radius_max",
+            "relax_steps" => "relax",
+            name => name,
         }
     }
+}
+
+/// A setting that is given where it has no effect, and the condition that does not hold.
+#[must_use]
+pub fn without_effect(given: &[&str], values: &Settings, solid: &SolidSettings) -> Option<(Setting, Condition)> {
+    let choices = [
+        ("sampling", SettingValue::from(values.sampling)),
+        ("size_mode", values.size_mode.into()),
+        ("radius_law", values.radius_law.into()),
+        ("box_faces", solid.box_faces.into()),
+    ];
+    let fails = |condition: &&Condition| {
+        let chosen = choices.iter().find(|(name, _)| *name == condition.name);
+        // Steps of relaxation count where a front cannot be refined: the method is no condition.
+        chosen.is_some_and(|&(_, value)| (value == SettingValue::Choice(condition.value)) != condition.equal)
+    };
+    let mut all = settings().into_iter().filter(|setting| given.contains(&setting.name));
+    all.find_map(|setting| setting.when.iter().find(fails).map(|&condition| (setting, condition)))
 }
 
 /// Group of settings that are shown together.

@@ -3,7 +3,7 @@
  *
  * @module
  */
-import { copyFileSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
+import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { rolldown } from 'rolldown';
@@ -66,7 +66,12 @@ export async function buildPackage(out) {
   await write(ENTRIES, { dir: out });
   // All in one file.
   await write(['inline'], { dir: out, codeSplitting: false });
-  for (const name of ['package.json', 'README.md', ...DECLARATIONS.map((name) => `${name}.d.ts`)])
-    copyFileSync(join(here, name), join(out, name));
+  for (const name of ['package.json', 'README.md']) copyFileSync(join(here, name), join(out, name));
+  for (const name of DECLARATIONS) {
+    const declared = readFileSync(join(here, `${name}.d.ts`), 'utf8');
+    writeFileSync(join(out, `${name}.d.ts`), declared.replaceAll('../src/engine/core-types.js', './core-types.js'));
+  }
+  copyFileSync(join(here, '../src/engine/core-types.d.ts'), join(out, 'core-types.d.ts'));
+  copyFileSync(join(here, '../../CHANGELOG.md'), join(out, 'CHANGELOG.md'));
   for (const name of ['LICENSE-MIT', 'LICENSE-APACHE']) copyFileSync(join(here, '../..', name), join(out, name));
 }

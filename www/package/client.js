@@ -12,7 +12,8 @@ import { checked, checkedCalls, paramsOf, shown } from './options.js';
  * @import { Mesh, Options, Progress } from './index.js'
  */
 
-const FORMATS = ['glb', '3mf', 'stl', 'obj', 'ply'];
+/** Formats of meshes alone. */
+const MESHES = ['glb', '3mf', 'stl', 'obj'];
 
 /**
  * @typedef {{resolve: (value: any) => void, reject: (error: unknown) => void, onProgress?: Options['onProgress'],
@@ -147,14 +148,14 @@ class Sample {
     this.#line = client.line;
     this.#id = id;
     this.#how = how;
-    const { positions, normals, radii, levels, parents, report, bounds, parameters, digest } = value;
-    this.positions = positions;
+    const { count, points, normals, radii, levels, parents, report, bounds, parameters, digest } = value;
+    /** Number of particles. */
+    this.count = count;
+    this.points = points;
     this.normals = normals;
     this.radii = radii;
     this.levels = levels;
     this.parents = parents;
-    /** Rows of the columns. */
-    this.count = radii.length;
     this.report = report;
     this.warnings = report?.warnings ?? [];
     this.bounds = bounds;
@@ -169,11 +170,19 @@ class Sample {
     return value;
   }
 
-  /** The mesh as a file. @param {string} format @returns {Promise<Uint8Array<ArrayBuffer>>} */
-  async toFile(format) {
+  /**
+   * The mesh or the particles as a file.
+   * @param {string} format @param {{mesh?: boolean}} [how]
+   * @returns {Promise<Uint8Array<ArrayBuffer>>}
+   */
+  async toFile(format, { mesh = MESHES.includes(format) } = {}) {
     this.#check('toFile');
-    if (!FORMATS.includes(format)) throw new InputError(`format: one of ${FORMATS.join(', ')}, not ${shown(format)}.`);
-    const { value } = await this.#client.ask((id) => ({ type: 'file', id, of: this.#id, format }));
+    const known = mesh ? [...MESHES, 'ply'] : ['ply', 'csv'];
+    if (!known.includes(format)) {
+      const all = mesh ? known : [...MESHES, ...known];
+      throw new InputError(`format: one of ${all.join(', ')}, not ${shown(format)}.`);
+    }
+    const { value } = await this.#client.ask((id) => ({ type: 'file', id, of: this.#id, format, mesh: mesh === true }));
     return value.bytes;
   }
 
@@ -226,10 +235,10 @@ export function createSampler(open, openHere) {
   const [there, here] = [new Client(open), new Client(openHere)];
   return async (/** @type {unknown} */ field, /** @type {Options} */ options = {}) => {
     const how = checked(field, options);
-    const { settings, measure, request } = how;
+    const { settings, given, measure, request } = how;
     const client = request.program ? here : there;
     const question = (/** @type {number} */ id) =>
-      /** @type {const} */ ({ type: 'sample', id, field: request, settings, measure });
+      /** @type {const} */ ({ type: 'sample', id, field: request, settings, given, measure });
     return new Sample(client, await client.ask(question, how), how);
   };
 }

@@ -1,5 +1,6 @@
 // What the package `marching-particles` gives a program.
 /// <reference lib="esnext.disposable" />
+import type { Report } from '../src/engine/core-types.js';
 
 export interface Bounds {
   min: [number, number, number];
@@ -14,16 +15,19 @@ export interface Progress {
   /** share of the work that is done, that of the report included */
   fraction: number;
 }
+/** A length in the units of the field, or a share of the diagonal of the box such as '1%'. */
+export type Size = number | `${number}%`;
+/**
+ * What a surface is sampled with. One of `count`, `spacing` and `radius` gives the size; without it
+ * the radius is 0.6 % of the diagonal, and adaptive particles keep close to the surface.
+ */
 export interface Options {
-  /**
-   * wanted number of particles, met within 3 %. Where no size is given it is 20,000; adaptive
-   * particles keep close to the surface then
-   */
+  /** number of particles, met within 3 %: 1 to 4,000,000 */
   count?: number;
-  /** half of the distance between neighbours, as a share of the box diagonal: 0.0001 to 0.2 */
-  radius?: number;
-  /** the distance between neighbours, in the units of the field */
+  /** distance between neighbours: two radii */
   spacing?: number;
+  /** half of the distance between neighbours */
+  radius?: Size;
   /** the box that is sampled; without it one that fits the surface */
   bounds?: Bounds;
   /** of points: whether their surface ends at their border, as it does without it, or goes on */
@@ -37,51 +41,67 @@ export interface Options {
   params?: Record<string, number>;
   /** whether particles are small where the surface bends and large where it is flat */
   adaptive?: boolean;
+  /** how the radius follows from the curvature; `chord_error` without it */
+  law?: 'chord_error' | 'max_curvature' | 'sum_of_curvatures';
+  /** largest gap between the surface and a triangle of neighbours */
+  chordError?: Size;
+  /** radius of a particle over the radius of curvature under it, for the other two laws */
+  curvatureScale?: number;
+  radiusMin?: Size;
+  radiusMax?: Size;
+  /** slope of the radius along the surface */
+  grading?: number;
+  /** of a formula: whether the faces of the box close what they cut, the solid f <= 0 in the box */
+  closed?: boolean;
+  /** whether opposite faces of a closed box have the same particles */
+  periodic?: boolean;
+  /**
+   * of a formula: thickness of a sheet around the surface that is sampled in its place, a number or
+   * a formula
+   */
+  thickness?: number | string;
   /** `refined` takes longer and is more even */
   method?: 'front' | 'refined';
+  /** steps of relaxation after the front; 10 without it */
+  relax?: number;
+  /** distance over two radii within which a child joins a particle that is there, 0.5 to 0.9 */
+  matchTolerance?: number;
+  /** whether gaps where fronts meet get a particle; `fill` without it */
+  gaps?: 'fill' | 'leave';
   seed?: number;
+  /** number of particles at which the run stops */
+  maxParticles?: number;
   /** whether a report is made, which takes about as long as the sampling; true without it */
   measure?: boolean;
   /** ends the sampling, whose promise is rejected with the signal's reason */
   signal?: AbortSignal;
   onProgress?: (progress: Progress) => void;
 }
-export interface Warning {
-  /** a name by which a program tells warnings apart */
-  code: string;
-  /**
-   * `note`: nothing needs to be done; `caution`: the result may be incomplete; `fault`: a part is
-   * missing or wrong
-   */
-  severity: 'note' | 'caution' | 'fault';
-  message: string;
-}
-export interface Report {
-  count: number;
-  /** the same for the same formula, options and version, on every machine */
-  digest: string;
-  warnings: Warning[];
-  /** repulsion radius, in the units of the formula */
-  radius: number;
-  components: number | null;
-  [figure: string]: unknown;
-}
+export type { Report };
+export type Warning = Report['warnings'][number];
 export interface Mesh {
-  /** three rows of the sample's columns for each triangle, counter-clockwise seen from outside */
-  indices: Uint32Array;
+  /**
+   * three rows of `points` for each triangle, counter-clockwise seen from outside. With `points` and
+   * `normals` they shade sharp edges sharply
+   */
+  faces: Uint32Array;
   /** what a closed mesh encloses; null where it is open */
   volume: number | null;
   components: { triangles: number; euler: number; open_edges: number }[];
   /** number of particles in no triangle */
   leftOut: number;
 }
-export type Format = 'glb' | '3mf' | 'stl' | 'obj' | 'ply';
+/** Files of the mesh, and of the particles; `ply` can be either. */
+export type Format = 'glb' | '3mf' | 'stl' | 'obj' | 'ply' | 'csv';
 
 export interface Sample {
-  /** rows of the columns; a particle on a crease or a seam has one on each side of it */
+  /** number of particles */
   readonly count: number;
-  /** three values for each row; in double precision where the box is far from the origin */
-  readonly positions: Float32Array | Float64Array;
+  /**
+   * three values for each row of the columns; in double precision where the box is far from the
+   * origin. A particle has one row, or one on each side of a crease or a seam
+   */
+  readonly points: Float32Array | Float64Array;
   readonly normals: Float32Array;
   readonly radii: Float32Array;
   /** generation levels, and the row of the parent, 0xffffffff for a seed */
@@ -98,8 +118,11 @@ export interface Sample {
    * the normal of one side
    */
   mesh(how?: { weld?: boolean }): Promise<Mesh>;
-  /** the mesh as a file */
-  toFile(format: Format): Promise<Uint8Array<ArrayBuffer>>;
+  /**
+   * a file: the mesh as `glb`, `3mf`, `stl` or `obj`, the particles as `ply` or `csv`; with `mesh` a
+   * `ply` of the mesh. A file of a formula says what it was made from
+   */
+  toFile(format: Format, how?: { mesh?: boolean }): Promise<Uint8Array<ArrayBuffer>>;
   /**
    * the particles on the surface of other parameters; they leave this sample, whose columns stay,
    * and are gone where there is no such surface or the signal ends it
@@ -120,9 +143,11 @@ export interface Batch {
 }
 /** Points of a surface, three numbers each, and their outward normals if they are known. */
 export interface Points {
-  points: Float32Array | Float64Array | number[];
-  normals?: Float32Array | Float64Array | number[];
+  points: Numbers;
+  normals?: Numbers;
 }
+/** x, y and z of each point, one after the other or in rows of three. */
+export type Numbers = Float32Array | Float64Array | Int32Array | number[] | [number, number, number][];
 /**
  * What is sampled: a formula such as `x^2 + y^2 + z^2 = a`; a function f(x, y, z), negative inside
  * and NaN where it has no value, of a point or of many at once; or points.

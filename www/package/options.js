@@ -7,7 +7,7 @@ import { InputError } from './errors.js';
 
 /**
  * @import { Batch, Options } from './index.js'
- * @import { SentField } from './protocol.js'
+ * @import { SentField, Settings } from './protocol.js'
  */
 
 /** A value as an error names it. @param {unknown} value */
@@ -51,20 +51,91 @@ function boundsOf(bounds) {
   };
 }
 
-const SIZES = ['count', 'radius', 'spacing'];
-const KNOWN = [
-  ...SIZES,
-  'bounds',
-  'beyondPoints',
-  'formula',
-  'params',
-  'adaptive',
-  'method',
-  'seed',
-  'measure',
-  'signal',
-  'onProgress',
-];
+const SIZES = ['count', 'spacing', 'radius'];
+/** Largest number of particles that may be asked for. */
+const MOST = 4_000_000;
+
+const isPositive = (/** @type {number} */ v) => v > 0;
+const isWhole = (/** @type {number} */ n) => Number.isSafeInteger(n) && n >= 0;
+const A_SIZE = "a length above 0, or a share of the box diagonal such as '1%'";
+
+/**
+ * The share that a text such as `0.6%` says, rounded once.
+ * @param {string} name @param {string} text
+ */
+function shareOf(name, text) {
+  const digits = /^\s*([\d.]+(?:e[+-]?\d+)?)\s*%\s*$/i.exec(text)?.[1];
+  return number(name, digits === undefined ? text : Number(`${digits}e-2`), isPositive, A_SIZE);
+}
+
+/**
+ * The options that are settings of the core: its name there, the kind of its values, and the values
+ * of a choice or that of a flag that is set.
+ * @type {Record<string, {setting: string, kind: 'count' | 'whole' | 'number' | 'spacing' | 'size' | 'text' | 'choice' | 'flag',
+ *   values?: string[]}>}
+ */
+const SETTINGS = {
+  count: { setting: 'count', kind: 'count' },
+  spacing: { setting: 'radius_share', kind: 'spacing' },
+  radius: { setting: 'radius_share', kind: 'size' },
+  adaptive: { setting: 'sampling', kind: 'flag', values: ['adaptive'] },
+  law: { setting: 'radius_law', kind: 'choice', values: ['chord_error', 'max_curvature', 'sum_of_curvatures'] },
+  chordError: { setting: 'chord_error', kind: 'size' },
+  curvatureScale: { setting: 'curvature_scale', kind: 'number' },
+  radiusMin: { setting: 'radius_min_share', kind: 'size' },
+  radiusMax: { setting: 'radius_max_share', kind: 'size' },
+  grading: { setting: 'grading', kind: 'number' },
+  closed: { setting: 'box_faces', kind: 'flag', values: ['closed'] },
+  periodic: { setting: 'box_cell', kind: 'flag', values: ['periodic'] },
+  thickness: { setting: 'thickness', kind: 'text' },
+  method: { setting: 'method', kind: 'choice', values: ['front', 'refined'] },
+  relax: { setting: 'relax_steps', kind: 'whole' },
+  matchTolerance: { setting: 'match_tolerance', kind: 'number' },
+  gaps: { setting: 'gaps', kind: 'choice', values: ['fill', 'leave'] },
+  seed: { setting: 'seed', kind: 'whole' },
+  maxParticles: { setting: 'max_particles', kind: 'whole' },
+  beyondPoints: { setting: 'beyond_points', kind: 'choice', values: ['cut', 'kept'] },
+};
+/** The options for a formula by itself. */
+const OF_FORMULAS = ['closed', 'periodic', 'thickness'];
+const KNOWN = [...Object.keys(SETTINGS), 'bounds', 'formula', 'params', 'measure', 'signal', 'onProgress'];
+
+/** The option that is a setting of the core. @param {string} setting */
+export const optionOf = (setting) =>
+  Object.keys(SETTINGS).find((name) => name !== 'spacing' && SETTINGS[name].setting === setting) ?? setting;
+
+/**
+ * The settings of the core that options ask for, and the names of those settings.
+ * @param {Record<string, unknown>} options
+ */
+function settingsOf(options) {
+  /** @type {Settings} */
+  const settings = { max_particles: 1.1 * MOST };
+  /** @type {Record<string, number>} */
+  const lengths = {};
+  const given = [];
+  for (const [name, { setting, kind, values = [] }] of Object.entries(SETTINGS)) {
+    const value = options[name];
+    if (value === undefined || (kind === 'flag' && flag(name, value) === false)) continue;
+    given.push(setting);
+    if (kind === 'flag') settings[setting] = values[0];
+    else if (kind === 'choice') settings[setting] = choice(name, value, values);
+    else if (kind === 'number') settings[setting] = number(name, value, () => true, 'a number');
+    else if (kind === 'whole') settings[setting] = number(name, value, isWhole, 'a whole number from 0 on');
+    else if (kind === 'count') {
+      const isCount = (/** @type {number} */ n) => Number.isInteger(n) && n >= 1 && n <= MOST;
+      settings.size_mode = 'count';
+      settings.count = number(name, value, isCount, 'a whole number from 1 to 4,000,000');
+    } else if (kind === 'text')
+      settings[setting] = typeof value === 'string' ? value : number(name, value, () => true, 'a number or a formula');
+    // The core has radii, half of the distance between neighbours.
+    else if (kind === 'spacing') settings.radius = 0.5 * number(name, value, isPositive, 'a length above 0');
+    else if (typeof value === 'string') settings[setting] = shareOf(name, value);
+    else if (name === 'radius') settings.radius = number(name, value, isPositive, A_SIZE);
+    else lengths[setting] = number(name, value, isPositive, A_SIZE);
+  }
+  return { settings: Object.keys(lengths).length > 0 ? { ...settings, lengths } : settings, given };
+}
 
 /** @param {Pick<Options, 'signal' | 'onProgress'>} options */
 export function checkedCalls({ signal, onProgress }) {
@@ -85,10 +156,11 @@ function flag(name, value) {
  * @param {string} name @param {unknown} value
  */
 function vectors(name, value) {
-  const isArray = Array.isArray(value) || value instanceof Float32Array || value instanceof Float64Array;
-  const all = isArray ? Float64Array.from(value) : null;
+  const isArray = Array.isArray(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView));
+  const rows = Array.isArray(value) && Array.isArray(value[0]) ? value.flat() : value;
+  const all = isArray ? Float64Array.from(/** @type {ArrayLike<number>} */ (rows), Number) : null;
   if (all === null || all.length === 0 || all.length % 3 !== 0)
-    throw new InputError(`${name}: an array of numbers, x, y and z of each point.`);
+    throw new InputError(`${name}: an array of numbers, x, y and z of each point, or one of [x, y, z].`);
   const wrong = all.findIndex((v) => !Number.isFinite(v));
   if (wrong >= 0) throw new InputError(`${name}[${wrong}]: a number, not ${shown(all[wrong])}.`);
   return all;
@@ -122,30 +194,6 @@ function fieldOf(field) {
 }
 
 /**
- * The size of the particles, as settings of the core.
- * @param {Options} options @returns {Record<string, number | string>}
- */
-function sizeOf(options) {
-  const [first, second] = SIZES.filter((name) => options[/** @type {keyof Options} */ (name)] !== undefined);
-  if (second) throw new InputError(`${first}, ${second}: one of the two, not both.`);
-  if (options.adaptive === true && first !== 'count') {
-    // The curvature gives the size.
-    if (first === undefined) return {};
-    throw new InputError(`${first}: for particles of one size. Adaptive ones take a count, or no size.`);
-  }
-  const { count = 20_000, radius, spacing } = options;
-  if (radius !== undefined) {
-    const isShare = (/** @type {number} */ r) => r >= 0.0001 && r <= 0.2;
-    return { radius_share: number('radius', radius, isShare, 'a share of the box diagonal, 0.0001 to 0.2') };
-  }
-  // The core has radii, half of the distance between neighbours.
-  if (spacing !== undefined)
-    return { radius: 0.5 * number('spacing', spacing, (s) => s > 0, 'a length above 0, in the units of the field') };
-  const isCount = (/** @type {number} */ n) => Number.isInteger(n) && n >= 1 && n <= 4_000_000;
-  return { size_mode: 'count', count: number('count', count, isCount, 'a whole number from 1 to 4,000,000') };
-}
-
-/**
  * The formula in which the surface of points is an operand.
  * @param {unknown} formula @param {{cloud?: unknown}} what
  */
@@ -167,18 +215,15 @@ export function checked(field, options) {
   const unknown = Object.keys(options).find((name) => !KNOWN.includes(name));
   if (unknown !== undefined)
     throw new InputError(`${unknown}: there is no such option. There are ${KNOWN.join(', ')}.`);
-  const { beyondPoints, bounds, formula, params, adaptive = false, method, seed, measure = true } = options;
-  /** @type {Record<string, number | string>} */
-  const settings = { max_particles: 4_400_000, ...sizeOf(options) };
-  if (flag('adaptive', adaptive)) settings.sampling = 'adaptive';
-  if (method !== undefined) settings.method = choice('method', method, ['front', 'refined']);
-  if (seed !== undefined)
-    settings.seed = number('seed', seed, (n) => Number.isSafeInteger(n) && n >= 0, 'a whole number from 0 on');
-  if (beyondPoints !== undefined) {
-    if (what.cloud === undefined)
-      throw new InputError('beyondPoints: for points, beyond which their surface may go on.');
-    settings.beyond_points = choice('beyondPoints', beyondPoints, ['cut', 'kept']);
-  }
+  const [first, second] = SIZES.filter((name) => options[/** @type {keyof Options} */ (name)] !== undefined);
+  if (second) throw new InputError(`${first}, ${second}: one of the two, not both.`);
+  const { beyondPoints, bounds, formula, params, measure = true } = options;
+  const { settings, given } = settingsOf(/** @type {Record<string, unknown>} */ (options));
+  if (beyondPoints !== undefined && what.cloud === undefined)
+    throw new InputError('beyondPoints: for points, beyond which their surface may go on.');
+  const ofFormula = OF_FORMULAS.find((name) => options[/** @type {keyof Options} */ (name)]);
+  if (ofFormula !== undefined && (what.formula === undefined || what.cloud !== undefined))
+    throw new InputError(`${ofFormula}: for a formula by itself.`);
   if (formula !== undefined) Object.assign(what, modelFormula(formula, what));
   if (params !== undefined && what.formula === undefined)
     throw new InputError('params: a formula has parameters, a function or points have none.');
@@ -188,5 +233,5 @@ export function checked(field, options) {
     parameters: params === undefined ? {} : paramsOf(params),
     ...(bounds === undefined ? {} : { bounds: boundsOf(bounds) }),
   };
-  return { request, settings, measure: flag('measure', measure), ...checkedCalls(options) };
+  return { request, settings, given, measure: flag('measure', measure), ...checkedCalls(options) };
 }

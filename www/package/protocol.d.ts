@@ -2,13 +2,14 @@
 import type { Bounds, FieldRequest, Parameter, Report } from '../src/engine/core-types.js';
 import type { Batch, Progress } from './index.js';
 
-type Settings = Record<string, number | string>;
+/** Settings of the core by their names there; `lengths` take the places of shares. */
+export type Settings = Record<string, number | string | Record<string, number>>;
 /** What is asked; `of`: the request that has made the sample. */
 export type Asked =
-  | { type: 'sample'; id: number; field: SentField; settings: Settings; measure: boolean }
+  | { type: 'sample'; id: number; field: SentField; settings: Settings; given: string[]; measure: boolean }
   | { type: 'moved'; id: number; of: number; field: SentField; settings: Settings; measure: boolean }
   | { type: 'mesh'; id: number; of: number; weld: boolean }
-  | { type: 'file'; id: number; of: number; format: string };
+  | { type: 'file'; id: number; of: number; format: string; mesh: boolean };
 /** What is said besides: `stop` ends a request, `free` gives a sample up. */
 export type Said = { type: 'stop'; id: number } | { type: 'free'; id: number };
 /**
@@ -27,7 +28,9 @@ export interface Cloud {
 }
 
 export interface Made {
-  positions: Float32Array | Float64Array;
+  /** number of particles */
+  count: number;
+  points: Float32Array | Float64Array;
   normals: Float32Array;
   radii: Float32Array;
   levels: Uint32Array;

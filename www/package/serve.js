@@ -8,7 +8,9 @@ import { nextBudget } from '../src/engine/bundle/budget.js';
 import { hasSimd } from '../src/engine/bundle/load.js';
 import loadCore, { Core } from '../src/wasm/core/core.js';
 import loadPoints from '../src/wasm/points/points.js';
+import { csv, ply } from '../src/engine/share/exports.js';
 import { fitted } from './cloud.js';
+import { optionOf } from './options.js';
 import { pause } from './pause.js';
 import { Program } from './program.js';
 
@@ -39,8 +41,63 @@ class Refusal extends Error {
 
 /** @param {Fault} fault */
 function refusalOf({ kind, message, start, end, suggestion, choices }) {
-  if (['request', 'settings', 'too_many', 'box', 'points'].includes(kind)) return new Refusal('InputError', message);
+  // A setting that is out of its range begins its sentence.
+  const named = message.replace(/^[a-z_]+(?= is )/, optionOf);
+  if (['request', 'settings', 'too_many', 'box', 'points'].includes(kind)) return new Refusal('InputError', named);
   return new Refusal('FormulaError', message, { start, end, suggestion, choices });
+}
+
+/**
+ * Refuses an option that has no effect beside the others.
+ * @param {Core} core @param {Extract<Asked, {type: 'sample'}>} message
+ */
+function checkEffects(core, { given, settings }) {
+  if (given.length === 0) return;
+  /** @type {import('../src/engine/core-types.js').Description} */
+  const { settings: table } = core.describe();
+  const chosen = (/** @type {string} */ name) => settings[name] ?? table.find((row) => row.name === name)?.default;
+  for (const { name, when } of table) {
+    // Steps of relaxation count where a front cannot be refined.
+    const conditions = given.includes(name) ? when.filter((condition) => condition.name !== 'method') : [];
+    const failed = conditions.find((condition) => (chosen(condition.name) === condition.value) !== condition.equal);
+    if (failed) throw new Refusal('InputError', `${optionOf(name)}: it has no effect ${NEEDED[failed.name](failed)}.`);
+  }
+}
+/** What a setting without effect needs. @type {Record<string, (failed: {value: string, equal: boolean}) => string>} */
+const NEEDED = {
+  sampling: ({ value }) => `${value === 'adaptive' ? 'without' : 'with'} adaptive: true`,
+  size_mode: () => 'beside count',
+  box_faces: () => 'without closed: true',
+  radius_law: ({ equal }) => `without law: ${equal ? "'chord_error'" : "'max_curvature' or 'sum_of_curvatures'"}`,
+};
+
+/**
+ * The particles as a file, as the page writes it.
+ * @param {Core} core @param {string} format
+ */
+async function particlesFile(core, format) {
+  const [valence, nearest, residual] = [core.valence(), core.nearest(), core.residual()];
+  const [patch, particle, periodic] = [core.patch(), core.particle(), core.periodic()];
+  const some = (/** @type {{length: number}} */ column) => (column.length > 0 ? column : undefined);
+  const columns = /** @type {any} */ ({
+    count: core.radii(0).length,
+    exact: core.exact_positions(0),
+    positions: core.positions(0),
+    normals: core.normals(0),
+    radii: core.radii(0),
+    levels: core.levels(0),
+    parents: core.parents(0),
+    slots: core.slots(0),
+    valence: some(valence),
+    nearest: some(nearest),
+    residual: some(residual),
+    patch: some(patch),
+    particle: some(particle),
+    periodic: some(periodic),
+  });
+  const { columns: all } = core.describe();
+  const file = format === 'csv' ? csv(columns, all) : ply(columns, all, core.record());
+  return new Uint8Array(await file.arrayBuffer());
 }
 
 /**
@@ -161,12 +218,14 @@ export function serve({ post, load }) {
    * Takes a field, samples it, or lets the particles follow it, and measures them.
    * @param {Extract<Asked, {type: 'sample' | 'moved'}>} message @param {Core} core
    */
-  async function made({ id, field, settings, measure, type }, core) {
+  async function made(message, core) {
+    const { id, field, settings, measure, type } = message;
     const of = { id, core };
     const answer = await taken(field, of);
     if (!answer.ok) throw refusalOf(answer.error);
     const unknown = Object.keys(field.parameters).find((name) => !answer.parameters.some((p) => p.name === name));
     if (unknown !== undefined) throw new Refusal('InputError', `The formula has no parameter “${unknown}” (params).`);
+    if (message.type === 'sample') checkEffects(core, message);
     const box = await inSlices(of, (budget) => core.fit(settings, type === 'moved', budget));
     if (!box.ok) throw refusalOf(box.error);
     if (type === 'sample' || !core.follow(settings, false)) {
@@ -177,7 +236,7 @@ export function serve({ post, load }) {
     const particles = await run(of);
     const measuring = () => ({ phase: 'measuring', particles, fraction: core.fraction() });
     const report = measure ? await inSlices(of, (budget) => core.measure('particles', budget), measuring) : null;
-    return columnsOf(core, { report, bounds: box.bounds, parameters: box.parameters });
+    return columnsOf(core, { count: particles, report, bounds: box.bounds, parameters: box.parameters });
   }
 
   /**
@@ -197,18 +256,22 @@ export function serve({ post, load }) {
   }
 
   /**
-   * Joins the particles to a mesh, for the program or for a file.
+   * Joins the particles to a mesh for the program or for a file, or writes them as they are.
    * @param {Extract<Asked, {type: 'mesh' | 'file'}>} message @param {Core} core
    * @returns {Promise<[object, ArrayBufferLike[]]>}
    */
   async function joined(message, core) {
     const of = { id: message.id, core };
+    if (message.type === 'file' && !message.mesh) {
+      const bytes = await particlesFile(core, message.format);
+      return [{ bytes }, [bytes.buffer]];
+    }
     const about = await inSlices(of, (budget) => core.join(budget));
     if (message.type === 'mesh') {
-      const indices = core.triangles();
-      if (message.weld) weld(indices, core.particle());
+      const faces = core.triangles();
+      if (message.weld) weld(faces, core.particle());
       const { volume, components, left_out: leftOut } = about;
-      return [{ indices, volume, components, leftOut }, [indices.buffer]];
+      return [{ faces, volume, components, leftOut }, [faces.buffer]];
     }
     const bytes = await inSlices(of, (budget) => core.mesh_file({ format: message.format }, budget));
     if (!bytes) throw new Refusal('InputError', `The mesh cannot be written as ${message.format}: it is too large.`);
@@ -270,13 +333,13 @@ function weld(indices, firstRows) {
 
 /**
  * The columns of the particles, whose buffers are given away, so that there is no second copy.
- * @param {Core} core @param {Pick<Made, 'report' | 'bounds' | 'parameters'>} about
+ * @param {Core} core @param {Pick<Made, 'count' | 'report' | 'bounds' | 'parameters'>} about
  * @returns {[Made, ArrayBufferLike[]]}
  */
 function columnsOf(core, about) {
   const exact = core.exact_positions(0);
   const columns = {
-    positions: exact.length > 0 ? exact : core.positions(0),
+    points: exact.length > 0 ? exact : core.positions(0),
     normals: core.normals(0),
     radii: core.radii(0),
     levels: core.levels(0),

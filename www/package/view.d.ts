@@ -32,9 +32,9 @@ export interface Listeners {
   report: (report: Report) => void;
   error: (error: Error) => void;
 }
+/** Columns with a row for each particle, or one on each side of a crease or a seam. */
 export interface Particles {
-  count: number;
-  positions: Float32Array;
+  points: Float32Array;
   normals: Float32Array;
   radii: Float32Array;
   levels: Uint32Array;

@@ -141,8 +141,7 @@ export function createView(host, state = {}, { backend } = {}) {
       const { columns } = engine;
       const count = columns.stale ? 0 : columns.count;
       return {
-        count,
-        positions: columns.positions.slice(0, 3 * count),
+        points: columns.positions.slice(0, 3 * count),
         normals: columns.normals.slice(0, 3 * count),
         radii: columns.radii.slice(0, count),
         levels: columns.levels.slice(0, count),

@@ -19,7 +19,7 @@ from ._fields import (
     smooth_union,
     union,
 )
-from ._sample import Mesh, Sample, Warning, sample
+from ._sample import Mesh, Sample, SampleWarning, sample
 
 __all__ = [
     "EmptySurface",
@@ -29,7 +29,7 @@ __all__ = [
     "Mesh",
     "Model",
     "Sample",
-    "Warning",
+    "SampleWarning",
     "__version__",
     "difference",
     "field",

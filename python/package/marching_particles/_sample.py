@@ -10,12 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from . import _core
-from ._fields import field_of, integer, numbers
+from ._fields import field_of, numbers
+from ._options import settings_of
 
-METHODS = ("front", "refined")
-
-
-class Warning(NamedTuple):
+class SampleWarning(NamedTuple):
     """What the user of a sample should know.
 
     Attributes:
@@ -52,7 +50,7 @@ class Sample:
     """The particles of a run.
 
     The arrays have a row for each particle. One on a sharp edge, or on a seam that prolongs one, has
-    a row on each side, with the normal of that side; :meth:`weld` has it once. They are made when
+    a row on each side, with the normal of that side; :meth:`mesh` has it once. They are made when
     first asked for, and kept.
     """
 
@@ -89,7 +87,8 @@ class Sample:
     @cached_property
     def faces(self):
         """Triangles over the rows of ``points``, array (m, 3), int32, counter-clockwise seen from
-        outside. Across sharp edges they share no row: :meth:`weld` joins them."""
+        outside. With ``points`` and ``normals`` they shade sharp edges sharply, since across one
+        they share no row: :meth:`mesh` joins them."""
         return self._core.faces()
 
     @cached_property
@@ -100,47 +99,54 @@ class Sample:
 
     @cached_property
     def warnings(self):
-        """What may be wrong with the particles, a list of :class:`Warning`."""
-        return [Warning(*warning) for warning in self._core.warnings()]
+        """What may be wrong with the particles, a list of :class:`SampleWarning`."""
+        return [SampleWarning(*warning) for warning in self._core.warnings()]
 
     @property
     def mesh_warnings(self):
-        """What may be wrong with the mesh, a list of :class:`Warning`: holes, particles in no
+        """What may be wrong with the mesh, a list of :class:`SampleWarning`: holes, particles in no
         triangle."""
-        return [Warning(*warning) for warning in self._core.mesh_warnings()]
+        return [SampleWarning(*warning) for warning in self._core.mesh_warnings()]
 
     @property
     def bounds(self):
         """The box that was sampled, ``((x0, y0, z0), (x1, y1, z1))``."""
         return self._core.bounds()
 
-    def weld(self):
+    def mesh(self):
         """The :class:`Mesh` with one vertex for each particle."""
-        return Mesh(*self._core.weld())
+        return Mesh(*self._core.mesh())
 
-    def save(self, path):
+    def save(self, path, *, mesh=False):
         """Writes a file: the mesh as ``.glb``, ``.3mf``, ``.stl`` or ``.obj``, the particles as
         ``.ply``, ``.csv``, ``.npy`` or ``.xyz``.
+
+        A file of a formula says what it was made from: ``marching-particles sample --like`` makes
+        it again. A CSV file has that beside it, in a file whose name goes on with ``.json``.
+
+        Args:
+            path: The file, whose extension is its format. What is there is replaced.
+            mesh: Whether ``.ply`` is of the mesh.
 
         Raises:
             ValueError: If the extension is none of these.
             OSError: If the file cannot be written.
         """
-        self._core.save(os.fspath(path))
+        self._core.save(os.fspath(path), bool(mesh))
 
     def to_trimesh(self):
-        """The welded mesh as a ``trimesh.Trimesh``, with vertex normals."""
+        """The mesh as a ``trimesh.Trimesh``, with vertex normals."""
         import trimesh
 
-        mesh = self.weld()
+        mesh = self.mesh()
         return trimesh.Trimesh(mesh.points, mesh.faces, vertex_normals=mesh.normals, process=False)
 
     def to_pyvista(self):
-        """The welded mesh as a ``pyvista.PolyData``, with the point data ``Normals``, ``radius``
+        """The mesh as a ``pyvista.PolyData``, with the point data ``Normals``, ``radius``
         and ``level``."""
         import pyvista
 
-        mesh = self.weld()
+        mesh = self.mesh()
         faces = np.column_stack([np.full(len(mesh.faces), 3, dtype=mesh.faces.dtype), mesh.faces])
         data = pyvista.PolyData(mesh.points, faces.ravel())
         data.point_data["Normals"] = mesh.normals
@@ -148,19 +154,43 @@ class Sample:
         data.point_data["level"] = self.levels[mesh.rows]
         return data
 
+    def to_meshio(self):
+        """The mesh as a ``meshio.Mesh`` of triangles, with the point data ``normals``, ``radius``
+        and ``level``."""
+        import meshio
+
+        mesh = self.mesh()
+        columns = {"radius": self.radii[mesh.rows], "level": self.levels[mesh.rows]}
+        return meshio.Mesh(
+            mesh.points, [("triangle", mesh.faces)], point_data={"normals": mesh.normals, **columns}
+        )
+
 
 def sample(
     field,
     *,
     count=None,
-    radius=None,
     spacing=None,
+    radius=None,
     bounds=None,
     params=None,
     gradient=None,
     adaptive=False,
+    law=None,
+    chord_error=None,
+    curvature_scale=None,
+    radius_min=None,
+    radius_max=None,
+    grading=None,
+    closed=False,
+    periodic=False,
+    thickness=None,
     method="front",
+    relax=None,
+    match_tolerance=None,
+    gaps=None,
     seed=0,
+    max_particles=None,
     measure=True,
     progress=None,
 ):
@@ -175,9 +205,9 @@ def sample(
             :func:`fit_points`; or a :class:`Field` from :func:`union` and the like. f < 0 inside.
             What a function raises comes through unchanged.
         count: Number of particles, met to within 3 %; 1 to 4,000,000.
-        radius: Repulsion radius, half the distance between neighbours: a length, or a share of the
-            diagonal of the box such as ``"1%"``. Without count, radius and spacing it is 0.6 %.
         spacing: Distance between neighbours, twice the radius.
+        radius: Repulsion radius, half the distance between neighbours: a length, or a share of the
+            diagonal of the box such as ``"1%"``. Without count, spacing and radius it is 0.6 %.
         bounds: The box, ``((x0, y0, z0), (x1, y1, z1))``. Without it a model has its own, and
             another box is fitted to the surface; of functions and what is made of them only by
             their signs on grids, so give it where it is known.
@@ -186,8 +216,28 @@ def sample(
             3). Without it they are found by differences, with several times as many calls.
         adaptive: Whether the radius follows the curvature. The size is then that of ``count``, or
             one that keeps close to the surface.
+        law: How the radius follows from the curvature: ``"chord_error"``, which is the usual one,
+            ``"max_curvature"`` or ``"sum_of_curvatures"``.
+        chord_error: Largest gap between the surface and a triangle of neighbours: a length, or a
+            share of the diagonal of the box such as ``"0.01%"``.
+        curvature_scale: Radius of a particle over the radius of curvature under it, for the other
+            two laws.
+        radius_min: Radius of the smallest particle, a length or a share.
+        radius_max: Radius of the largest particle, a length or a share.
+        grading: Slope of the radius along the surface.
+        closed: Whether the faces of the box close what they cut: the solid f <= 0 in the box. For
+            formulas.
+        periodic: Whether opposite faces of the box of ``closed`` have the same particles.
+        thickness: Thickness of a sheet around the surface that is sampled in its place: a number,
+            or a formula of x, y, z and the parameters. For formulas.
         method: ``"front"``, or ``"refined"``: slower, with more particles that have six neighbours.
+        relax: Steps of relaxation after the front; 10 without it.
+        match_tolerance: Distance over two radii within which a child joins a particle that is
+            there, 0.5 to 0.9.
+        gaps: ``"fill"``: where fronts meet, gaps that are wide enough get a particle; ``"leave"``:
+            they do not.
         seed: Seed of the point where the front begins, 0 to 2**64 - 1.
+        max_particles: Number of particles at which the run stops.
         measure: Whether the particles are measured. It may take longer than the sampling; without
             it the report has no quality figures.
         progress: A function that is called with the share of the work done, 0 to 1.
@@ -199,30 +249,33 @@ def sample(
         FormulaError: If the formula cannot be read, or has no such parameter.
         FieldError: If a function returns something else than numbers of the right shape.
         EmptySurface: If no particle could be placed.
-        ValueError: If an argument is out of its range.
+        ValueError: If an argument is out of its range, or has no effect beside the others.
         TypeError: If an argument is of a wrong type.
         MemoryError: If there is not enough memory for the particles.
     """
-    sizes = {"count": count, "radius": radius, "spacing": spacing}
-    given = [name for name, value in sizes.items() if value is not None]
-    if len(given) > 1:
-        raise ValueError(f"{' and '.join(given)} exclude each other: give one of them")
-    if adaptive and given in (["radius"], ["spacing"]):
-        raise ValueError(
-            f"{given[0]} is for particles of one size: with adaptive=True give count, or no size"
-        )
-    if count is not None:
-        count = integer("count", count, *_core.COUNTS)
-    share = None
-    if spacing is not None:
-        radius = _length("spacing", spacing) / 2
-    elif isinstance(radius, str):
-        radius, share = None, _share("radius", radius)
-    elif radius is not None:
-        radius = _length("radius", radius)
-    if method not in METHODS:
-        known = ", ".join(map(repr, METHODS))
-        raise ValueError(f"method is {method!r}, but must be one of {known}")
+    options = settings_of(
+        {
+            "count": count,
+            "spacing": spacing,
+            "radius": radius,
+            "adaptive": adaptive,
+            "law": law,
+            "chord_error": chord_error,
+            "curvature_scale": curvature_scale,
+            "radius_min": radius_min,
+            "radius_max": radius_max,
+            "grading": grading,
+            "closed": closed,
+            "periodic": periodic,
+            "thickness": thickness,
+            "method": method,
+            "relax": relax,
+            "match_tolerance": match_tolerance,
+            "gaps": gaps,
+            "seed": seed,
+            "max_particles": max_particles,
+        }
+    )
     if progress is not None and not callable(progress):
         raise TypeError(f"progress must be a function, and not {type(progress).__name__}")
     if bounds is not None:
@@ -233,36 +286,13 @@ def sample(
             fault = f"along {axis} the lower is not below the upper"
             raise ValueError(f"bounds must be {what}: {fault}")
         bounds = tuple(bounds[0].tolist()), tuple(bounds[1].tolist())
+    core_field = field_of(field, params, gradient)
+    if not core_field.is_formula:
+        solid = {"closed": closed, "periodic": periodic, "thickness": thickness}
+        given = [name for name, value in solid.items() if value]
+        if given:
+            raise ValueError(f"{given[0]} is for a formula by itself")
     core = _core.sample(
-        field_of(field, params, gradient),
-        count=count,
-        radius=radius,
-        share=share,
-        bounds=bounds,
-        adaptive=bool(adaptive),
-        refined=method == "refined",
-        seed=integer("seed", seed, 0, 2**64 - 1),
-        measure=bool(measure),
-        progress=progress,
+        core_field, options, bounds=bounds, measure=bool(measure), progress=progress
     )
     return Sample(core)
-
-
-def _share(name, text):
-    """The share that a text such as "0.6%" says."""
-    digits = text.strip()
-    try:
-        if digits[-1:] != "%":
-            raise ValueError
-        # Rounded once, as the same share of the library is.
-        return float(digits[:-1].strip() + "e-2")
-    except ValueError:
-        what = 'a length, or a share of the diagonal of the box such as "1%"'
-        raise ValueError(f"{name} must be {what}, and not {text!r}") from None
-
-
-def _length(name, value):
-    length = float(numbers(name, value, (), "a number"))
-    if length <= 0:
-        raise ValueError(f"{name} is {length}, but must be positive")
-    return length

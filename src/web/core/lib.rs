@@ -8,14 +8,18 @@ use marching_particles::field::formula::number;
 use marching_particles::field::model::SolvedModel;
 use marching_particles::field::rbf::RbfData;
 use marching_particles::particles::Particles;
-use marching_particles::sampler::{Sampling, Settings};
+use marching_particles::sampler::Sampling;
 use marching_particles::session::{
-    Fault, FaultKind, FieldRequest, FileRecord, FileRequest, Language, Session, SolidSettings, describe,
+    Asked, Fault, FaultKind, FieldRequest, FileRecord, FileRequest, Language, Lengths, Session, SolidSettings,
+    describe,
 };
 use marching_particles_values::{answer, read, to_js};
 use std::sync::Arc;
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsCast, JsValue};
+
+/// The member of the settings that holds lengths in the places of shares.
+const LENGTHS: &str = "lengths";
 
 /// Where the declarations of the bundle find the types of the values.
 #[wasm_bindgen(typescript_custom_section)]
@@ -147,7 +151,7 @@ impl Core {
         budget: u32,
     ) -> Option<JsValue> {
         let field = match self.read_settings(settings) {
-            Ok(settings) => Ok(self.session.fit(&|_| settings, only_grows, budget)?),
+            Ok(asked) => Ok(self.session.fit(&|bounds| asked.within(bounds), only_grows, budget)?),
             Err(fault) => Err(fault),
         };
         Some(answer(field))
@@ -160,7 +164,8 @@ impl Core {
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "Record<string, number | string>")] settings: JsValue,
     ) -> JsValue {
-        answer(self.read_settings(settings).and_then(|settings| {
+        answer(self.read_settings(settings).and_then(|asked| {
+            let settings = asked.within(&self.session.run.bounds());
             self.session.start(&settings).map_err(|error| Fault::new(FaultKind::Settings, &error))
         }))
     }
@@ -173,7 +178,10 @@ impl Core {
         #[wasm_bindgen(unchecked_param_type = "Record<string, number | string>")] settings: JsValue,
         is_closed: bool,
     ) -> bool {
-        self.read_settings(settings).is_ok_and(|settings| self.session.follow(&settings, is_closed).is_ok())
+        self.read_settings(settings).is_ok_and(|asked| {
+            let settings = asked.within(&self.session.run.bounds());
+            self.session.follow(&settings, is_closed).is_ok()
+        })
     }
 
     /// Does up to `budget` units of work: `Progress`.
@@ -412,16 +420,19 @@ impl Core {
     }
 
     /// The settings of a run, and with them those of the box and the solid, which the session
-    /// takes.
-    fn read_settings(&mut self, settings: JsValue) -> Result<Settings, Fault> {
+    /// takes. `lengths` among them are [`Lengths`].
+    fn read_settings(&mut self, settings: JsValue) -> Result<Asked, Fault> {
         let solid: SolidSettings = read(settings.clone(), FaultKind::Settings)?;
         self.session.choose(solid)?;
         let of_run = js_sys::Object::assign(&js_sys::Object::new(), settings.unchecked_ref());
-        for name in SolidSettings::NAMES {
+        let lengths = js_sys::Reflect::get(&of_run, &LENGTHS.into()).unwrap_or_default();
+        let lengths =
+            if lengths.is_undefined() { Lengths::default() } else { read(lengths, FaultKind::Settings)? };
+        for name in SolidSettings::NAMES.into_iter().chain([LENGTHS]) {
             // Nothing is deleted where it is not there; a copy can be changed.
             let _ = js_sys::Reflect::delete_property(&of_run, &name.into());
         }
-        read(of_run.into(), FaultKind::Settings)
+        Ok(Asked { settings: read(of_run.into(), FaultKind::Settings)?, lengths })
     }
 
     fn column<T: Copy>(&self, column: &[T], from: usize) -> Vec<T> {

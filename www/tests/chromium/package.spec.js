@@ -199,10 +199,10 @@ const wrong = await view.set({ formula: 'x +' }).catch(({ name }) => name);
 const none = await view.set({ formula: 'x^2 + y^2 + 1' }).catch(({ name }) => name);
 await view.set({ formula: 'x^2 + y^2 + z^2 = 1' });
 const { size, type } = await view.picture({ width: 64, height: 48 });
-const { count, positions } = view.particles();
+const { points, radii } = view.particles();
 end();
 view.destroy();
-const facts = [view.backend, components, moved.components, wrong, none, size > 100, type, positions.length / count, told.length > 1];
+const facts = [view.backend, components, moved.components, wrong, none, size > 100, type, points.length / radii.length, told.length > 1];
 document.title = facts.join(' ');
 </script>`,
   );

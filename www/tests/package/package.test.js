@@ -41,7 +41,7 @@ import 'marching-particles/element';
 import { createView, type View } from 'marching-particles/view';
 export async function ball(radius: number): Promise<Mesh> {
   const ball: Sample = await sample('${SPHERE}', { count: 500, params: { a: radius ** 2 }, method: 'refined' });
-  const first: number = ball.positions[0] + ball.normals[0];
+  const first: number = ball.points[0] + ball.normals[0];
   if (first > 0) await ball.moved({ a: 2 });
   return ball.mesh();
 }
@@ -77,9 +77,9 @@ describe('a sample', () => {
   test('has columns, figures, a mesh and files', async () => {
     const ball = await made.sample(SPHERE, { count: 1000, params: { a: 4 }, seed: 3 });
     expect(ball.report).toMatchObject({ digest: ball.digest, components: 1 });
-    expect([ball.positions.length, ball.normals.length]).toEqual([3 * ball.count, 3 * ball.count]);
+    expect([ball.points.length, ball.normals.length]).toEqual([3 * ball.count, 3 * ball.count]);
     for (let i = 0; i < 3 * ball.count; i += 3)
-      expect(Math.hypot(...ball.positions.subarray(i, i + 3))).toBeCloseTo(2, 4);
+      expect(Math.hypot(...ball.points.subarray(i, i + 3))).toBeCloseTo(2, 4);
     const mesh = await ball.mesh();
     expect(mesh.components).toMatchObject([{ triangles: 2 * ball.count - 4, euler: 2 }]);
     expect(mesh.volume).toBeCloseTo((32 / 3) * Math.PI, 0);
@@ -92,8 +92,8 @@ describe('a sample', () => {
     expect(ball.report).toBe(null);
     const wider = await ball.moved({ a: 1.02 });
     expect(wider.params).toEqual({ a: 1.02 });
-    expect(Math.hypot(...wider.positions.subarray(0, 3))).toBeCloseTo(Math.sqrt(1.02), 4);
-    expect(Math.hypot(...ball.positions.subarray(0, 3))).toBeCloseTo(1, 4);
+    expect(Math.hypot(...wider.points.subarray(0, 3))).toBeCloseTo(Math.sqrt(1.02), 4);
+    expect(Math.hypot(...ball.points.subarray(0, 3))).toBeCloseTo(1, 4);
     await expect(ball.mesh()).rejects.toMatchObject({ name: 'DisposedError' });
   });
 
@@ -105,14 +105,14 @@ describe('a sample', () => {
     const [mesh, bytes] = await Promise.all(jobs);
     expect(mesh).toMatchObject({ components: [{ euler: 2 }] });
     expect(/** @type {Uint8Array} */ (bytes).length).toBeGreaterThan(84);
-    expect((await other.mesh()).indices).toEqual(/** @type {import('../../package/index.js').Mesh} */ (mesh).indices);
+    expect((await other.mesh()).faces).toEqual(/** @type {import('../../package/index.js').Mesh} */ (mesh).faces);
   });
 
   test('that moves while it is joined is joined first', async () => {
     const ball = await made.sample(SPHERE, { count: 20_000, params: { a: 1 }, measure: false });
     const [mesh, bytes, wider] = await Promise.all([ball.mesh(), ball.toFile('stl'), ball.moved({ a: 1.2 })]);
     expect(mesh.volume).toBeCloseTo((4 / 3) * Math.PI, 2);
-    expect(new DataView(bytes.buffer).getUint32(80, true)).toBe(mesh.indices.length / 3);
+    expect(new DataView(bytes.buffer).getUint32(80, true)).toBe(mesh.faces.length / 3);
     expect((await wider.mesh()).volume).toBeCloseTo((4 / 3) * Math.PI * 1.2 ** 1.5, 2);
   });
 
@@ -150,7 +150,7 @@ describe('a sample', () => {
   test('tells of its progress, and beside another one is the same', async () => {
     /** @type {number[]} */
     const fractions = [];
-    const options = { radius: 0.003, params: { a: 1 }, measure: false };
+    const options = { radius: /** @type {const} */ ('0.3%'), params: { a: 1 }, measure: false };
     const onProgress = (/** @type {{fraction: number}} */ { fraction }) => fractions.push(fraction);
     const [one, two] = await Promise.all([
       made.sample(SPHERE, { ...options, onProgress }),
@@ -168,8 +168,8 @@ describe('a sample', () => {
     const ball = await made.sample(SPHERE, { count: 300, params: { a: 1 } });
     const mesh = await ball.mesh();
     const geometry = toBufferGeometry(ball, mesh);
-    expect(geometry.getAttribute('position').array).toBe(ball.positions);
-    expect(geometry.getIndex().array).toBe(mesh.indices);
+    expect(geometry.getAttribute('position').array).toBe(ball.points);
+    expect(geometry.getIndex().array).toBe(mesh.faces);
     expect(toPoints(ball).geometry.getAttribute('normal').count).toBe(ball.count);
     const discs = toInstancedMesh(ball, new three.CircleGeometry(), new three.MeshBasicMaterial());
     const matrix = new three.Matrix4();
@@ -195,7 +195,7 @@ describe('a function of the program', () => {
     expect(Math.abs(one.count - 1000)).toBeLessThan(40);
     expect(one.report).toMatchObject({ components: 1, digest: one.digest });
     for (let i = 0; i < 3 * one.count; i += 3)
-      expect(Math.hypot(...one.positions.subarray(i, i + 3))).toBeCloseTo(1, 4);
+      expect(Math.hypot(...one.points.subarray(i, i + 3))).toBeCloseTo(1, 4);
     expect((await one.mesh()).components).toMatchObject([{ euler: 2, open_edges: 0 }]);
     expect((await one.toFile('stl')).length).toBeGreaterThan(84);
     await expect(one.moved({ a: 1 })).rejects.toMatchObject({ name: 'InputError' });
@@ -276,7 +276,7 @@ describe('points', () => {
       const ball = await made.sample(field, { count: 500 });
       expect(Math.abs(ball.count - 500)).toBeLessThan(30);
       for (let i = 0; i < 3 * ball.count; i += 3)
-        expect(Math.hypot(...ball.positions.subarray(i, i + 3))).toBeCloseTo(1, 1);
+        expect(Math.hypot(...ball.points.subarray(i, i + 3))).toBeCloseTo(1, 1);
       expect((await ball.mesh()).components).toMatchObject([{ euler: 2 }]);
     }
   });
@@ -286,7 +286,7 @@ describe('points', () => {
     const cut = await made.sample({ points, normals: points }, options);
     expect(cut.params).toEqual({ h: 0.25 });
     let top = -1;
-    for (let i = 2; i < 3 * cut.count; i += 3) top = Math.max(top, cut.positions[i]);
+    for (let i = 2; i < 3 * cut.count; i += 3) top = Math.max(top, cut.points[i]);
     expect(top).toBeCloseTo(0.25, 5);
     // The edge is closed.
     expect((await cut.mesh()).components).toMatchObject([{ euler: 2, open_edges: 0 }]);
@@ -322,8 +322,8 @@ test('the spacing is the distance between neighbours, in the units of the field'
 test('particles at a crease are joined by welding', async () => {
   const cube = await made.sample('max(abs(x), abs(y), abs(z)) = 1', { count: 1000 });
   const [apart, welded] = [await cube.mesh(), await cube.mesh({ weld: true })];
-  expect(new Set(welded.indices).size).toBeLessThan(new Set(apart.indices).size);
-  expect(new Set(welded.indices).size - welded.indices.length / 6).toBe(2);
+  expect(new Set(welded.faces).size).toBeLessThan(new Set(apart.faces).size);
+  expect(new Set(welded.faces).size - welded.faces.length / 6).toBe(2);
 });
 
 describe('a signal', () => {
@@ -362,7 +362,13 @@ describe('what is wrong has a name and says what to do', () => {
     ['InputError', 'a function or points have none', () => 1, { params: { a: 1 } }],
     ['InputError', 'formula: for points', SPHERE, { formula: 'max(model, z)' }],
     ['InputError', 'formula: a text', { points: [1, 2, 3] }, { formula: 3 }],
-    ['InputError', 'radius: for particles of one size', SPHERE, { radius: 0.01, adaptive: true }],
+    ['InputError', 'radius: it has no effect with adaptive: true', SPHERE, { radius: 0.01, adaptive: true }],
+    ['InputError', 'grading: it has no effect without adaptive: true', SPHERE, { grading: 0.3 }],
+    ['InputError', 'periodic: it has no effect without closed: true', SPHERE, { periodic: true }],
+    ['InputError', 'closed: for a formula by itself', () => 1, { closed: true }],
+    ['InputError', 'relax is 2000, but must lie between', SPHERE, { relax: 2000 }],
+    ['InputError', 'radius: a length above 0, or a share', SPHERE, { radius: '3' }],
+    ['FormulaError', 'Thickness: Something is missing', SPHERE, { thickness: '0.1 +' }],
     ['InputError', 'adaptive: true or false', SPHERE, { adaptive: 'yes' }],
     ['InputError', 'measure: true or false', SPHERE, { measure: 1 }],
     ['InputError', 'spacing: a length above 0', SPHERE, { spacing: 0 }],
@@ -402,7 +408,7 @@ describe('what is wrong has a name and says what to do', () => {
     await expect(ball.toFile(/** @type {any} */ ('doc'))).rejects.toMatchObject({ name: 'InputError' });
     ball.dispose();
     ball.dispose();
-    expect(ball.positions.length).toBe(3 * ball.count);
+    expect(ball.points.length).toBe(3 * ball.count);
     for (const late of [ball.mesh(), ball.toFile('stl'), ball.moved({ a: 2 })])
       await expect(late).rejects.toMatchObject({ name: 'DisposedError' });
   });

@@ -10,7 +10,7 @@ const www = fileURLToPath(new URL('../..', import.meta.url));
 /** A surface with its digest in `tests/golden`, as the options of the package have it. */
 export const GYROID = {
   formula: 'sin(x) cos(y) + sin(y) cos(z) + sin(z) cos(x)',
-  options: { radius: 0.012, bounds: { min: [-3, -3, -3], max: [3, 3, 3] } },
+  options: { radius: '1.2%', bounds: { min: [-3, -3, -3], max: [3, 3, 3] } },
   golden: 'gyroid, cut by its box',
 };
 
