@@ -154,7 +154,7 @@ impl Compared {
     /// The closest pair, where it is known over the sum of the radii.
     fn closest(&self) -> f64 {
         let Figures { edges, spacing, .. } = &self.figures;
-        if edges.overlap_min.is_nan() { spacing.nn_min } else { edges.overlap_min }
+        if edges.overlap_min.is_nan() { spacing.nearest_min } else { edges.overlap_min }
     }
 }
 
@@ -199,8 +199,8 @@ fn measure(sweep: &Sweep, count: u32, method: Method, sampling: Sampling) {
             "| {} | {frame} | {:.3} | {:.2} ({:.2}) | {:.2} ({:.2}) | {:.2} ({:.2}) | {:.2} | {} ({}) | {} ({}) | {:.0} | {:.1} |",
             sweep.name,
             ours.count as f64 / fresh.count as f64,
-            ours.figures.order.six,
-            fresh.figures.order.six,
+            ours.figures.order.six_neighbours,
+            fresh.figures.order.six_neighbours,
             ours.hole(),
             fresh.hole(),
             ours.closest(),

@@ -89,13 +89,13 @@ fn processor_seconds(start: Instant) -> f64 {
 
 /// The worse of two in each figure of the table.
 fn worse(mut a: Figures, b: Figures) -> Figures {
-    a.order.six = a.order.six.min(b.order.six);
-    a.angles.ang_min_mean = a.angles.ang_min_mean.min(b.angles.ang_min_mean);
-    a.angles.ang_min = a.angles.ang_min.min(b.angles.ang_min);
-    a.angles.gt90 = a.angles.gt90.max(b.angles.gt90);
+    a.order.six_neighbours = a.order.six_neighbours.min(b.order.six_neighbours);
+    a.angles.mean_smallest_angle = a.angles.mean_smallest_angle.min(b.angles.mean_smallest_angle);
+    a.angles.smallest_angle = a.angles.smallest_angle.min(b.angles.smallest_angle);
+    a.angles.triangles_above_90 = a.angles.triangles_above_90.max(b.angles.triangles_above_90);
     a.spacing.rho = a.spacing.rho.min(b.spacing.rho);
     a.coverage.cover = a.coverage.cover.max(b.coverage.cover);
-    a.edges.size_cv = a.edges.size_cv.max(b.edges.size_cv);
+    a.edges.size_variation = a.edges.size_variation.max(b.edges.size_variation);
     a
 }
 
@@ -140,7 +140,7 @@ fn row(make: &dyn Fn() -> Box<dyn Field>, bounds: &Bounds, settings: Settings, s
 fn write_row(out: &mut dyn Write, name: &str, method: &str, row: &Row, is_adaptive: bool) -> io::Result<()> {
     let f = &row.figures;
     let evenness = if is_adaptive {
-        format!("{:.2} %", 100.0 * f.edges.size_cv)
+        format!("{:.2} %", 100.0 * f.edges.size_variation)
     } else {
         format!("{:.3} | {:.3}", f.coverage.cover, f.spacing.rho)
     };
@@ -148,10 +148,10 @@ fn write_row(out: &mut dyn Write, name: &str, method: &str, row: &Row, is_adapti
         out,
         "| {name} | {method} | {} | {:.2} % | {:.2} | {:.1} | {:.4} % | {evenness} | {:.2} |",
         row.particles,
-        100.0 * f.order.six,
-        f.angles.ang_min_mean,
-        f.angles.ang_min,
-        100.0 * f.angles.gt90,
+        100.0 * f.order.six_neighbours,
+        f.angles.mean_smallest_angle,
+        f.angles.smallest_angle,
+        100.0 * f.angles.triangles_above_90,
         1e6 * row.seconds / row.particles as f64
     )
 }
@@ -181,7 +181,7 @@ fn main() -> io::Result<()> {
     let out = &mut io::stdout();
     writeln!(out, "# Both methods over the gallery: all figures\n\n{HEAD}")?;
     for &count in &plan.counts {
-        let evenness = if is_adaptive { "`size_cv`" } else { "Largest hole | Closest pair" };
+        let evenness = if is_adaptive { "`size_variation`" } else { "Largest hole | Closest pair" };
         writeln!(out, "\n## {count} particles\n")?;
         writeln!(
             out,

@@ -113,8 +113,8 @@ fn main() {
                 println!(
                     "{run}\t{}\t{}\t{}\t{}\t{}\t{}\t{}",
                     report.digest,
-                    figures.order.six,
-                    figures.angles.ang_min_mean,
+                    figures.order.six_neighbours,
+                    figures.angles.mean_smallest_angle,
                     figures.spacing.rho,
                     figures.coverage.cover,
                     report.count as f64 / f64::from(COUNT),

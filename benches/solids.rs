@@ -116,8 +116,8 @@ fn write_row(
         "| {} | {method} | {} | {euler} | {volume} | {off:.0e} | {:.1} % | {:.1} | {:.2} | {:.2} | {:.2} |",
         solid.name,
         report.count,
-        100.0 * figures.order.six,
-        figures.angles.ang_min,
+        100.0 * figures.order.six_neighbours,
+        figures.angles.smallest_angle,
         figures.coverage.cover,
         figures.spacing.rho,
         1e6 * seconds / report.count as f64

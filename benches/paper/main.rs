@@ -218,9 +218,11 @@ fn write_line(out: &mut dyn Write, line: &Line, runs: &Runs) -> io::Result<()> {
     };
     row("Total time", [&total, &total], &|outcome| seconds(outcome.total()))?;
     row("Evaluations", [&none, &none], &|outcome| grouped(outcome.evaluations as usize))?;
-    row("Six neighbours", [&none, &none], &|outcome| format!("{:.1} %", 100.0 * outcome.figures.order.six))?;
+    row("Six neighbours", [&none, &none], &|outcome| {
+        format!("{:.1} %", 100.0 * outcome.figures.order.six_neighbours)
+    })?;
     row("Mean smallest angle", [&none, &none], &|outcome| {
-        format!("{:.1}°", outcome.figures.angles.ang_min_mean)
+        format!("{:.1}°", outcome.figures.angles.mean_smallest_angle)
     })?;
     let is_uniform = line.sampling == Sampling::Uniform;
     row("Largest hole", [&none, &none], &|outcome| {

@@ -35,8 +35,7 @@ impl Field {
             formula = formula.with(name, *value).map_err(|error| errors::of_formula(&error, text))?;
         }
         let parameters = parameters.into_iter().collect();
-        let request =
-            FieldRequest { formula: Some(text.to_owned()), parameters, ..FieldRequest::default() };
+        let request = FieldRequest { formula: Some(text.to_owned()), parameters, ..FieldRequest::default() };
         Ok(Self { formula: Some(request), ..Self::new(Arc::new(formula), None) })
     }
 
@@ -66,17 +65,19 @@ impl Field {
         is_cut: bool,
     ) -> PyResult<(Self, String)> {
         let file = ply(points.as_slice()?, normals.as_ref().map(|normals| normals.as_slice()).transpose()?);
-        py.detach(|| {
-            let raised = |error| errors::of_job(&error);
-            let mut job = Job::file("points.ply", file, centres).map_err(raised)?;
-            while !job.step(FIT_SLICES).map_err(raised)?.done {
-                Python::attach(|py| py.check_signals())?;
-            }
-            let fit = job.complete().map_err(raised)?;
-            let report = serde_json::to_string(&fit.info).expect("a report is data");
-            let field = if is_cut { fit.field() } else { fit.field().untrimmed() };
-            Ok((Self::new(Arc::new(field), Some(fit.bounds)), report))
-        })
+        Self::fitted(py, "points.ply", file, centres, is_cut)
+    }
+
+    /// [`Self::points`] of the content of a file of this name.
+    #[staticmethod]
+    fn file(
+        py: Python<'_>,
+        name: &str,
+        content: Vec<u8>,
+        centres: u32,
+        is_cut: bool,
+    ) -> PyResult<(Self, String)> {
+        Self::fitted(py, name, content, centres, is_cut)
     }
 
     /// The union, in a box around those of both fields if they are known.
@@ -123,6 +124,26 @@ impl Field {
 impl Field {
     fn new(field: Shared, bounds: Option<Bounds>) -> Self {
         Self { field, bounds, formula: None }
+    }
+
+    fn fitted(
+        py: Python<'_>,
+        name: &str,
+        file: Vec<u8>,
+        centres: u32,
+        is_cut: bool,
+    ) -> PyResult<(Self, String)> {
+        py.detach(|| {
+            let raised = |error| errors::of_job(&error);
+            let mut job = Job::file(name, file, centres).map_err(raised)?;
+            while !job.step(FIT_SLICES).map_err(raised)?.done {
+                Python::attach(|py| py.check_signals())?;
+            }
+            let fit = job.complete().map_err(raised)?;
+            let report = serde_json::to_string(&fit.info).expect("a report is data");
+            let field = if is_cut { fit.field() } else { fit.field().untrimmed() };
+            Ok((Self::new(Arc::new(field), Some(fit.bounds)), report))
+        })
     }
 
     /// Gives the field to a session, in this box, in its own or in one that is to be fitted.

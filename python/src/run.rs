@@ -195,9 +195,11 @@ impl Sample {
     }
 
     fn save(&self, py: Python<'_>, path: PathBuf, is_mesh: bool) -> PyResult<()> {
-        py.detach(|| if is_mesh { self.0.save_mesh(path) } else { self.0.save(path) }).map_err(|error| match error.kind() {
-            ErrorKind::InvalidInput => PyValueError::new_err(error.to_string()),
-            _ => error.into(),
+        py.detach(|| if is_mesh { self.0.save_mesh(path) } else { self.0.save(path) }).map_err(|error| {
+            match error.kind() {
+                ErrorKind::InvalidInput => PyValueError::new_err(error.to_string()),
+                _ => error.into(),
+            }
         })
     }
 }

@@ -117,18 +117,18 @@ def test_the_box_of_a_combination_holds_its_surface(model):
 def test_what_a_function_raises_comes_through():
     with pytest.raises(ZeroDivisionError):
         mp.sample(mp.union(BLOCK, lambda points: 1 / 0), bounds=BOX)
-    with pytest.raises(mp.FieldError, match=r"b returned an array of the shape"):
+    with pytest.raises(mp.FieldError, match=r"solid 2 returned an array of the shape"):
         mp.sample(mp.union(BLOCK, lambda points: points), bounds=BOX)
 
 
 @pytest.mark.parametrize(
     ("make", "kind", "says"),
     [
-        (lambda: mp.union(1, BLOCK), TypeError, r"a must be a formula \(str\), .* and not int"),
-        (lambda: mp.union(BLOCK, None), TypeError, "b must be a formula .* and not NoneType"),
-        (lambda: mp.intersection(BLOCK, np.eye(3)), TypeError, "b must be .* and not ndarray"),
+        (lambda: mp.union(1, BLOCK), TypeError, r"solid 1 must be a formula \(str\), .* and not int"),
+        (lambda: mp.union(BLOCK, None), TypeError, "solid 2 must be a formula .* and not NoneType"),
+        (lambda: mp.intersection(BLOCK, np.eye(3)), TypeError, "solid 2 must be .* and not ndarray"),
         (lambda: mp.difference("x +", BLOCK), mp.FormulaError, "missing"),
-        (lambda: mp.union(BLOCK), TypeError, "missing 1 required"),
+        (lambda: mp.union(BLOCK), TypeError, "two solids or more, and not 1"),
         (lambda: mp.smooth_union(BLOCK, ball, "wide"), TypeError, "width must be a number"),
         (lambda: mp.smooth_union(BLOCK, ball, -1), ValueError, "width is -1.0, but must not be"),
         (lambda: mp.smooth_union(BLOCK, ball, np.nan), ValueError, "width is nan"),

@@ -67,6 +67,14 @@ def test_an_unknown_parameter_is_named():
         ({"bounds": ((0, 0, 0), (1, 1))}, ValueError, "bounds must be the lower and the"),
         ({"bounds": ((0, 2, 0), (1, 1, 1))}, ValueError, "along y the lower is not below"),
         ({"bounds": (("a",) * 3, ("b",) * 3)}, TypeError, "not of the type"),
+        ({"grading": 0.3}, ValueError, "grading has no effect without adaptive=True"),
+        ({"periodic": True}, ValueError, "periodic has no effect without closed=True"),
+        ({"adaptive": True, "curvature_scale": 0.1}, ValueError, 'without law="max_curvature" or'),
+        ({"law": "best", "adaptive": True}, ValueError, "law is 'best', but must be one of"),
+        ({"relax": 2000}, ValueError, "relax is 2,000, but must lie between 0 and 1,000"),
+        ({"match_tolerance": 2}, ValueError, "must lie between 0.5 and 0.9"),
+        ({"thickness": -1}, ValueError, "thickness is -1, but must lie between 0"),
+        ({"thickness": "0.1 +"}, mp.FormulaError, "Thickness: Something is missing"),
         ({"params": {"a": "b"}}, TypeError, r"params\['a'\] must be a number"),
         ({"params": [1]}, TypeError, "params must be a dict"),
         ({"gradient": sphere}, TypeError, "a formula has its own"),
@@ -83,12 +91,17 @@ def test_a_field_of_another_type():
         mp.sample(3)
     with pytest.raises(TypeError, match="params belongs to a formula"):
         mp.sample(sphere, params={"a": 1})
+    with pytest.raises(TypeError, match=r"a function of \(x, y, z\): .* p\[:, 0\] in place of x"):
+        mp.sample(lambda x, y, z: x)
+    with pytest.raises(ValueError, match="closed is for a formula by itself"):
+        mp.sample(sphere, closed=True, bounds=BOX)
 
 
 @pytest.mark.parametrize(
     ("function", "says"),
     [
         (lambda points: 0.0, r"shape \(\) for \d+ points: it must be \(\d+,\)"),
+        (lambda p: p[0], r"p\[:, 0\] is x of all points p"),
         (lambda points: sphere(points)[:-1], r"array of the shape \(\d+,\) for \d+ points"),
         (lambda points: points, r"shape \(\d+, 3\)"),
         (lambda points: None, "field returned NoneType of the type object"),
@@ -196,7 +209,7 @@ def test_files(tmp_path):
     ball = mp.sample(SPHERE, count=100)
     with pytest.raises(ValueError, match="glb, 3mf, stl, obj"):
         ball.save(tmp_path / "ball.jpg")
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(FileNotFoundError, match="there is no folder .*nowhere"):
         ball.save(tmp_path / "nowhere" / "ball.ply")
 
 

@@ -7,10 +7,12 @@ import json
 import re
 import threading
 import time
+import typing
 from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 import marching_particles as mp
 
@@ -172,14 +174,14 @@ def test_an_edge_has_rows_on_both_sides_and_is_welded():
 
 def test_without_measuring_there_are_no_figures():
     measured, quick = (mp.sample("x^2+y^2+z^2=1", count=300, measure=m) for m in (True, False))
-    assert measured.report["quality"]["six"] > 0.5
+    assert measured.report["quality"]["six_neighbours"] > 0.5
     assert quick.report["quality"] is None
     np.testing.assert_array_equal(measured.points, quick.points)
 
 
 def test_the_refined_method_gives_more_particles_six_neighbours():
     def six(method):
-        return mp.sample("x^2+y^2/2+z^2=1", count=2000, method=method).report["quality"]["six"]
+        return mp.sample("x^2+y^2/2+z^2=1", count=2000, method=method).report["quality"]["six_neighbours"]
 
     assert six("refined") > six("front")
 
@@ -257,3 +259,99 @@ def test_the_stub_has_the_signatures_of_the_package():
 
 def test_the_package_is_marked_as_typed():
     assert (Path(mp.__file__).parent / "py.typed").exists()
+
+
+def shape_of(kind, value, path="report"):
+    """Checks a value of JSON against a type, down to its last member."""
+    origin, arguments = typing.get_origin(kind), typing.get_args(kind)
+    if origin is typing.Union:
+        if value is None:
+            assert type(None) in arguments, path
+            return
+        (kind,) = (one for one in arguments if one is not type(None))
+        shape_of(kind, value, path)
+    elif origin is typing.Literal:
+        assert value in arguments, (path, value)
+    elif origin in (list, tuple):
+        assert isinstance(value, list), path
+        for k, item in enumerate(value):
+            shape_of(arguments[0], item, f"{path}[{k}]")
+    elif typing.is_typeddict(kind) if hasattr(typing, "is_typeddict") else hasattr(kind, "__total__"):
+        members = typing.get_type_hints(kind)
+        assert set(value) | {"calls"} == set(members) | {"calls"}, path
+        for name, item in value.items():
+            shape_of(members[name], item, f"{path}.{name}")
+    else:
+        assert isinstance(value, (int, float) if kind is float else kind), (path, value)
+
+
+@pytest.mark.parametrize(
+    ("field", "options"),
+    [
+        ("x^2 + y^2 + z^2 = 1", {}),
+        ("x^2/9 + y^2 + z^2 = 1", {"adaptive": True, "count": 500}),
+        ("max(abs(x), abs(y), abs(z)) = 1", {"method": "refined", "count": 800}),
+        ("x^2 + y^2 = 1", {"count": 400}),
+        (sphere, {"bounds": BOX, "count": 300}),
+        ("x^2 + y^2 + z^2 = 1", {"measure": False, "count": 300}),
+    ],
+)
+def test_the_report_has_the_members_of_its_type(field, options):
+    shape_of(mp.Report, mp.sample(field, **options).report)
+
+
+def test_every_setting_of_the_core_is_an_argument():
+    from marching_particles._options import SETTINGS
+
+    # The box is given by bounds, and points say where their surface ends.
+    elsewhere = {"box", "beyond_points"}
+    arguments = set(inspect.signature(mp.sample).parameters)
+    assert {setting["argument"] for setting in SETTINGS} - elsewhere <= arguments
+
+
+def test_a_sheet_that_its_box_closes_is_a_solid():
+    box = ((-3, -3, -3), (3, 3, 3))
+    gyroid = "sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)"
+    solid = mp.sample(gyroid, count=2000, bounds=box, closed=True, thickness="0.4 + 0.02z")
+    mesh = solid.mesh()
+    assert edges_twice(mesh.faces) and np.abs(mesh.points).max() < 3 + 1e-6
+    assert trimesh.Trimesh(mesh.points, mesh.faces, process=False).volume > 10
+
+
+def test_solids_are_joined_from_a_list():
+    balls = [
+        lambda points, x=x: np.linalg.norm(points - [x, 0, 0], axis=1) - 1 for x in (0.0, 1.5, 3.0)
+    ]
+    box = ((-1.5, -1.5, -1.5), (4.5, 1.5, 1.5))
+    row = mp.sample(mp.union(balls), count=3000, bounds=box)
+    assert row.report["components"] == 1 and row.report["creases"] == 2
+    np.testing.assert_array_equal(
+        row.points, mp.sample(mp.union(*balls), count=3000, bounds=box).points
+    )
+
+
+def test_a_file_says_what_it_was_made_from(tmp_path):
+    ball = mp.sample("x^2 + y^2 + z^2 = a", params={"a": 2}, count=300)
+    for name, where in [("a.ply", "a.ply"), ("a.csv", "a.csv.json"), ("a.glb", "a.glb")]:
+        ball.save(tmp_path / name)
+        content = (tmp_path / where).read_bytes()
+        assert b"marching_particles" in content and ball.report["digest"].encode() in content
+    # Nobody can write a function down.
+    mp.sample(sphere, bounds=BOX, count=300).save(tmp_path / "b.ply")
+    assert b"marching_particles" not in (tmp_path / "b.ply").read_bytes()
+
+
+def test_ply_is_of_points_or_of_the_mesh(tmp_path):
+    ball = mp.sample("x^2 + y^2 + z^2 = 1", count=300)
+    ball.save(tmp_path / "points.ply")
+    ball.save(tmp_path / "mesh.ply", mesh=True)
+    assert isinstance(trimesh.load(tmp_path / "points.ply"), trimesh.PointCloud)
+    assert trimesh.load(tmp_path / "mesh.ply").is_watertight
+
+
+def test_a_mesh_and_a_path_are_taken_for_points(tmp_path):
+    sphere = trimesh.creation.icosphere(subdivisions=3)
+    sphere.export(tmp_path / "ball.obj")
+    for given in (sphere, tmp_path / "ball.obj", str(tmp_path / "ball.obj")):
+        sample = mp.sample(mp.fit_points(given), count=400)
+        assert abs(np.linalg.norm(sample.points, axis=1) - 1).max() < 0.02

@@ -34,8 +34,14 @@ pub(super) fn measure(residual: &[f64], normals: &NormalAngles, d_hex: f64) -> A
             undefined += 1;
         }
     }
-    let (nrm_mean, nrm_max) = normals.figures();
-    Accuracy { err_max: largest / d_hex, err_mean: err.mean() / d_hex, undefined, nrm_mean, nrm_max }
+    let (normal_error_mean, normal_error_max) = normals.figures();
+    Accuracy {
+        error_max: largest / d_hex,
+        error_mean: err.mean() / d_hex,
+        undefined,
+        normal_error_mean,
+        normal_error_max,
+    }
 }
 
 /// Angle between a normal and a gradient in degrees, if both have a direction.

@@ -18,7 +18,7 @@ pub struct Figures {
     pub area: f64,
     /// Points that differ from an earlier one by no more than rounding; dropped before the
     /// triangulation.
-    pub dup: usize,
+    pub duplicates: usize,
     /// Points with a non-finite coordinate; left out of everything.
     pub not_finite: usize,
     /// Points within 4 ideal spacings of the border of a clipped surface, left out of the per-point
@@ -52,15 +52,21 @@ impl Default for Figures {
         Self {
             ideal_spacing: NONE,
             area: NONE,
-            dup: 0,
+            duplicates: 0,
             not_finite: 0,
             boundary_excluded: 0,
-            accuracy: Accuracy { err_max: NONE, err_mean: NONE, undefined: 0, nrm_mean: NONE, nrm_max: NONE },
+            accuracy: Accuracy {
+                error_max: NONE,
+                error_mean: NONE,
+                undefined: 0,
+                normal_error_mean: NONE,
+                normal_error_max: NONE,
+            },
             spacing: Spacing {
-                nn_min: NONE,
-                nn_mean: NONE,
+                nearest_min: NONE,
+                nearest_mean: NONE,
                 spacing_variation: NONE,
-                nn_ratio: NONE,
+                nearest_ratio: NONE,
                 rho: NONE,
                 nearest_percentile_1: NONE,
                 crowded: None,
@@ -68,20 +74,26 @@ impl Default for Figures {
             coverage: Coverage {
                 cover: NONE,
                 cover_local: NONE,
-                quant: NONE,
+                quantization_error: NONE,
                 uncovered: NONE,
                 wide_holes: None,
             },
-            order: Order { six: NONE, five_seven: NONE, val_sd: NONE, open: 0, psi6: NONE },
-            edges: Edges { edge_cv: NONE, size_cv: NONE, overlap_min: NONE },
-            connectivity: Connectivity { tri_ok: NONE, agree: NONE, euler: 0, components: 0 },
+            order: Order {
+                six_neighbours: NONE,
+                five_or_seven_neighbours: NONE,
+                valence_deviation: NONE,
+                open: 0,
+                bond_order: NONE,
+            },
+            edges: Edges { edge_variation: NONE, size_variation: NONE, overlap_min: NONE },
+            connectivity: Connectivity { triangle_share: NONE, agree: NONE, euler: 0, components: 0 },
             angles: Angles {
-                ang_min: NONE,
-                ang_min_mean: NONE,
-                lt30: NONE,
-                gt90: NONE,
-                a_lt30: NONE,
-                a_gt90: NONE,
+                smallest_angle: NONE,
+                mean_smallest_angle: NONE,
+                triangles_below_30: NONE,
+                triangles_above_90: NONE,
+                angles_below_30: NONE,
+                angles_above_90: NONE,
             },
         }
     }
@@ -92,15 +104,15 @@ impl Default for Figures {
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Accuracy {
     /// Largest first-order distance |f|/|∇f| to the surface.
-    pub err_max: f64,
+    pub error_max: f64,
     /// Mean first-order distance to the surface.
-    pub err_mean: f64,
-    /// Points whose residual is undefined; left out of `err_max` and `err_mean`.
+    pub error_mean: f64,
+    /// Points whose residual is undefined; left out of `error_max` and `error_mean`.
     pub undefined: usize,
     /// Mean angle between the given normals (either sign) and ∇f, in degrees.
-    pub nrm_mean: f64,
+    pub normal_error_mean: f64,
     /// Largest angle between the given normals (either sign) and ∇f, in degrees.
-    pub nrm_max: f64,
+    pub normal_error_max: f64,
 }
 
 /// Distances of the points from their nearest ones.
@@ -108,18 +120,18 @@ pub struct Accuracy {
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Spacing {
     /// Smallest nearest-neighbour distance.
-    pub nn_min: f64,
+    pub nearest_min: f64,
     /// Mean nearest-neighbour distance.
-    pub nn_mean: f64,
+    pub nearest_mean: f64,
     /// Standard deviation of the nearest-neighbour distance over its mean.
     pub spacing_variation: f64,
     /// Smallest over mean nearest-neighbour distance.
-    pub nn_ratio: f64,
-    /// Normalised Poisson-disk radius: `nn_min` under its usual name.
+    pub nearest_ratio: f64,
+    /// Normalised Poisson-disk radius: `nearest_min` under its usual name.
     pub rho: f64,
     /// First percentile of the nearest-neighbour distance.
     pub nearest_percentile_1: f64,
-    /// Pairs of points nearer than 0.75: over `ideal_spacing`, as `nn_min`, or of natural
+    /// Pairs of points nearer than 0.75: over `ideal_spacing`, as `nearest_min`, or of natural
     /// neighbours over the sum of their wanted radii, as `overlap_min`, where those are known. A
     /// duplicate is a pair with the point that it equals. None where there are no distances.
     pub crowded: Option<usize>,
@@ -138,7 +150,7 @@ pub struct Coverage {
     pub cover_local: f64,
     /// Mean squared distance from the surface to the nearest point over that of the perfect
     /// lattice: 1 is ideal.
-    pub quant: f64,
+    pub quantization_error: f64,
     /// Share of the surface that no disc of a point around it covers, where the discs are known:
     /// 1 - π/(2√3) = 0.093 in a lattice whose discs touch.
     pub uncovered: f64,
@@ -152,15 +164,15 @@ pub struct Coverage {
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Order {
     /// Fraction of the points with exactly six natural neighbours.
-    pub six: f64,
+    pub six_neighbours: f64,
     /// Fraction of the points with five or seven natural neighbours.
-    pub five_seven: f64,
+    pub five_or_seven_neighbours: f64,
     /// Standard deviation of the valence.
-    pub val_sd: f64,
+    pub valence_deviation: f64,
     /// Number of points whose cell is not proven complete among their 200 nearest points.
     pub open: usize,
     /// Mean over the points of |mean over natural neighbours of exp(6iθ)|: 1 for a lattice.
-    pub psi6: f64,
+    pub bond_order: f64,
 }
 
 /// Lengths of the edges between natural neighbours.
@@ -168,9 +180,9 @@ pub struct Order {
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Edges {
     /// Standard deviation over mean of the length of mutual natural-neighbour edges.
-    pub edge_cv: f64,
+    pub edge_variation: f64,
     /// Standard deviation over mean of edge length over the sum of the wanted radii.
-    pub size_cv: f64,
+    pub size_variation: f64,
     /// Smallest distance of natural neighbours over the sum of their wanted radii: 1 where
     /// particles just touch, 0 for duplicates.
     pub overlap_min: f64,
@@ -182,7 +194,7 @@ pub struct Edges {
 pub struct Connectivity {
     /// Kept triangles over 2N − 2χ: 1 for a closed manifold. On a clipped surface, the share of the
     /// sectors around points away from the border that a kept triangle fills.
-    pub tri_ok: f64,
+    pub triangle_share: f64,
     /// Fraction of the triangles (away from the border) that belong to the natural-neighbour stars
     /// of all three corners.
     pub agree: f64,
@@ -199,17 +211,17 @@ pub struct Connectivity {
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Angles {
     /// Smallest angle of any triangle, in degrees.
-    pub ang_min: f64,
+    pub smallest_angle: f64,
     /// Mean over the triangles of their smallest angle, in degrees.
-    pub ang_min_mean: f64,
+    pub mean_smallest_angle: f64,
     /// Fraction of the triangles with an angle below 30°.
-    pub lt30: f64,
+    pub triangles_below_30: f64,
     /// Fraction of the triangles with an angle above 90°.
-    pub gt90: f64,
+    pub triangles_above_90: f64,
     /// Fraction of all angles below 30°.
-    pub a_lt30: f64,
+    pub angles_below_30: f64,
     /// Fraction of all angles above 90°.
-    pub a_gt90: f64,
+    pub angles_above_90: f64,
 }
 
 /// Returns the spacing of a perfect hexagonal lattice of `count` points on this `area`:

@@ -71,10 +71,10 @@ use sizes::WantedRadii;
 use std::sync::Arc;
 use triangles::TriangleAngles;
 
-/// Smallest number of random samples for `quant`, of which there is at least one for each particle:
+/// Smallest number of random samples for `quantization_error`, of which there is at least one for each particle:
 /// stratified, so many give it to about 0.1 %.
 const LEAST_SAMPLES: usize = 65_536;
-/// Largest number of random samples for `quant`. Over a disc the squared distance scatters by 0.58
+/// Largest number of random samples for `quantization_error`. Over a disc the squared distance scatters by 0.58
 /// of its mean, so that the error of so many samples is 0.1 %.
 const MOST_SAMPLES: usize = 262_144;
 /// Mean squared distance to the nearest point of a hexagonal lattice, over its area per point: 5 /
@@ -138,7 +138,7 @@ pub(crate) struct Opening {
 /// `bounds` is the box that was sampled. Particles within 4 d_hex of the border, where the surface
 /// continues beyond the box, are left out of every figure but the residual, the normals, the area
 /// and the topology. Random lines through the box find what the particles have missed, for `cover`
-/// and `quant`. Without `bounds` only the triangles are sampled. The given normals are used where
+/// and `quantization_error`. Without `bounds` only the triangles are sampled. The given normals are used where
 /// the gradient is undefined, and are themselves measured against it; the slice may be shorter than
 /// `position`.
 ///
@@ -268,7 +268,7 @@ async fn figures_of(
     crossings: &mut Option<Vec<Vec3>>,
 ) -> DistinctFigures {
     let Prepared { points, mesh, duplicates, not_finite, .. } = prepared;
-    let mut figures = Figures { dup: *duplicates, not_finite: *not_finite, ..Figures::default() };
+    let mut figures = Figures { duplicates: *duplicates, not_finite: *not_finite, ..Figures::default() };
     let mut measured = DistinctFigures::default();
     let n = points.tree.len();
     if n == 0 {
@@ -371,11 +371,11 @@ async fn measure_neighbourhoods(
     }
     let mut pairs = Pairs::default();
     figures.order = order.figures();
-    figures.edges.edge_cv = edge.variation();
+    figures.edges.edge_variation = edge.variation();
     if let Some(wanted) = wanted {
-        figures.edges.size_cv = size.variation();
+        figures.edges.size_variation = size.variation();
         let least = wanted.add_pairs(points, inner, &mut pairs).await;
-        figures.edges.overlap_min = if figures.dup > 0 { 0.0 } else { least };
+        figures.edges.overlap_min = if figures.duplicates > 0 { 0.0 } else { least };
     } else {
         spacing::add_pairs(points, inner, figures.ideal_spacing, &mut pairs).await;
     }
@@ -432,7 +432,7 @@ async fn measure_triangles(
     let unanimous = triangles.unanimous.iter().filter(away).count();
     figures.connectivity.agree =
         share(unanimous, angles.count + triangles.single.iter().filter(away).count());
-    figures.connectivity.tri_ok = if figures.boundary_excluded == 0 && !points.creases.has_rim() {
+    figures.connectivity.triangle_share = if figures.boundary_excluded == 0 && !points.creases.has_rim() {
         triangles.kept().count() as f64 / (2 * points.count() as i64 - 2 * figures.connectivity.euler) as f64
     } else {
         // This is the share of the sectors between consecutive neighbours of inner points that a
@@ -466,7 +466,8 @@ async fn measure_holes(
     if cover.wanted.is_some() {
         figures.coverage.cover_local = holes.relative;
     }
-    figures.coverage.quant = holes.mean_sq / (HEXAGONAL_QUANT * figures.area / (n + figures.dup) as f64);
+    figures.coverage.quantization_error =
+        holes.mean_sq / (HEXAGONAL_QUANT * figures.area / (n + figures.duplicates) as f64);
     if !cover.discs.is_empty() {
         figures.coverage.uncovered = holes.bare;
     }

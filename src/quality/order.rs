@@ -12,9 +12,9 @@ pub(super) struct ValenceTally {
     count: usize,
     open: usize,
     six: usize,
-    five_seven: usize,
+    five_or_seven_neighbours: usize,
     valence: Moments,
-    psi6: Moments,
+    bond_order: Moments,
 }
 
 impl ValenceTally {
@@ -28,7 +28,7 @@ impl ValenceTally {
         let neighbours = points.stars.valence(i);
         self.valence.add(neighbours as f64);
         self.six += usize::from(neighbours == 6);
-        self.five_seven += usize::from(neighbours == 5 || neighbours == 7);
+        self.five_or_seven_neighbours += usize::from(neighbours == 5 || neighbours == 7);
         let (u, v) = tangent_frame(points.normal[i]);
         let (u, v) = (u.as_dvec3(), v.as_dvec3());
         let p = points.tree.position[i].as_dvec3();
@@ -43,7 +43,7 @@ impl ValenceTally {
                 sum += square.rotate(square).rotate(square);
             }
         }
-        self.psi6.add(sum.length() / neighbours as f64);
+        self.bond_order.add(sum.length() / neighbours as f64);
     }
 
     /// Takes in the points of another tally.
@@ -51,18 +51,18 @@ impl ValenceTally {
         self.count += other.count;
         self.open += other.open;
         self.six += other.six;
-        self.five_seven += other.five_seven;
+        self.five_or_seven_neighbours += other.five_or_seven_neighbours;
         self.valence.join(&other.valence);
-        self.psi6.join(&other.psi6);
+        self.bond_order.join(&other.bond_order);
     }
 
     pub(super) fn figures(&self) -> Order {
         Order {
-            six: share(self.six, self.count),
-            five_seven: share(self.five_seven, self.count),
-            val_sd: self.valence.deviation(),
+            six_neighbours: share(self.six, self.count),
+            five_or_seven_neighbours: share(self.five_or_seven_neighbours, self.count),
+            valence_deviation: self.valence.deviation(),
             open: self.open,
-            psi6: self.psi6.mean(),
+            bond_order: self.bond_order.mean(),
         }
     }
 }

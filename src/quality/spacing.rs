@@ -97,11 +97,11 @@ pub(super) fn measure(points: &MeasuredPoints, inner: &[bool], duplicates: usize
     let place = 0.01 * (sorted.len() - 1) as f64;
     let (below, above) = (distance(place as usize), distance((place as usize + 1).min(sorted.len() - 1)));
     Spacing {
-        nn_min: distance(0) / d_hex,
+        nearest_min: distance(0) / d_hex,
         rho: distance(0) / d_hex,
-        nn_mean: moments.mean() / d_hex,
+        nearest_mean: moments.mean() / d_hex,
         spacing_variation: moments.variation(),
-        nn_ratio: distance(0) / moments.mean(),
+        nearest_ratio: distance(0) / moments.mean(),
         nearest_percentile_1: (below + (above - below) * place.fract()) / d_hex,
         crowded: None,
     }

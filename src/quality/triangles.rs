@@ -176,10 +176,10 @@ pub(super) struct TriangleAngles {
     pub(super) count: usize,
     smallest: Moments,
     least: Option<f64>,
-    lt30: usize,
-    gt90: usize,
-    a_lt30: usize,
-    a_gt90: usize,
+    triangles_below_30: usize,
+    triangles_above_90: usize,
+    angles_below_30: usize,
+    angles_above_90: usize,
 }
 
 impl TriangleAngles {
@@ -194,10 +194,10 @@ impl TriangleAngles {
         let sharp = cosines.iter().filter(|&&c| twice_area * SQRT_3 < c).count();
         let blunt = cosines.iter().filter(|&&c| c < 0.0).count();
         self.count += 1;
-        self.a_lt30 += sharp;
-        self.a_gt90 += blunt;
-        self.lt30 += usize::from(sharp > 0);
-        self.gt90 += usize::from(blunt > 0);
+        self.angles_below_30 += sharp;
+        self.angles_above_90 += blunt;
+        self.triangles_below_30 += usize::from(sharp > 0);
+        self.triangles_above_90 += usize::from(blunt > 0);
         let largest_cosine = cosines[0].max(cosines[1]).max(cosines[2]);
         let angle = libm::atan2(twice_area, largest_cosine).to_degrees();
         self.smallest.add(angle);
@@ -209,20 +209,20 @@ impl TriangleAngles {
         self.count += other.count;
         self.smallest.join(&other.smallest);
         self.least = self.least.into_iter().chain(other.least).reduce(f64::min);
-        self.lt30 += other.lt30;
-        self.gt90 += other.gt90;
-        self.a_lt30 += other.a_lt30;
-        self.a_gt90 += other.a_gt90;
+        self.triangles_below_30 += other.triangles_below_30;
+        self.triangles_above_90 += other.triangles_above_90;
+        self.angles_below_30 += other.angles_below_30;
+        self.angles_above_90 += other.angles_above_90;
     }
 
     pub(super) fn figures(&self) -> Angles {
         Angles {
-            ang_min: self.least.unwrap_or(f64::NAN),
-            ang_min_mean: self.smallest.mean(),
-            lt30: share(self.lt30, self.count),
-            gt90: share(self.gt90, self.count),
-            a_lt30: share(self.a_lt30, 3 * self.count),
-            a_gt90: share(self.a_gt90, 3 * self.count),
+            smallest_angle: self.least.unwrap_or(f64::NAN),
+            mean_smallest_angle: self.smallest.mean(),
+            triangles_below_30: share(self.triangles_below_30, self.count),
+            triangles_above_90: share(self.triangles_above_90, self.count),
+            angles_below_30: share(self.angles_below_30, 3 * self.count),
+            angles_above_90: share(self.angles_above_90, 3 * self.count),
         }
     }
 }

@@ -2,9 +2,7 @@
 
 use super::mesh::joined;
 use super::{Error, Report, Run, RunState, Warning};
-use crate::export::{
-    self, Format, MeshBuffers, MeshFile, MeshFormat, ParticleFile, RecordText, Vertices,
-};
+use crate::export::{self, Format, MeshBuffers, MeshFile, MeshFormat, ParticleFile, RecordText, Vertices};
 use crate::field::IntoField;
 use crate::math::Bounds;
 use crate::mesh::stars::Sheets;
@@ -42,7 +40,7 @@ use std::sync::{Arc, OnceLock};
 /// let sample = sample(surface, &Settings::with_count(1_000))?;
 /// let mut file = Vec::new();
 /// sample.write(Format::Ply, &mut file)?;
-/// assert!(sample.report().measures.quality.is_some_and(|figures| figures.order.six > 0.8));
+/// assert!(sample.report().measures.quality.is_some_and(|figures| figures.order.six_neighbours > 0.8));
 /// assert_eq!(sample.mesh().topology.components.len(), 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -148,11 +148,15 @@ impl Program<'_> {
     fn check_plain(&self, language: Language) -> Result<(), String> {
         if self.is_closed() && self.settings.bounds.is_some() {
             let name = language.runner();
-            return Err(format!("{name} chooses the box around a closed solid itself: Rust can take another"));
+            return Err(format!(
+                "{name} chooses the box around a closed solid itself: Rust can take another"
+            ));
         }
         if language == Language::JavaScript && self.settings.seed > LAST_SAFE {
             let name = language.runner();
-            return Err(format!("{name} cannot take a seed above {LAST_SAFE}: Rust and the command line can"));
+            return Err(format!(
+                "{name} cannot take a seed above {LAST_SAFE}: Rust and the command line can"
+            ));
         }
         Ok(())
     }
@@ -298,9 +302,9 @@ impl Program<'_> {
             };
             given.push((setting.argument(), value));
         }
-        let given = given.into_iter().map(|(name, value)| {
-            (if is_python { name.to_owned() } else { camel(name) }, value)
-        });
+        let given = given
+            .into_iter()
+            .map(|(name, value)| (if is_python { name.to_owned() } else { camel(name) }, value));
         Ok(given.map(|(name, value)| format!("{name}{is}{value}")).collect())
     }
 

@@ -267,19 +267,19 @@ const REPORT: &[ReportRow] = &[
         .help("Particles placed after the fronts had met, in gaps wide enough for one."),
     row("evaluations_per_particle", "Evaluations per particle", "Run").digits(2).down_to("about 2")
         .help("Field evaluations of the front divided by the particles it placed."),
-    row("quality.six", "Six neighbours", "Order").unit("%").digits(1).up_to("100 %")
+    row("quality.six_neighbours", "Six neighbours", "Order").unit("%").digits(1).up_to("100 %")
         .help("Share of the particles with exactly six natural neighbours, those of their Voronoi cell in the tangent plane. A closed surface of genus 0 must have at least twelve without."),
-    row("quality.psi6", "Hexagonal order ψ₆", "Order").digits(3).up_to("1")
+    row("quality.bond_order", "Hexagonal order ψ₆", "Order").digits(3).up_to("1")
         .help("Mean of |mean of exp(6iθ) over the natural neighbours|: 1 for a perfect hexagonal lattice."),
-    row("quality.ang_min_mean", "Mean smallest angle", "Triangles").unit("°").digits(1).up_to("60°")
+    row("quality.mean_smallest_angle", "Mean smallest angle", "Triangles").unit("°").digits(1).up_to("60°")
         .help("Mean over the triangles of natural neighbours of their smallest angle."),
-    row("quality.ang_min", "Smallest angle", "Triangles").unit("°").digits(1).up_to("60°").unless("smallest_angle")
+    row("quality.smallest_angle", "Smallest angle", "Triangles").unit("°").digits(1).up_to("60°").unless("smallest_angle")
         .help("Smallest angle of any triangle of natural neighbours."),
     row("smallest_angle", "Smallest angle", "Mesh").unit("°").digits(1).up_to("60°")
         .help("Smallest angle of any triangle of the mesh, as it stands in its file: those at its border among them, which the other figures leave out."),
-    row("quality.lt30", "Angles below 30°", "Triangles").unit("%").digits(2).down_to("0 %")
+    row("quality.triangles_below_30", "Angles below 30°", "Triangles").unit("%").digits(2).down_to("0 %")
         .help("Share of the triangles with an angle below 30°."),
-    row("quality.gt90", "Angles above 90°", "Triangles").unit("%").digits(2).down_to("0 %")
+    row("quality.triangles_above_90", "Angles above 90°", "Triangles").unit("%").digits(2).down_to("0 %")
         .help("Share of the triangles with an angle above 90°."),
     row("quality.cover", "Largest hole", "Spacing").digits(2).down_to("1").unless("quality.cover_local").places(HOLES)
         .help("Radius of the largest empty disc on the surface over that of a perfect hexagonal lattice of as many particles."),
@@ -293,15 +293,15 @@ const REPORT: &[ReportRow] = &[
         .help("Smallest distance of two neighbours over the sum of their radii."),
     row("quality.crowded", "Pairs nearer than 0.75", "Spacing").down_to("0").places(PAIRS)
         .help("Pairs of particles that are nearer to each other than 0.75, measured as the closest one."),
-    row("quality.spacing_variation", "Spacing variation", "Spacing").unit("%").digits(1).down_to("0 %").unless("quality.size_cv")
+    row("quality.spacing_variation", "Spacing variation", "Spacing").unit("%").digits(1).down_to("0 %").unless("quality.size_variation")
         .help("Standard deviation of the distance to the nearest neighbour over its mean."),
-    row("quality.size_cv", "Spacing variation", "Spacing").unit("%").digits(1).down_to("0 %")
+    row("quality.size_variation", "Spacing variation", "Spacing").unit("%").digits(1).down_to("0 %")
         .help("Standard deviation over mean of the distance between natural neighbours over the sum of their radii."),
-    row("quality.edge_cv", "Edge variation", "Spacing").unit("%").digits(1).down_to("0 %").unless("quality.size_cv")
+    row("quality.edge_variation", "Edge variation", "Spacing").unit("%").digits(1).down_to("0 %").unless("quality.size_variation")
         .help("Standard deviation of the distance between natural neighbours over its mean."),
-    row("quality.err_max", "Largest residual", "Accuracy").digits(6).down_to("0")
+    row("quality.error_max", "Largest residual", "Accuracy").digits(6).down_to("0")
         .help("Largest distance |f|/|∇f| from the surface over the spacing of a perfect lattice."),
-    row("quality.err_mean", "Mean residual", "Accuracy").digits(6).down_to("0")
+    row("quality.error_mean", "Mean residual", "Accuracy").digits(6).down_to("0")
         .help("Mean distance |f|/|∇f| from the surface over the spacing of a perfect lattice."),
     row("quality.area", "Area", "Surface").unit("units²").digits(3)
         .help("Area of the triangles of natural neighbours."),

@@ -90,7 +90,11 @@ impl Setting {
 
 /// A setting that is given where it has no effect, and the condition that does not hold.
 #[must_use]
-pub fn without_effect(given: &[&str], values: &Settings, solid: &SolidSettings) -> Option<(Setting, Condition)> {
+pub fn without_effect(
+    given: &[&str],
+    values: &Settings,
+    solid: &SolidSettings,
+) -> Option<(Setting, Condition)> {
     let choices = [
         ("sampling", SettingValue::from(values.sampling)),
         ("size_mode", values.size_mode.into()),

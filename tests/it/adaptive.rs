@@ -109,7 +109,7 @@ fn particles_cover_and_crowd_nothing() {
         assert!(hole <= 1.6, "{context}: a hole of {hole}");
         // The bound is the match tolerance plus rounding.
         assert!(closest(particles) >= 0.7 - 1e-4, "{context}: {}", closest(particles));
-        assert!(figures.accuracy.err_max <= 3e-4, "{context}");
+        assert!(figures.accuracy.error_max <= 3e-4, "{context}");
     }
 }
 
@@ -120,7 +120,7 @@ fn ten_steps_even_the_sizes_out() {
         let particles = sampler.particles();
         let figures = gallery_figures(surface, particles, Some(&particles.radius));
         let context = format!("{surface}, {} particles: {figures:?}", particles.len());
-        assert!(figures.edges.size_cv <= 0.12, "{context}");
+        assert!(figures.edges.size_variation <= 0.12, "{context}");
         assert!(largest_hole(particles) <= 1.6, "{context}: {}", largest_hole(particles));
         assert!(closest(particles) >= 0.6, "{context}: {}", closest(particles));
     }
@@ -138,7 +138,7 @@ fn the_bunny_is_even_after_ten_steps() {
     let particles = sampler.particles();
     let figures = figures(&field, &fit.bounds, particles, Some(&particles.radius));
     let context = format!("{} particles: {figures:?}", particles.len());
-    assert!(figures.edges.size_cv <= 0.12, "{context}");
+    assert!(figures.edges.size_variation <= 0.12, "{context}");
     assert!(figures.coverage.cover_local <= 1.6, "{context}");
     assert!(figures.edges.overlap_min >= 0.6, "{context}");
 }
@@ -176,8 +176,8 @@ fn equal_radii_give_a_lattice_as_the_uniform_front_does() {
         let [adaptive, uniform] = [&sampler, &uniform]
             .map(|s| gallery_figures(surface, s.particles(), Some(&s.particles().radius)));
         let context = format!("{surface}: {adaptive:?} {uniform:?}");
-        assert!(adaptive.order.six >= 0.85 && adaptive.edges.size_cv <= 0.11, "{context}");
-        assert!(adaptive.edges.size_cv <= uniform.edges.size_cv, "{context}");
+        assert!(adaptive.order.six_neighbours >= 0.85 && adaptive.edges.size_variation <= 0.11, "{context}");
+        assert!(adaptive.edges.size_variation <= uniform.edges.size_variation, "{context}");
     }
 }
 

@@ -59,13 +59,17 @@ fn gyroid_and_schwarz_surface_come_out_in_order() {
         assert_eq!((counts.refusal, counts.refined_levels), (None, Some(2)), "{id}");
         assert!((particles.len() as f64 / 20_000.0 - 1.0).abs() <= 0.01, "{id}: {}", particles.len());
         let f = figures(&field, &surface.bounds, particles, None);
-        assert!(f.order.six >= 0.96, "{id}: six {}", f.order.six);
-        assert!(f.angles.ang_min_mean >= 55.5, "{id}: mean smallest angle {}", f.angles.ang_min_mean);
+        assert!(f.order.six_neighbours >= 0.96, "{id}: six {}", f.order.six_neighbours);
         assert!(
-            f.angles.ang_min >= 36.0 && f.angles.gt90 <= 5e-4,
+            f.angles.mean_smallest_angle >= 55.5,
+            "{id}: mean smallest angle {}",
+            f.angles.mean_smallest_angle
+        );
+        assert!(
+            f.angles.smallest_angle >= 36.0 && f.angles.triangles_above_90 <= 5e-4,
             "{id}: angles {} {}",
-            f.angles.ang_min,
-            f.angles.gt90
+            f.angles.smallest_angle,
+            f.angles.triangles_above_90
         );
         assert!(
             f.spacing.rho >= 0.72 && f.coverage.cover <= 1.4,
@@ -73,7 +77,7 @@ fn gyroid_and_schwarz_surface_come_out_in_order() {
             f.spacing.rho,
             f.coverage.cover
         );
-        assert!(f.accuracy.err_max <= 1e-5, "{id}: residual {}", f.accuracy.err_max);
+        assert!(f.accuracy.error_max <= 1e-5, "{id}: residual {}", f.accuracy.error_max);
     }
 }
 
@@ -167,7 +171,7 @@ fn a_sliver_in_a_corner_of_the_box_is_on_the_surface() {
         let sampler = sampled(&field, &bounds, &settings, 10_000);
         assert_eq!(sampler.counts().refusal, None, "{count}");
         let found = figures(&field, &bounds, sampler.particles(), None);
-        assert!(found.accuracy.err_max <= 1e-3, "{count}: residual {}", found.accuracy.err_max);
+        assert!(found.accuracy.error_max <= 1e-3, "{count}: residual {}", found.accuracy.error_max);
     }
 }
 

@@ -65,7 +65,7 @@ fn a_lattice_without_a_defect_stands_and_its_count_is_told() {
     assert_eq!(rows.fract(), 0.0);
     assert!(has_count_warning(&sample));
     let quality = sample.report().measures.quality.as_ref().expect("figures");
-    assert_eq!(quality.order.six, 1.0);
+    assert_eq!(quality.order.six_neighbours, 1.0);
 }
 
 /// The search ends where no radius leads to the count, with the nearest that it has met.

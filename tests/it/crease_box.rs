@@ -120,7 +120,7 @@ fn check(sample: &Sample, bounds: &Bounds, euler: Option<i64>, what: &str) -> us
         [a, b].into_iter().for_each(|row| *ends.entry(row).or_default() += 1);
     }
     let figures = sample.report().measures.quality.as_ref().expect("figures");
-    assert!(figures.order.six > 0.93, "{what}: {}", figures.order.six);
+    assert!(figures.order.six_neighbours > 0.93, "{what}: {}", figures.order.six_neighbours);
     ends.into_iter().filter(|&(row, count)| count == 1 && faces_of(row).contains(&true)).count()
 }
 

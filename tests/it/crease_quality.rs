@@ -20,14 +20,14 @@ fn figures(name: &str, solid: Creased, euler: i64, flatness: f64) -> Measurement
     let told = format!("{name}, {} particles: {figures:?}", particles.count());
     let connectivity = figures.connectivity;
     assert_eq!((connectivity.components, connectivity.euler), (1, euler), "{told}");
-    assert_eq!(connectivity.tri_ok, 1.0, "{told}");
-    assert_eq!((figures.dup, figures.not_finite, figures.boundary_excluded), (0, 0, 0), "{told}");
+    assert_eq!(connectivity.triangle_share, 1.0, "{told}");
+    assert_eq!((figures.duplicates, figures.not_finite, figures.boundary_excluded), (0, 0, 0), "{told}");
     assert!((figures.area / known - 1.0).abs() < flatness, "{told}");
-    assert!(figures.accuracy.err_max < 1e-5 && figures.accuracy.nrm_max < 0.01, "{told}");
+    assert!(figures.accuracy.error_max < 1e-5 && figures.accuracy.normal_error_max < 0.01, "{told}");
     let spacing = (2.0 * figures.area / (3.0_f64.sqrt() * particles.count() as f64)).sqrt();
     assert!((figures.ideal_spacing / spacing - 1.0).abs() < 1e-12, "{told}");
     // No edge leads across a hole of a patch.
-    assert!(figures.edges.edge_cv < 0.4, "{told}");
+    assert!(figures.edges.edge_variation < 0.4, "{told}");
     // The nearest of all particles, of whatever patch.
     let once: Vec<usize> = (0..particles.len()).filter(|&i| particles.first_row(i) == i).collect();
     for i in 0..particles.len() {
@@ -53,7 +53,7 @@ fn edges_of_a_solid_are_no_defects() {
         let figures = figures(name, solid, 2, 1e-5).figures;
         // The lattice has six neighbours but beside the edges, and its holes there are less than a
         // particle wide.
-        assert!(figures.order.six > 0.6 && figures.order.open == 0, "{name}: {figures:?}");
+        assert!(figures.order.six_neighbours > 0.6 && figures.order.open == 0, "{name}: {figures:?}");
         assert!(figures.coverage.cover < 1.6, "{name}: {figures:?}");
     }
     let ell = [[0.0, 0.0], [2.0, 0.0], [2.0, 0.6], [0.7, 0.6], [0.7, 1.8], [0.0, 1.8]];

@@ -42,7 +42,7 @@ fn a_closure_is_sampled_as_evenly_as_the_formula_of_its_surface() {
         assert!(report.count.abs_diff(FEW as usize) <= 45, "{}", report.count);
         assert_eq!(report.warnings, []);
         assert_eq!((report.proof.components, sample.mesh().topology.euler()), (1, 2));
-        assert!(report.measures.quality.unwrap().order.six > 0.85);
+        assert!(report.measures.quality.unwrap().order.six_neighbours > 0.85);
         let off = sample.particles().local.iter().map(|p| (p.length() - 1.0).abs()).fold(0.0, f32::max);
         assert!(off < 1e-5, "{off}");
     }

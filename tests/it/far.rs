@@ -48,10 +48,10 @@ fn far_from_the_origin_the_figures_are_those_at_the_origin() {
                 |report: &Report| report.measures.quality.unwrap_or_else(|| panic!("{name}: no particles"));
             let (here, there) = (figures(&near), figures(&far));
             assert!(
-                there.accuracy.err_max < 1.2 * here.accuracy.err_max,
+                there.accuracy.error_max < 1.2 * here.accuracy.error_max,
                 "{name}: residual {} at the origin, {}",
-                here.accuracy.err_max,
-                there.accuracy.err_max
+                here.accuracy.error_max,
+                there.accuracy.error_max
             );
             // 0.4 %. Where a surface is refined, surgery ends one level before the last, and a
             // particle there stands for four: by the rounding of the field, the torus has two more
@@ -69,10 +69,10 @@ fn far_from_the_origin_the_figures_are_those_at_the_origin() {
             );
             assert_eq!((near.proof.search, far.proof.search), (Search::Proven, Search::Proven), "{name}");
             assert!(
-                (here.order.six - there.order.six).abs() < 0.01,
+                (here.order.six_neighbours - there.order.six_neighbours).abs() < 0.01,
                 "{name}: six {} {}",
-                here.order.six,
-                there.order.six
+                here.order.six_neighbours,
+                there.order.six_neighbours
             );
             let bounds = session.run.bounds();
             let is_inside = |p: DVec3| p.cmpge(bounds.lo()).all() && p.cmple(bounds.hi()).all();
@@ -234,7 +234,7 @@ fn a_session_leaves_a_far_box_as_it_came() {
     let report = run(&mut fitted, &settings);
     assert!(
         fitted.run.particles().origin != DVec3::ZERO
-            && report.measures.quality.expect("figures").accuracy.err_max < 1e-4
+            && report.measures.quality.expect("figures").accuracy.error_max < 1e-4
     );
     // Back at the origin, and far away again.
     let surface = FieldRequest { surface: Some("ellipsoid".into()), ..FieldRequest::default() };

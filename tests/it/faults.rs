@@ -553,7 +553,7 @@ fn what_single_precision_cannot_hold_is_sampled_in_double_precision() {
             report.count
         );
         let figures = report.measures.quality.expect("there are particles");
-        assert!(figures.coverage.cover < 1.6 && figures.accuracy.err_max < 1e-3, "{formula}: {figures:?}");
+        assert!(figures.coverage.cover < 1.6 && figures.accuracy.error_max < 1e-3, "{formula}: {figures:?}");
     }
     // From 4e8 to 4e8 - 12 there is no number in single precision.
     let (_, progress, _) = sampled("x^2+y^2+z^2-20000^2", 2.0, &coarse());

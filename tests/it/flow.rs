@@ -66,7 +66,7 @@ fn particles_stay_even_where_a_surface_falls_apart_and_joins() {
             let Coverage { cover, cover_local, .. } = figures.coverage;
             let hole = if sampling == Sampling::Uniform { cover } else { cover_local };
             assert!(hole < 1.9, "{of}: a hole of {hole}");
-            assert!(figures.accuracy.err_max < 1e-3, "{of}: off by {}", figures.accuracy.err_max);
+            assert!(figures.accuracy.error_max < 1e-3, "{of}: off by {}", figures.accuracy.error_max);
             let first = run.particles().identity.iter().filter(|&&number| number < 3_000).count();
             assert!(first > 1_000, "{of}: only {first} of the first particles are left");
         }
@@ -236,7 +236,7 @@ fn a_frame_that_is_cut_short_is_made_up_for_by_the_next() {
         }
         finish(&mut run, u32::MAX);
         let figures = run.report().measures.quality.expect("figures");
-        assert!(figures.accuracy.err_max < 1e-3, "{method:?}: off by {}", figures.accuracy.err_max);
+        assert!(figures.accuracy.error_max < 1e-3, "{method:?}: off by {}", figures.accuracy.error_max);
         assert_eq!(figures.connectivity.euler, 2, "{method:?}");
     }
 }
@@ -270,7 +270,11 @@ fn the_mesh_of_a_refined_run_moves_and_keeps_its_order() {
             "{of}: the mesh has a border"
         );
         let figures = run.report().measures.quality.expect("figures");
-        assert!(figures.order.six > 0.8, "{of}: {} have six neighbours", figures.order.six);
+        assert!(
+            figures.order.six_neighbours > 0.8,
+            "{of}: {} have six neighbours",
+            figures.order.six_neighbours
+        );
         let Coverage { cover, cover_local, .. } = figures.coverage;
         let hole = if sampling == Sampling::Uniform { cover } else { cover_local };
         assert!(hole < 1.5, "{of}: a hole of {hole}");
@@ -391,7 +395,7 @@ fn a_frame_that_has_not_ended_is_gone_on_from_whether_or_not_the_surface_moves_a
             .measures
             .quality
             .expect("figures");
-        assert!(figures.accuracy.err_max < 1e-4, "{next}: {}", figures.accuracy.err_max);
+        assert!(figures.accuracy.error_max < 1e-4, "{next}: {}", figures.accuracy.error_max);
     }
 }
 
@@ -408,5 +412,10 @@ fn without_births_and_deaths_the_same_particles_drift_apart_and_keep_more_of_the
     assert!(some.len() > all.len() && alive as f64 > 0.95 * f64::from(first), "{alive} of {first} are alive");
     let [open, closed] = [open, closed].map(|report| report.measures.quality.expect("figures"));
     assert!(open.coverage.cover < 1.5 && closed.coverage.cover > 4.0, "holes");
-    assert!(closed.order.six > open.order.six + 0.1, "{} and {}", closed.order.six, open.order.six);
+    assert!(
+        closed.order.six_neighbours > open.order.six_neighbours + 0.1,
+        "{} and {}",
+        closed.order.six_neighbours,
+        open.order.six_neighbours
+    );
 }

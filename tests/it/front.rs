@@ -114,9 +114,9 @@ fn a_front_covers_smooth_surfaces_regularly() {
         assert_eq!(figures.connectivity.euler, euler, "{context}");
         // A residual of 10⁻⁴ r is half of that in units of the spacing. Single precision adds its
         // rounding.
-        assert!(figures.accuracy.err_max <= 2.5e-4, "{context}");
+        assert!(figures.accuracy.error_max <= 2.5e-4, "{context}");
         // No two particles are closer than the match tolerance.
-        let closest = figures.spacing.nn_min * figures.ideal_spacing / (2.0 * sampler.radius());
+        let closest = figures.spacing.nearest_min * figures.ideal_spacing / (2.0 * sampler.radius());
         assert!(closest >= 0.7 * (1.0 - 1e-5), "{context}: closest pair {closest}");
     }
 }
@@ -129,8 +129,8 @@ fn most_particles_of_a_front_have_six_neighbours() {
         let sampler = of_gallery(surface, &settings);
         let figures = gallery_figures(surface, sampler.particles(), None);
         let context = format!("{surface}, {} particles, seed 0: {figures:?}", sampler.particles().len());
-        assert!(figures.order.six >= six, "{context}");
-        assert!(figures.angles.ang_min_mean >= angle, "{context}");
+        assert!(figures.order.six_neighbours >= six, "{context}");
+        assert!(figures.angles.mean_smallest_angle >= angle, "{context}");
     }
 }
 

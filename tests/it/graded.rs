@@ -39,11 +39,15 @@ fn sizes_that_differ_come_out_in_order() {
         assert_eq!(counts.refusal, None, "{id}");
         assert!(counts.refined_levels.is_some_and(|levels| levels > 0), "{id}");
         assert_rings(sampler.particles());
-        assert!(f.order.six >= six, "{id}: six {}", f.order.six);
-        assert!(f.angles.ang_min_mean >= mean, "{id}: mean smallest angle {}", f.angles.ang_min_mean);
-        assert!(f.angles.ang_min >= smallest, "{id}: smallest angle {}", f.angles.ang_min);
-        assert!(f.edges.size_cv <= spread, "{id}: size_cv {}", f.edges.size_cv);
-        assert!(f.accuracy.err_max <= 1e-4, "{id}: residual {}", f.accuracy.err_max);
+        assert!(f.order.six_neighbours >= six, "{id}: six {}", f.order.six_neighbours);
+        assert!(
+            f.angles.mean_smallest_angle >= mean,
+            "{id}: mean smallest angle {}",
+            f.angles.mean_smallest_angle
+        );
+        assert!(f.angles.smallest_angle >= smallest, "{id}: smallest angle {}", f.angles.smallest_angle);
+        assert!(f.edges.size_variation <= spread, "{id}: size_variation {}", f.edges.size_variation);
+        assert!(f.accuracy.error_max <= 1e-4, "{id}: residual {}", f.accuracy.error_max);
     }
 }
 

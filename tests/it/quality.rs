@@ -131,27 +131,27 @@ fn hexagonal_lattice_is_perfect_in_every_figure() {
     close("uncovered", f.coverage.uncovered, 1.0 - core::f64::consts::PI / 12.0_f64.sqrt(), 3e-3);
     close("ideal_spacing", f.ideal_spacing, scale, 1e-9);
     close("area", f.area, cell * points.len() as f64, 1e-9);
-    close("err_max", f.accuracy.err_max, 0.0, 0.0);
-    close("nn_min", f.spacing.nn_min, 1.0, 1e-4);
-    close("rho", f.spacing.rho, f.spacing.nn_min, 0.0);
+    close("error_max", f.accuracy.error_max, 0.0, 0.0);
+    close("nearest_min", f.spacing.nearest_min, 1.0, 1e-4);
+    close("rho", f.spacing.rho, f.spacing.nearest_min, 0.0);
     close("nearest_percentile_1", f.spacing.nearest_percentile_1, 1.0, 1e-4);
-    close("nn_mean", f.spacing.nn_mean, 1.0, 1e-4);
+    close("nearest_mean", f.spacing.nearest_mean, 1.0, 1e-4);
     close("spacing_variation", f.spacing.spacing_variation, 0.0, 1e-4);
-    close("nn_ratio", f.spacing.nn_ratio, 1.0, 1e-4);
+    close("nearest_ratio", f.spacing.nearest_ratio, 1.0, 1e-4);
     close("cover", f.coverage.cover, 1.0, 1e-4);
-    close("quant", f.coverage.quant, 1.0, 3e-3);
-    close("six", f.order.six, 1.0, 0.0);
-    close("five_seven", f.order.five_seven, 0.0, 0.0);
-    close("val_sd", f.order.val_sd, 0.0, 0.0);
-    close("psi6", f.order.psi6, 1.0, 1e-4);
-    close("tri_ok", f.connectivity.tri_ok, 1.0, 0.0);
-    close("ang_min", f.angles.ang_min, 60.0, 1e-2);
-    close("ang_min_mean", f.angles.ang_min_mean, 60.0, 1e-2);
-    close("lt30", f.angles.lt30, 0.0, 0.0);
-    close("gt90", f.angles.gt90, 0.0, 0.0);
-    close("edge_cv", f.edges.edge_cv, 0.0, 1e-4);
-    close("nrm_max", f.accuracy.nrm_max, 0.0, 0.0);
-    assert_eq!((f.order.open, f.dup, f.accuracy.undefined, f.not_finite), (0, 0, 0, 0));
+    close("quantization_error", f.coverage.quantization_error, 1.0, 3e-3);
+    close("six", f.order.six_neighbours, 1.0, 0.0);
+    close("five_or_seven_neighbours", f.order.five_or_seven_neighbours, 0.0, 0.0);
+    close("valence_deviation", f.order.valence_deviation, 0.0, 0.0);
+    close("bond_order", f.order.bond_order, 1.0, 1e-4);
+    close("triangle_share", f.connectivity.triangle_share, 1.0, 0.0);
+    close("smallest_angle", f.angles.smallest_angle, 60.0, 1e-2);
+    close("mean_smallest_angle", f.angles.mean_smallest_angle, 60.0, 1e-2);
+    close("triangles_below_30", f.angles.triangles_below_30, 0.0, 0.0);
+    close("triangles_above_90", f.angles.triangles_above_90, 0.0, 0.0);
+    close("edge_variation", f.edges.edge_variation, 0.0, 1e-4);
+    close("normal_error_max", f.accuracy.normal_error_max, 0.0, 0.0);
+    assert_eq!((f.order.open, f.duplicates, f.accuracy.undefined, f.not_finite), (0, 0, 0, 0));
     assert_eq!((f.connectivity.euler, f.connectivity.components), (1, 1), "a disc");
     let inside = |p: &Vec3| f64::from(p.x.abs().max(p.y.abs())) < half - 4.0 * scale;
     let excluded = points.iter().filter(|p| !inside(p)).count() as f64;
@@ -172,16 +172,16 @@ fn square_lattice_has_valence_four_and_half_right_angles() {
     let f = report.figures;
     println!("{f:#?}");
     let ideal_spacing = (2.0 / 3.0_f64.sqrt()).sqrt();
-    close("nn_min", f.spacing.nn_min, 1.0 / ideal_spacing, 1e-9);
-    close("six", f.order.six, 0.0, 0.0);
-    close("val_sd", f.order.val_sd, 0.0, 0.0);
+    close("nearest_min", f.spacing.nearest_min, 1.0 / ideal_spacing, 1e-9);
+    close("six", f.order.six_neighbours, 0.0, 0.0);
+    close("valence_deviation", f.order.valence_deviation, 0.0, 0.0);
     let centre = points.iter().position(|&p| p == Vec3::ZERO).expect("the origin is a lattice point");
     assert_eq!(report.valence[centre], 4);
     // exp(6iθ) of the four neighbours is 1, −1, 1, −1.
-    close("psi6", f.order.psi6, 0.0, 1e-9);
+    close("bond_order", f.order.bond_order, 0.0, 1e-9);
     // A diagonal of each square makes two triangles, whichever it is.
-    close("ang_min", f.angles.ang_min, 45.0, 1e-9);
-    close("ang_min_mean", f.angles.ang_min_mean, 45.0, 1e-9);
+    close("smallest_angle", f.angles.smallest_angle, 45.0, 1e-9);
+    close("mean_smallest_angle", f.angles.mean_smallest_angle, 45.0, 1e-9);
 }
 
 #[test]
@@ -193,16 +193,21 @@ fn nearly_square_lattice_has_the_figures_of_the_square() {
     let f = measure(&points, &[], &plane(), Some(&bounds), &options).figures;
     println!("{f:#?}");
     let ideal_spacing = (2.0 / 3.0_f64.sqrt()).sqrt();
-    close("six", f.order.six, 1.0, 0.0);
-    close("ang_min", f.angles.ang_min, 45.0, 1.0);
-    close("gt90", f.angles.gt90, 0.0, 0.0);
-    close("tri_ok", f.connectivity.tri_ok, 1.0, 0.0);
+    close("six", f.order.six_neighbours, 1.0, 0.0);
+    close("smallest_angle", f.angles.smallest_angle, 45.0, 1.0);
+    close("triangles_above_90", f.angles.triangles_above_90, 0.0, 0.0);
+    close("triangle_share", f.connectivity.triangle_share, 1.0, 0.0);
     // The circumradius of a triangle of area 1/2 is half the product of its sides.
     let circumradius = 0.5 * (1.0_f64 + 0.02 * 0.02).sqrt() * (1.0_f64 + 0.98 * 0.98).sqrt();
     close("cover", f.coverage.cover, circumradius / (ideal_spacing / 3.0_f64.sqrt()), 1e-4);
     // The mean squared distance to the centre of a unit square is 1/6. The measured region cuts
     // through a row of cells.
-    close("quant", f.coverage.quant, (1.0 / 6.0) / (5.0 / (18.0 * 3.0_f64.sqrt())), 0.01);
+    close(
+        "quantization_error",
+        f.coverage.quantization_error,
+        (1.0 / 6.0) / (5.0 / (18.0 * 3.0_f64.sqrt())),
+        0.01,
+    );
 }
 
 #[test]
@@ -221,9 +226,9 @@ fn jittered_lattice_has_the_known_mean_angle() {
         let options = with_area(points.len(), scale * scale * HEXAGONAL[1]);
         let f = measure(&points, &[], &plane(), Some(&bounds), &options).figures;
         println!("jitter {jitter}: {f:#?}");
-        close("ang_min_mean", f.angles.ang_min_mean, angle, 0.15);
+        close("mean_smallest_angle", f.angles.mean_smallest_angle, angle, 0.15);
         // The length of an edge varies by √2 times the jitter.
-        close("edge_cv", f.edges.edge_cv, jitter * 2.0_f64.sqrt(), 0.12 * jitter);
+        close("edge_variation", f.edges.edge_variation, jitter * 2.0_f64.sqrt(), 0.12 * jitter);
     }
 }
 
@@ -236,28 +241,32 @@ fn fibonacci_sphere_is_a_closed_manifold() {
     let f = report.figures;
     println!("{f:#?}");
     assert_eq!((f.connectivity.euler, f.connectivity.components), (2, 1));
-    close("tri_ok", f.connectivity.tri_ok, 1.0, 2e-3);
+    close("triangle_share", f.connectivity.triangle_share, 1.0, 2e-3);
     close("agree", f.connectivity.agree, 1.0, 3e-3);
     assert_eq!((f.order.open, f.boundary_excluded), (0, 0));
     // On a closed triangulation Σ (6 − valence) = 6χ. Near the poles four points are almost
     // cocircular; where both diagonals are accepted, there are two neighbours and two triangles too
     // many.
     let defect: i32 = report.valence.iter().map(|&v| 6 - i32::from(v)).sum();
-    let surplus = (f.connectivity.tri_ok - 1.0) * (2 * n - 4) as f64;
+    let surplus = (f.connectivity.triangle_share - 1.0) * (2 * n - 4) as f64;
     close("defect", f64::from(defect), 12.0 - surplus, 1e-6);
     // Rounding to single precision moves the points off the sphere.
     assert!(
-        f.accuracy.err_max * f.ideal_spacing < 2e-7 && f.accuracy.err_max > 0.0,
-        "err_max = {}",
-        f.accuracy.err_max
+        f.accuracy.error_max * f.ideal_spacing < 2e-7 && f.accuracy.error_max > 0.0,
+        "error_max = {}",
+        f.accuracy.error_max
     );
-    assert!(f.accuracy.nrm_max < 1e-4, "nrm_max = {}", f.accuracy.nrm_max);
+    assert!(f.accuracy.normal_error_max < 1e-4, "normal_error_max = {}", f.accuracy.normal_error_max);
     // The flat triangles have a little less area than the sphere.
     let flat = measure(&points, &points, &sphere(), None, &MeasureOptions::default()).figures;
     let missing = 1.0 - flat.area / SPHERE_AREA;
     assert!(missing > 0.0 && missing < 8.0 / n as f64, "missing {missing} of the area");
     assert!(f.coverage.cover > 1.0 && f.coverage.cover < 1.4, "cover = {}", f.coverage.cover);
-    assert!(f.coverage.quant > 1.0 && f.coverage.quant < 1.1, "quant = {}", f.coverage.quant);
+    assert!(
+        f.coverage.quantization_error > 1.0 && f.coverage.quantization_error < 1.1,
+        "quantization_error = {}",
+        f.coverage.quantization_error
+    );
 }
 
 #[test]
@@ -275,9 +284,9 @@ fn torus_lattice_has_euler_number_zero() {
     let f = measure(&points, &[], &torus(), None, &MeasureOptions::default()).figures;
     println!("{f:#?}");
     assert_eq!((f.connectivity.euler, f.connectivity.components, f.order.open), (0, 1, 0));
-    close("tri_ok", f.connectivity.tri_ok, 1.0, 0.0);
+    close("triangle_share", f.connectivity.triangle_share, 1.0, 0.0);
     close("area", f.area, 2.0 * core::f64::consts::PI.powi(2), 0.05);
-    assert!(f.accuracy.nrm_mean.is_nan(), "no normals were given");
+    assert!(f.accuracy.normal_error_mean.is_nan(), "no normals were given");
 }
 
 #[test]
@@ -288,16 +297,16 @@ fn white_noise_has_its_known_figures() {
     let options = MeasureOptions { area: Some(SPHERE_AREA), ..MeasureOptions::default() };
     let f = measure(&points, &points, &sphere(), None, &options).figures;
     println!("{f:#?}");
-    close("six", f.order.six, 0.295, 0.008);
-    close("quant", f.coverage.quant, 1.985, 0.03);
-    close("nn_mean", f.spacing.nn_mean, 0.465, 0.005);
+    close("six", f.order.six_neighbours, 0.295, 0.008);
+    close("quantization_error", f.coverage.quantization_error, 1.985, 0.03);
+    close("nearest_mean", f.spacing.nearest_mean, 0.465, 0.005);
     // The nearest-neighbour distance of a Poisson process is Rayleigh distributed.
     close("spacing_variation", f.spacing.spacing_variation, (4.0 / core::f64::consts::PI - 1.0).sqrt(), 0.01);
     assert!(f.spacing.rho < 0.02, "rho = {}", f.spacing.rho);
     // The cumulative distribution of the distances is 1 − exp(−π N x²/A).
     let first = (-(1.0_f64 - 0.01).ln() * 3.0_f64.sqrt() / 2.0 / core::f64::consts::PI).sqrt();
     close("nearest_percentile_1", f.spacing.nearest_percentile_1, first, 0.1 * first);
-    close("tri_ok", f.connectivity.tri_ok, 1.0, 0.01);
+    close("triangle_share", f.connectivity.triangle_share, 1.0, 0.01);
     assert_eq!(f.order.open, 0);
 }
 
@@ -314,7 +323,7 @@ fn hole_is_measured_as_a_hole() {
     assert!(gap >= f64::from(radius) && gap < f64::from(radius) + whole.ideal_spacing, "{gap} for {radius}");
     // The triangulation bridges the hole, so the sphere stays closed.
     assert_eq!((f.connectivity.euler, f.order.open), (2, 0));
-    assert!(f.angles.gt90 > whole.angles.gt90);
+    assert!(f.angles.triangles_above_90 > whole.angles.triangles_above_90);
 }
 
 #[test]
@@ -333,7 +342,7 @@ fn missed_component_and_missed_half_are_holes_too() {
     let hole = f.coverage.cover * f.ideal_spacing / 3.0_f64.sqrt();
     close("hole", hole, 4.0, 0.05);
     // Half of the area has the mean squared distance to the first sphere.
-    let mean_sq = f.coverage.quant * 5.0 / (18.0 * 3.0_f64.sqrt()) * f.area / 2000.0;
+    let mean_sq = f.coverage.quantization_error * 5.0 / (18.0 * 3.0_f64.sqrt()) * f.area / 2000.0;
     assert!(mean_sq > 0.5 * 4.0 && mean_sq < 0.5 * 16.0, "mean square {mean_sq}");
     // On half a sphere, the far pole is at the distance √2 from the equator.
     let half: Vec<Vec3> = points.into_iter().filter(|p| p.z > 0.0).collect();
@@ -358,8 +367,8 @@ fn two_sheets_are_triangulated_apart_but_spaced_together() {
     let options = with_area(points.len(), scale * scale * HEXAGONAL[1]);
     let f = measure(&points, &[], &slab, Some(&bounds), &options).figures;
     println!("{f:#?}");
-    close("six", f.order.six, 1.0, 0.0);
-    close("nn_mean", f.spacing.nn_mean, 0.5, 1e-4);
+    close("six", f.order.six_neighbours, 1.0, 0.0);
+    close("nearest_mean", f.spacing.nearest_mean, 0.5, 1e-4);
     assert_eq!((f.connectivity.components, f.connectivity.euler), (2, 2));
 }
 
@@ -375,12 +384,12 @@ fn known_displacement_is_the_residual_and_tilted_normals_are_seen() {
     let options = with_area(points.len(), scale * scale * HEXAGONAL[1]);
     let report = measure(&points, &normals, &plane(), Some(&bounds), &options);
     let f = report.figures;
-    close("err_max", f.accuracy.err_max, 0.01, 1e-8);
-    close("err_mean", f.accuracy.err_mean, 0.005, 1e-5);
+    close("error_max", f.accuracy.error_max, 0.01, 1e-8);
+    close("error_mean", f.accuracy.error_mean, 0.005, 1e-5);
     close("residual", f64::from(report.residual[1]), 0.01 * scale, 1e-9);
     // The sign of the normal does not matter.
-    close("nrm_mean", f.accuracy.nrm_mean, 5.0, 1e-4);
-    close("nrm_max", f.accuracy.nrm_max, 5.0, 1e-4);
+    close("normal_error_mean", f.accuracy.normal_error_mean, 5.0, 1e-4);
+    close("normal_error_max", f.accuracy.normal_error_max, 5.0, 1e-4);
 }
 
 #[test]
@@ -403,10 +412,10 @@ fn touching_the_box_from_inside_is_no_border_and_crossing_it_is() {
     let zone = core::f64::consts::TAU * (0.5 - (60.0_f64.to_radians() + arc).cos());
     let wanted = zone / area * points.len() as f64;
     close("boundary_excluded", f.boundary_excluded as f64, wanted, 0.03 * wanted);
-    close("tri_ok", f.connectivity.tri_ok, 1.0, 1e-3);
+    close("triangle_share", f.connectivity.triangle_share, 1.0, 1e-3);
     assert_eq!((f.order.open, f.connectivity.euler), (0, 1));
     assert!(f.coverage.cover < 1.4, "cover = {}", f.coverage.cover);
-    assert!(f.angles.ang_min > 25.0, "ang_min = {}", f.angles.ang_min);
+    assert!(f.angles.smallest_angle > 25.0, "smallest_angle = {}", f.angles.smallest_angle);
 }
 
 #[test]
@@ -415,7 +424,7 @@ fn edges_are_compared_with_the_wanted_radii() {
     let (points, bounds) = lattice(HEXAGONAL, scale, 1.0);
     let measured = |radii: Option<&[f32]>| {
         let options = MeasureOptions { radii, ..with_area(points.len(), scale * scale * HEXAGONAL[1]) };
-        measure(&points, &[], &plane(), Some(&bounds), &options).figures.edges.size_cv
+        measure(&points, &[], &plane(), Some(&bounds), &options).figures.edges.size_variation
     };
     let equal = vec![0.5 * scale as f32; points.len()];
     close("equal radii", measured(Some(&equal)), 0.0, 1e-4);
@@ -428,7 +437,7 @@ fn edges_are_compared_with_the_wanted_radii() {
     let points = fibonacci(2000);
     let options = MeasureOptions { radii: Some(&[1.0; 2000]), ..MeasureOptions::default() };
     let f = measure(&points, &[], &sphere(), None, &options).figures;
-    close("size_cv", f.edges.size_cv, f.edges.edge_cv, 1e-6);
+    close("size_variation", f.edges.size_variation, f.edges.edge_variation, 1e-6);
 }
 
 /// Conformal image, under exp, of a hexagonal lattice: the spacing is proportional to the distance
@@ -469,17 +478,17 @@ fn smoothly_growing_particles_are_measured_against_their_own_size() {
     });
     let mean = ratios.iter().sum::<f64>() / 3.0;
     let variation = (ratios.iter().map(|r| (r - mean) * (r - mean)).sum::<f64>() / 3.0).sqrt() / mean;
-    close("size_cv", f.edges.size_cv, variation, 1e-5);
+    close("size_variation", f.edges.size_variation, variation, 1e-5);
     close("overlap_min", f.edges.overlap_min, ratios.into_iter().fold(1.0, f64::min), 1e-4);
     // The cells fill the square, except for those that its edge cuts.
     close("cover_local", f.coverage.cover_local, 1.0, 0.03);
     assert!(
-        f.edges.edge_cv > 0.1 && f.coverage.cover > 1.2,
+        f.edges.edge_variation > 0.1 && f.coverage.cover > 1.2,
         "the sizes differ: {} {}",
-        f.edges.edge_cv,
+        f.edges.edge_variation,
         f.coverage.cover
     );
-    assert_eq!(f.order.six, 1.0);
+    assert_eq!(f.order.six_neighbours, 1.0);
 }
 
 #[test]
@@ -521,7 +530,7 @@ fn equal_radii_make_the_local_hole_the_hole() {
     let options = MeasureOptions { radii: Some(&radii), ..MeasureOptions::default() };
     let f = measure(&points, &[], &sphere(), Some(&Bounds::cube(1.5)), &options).figures;
     close("cover_local", f.coverage.cover_local, f.coverage.cover, 1e-5);
-    close("overlap_min", f.edges.overlap_min, f.spacing.nn_min * f.ideal_spacing / 1.4, 1e-5);
+    close("overlap_min", f.edges.overlap_min, f.spacing.nearest_min * f.ideal_spacing / 1.4, 1e-5);
     let f = measure(&points, &[], &sphere(), None, &MeasureOptions::default()).figures;
     assert!(f.coverage.cover_local.is_nan() && f.edges.overlap_min.is_nan());
 }
@@ -534,7 +543,7 @@ fn duplicates_are_counted_and_do_not_break_the_triangulation() {
     doubled.extend([points[17], points[17], points[3]]);
     let report = measure(&doubled, &doubled, &sphere(), None, &MeasureOptions::default());
     let f = report.figures;
-    assert_eq!((f.dup, f.connectivity.euler), (3, 2));
+    assert_eq!((f.duplicates, f.connectivity.euler), (3, 2));
     close("rho", f.spacing.rho, 0.0, 0.0);
     assert_eq!((report.nearest[17], report.nearest[500]), (0.0, 0.0));
     assert_eq!(report.valence[500], 0);
@@ -659,13 +668,15 @@ fn degenerate(points: &[Vec3], normals: &[Vec3]) -> Measurements {
 fn degenerate_input_gives_undefined_figures_and_no_panic() {
     assert!(degenerate(&[], &[]).figures.ideal_spacing.is_nan());
     let one = degenerate(&[Vec3::X], &[]);
-    assert!(one.figures.spacing.nn_min.is_nan() && one.nearest[0] == f32::INFINITY && one.valence[0] == 0);
+    assert!(
+        one.figures.spacing.nearest_min.is_nan() && one.nearest[0] == f32::INFINITY && one.valence[0] == 0
+    );
     let two = degenerate(&[Vec3::X, Vec3::Y], &[Vec3::NAN, Vec3::ZERO]);
     assert_eq!(two.nearest, [2.0_f32.sqrt(); 2]);
-    assert!(two.figures.angles.ang_min.is_nan());
+    assert!(two.figures.angles.smallest_angle.is_nan());
     degenerate(&[Vec3::ZERO, Vec3::ZERO], &[Vec3::NAN]);
     let same = degenerate(&vec![Vec3::X; 5000], &[]);
-    assert_eq!(same.figures.dup, 4999);
+    assert_eq!(same.figures.duplicates, 4999);
     let bad = degenerate(&[Vec3::X, Vec3::NAN, Vec3::Y, Vec3::INFINITY, Vec3::MAX, Vec3::Z], &[]);
     assert_eq!(bad.figures.not_finite, 2);
     // A row, a plane through the sphere and a solid cube do not sample the surface.
@@ -688,7 +699,7 @@ fn undefined_field_is_counted_and_given_normals_take_its_place() {
     let nowhere = Analytic(|_| Jet { value: f64::NAN, gradient: DVec3::NAN, ..Jet::default() });
     let f = measure(&points, &points, &nowhere, None, &MeasureOptions::default()).figures;
     assert_eq!(f.accuracy.undefined, 400);
-    assert!(f.accuracy.err_max.is_nan());
+    assert!(f.accuracy.error_max.is_nan());
     assert_eq!((f.connectivity.euler, f.connectivity.components), (2, 1));
 }
 
@@ -716,7 +727,7 @@ fn order_of_the_points_does_not_matter() {
     other.nearest.reverse();
     assert_eq!(one.valence, other.valence);
     assert_eq!(one.nearest, other.nearest);
-    close("six", one.figures.order.six, other.figures.order.six, 0.0);
+    close("six", one.figures.order.six_neighbours, other.figures.order.six_neighbours, 0.0);
     close("cover", one.figures.coverage.cover, other.figures.coverage.cover, 1e-4);
 }
 
@@ -726,7 +737,7 @@ fn histogram_counts_every_particle_once() {
     let report = measure(&points, &[], &sphere(), None, &MeasureOptions::default());
     let h = &report.histogram;
     assert_eq!(h.bins.iter().sum::<u32>(), 1000);
-    let bin = (report.figures.spacing.nn_mean - h.min) / (h.max - h.min) * h.bins.len() as f64;
+    let bin = (report.figures.spacing.nearest_mean - h.min) / (h.max - h.min) * h.bins.len() as f64;
     let near: u32 = h.bins[bin as usize - 8..bin as usize + 9].iter().sum();
     assert!(near > 900, "{near} of 1000 near the mean");
 }
@@ -744,10 +755,10 @@ fn icosahedron_has_five_neighbours_everywhere() {
     let f = report.figures;
     assert_eq!(report.valence, [5; 12]);
     assert_eq!((f.connectivity.euler, f.connectivity.components, f.order.open), (2, 1, 0));
-    close("tri_ok", f.connectivity.tri_ok, 1.0, 0.0);
-    close("ang_min", f.angles.ang_min, 60.0, 1e-4);
-    close("five_seven", f.order.five_seven, 1.0, 0.0);
-    close("edge_cv", f.edges.edge_cv, 0.0, 1e-6);
+    close("triangle_share", f.connectivity.triangle_share, 1.0, 0.0);
+    close("smallest_angle", f.angles.smallest_angle, 60.0, 1e-4);
+    close("five_or_seven_neighbours", f.order.five_or_seven_neighbours, 1.0, 0.0);
+    close("edge_variation", f.edges.edge_variation, 0.0, 1e-6);
     // |mean of exp(6i·72°k)| over five directions is 0.
-    close("psi6", f.order.psi6, 0.0, 1e-5);
+    close("bond_order", f.order.bond_order, 0.0, 1e-5);
 }

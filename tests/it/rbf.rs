@@ -299,7 +299,7 @@ fn the_models_have_one_closed_component_and_the_joined_ears_a_handle() {
         assert_eq!(report.stop_reason, Some(StopReason::Complete), "{id}");
         assert_eq!((quality.connectivity.euler, quality.connectivity.components), (euler, 1), "{id}");
         assert_eq!(quality.boundary_excluded, 0, "{id}: the surface leaves its box");
-        assert!(quality.order.six > 0.75 && quality.coverage.cover < 1.45, "{id}: {quality:?}");
+        assert!(quality.order.six_neighbours > 0.75 && quality.coverage.cover < 1.45, "{id}: {quality:?}");
     }
 }
 
@@ -476,5 +476,5 @@ fn the_particles_of_a_model_follow_a_pull_and_come_back() {
     assert!((0.95..1.1).contains(&off), "{off} times as many");
     let figures = after.measures.quality.expect("figures");
     assert!(figures.coverage.cover < 1.5, "a hole of {}", figures.coverage.cover);
-    assert!(figures.accuracy.err_max < 1e-3, "off by {}", figures.accuracy.err_max);
+    assert!(figures.accuracy.error_max < 1e-3, "off by {}", figures.accuracy.error_max);
 }

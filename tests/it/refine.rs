@@ -49,12 +49,16 @@ fn closed_surfaces_come_out_in_order() {
         assert!((share - 1.0).abs() <= 0.01, "{id}: {} particles of {count}", particles.len());
         assert_rings(particles);
         let f = figures(&field, &surface.bounds, particles, None);
-        assert!(f.order.six >= six, "{id}: six {}", f.order.six);
-        assert!(f.angles.ang_min_mean >= mean, "{id}: mean smallest angle {}", f.angles.ang_min_mean);
-        assert!(f.angles.ang_min >= smallest, "{id}: smallest angle {}", f.angles.ang_min);
+        assert!(f.order.six_neighbours >= six, "{id}: six {}", f.order.six_neighbours);
+        assert!(
+            f.angles.mean_smallest_angle >= mean,
+            "{id}: mean smallest angle {}",
+            f.angles.mean_smallest_angle
+        );
+        assert!(f.angles.smallest_angle >= smallest, "{id}: smallest angle {}", f.angles.smallest_angle);
         assert!(f.spacing.rho >= rho, "{id}: closest pair {}", f.spacing.rho);
         assert!(f.coverage.cover <= 1.3, "{id}: cover {}", f.coverage.cover);
-        assert!(f.accuracy.err_max <= 1e-4, "{id}: residual {}", f.accuracy.err_max);
+        assert!(f.accuracy.error_max <= 1e-4, "{id}: residual {}", f.accuracy.error_max);
         let genus = i64::from(surface.genus.expect("a closed surface has a genus"));
         assert_eq!(f.connectivity.euler, 2 - 2 * genus, "{id}");
     }
@@ -104,10 +108,10 @@ fn what_is_cancelled_keeps_the_last_whole_level() {
         // agree everywhere.
         let close = if particles.len() > 300 { 0.0 } else { 0.03 };
         assert!(
-            (f.connectivity.tri_ok - 1.0).abs() <= close,
+            (f.connectivity.triangle_share - 1.0).abs() <= close,
             "{} particles after {steps} steps: {}",
             particles.len(),
-            f.connectivity.tri_ok
+            f.connectivity.triangle_share
         );
         seen.push(particles.len());
     }
@@ -168,7 +172,7 @@ fn each_component_is_refined_as_often_as_it_allows() {
         assert!((all / f64::from(count) - 1.0).abs() <= 0.01, "{} of {count}", particles.len());
         let f = figures(&field, &bounds, particles, None);
         assert_eq!(f.connectivity.euler, 4, "{count}: {counts:?}");
-        assert!(f.order.six >= six, "{count}: six {}", f.order.six);
+        assert!(f.order.six_neighbours >= six, "{count}: six {}", f.order.six_neighbours);
         let share = on_small_sphere(particles) as f64 / all;
         assert!((0.0135..0.0150).contains(&share), "{count}: a share of {share} on the small sphere");
     }
@@ -252,7 +256,7 @@ fn levels_are_told_and_handed_on_from_the_coarse_one_on_and_a_cancel_keeps_the_l
     sampler.step(&field, 0);
     assert_eq!(sampler.particles().len(), first);
     let f = figures(&field, &surface.bounds, sampler.particles(), None);
-    assert!(f.angles.ang_min > 20.0, "the coarse level is in order: {}°", f.angles.ang_min);
+    assert!(f.angles.smallest_angle > 20.0, "the coarse level is in order: {}°", f.angles.smallest_angle);
 }
 
 #[test]
@@ -309,9 +313,13 @@ fn surfaces_that_bend_more_are_refined_once() {
         let counts = sampler.counts();
         assert_eq!((counts.refined_levels, counts.refusal), (Some(1), None), "{id}");
         let f = figures(&field, &surface.bounds, sampler.particles(), None);
-        assert!(f.order.six >= six, "{id}: six {}", f.order.six);
-        assert!(f.angles.ang_min_mean >= mean, "{id}: mean smallest angle {}", f.angles.ang_min_mean);
-        assert!(f.angles.ang_min >= 35.0 && f.angles.gt90 <= 1.5e-4, "{id}: {f:?}");
+        assert!(f.order.six_neighbours >= six, "{id}: six {}", f.order.six_neighbours);
+        assert!(
+            f.angles.mean_smallest_angle >= mean,
+            "{id}: mean smallest angle {}",
+            f.angles.mean_smallest_angle
+        );
+        assert!(f.angles.smallest_angle >= 35.0 && f.angles.triangles_above_90 <= 1.5e-4, "{id}: {f:?}");
         assert!(f.spacing.rho >= 0.7 && f.coverage.cover <= 1.3, "{id}: {f:?}");
         if let Some(genus) = surface.genus {
             assert_eq!(f.connectivity.euler, 2 - 2 * i64::from(genus), "{id}");
@@ -332,8 +340,13 @@ fn a_surface_that_bends_too_much_for_a_coarse_front_is_healed_at_full_resolution
         assert!(sampler.particles().len().abs_diff(4_000) <= 40, "{id}: {}", sampler.particles().len());
         let [before, f] =
             [&front, &sampler].map(|s| figures(&field.clone(), &surface.bounds, s.particles(), None));
-        assert!(f.order.six >= before.order.six + 0.04, "{id}: six {} {}", before.order.six, f.order.six);
-        assert!(f.angles.ang_min_mean >= before.angles.ang_min_mean + 2.0, "{id}: {f:?}");
+        assert!(
+            f.order.six_neighbours >= before.order.six_neighbours + 0.04,
+            "{id}: six {} {}",
+            before.order.six_neighbours,
+            f.order.six_neighbours
+        );
+        assert!(f.angles.mean_smallest_angle >= before.angles.mean_smallest_angle + 2.0, "{id}: {f:?}");
         assert!(f.spacing.rho > before.spacing.rho, "{id}: pair {} {}", before.spacing.rho, f.spacing.rho);
         // In half of the runs the largest hole is wider than that of the front.
         assert!(f.coverage.cover < 1.4, "{id}: hole {} {}", before.coverage.cover, f.coverage.cover);

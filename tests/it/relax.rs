@@ -156,8 +156,8 @@ fn holes_and_crowded_pairs_shrink() {
         assert!(is.coverage.cover < was.coverage.cover, "{context}");
         assert!(is.coverage.cover <= 1.45, "{context}");
         assert!(is.spacing.nearest_percentile_1 > was.spacing.nearest_percentile_1, "{context}");
-        assert!(is.angles.gt90 < was.angles.gt90, "{context}");
-        assert!(is.edges.edge_cv < was.edges.edge_cv, "{context}");
+        assert!(is.angles.triangles_above_90 < was.angles.triangles_above_90, "{context}");
+        assert!(is.edges.edge_variation < was.edges.edge_variation, "{context}");
         assert_eq!((is.connectivity.euler, is.order.open), (euler, 0), "{context}");
         assert_eq!(before.len(), sampler.particles().len());
     }

@@ -49,7 +49,7 @@ fn a_solid_is_closed_where_an_edge_of_it_fades_out() {
             let found = sample.volume().expect("a closed mesh");
             assert!((found / exact - 1.0).abs() < 0.01, "{what}: volume {found} for {exact}");
             let accuracy = &sample.report().measures.quality.as_ref().expect("figures").accuracy;
-            assert!(accuracy.err_max < 1e-4, "{what}: off by {}", accuracy.err_max);
+            assert!(accuracy.error_max < 1e-4, "{what}: off by {}", accuracy.error_max);
         }
     }
 }

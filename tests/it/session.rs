@@ -98,7 +98,7 @@ fn the_figures_of_the_front_do_not_depend_on_the_steps() {
         session.report().measures.quality_before.expect("figures of the front")
     };
     let whole = before(u32::MAX);
-    assert!(whole.order.six > 0.5);
+    assert!(whole.order.six_neighbours > 0.5);
     // Compared as text, because an undefined figure is not equal to itself.
     assert_eq!(format!("{:?}", before(1)), format!("{whole:?}"));
     assert_eq!(format!("{:?}", before(1_234)), format!("{whole:?}"));
@@ -149,7 +149,7 @@ fn a_report_is_begun_anew_after_a_change() {
     let ball = request(r#"{"formula":"x^2+y^2+z^2-1"}"#);
     assert!(session.measure(Measured::FrontToo, 0).is_some(), "what is measured is not measured again");
     session.set_field(&ball).unwrap();
-    assert!(session.report().measures.quality.expect("particles").accuracy.err_max > 1.0);
+    assert!(session.report().measures.quality.expect("particles").accuracy.error_max > 1.0);
 }
 
 #[test]
@@ -286,7 +286,7 @@ fn cancelling_keeps_the_particles() {
         let report = session.report();
         assert_eq!(report.count, progress.particles);
         assert!(
-            report.measures.quality.is_none_or(|q| q.accuracy.err_max < 1e-2),
+            report.measures.quality.is_none_or(|q| q.accuracy.error_max < 1e-2),
             "cancelled after {budget}"
         );
     }

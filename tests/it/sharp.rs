@@ -352,5 +352,5 @@ fn the_mesh_of_a_front_on_a_random_solid_is_closed() {
 
 /// Share of the particles with six neighbours.
 fn six(sample: &Sample) -> f64 {
-    sample.report().measures.quality.as_ref().expect("figures").order.six
+    sample.report().measures.quality.as_ref().expect("figures").order.six_neighbours
 }

@@ -142,16 +142,20 @@ fn ten_steps_fit_the_particles_to_their_sizes() {
         });
         println!("{id}: {front:#?} {relaxed:#?}");
         for f in [&front, &relaxed] {
-            assert!(f.edges.size_cv <= 0.12, "{id}: size_cv {}", f.edges.size_cv);
+            assert!(f.edges.size_variation <= 0.12, "{id}: size_variation {}", f.edges.size_variation);
             assert!(f.coverage.cover_local <= 1.6, "{id}: hole {}", f.coverage.cover_local);
             assert!(f.edges.overlap_min >= 0.6, "{id}: pair {}", f.edges.overlap_min);
         }
-        assert!(relaxed.edges.size_cv <= 0.08, "{id}: size_cv {}", relaxed.edges.size_cv);
         assert!(
-            relaxed.edges.size_cv < 0.85 * front.edges.size_cv,
+            relaxed.edges.size_variation <= 0.08,
+            "{id}: size_variation {}",
+            relaxed.edges.size_variation
+        );
+        assert!(
+            relaxed.edges.size_variation < 0.85 * front.edges.size_variation,
             "{id}: {} from {}",
-            relaxed.edges.size_cv,
-            front.edges.size_cv
+            relaxed.edges.size_variation,
+            front.edges.size_variation
         );
         assert!(relaxed.coverage.cover_local < front.coverage.cover_local, "{id}");
     }

@@ -19,6 +19,7 @@ from ._fields import (
     smooth_union,
     union,
 )
+from ._report import Report
 from ._sample import Mesh, Sample, SampleWarning, sample
 
 __all__ = [
@@ -28,6 +29,7 @@ __all__ = [
     "FormulaError",
     "Mesh",
     "Model",
+    "Report",
     "Sample",
     "SampleWarning",
     "__version__",

@@ -1,11 +1,11 @@
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal, NamedTuple, Union
+from typing import Any, Literal, NamedTuple, SupportsFloat, SupportsIndex, Union
 
 import numpy as np
 import numpy.typing as npt
-import pyvista
-import trimesh
+
+from ._report import Report as Report
 
 __version__: str
 
@@ -22,7 +22,7 @@ class FormulaError(ValueError):
 class FieldError(ValueError): ...
 class EmptySurface(ValueError): ...
 
-class Warning(NamedTuple):
+class SampleWarning(NamedTuple):
     code: str
     severity: Literal["note", "caution", "fault"]
     message: str
@@ -58,32 +58,50 @@ class Sample:
     @property
     def faces(self) -> npt.NDArray[np.int32]: ...
     @property
-    def report(self) -> dict[str, Any]: ...
+    def report(self) -> Report: ...
     @property
-    def warnings(self) -> list[Warning]: ...
+    def warnings(self) -> list[SampleWarning]: ...
     @property
-    def mesh_warnings(self) -> list[Warning]: ...
+    def mesh_warnings(self) -> list[SampleWarning]: ...
     @property
     def bounds(self) -> tuple[_Corner, _Corner]: ...
-    def weld(self) -> Mesh: ...
-    def save(self, path: Union[str, os.PathLike[str]]) -> None: ...
-    def to_trimesh(self) -> trimesh.Trimesh: ...
-    def to_pyvista(self) -> pyvista.PolyData: ...
+    def mesh(self) -> Mesh: ...
+    def save(self, path: Union[str, os.PathLike[str]], *, mesh: bool = False) -> None: ...
+    # The libraries of these are optional, and some have no types.
+    def to_trimesh(self) -> Any: ...
+    def to_pyvista(self) -> Any: ...
+    def to_meshio(self) -> Any: ...
 
 _Surface = Union[str, _Function, Field]
+
+# A length, or a share of the diagonal of the box such as "1%".
+_Size = Union[SupportsFloat, str]
 
 def sample(
     field: _Surface,
     *,
-    count: Union[int, None] = None,
-    radius: Union[float, str, None] = None,
-    spacing: Union[float, None] = None,
+    count: Union[SupportsIndex, None] = None,
+    spacing: Union[SupportsFloat, None] = None,
+    radius: Union[_Size, None] = None,
     bounds: Union[Sequence[Sequence[float]], npt.NDArray[Any], None] = None,
     params: Union[Mapping[str, float], None] = None,
     gradient: Union[_Function, None] = None,
     adaptive: bool = False,
+    law: Union[Literal["chord_error", "max_curvature", "sum_of_curvatures"], None] = None,
+    chord_error: Union[_Size, None] = None,
+    curvature_scale: Union[SupportsFloat, None] = None,
+    radius_min: Union[_Size, None] = None,
+    radius_max: Union[_Size, None] = None,
+    grading: Union[SupportsFloat, None] = None,
+    closed: bool = False,
+    periodic: bool = False,
+    thickness: Union[SupportsFloat, str, None] = None,
     method: Literal["front", "refined"] = "front",
-    seed: int = 0,
+    relax: Union[SupportsIndex, None] = None,
+    match_tolerance: Union[SupportsFloat, None] = None,
+    gaps: Union[Literal["fill", "leave"], None] = None,
+    seed: SupportsIndex = 0,
+    max_particles: Union[SupportsIndex, None] = None,
     measure: bool = True,
     progress: Union[Callable[[float], object], None] = None,
 ) -> Sample: ...
@@ -93,13 +111,14 @@ def field(
     params: Union[Mapping[str, float], None] = None,
     gradient: Union[_Function, None] = None,
 ) -> Field: ...
-def union(a: _Surface, b: _Surface) -> Field: ...
-def intersection(a: _Surface, b: _Surface) -> Field: ...
+def union(*solids: Union[_Surface, Sequence[_Surface]]) -> Field: ...
+def intersection(*solids: Union[_Surface, Sequence[_Surface]]) -> Field: ...
 def difference(a: _Surface, b: _Surface) -> Field: ...
 def smooth_union(a: _Surface, b: _Surface, width: float) -> Field: ...
 def offset(a: _Surface, distance: float) -> Field: ...
 def fit_points(
-    points: npt.ArrayLike,
+    # An array, the path of a file, or a mesh of trimesh or PyVista.
+    points: Any,
     normals: Union[npt.ArrayLike, None] = None,
     *,
     centres: int = 200,

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 import json
+import os
 from collections.abc import Mapping
 
 import numpy as np
@@ -70,7 +72,9 @@ def fit_points(points, normals=None, *, centres=200, beyond_points="cut"):
     as cross-validation tells.
 
     Args:
-        points: Array (n, 3), in any unit of length.
+        points: Array (n, 3), in any unit of length; or a mesh of trimesh or PyVista, or the path of
+            a file of points or of a mesh: PLY, OBJ, STL, OFF, PCD, XYZ, PTS or CSV. A mesh gives
+            its vertices and normals.
         normals: Array (n, 3) of outward normals of any length; without it they are estimated.
         centres: Number of radial functions, 100 to 800. The time grows with its cube.
         beyond_points: ``"cut"``: the surface ends at the border of the points, and bridges gaps of
@@ -82,16 +86,39 @@ def fit_points(points, normals=None, *, centres=200, beyond_points="cut"):
 
     Raises:
         ValueError: If the arrays have another shape, or no surface can be fitted to the points.
+        OSError: If the file cannot be read.
     """
+    if beyond_points not in ("cut", "kept"):
+        raise ValueError(f'beyond_points is "cut" or "kept", and not {beyond_points!r}')
+    centres, is_cut = integer("centres", centres, *_core.CENTRES), beyond_points == "cut"
+    if isinstance(points, (str, os.PathLike)):
+        if normals is not None:
+            raise TypeError("normals belong to an array of points: a file has its own")
+        path = os.fspath(points)
+        with open(path, "rb") as file:
+            content = file.read()
+        field, report = _core.Field.file(os.path.basename(path), content, centres, is_cut)
+        return Model(field, json.loads(report))
+    if not isinstance(points, np.ndarray):
+        points, normals = _of_mesh(points, normals)
     points = numbers("points", points, (None, 3), "an array of n points, of the shape (n, 3)")
     if normals is not None:
         what = "an array of a normal for each point, of the shape of points"
         normals = numbers("normals", normals, points.shape, what)
-    if beyond_points not in ("cut", "kept"):
-        raise ValueError(f'beyond_points is "cut" or "kept", and not {beyond_points!r}')
-    centres = integer("centres", centres, *_core.CENTRES)
-    field, report = _core.Field.points(points, normals, centres, beyond_points == "cut")
+    field, report = _core.Field.points(points, normals, centres, is_cut)
     return Model(field, json.loads(report))
+
+
+def _of_mesh(mesh, normals):
+    """The vertices of a mesh of trimesh or PyVista, and their normals; else what is given."""
+    if hasattr(mesh, "vertices") and hasattr(mesh, "vertex_normals"):
+        return np.asarray(mesh.vertices), np.asarray(mesh.vertex_normals) if normals is None else normals
+    if hasattr(mesh, "points") and hasattr(mesh, "point_normals"):
+        has_faces = getattr(mesh, "n_cells", 0) > getattr(mesh, "n_verts", 0)
+        if normals is None and has_faces:
+            normals = np.asarray(mesh.point_normals)
+        return np.asarray(mesh.points), normals
+    return mesh, normals
 
 
 def integer(name, value, least, most):
@@ -119,9 +146,10 @@ def _checked(function, argument, tail):
                 f"it must return an array of numbers, of the shape {wanted}"
             )
         if array.shape != wanted:
+            hint = " (p[:, 0] is x of all points p, p[0] is the first of them)"
             raise FieldError(
                 f"{argument} returned an array of the shape {array.shape} for {count} points: "
-                f"it must be {wanted}"
+                f"it must be {wanted}{hint if array.shape in ((), (3,)) else ''}"
             )
         return np.asarray(array, dtype=np.float64, order="C")
 
@@ -143,12 +171,29 @@ def field_of(field, params=None, gradient=None, name="field"):
             raise TypeError("gradient belongs to a function: give it to field()")
         return field._field
     if callable(field):
+        _check_parameters(field, name)
         slope = None if gradient is None else _checked(gradient, "gradient", (3,))
         return _core.Field.function(_checked(field, name, ()), slope)
     raise TypeError(
         f"{name} must be a formula (str), a function, a Model or another Field, and not "
         f"{type(field).__name__}"
     )
+
+
+def _check_parameters(function, name):
+    """Refuses a function of three numbers."""
+    try:
+        parameters = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError):  # Some functions of C have none.
+        return
+    positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    needed = [p for p in parameters if p.kind in positional and p.default is p.empty]
+    if len(needed) > 1:
+        names = ", ".join(p.name for p in needed)
+        raise TypeError(
+            f"{name} is a function of ({names}): it must be one of an array p (n, 3) of points, "
+            "with p[:, 0] in place of x"
+        )
 
 
 def _parameters(params):
@@ -176,8 +221,8 @@ def field(field, *, params=None, gradient=None):
     return Field(field_of(field, params, gradient))
 
 
-def union(a, b):
-    """The union of two solids: min(a, b), which is negative where one of the two is.
+def union(*solids):
+    """The union of solids: min(a, b, ...), which is negative where one of them is.
 
     Where the surfaces meet at an angle, particles lie on the edge and the mesh is closed along it.
     Edges are looked for in cells of a 128th of the box: a smaller loop may be missed, and there is
@@ -185,26 +230,37 @@ def union(a, b):
     ``-``, which has both.
 
     Args:
-        a: A formula, a function, a :class:`Model` or another :class:`Field`. It should have a
-            gradient where it is zero, as a distance has.
-        b: Another one.
+        solids: Two or more, or a list of them: formulas, functions, a :class:`Model` or another
+            :class:`Field`. Each should have a gradient where it is zero, as a distance has.
 
     Returns:
-        A :class:`Field`, whose box is known where those of both are.
+        A :class:`Field`, whose box is known where those of all are.
 
     Raises:
         FormulaError: If a formula cannot be read.
         TypeError: If an argument is of a wrong type.
     """
-    return Field(field_of(a, name="a").union(field_of(b, name="b")))
+    return _joined("union", solids)
 
 
-def intersection(a, b):
-    """The intersection of two solids: max(a, b), which is negative where both are.
+def intersection(*solids):
+    """The intersection of solids: max(a, b, ...), which is negative where all are.
 
-    See :func:`union`. Its box is that of ``a``, else that of ``b``.
+    See :func:`union`. Its box is that of the first one that has one.
     """
-    return Field(field_of(a, name="a").intersection(field_of(b, name="b")))
+    return _joined("intersection", solids)
+
+
+def _joined(name, solids):
+    if len(solids) == 1 and isinstance(solids[0], (list, tuple)):
+        solids = solids[0]
+    if len(solids) < 2:
+        raise TypeError(f"{name} takes two solids or more, and not {len(solids)}")
+    fields = [field_of(solid, name=f"solid {k + 1}") for k, solid in enumerate(solids)]
+    joined = fields[0]
+    for field in fields[1:]:
+        joined = getattr(joined, name)(field)
+    return Field(joined)
 
 
 def difference(a, b):

@@ -10,8 +10,8 @@ use marching_particles::field::rbf::RbfData;
 use marching_particles::particles::Particles;
 use marching_particles::sampler::Sampling;
 use marching_particles::session::{
-    Asked, Fault, FaultKind, FieldRequest, FileRecord, FileRequest, Language, Lengths, Session, SolidSettings,
-    describe,
+    Asked, Fault, FaultKind, FieldRequest, FileRecord, FileRequest, Language, Lengths, Session,
+    SolidSettings, describe,
 };
 use marching_particles_values::{answer, read, to_js};
 use std::sync::Arc;

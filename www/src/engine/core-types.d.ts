@@ -228,35 +228,35 @@ export type Figures = {
   area: number,
   /** Points that differ from an earlier one by no more than rounding; dropped before the
   * triangulation. */
-  dup: number,
+  duplicates: number,
   /** Points with a non-finite coordinate; left out of everything. */
   not_finite: number,
   /** Points within 4 ideal spacings of the border of a clipped surface, left out of the per-point
   * figures. */
   boundary_excluded: number,
   /** Largest first-order distance |f|/|∇f| to the surface. */
-  err_max: number,
+  error_max: number,
   /** Mean first-order distance to the surface. */
-  err_mean: number,
-  /** Points whose residual is undefined; left out of `err_max` and `err_mean`. */
+  error_mean: number,
+  /** Points whose residual is undefined; left out of `error_max` and `error_mean`. */
   undefined: number,
   /** Mean angle between the given normals (either sign) and ∇f, in degrees. */
-  nrm_mean: number,
+  normal_error_mean: number,
   /** Largest angle between the given normals (either sign) and ∇f, in degrees. */
-  nrm_max: number,
+  normal_error_max: number,
   /** Smallest nearest-neighbour distance. */
-  nn_min: number,
+  nearest_min: number,
   /** Mean nearest-neighbour distance. */
-  nn_mean: number,
+  nearest_mean: number,
   /** Standard deviation of the nearest-neighbour distance over its mean. */
   spacing_variation: number,
   /** Smallest over mean nearest-neighbour distance. */
-  nn_ratio: number,
-  /** Normalised Poisson-disk radius: `nn_min` under its usual name. */
+  nearest_ratio: number,
+  /** Normalised Poisson-disk radius: `nearest_min` under its usual name. */
   rho: number,
   /** First percentile of the nearest-neighbour distance. */
   nearest_percentile_1: number,
-  /** Pairs of points nearer than 0.75: over `ideal_spacing`, as `nn_min`, or of natural
+  /** Pairs of points nearer than 0.75: over `ideal_spacing`, as `nearest_min`, or of natural
   * neighbours over the sum of their wanted radii, as `overlap_min`, where those are known. A
   * duplicate is a pair with the point that it equals. None where there are no distances. */
   crowded: number | null,
@@ -269,7 +269,7 @@ export type Figures = {
   cover_local: number,
   /** Mean squared distance from the surface to the nearest point over that of the perfect
   * lattice: 1 is ideal. */
-  quant: number,
+  quantization_error: number,
   /** Share of the surface that no disc of a point around it covers, where the discs are known:
   * 1 - π/(2√3) = 0.093 in a lattice whose discs touch. */
   uncovered: number,
@@ -277,25 +277,25 @@ export type Figures = {
   * discs of which none has its middle in a wider one. None where `cover` is undefined. */
   wide_holes: number | null,
   /** Fraction of the points with exactly six natural neighbours. */
-  six: number,
+  six_neighbours: number,
   /** Fraction of the points with five or seven natural neighbours. */
-  five_seven: number,
+  five_or_seven_neighbours: number,
   /** Standard deviation of the valence. */
-  val_sd: number,
+  valence_deviation: number,
   /** Number of points whose cell is not proven complete among their 200 nearest points. */
   open: number,
   /** Mean over the points of |mean over natural neighbours of exp(6iθ)|: 1 for a lattice. */
-  psi6: number,
+  bond_order: number,
   /** Standard deviation over mean of the length of mutual natural-neighbour edges. */
-  edge_cv: number,
+  edge_variation: number,
   /** Standard deviation over mean of edge length over the sum of the wanted radii. */
-  size_cv: number,
+  size_variation: number,
   /** Smallest distance of natural neighbours over the sum of their wanted radii: 1 where
   * particles just touch, 0 for duplicates. */
   overlap_min: number,
   /** Kept triangles over 2N − 2χ: 1 for a closed manifold. On a clipped surface, the share of the
   * sectors around points away from the border that a kept triangle fills. */
-  tri_ok: number,
+  triangle_share: number,
   /** Fraction of the triangles (away from the border) that belong to the natural-neighbour stars
   * of all three corners. */
   agree: number,
@@ -306,17 +306,17 @@ export type Figures = {
   * triangles, and groups of points far from all of them. */
   components: number,
   /** Smallest angle of any triangle, in degrees. */
-  ang_min: number,
+  smallest_angle: number,
   /** Mean over the triangles of their smallest angle, in degrees. */
-  ang_min_mean: number,
+  mean_smallest_angle: number,
   /** Fraction of the triangles with an angle below 30°. */
-  lt30: number,
+  triangles_below_30: number,
   /** Fraction of the triangles with an angle above 90°. */
-  gt90: number,
+  triangles_above_90: number,
   /** Fraction of all angles below 30°. */
-  a_lt30: number,
+  angles_below_30: number,
   /** Fraction of all angles above 90°. */
-  a_gt90: number,
+  angles_above_90: number,
 };
 
 /** The record of a file, from which the same particles can be made again. Files carry it as JSON

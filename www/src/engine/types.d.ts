@@ -30,7 +30,7 @@ export type Limits = import('./core-types.js').Limits;
 export type SurfaceInfo = import('./core-types.js').SurfaceEntry;
 /** One setting of the sampler; the interface builds its control from this. */
 export type SettingInfo = import('./core-types.js').Setting;
-/** One row of the report; its keys are paths into {@link Report}, such as `quality.six`. */
+/** One row of the report; its keys are paths into {@link Report}, such as `quality.six_neighbours`. */
 export type ReportRow = import('./core-types.js').ReportRow;
 /** A built-in model from points. Its `id` goes where a gallery surface's does. */
 export type PointModel = import('./core-types.js').Model;

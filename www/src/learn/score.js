@@ -106,7 +106,7 @@ export async function scoreOf(lab, particles, { evaluations, isAdaptive }) {
   const { quality, places, valence } = await lab.measure(particles, isAdaptive);
   const { radii } = particles;
   return {
-    six: quality?.six ?? null,
+    six: quality?.six_neighbours ?? null,
     hole: (isAdaptive ? quality?.cover_local : quality?.cover) ?? null,
     uncovered: quality?.uncovered ?? null,
     pair: (isAdaptive ? quality?.overlap_min : quality?.rho) ?? null,

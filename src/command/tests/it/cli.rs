@@ -58,7 +58,16 @@ fn json_line_holds_the_figures_of_the_run() {
     for phase in ["seeding", "generation", "relaxation", "quality"] {
         assert!(run["seconds"][phase].as_f64() > Some(0.0), "{phase}");
     }
-    for figure in ["six", "psi6", "cover", "rho", "spacing_variation", "ang_min_mean", "err_max", "quant"] {
+    for figure in [
+        "six_neighbours",
+        "bond_order",
+        "cover",
+        "rho",
+        "spacing_variation",
+        "mean_smallest_angle",
+        "error_max",
+        "quantization_error",
+    ] {
         assert!(run["quality"][figure].as_f64() > Some(0.0), "{figure}");
         assert!(run["quality_before"][figure].as_f64() > Some(0.0), "{figure} before");
     }
@@ -127,7 +136,7 @@ fn files_hold_every_particle() {
         six += usize::from(record[36] == 6);
     }
     let share = six as f64 / count as f64;
-    assert!((share - run["quality"]["six"].as_f64().expect("a share")).abs() < 1e-9);
+    assert!((share - run["quality"]["six_neighbours"].as_f64().expect("a share")).abs() < 1e-9);
 
     let lines = |bytes: &[u8]| bytes.iter().filter(|&&b| b == b'\n').count();
     // The names of the columns, and a line for each particle.

@@ -28,7 +28,7 @@ export const PLAIN = [
     help: 'How much the distance between neighbours varies, relative to its mean. A perfect lattice has 0 %.',
     write: (report) => {
       // Particles of many sizes are measured by their own radii.
-      const variation = valueAt(report, 'quality.size_cv') ?? valueAt(report, 'quality.spacing_variation');
+      const variation = valueAt(report, 'quality.size_variation') ?? valueAt(report, 'quality.spacing_variation');
       return typeof variation === 'number' ? `±\u202f${percent(variation)}` : MISSING;
     },
   },
@@ -36,7 +36,7 @@ export const PLAIN = [
     label: 'Largest error',
     help: 'The largest distance of a particle from the surface, as a share of the distance between neighbours.',
     write: (report) => {
-      const farthest = valueAt(report, 'quality.err_max');
+      const farthest = valueAt(report, 'quality.error_max');
       if (typeof farthest !== 'number') return MISSING;
       return farthest < LEAST_SHARE ? `below ${percent(LEAST_SHARE)}` : percent(farthest);
     },

@@ -27,7 +27,7 @@ for (const place of ['/', '/sub/path/']) {
     const report = /** @type {any} */ (await on(page, 'p.report()'));
     expect(report.count).toBeGreaterThan(1000);
     expect(report.stop_reason).toBe('complete');
-    expect(report.quality.six).toBeGreaterThan(0.9);
+    expect(report.quality.six_neighbours).toBeGreaterThan(0.9);
     for (const phase of ['generation', 'relaxation', 'quality']) expect(report.seconds[phase]).toBeGreaterThan(0);
     expect(strangers).toEqual([]);
     expect(errors).toEqual([]);

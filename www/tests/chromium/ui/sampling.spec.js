@@ -256,7 +256,7 @@ test('the report, what can be taken away, and what is said where there is no sur
     await expect(page.locator('.figures')).toBeHidden();
     await openFigures(page);
     await expect(page.locator('.figures .term')).toHaveCount(rows.length);
-    const row = rows.find((/** @type {any} */ { key }) => key === 'quality.six');
+    const row = rows.find((/** @type {any} */ { key }) => key === 'quality.six_neighbours');
     const term = page.locator('.figures .term', { hasText: row.label });
     await term.focus();
     await page.keyboard.press('Shift+Tab');

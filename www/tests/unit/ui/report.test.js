@@ -23,7 +23,7 @@ import { captionOf, loadingOf } from '../../../src/ui/view/caption.js';
  * @returns {ReportRow}
  */
 const row = (change) => ({
-  key: 'quality.six',
+  key: 'quality.six_neighbours',
   to: null,
   unless: null,
   label: 'Valence six',
@@ -84,22 +84,22 @@ describe('the report', () => {
     const report = /** @type {any} */ ({
       count: 5,
       energy: [0.2, 0.1],
-      quality: { six: 0.97 },
-      quality_before: { six: 0.93 },
+      quality: { six_neighbours: 0.97 },
+      quality_before: { six_neighbours: 0.93 },
     });
-    expect(valueAt(report, 'quality.six')).toBe(0.97);
+    expect(valueAt(report, 'quality.six_neighbours')).toBe(0.97);
     expect(valueAt(report, 'quality.none.deeper')).toBeUndefined();
-    expect(valueAt({ quality: { psi6: Number.NaN, rho: Infinity } }, 'quality.psi6')).toBeNull();
-    expect(valueAt({ quality: { psi6: Number.NaN, rho: Infinity } }, 'quality.rho')).toBeNull();
-    expect(figuresOf(report, 'quality.six')).toEqual({ now: 0.97, before: 0.93 });
-    expect(figuresOf({ ...report, quality_before: null }, 'quality.six').before).toBeUndefined();
+    expect(valueAt({ quality: { bond_order: Number.NaN, rho: Infinity } }, 'quality.bond_order')).toBeNull();
+    expect(valueAt({ quality: { bond_order: Number.NaN, rho: Infinity } }, 'quality.rho')).toBeNull();
+    expect(figuresOf(report, 'quality.six_neighbours')).toEqual({ now: 0.97, before: 0.93 });
+    expect(figuresOf({ ...report, quality_before: null }, 'quality.six_neighbours').before).toBeUndefined();
     expect(figuresOf(report, 'count')).toEqual({ now: 5, before: undefined });
   });
 
   it('has one column of figures of a run without relaxation', () => {
     for (const energy of [null, [0.2]]) {
-      const report = /** @type {any} */ ({ energy, quality: { six: 0.93 }, quality_before: null });
-      expect(figuresOf(report, 'quality.six')).toEqual({ now: 0.93, before: undefined });
+      const report = /** @type {any} */ ({ energy, quality: { six_neighbours: 0.93 }, quality_before: null });
+      expect(figuresOf(report, 'quality.six_neighbours')).toEqual({ now: 0.93, before: undefined });
       expect(isTold(report, row())).toBe(true);
     }
   });
@@ -117,14 +117,14 @@ describe('the report', () => {
 
   it('begins with four figures in plain words', () => {
     const plain = (/** @type {object} */ report) => PLAIN.map(({ write }) => write(/** @type {any} */ (report)));
-    const quality = { spacing_variation: 0.0732, err_max: 5.3e-5 };
+    const quality = { spacing_variation: 0.0732, error_max: 5.3e-5 };
     expect(plain({ count: 4301, quality, search: 'proven', sampled: { missing: 0 } })).toEqual([
       '4,301',
       '±\u202f7.3\u202f%',
       '0.0053\u202f%',
       'proven',
     ]);
-    const poor = { spacing_variation: 0.3, size_cv: 0.081, err_max: 1e-8 };
+    const poor = { spacing_variation: 0.3, size_variation: 0.081, error_max: 1e-8 };
     expect(plain({ count: 1, quality: poor, search: 'searched', sampled: { missing: 2 } })).toEqual([
       '1',
       '±\u202f8.1\u202f%',
@@ -176,15 +176,15 @@ describe('the report', () => {
       undecided_cells: null,
       count: 0,
       energy: [0.2, 0.1],
-      quality: { six: null },
-      quality_before: { six: 0.9 },
+      quality: { six_neighbours: null },
+      quality_before: { six_neighbours: 0.9 },
     });
     expect(isTold(report, { key: 'count' })).toBe(true);
     expect(isTold(report, { key: 'undecided_cells' })).toBe(false);
     expect(isTold(report, { key: 'not_there' })).toBe(false);
-    expect(isTold(report, { key: 'quality.six' })).toBe(true);
+    expect(isTold(report, { key: 'quality.six_neighbours' })).toBe(true);
     expect(isTold(null, { key: 'undecided_cells' })).toBe(true);
-    expect(isTold(report, { key: 'count', unless: 'quality.six' })).toBe(false);
+    expect(isTold(report, { key: 'count', unless: 'quality.six_neighbours' })).toBe(false);
     expect(isTold(report, { key: 'count', unless: 'undecided_cells' })).toBe(true);
   });
 
