@@ -7,7 +7,8 @@ use crate::particles::Particles;
 pub struct MeasureOptions<'a> {
     /// Exact area of the surface (inside the box); by default the area of the triangles found.
     pub area: Option<f64>,
-    /// The wanted radius of each particle, for [`Edges::size_variation`](super::figures::Edges::size_variation),
+    /// The wanted radius of each particle, for
+    /// [`Edges::size_variation`](super::figures::Edges::size_variation),
     /// [`Coverage::cover_local`](super::figures::Coverage::cover_local) and
     /// [`Edges::overlap_min`](super::figures::Edges::overlap_min); without them these are NaN. If
     /// the slice is too short, particles without a radius are left out.

@@ -198,6 +198,9 @@ pub enum SettingsError {
         /// Largest value allowed.
         max: f64,
     },
+    /// A radius as a length, of particles whose sizes follow the curvature.
+    #[error("a radius is for particles of one size: adaptive ones take a count or a chord error")]
+    RadiusOfAdaptive,
     /// No particles can be put in the clip box.
     #[error(transparent)]
     Box(#[from] BoxError),
@@ -285,7 +288,8 @@ impl Settings {
     }
 
     /// Asks for adaptive sampling (paper §5), in which the repulsion radius follows the curvature,
-    /// and returns the settings.
+    /// and returns the settings. A radius as a share has no effect then; as a length it is
+    /// [refused](SettingsError::RadiusOfAdaptive) when a run starts.
     #[must_use]
     pub fn adaptive(self) -> Self {
         Self { sampling: Sampling::Adaptive, ..self }
@@ -356,6 +360,9 @@ impl Settings {
             if !(min..=max).contains(&value) {
                 return Err(SettingsError::OutOfRange { name, value, min, max });
             }
+        }
+        if self.sampling == Sampling::Adaptive && self.radius.is_some() {
+            return Err(SettingsError::RadiusOfAdaptive);
         }
         Ok(self.bounds.map_or(Ok(()), |bounds| bounds.check())?)
     }

@@ -66,14 +66,28 @@ fn condition(Condition { name, value, equal }: &Condition) -> String {
     format!("`{name}` {} `{value}`", if *equal { "=" } else { "≠" })
 }
 
+/// A name in the camel case of JavaScript.
+fn camel(name: &str) -> String {
+    let mut words = name.split('_');
+    let first = words.next().unwrap_or_default().to_owned();
+    words.fold(first, |text, word| text + &word[..1].to_uppercase() + &word[1..])
+}
+
 fn settings_table() -> String {
     let mut rows = String::from(
-        "| Setting | Option | Values | Default | Used if | Meaning |\n| --- | --- | --- | --- | --- | --- |\n",
+        "| Setting | Command line | Python | npm | Values | Default | Used if | Meaning |\n\
+         | --- | --- | --- | --- | --- | --- | --- | --- |\n",
     );
     for setting in &settings() {
         let conditions: Vec<String> = setting.when.iter().map(condition).collect();
+        // In the packages the box is given by its corners.
+        let (python, npm) = match setting.name {
+            "box_mode" => ("`bounds`".to_owned(), "bounds".to_owned()),
+            "beyond_points" => ("`beyond_points` of `fit_points`".to_owned(), camel(setting.argument())),
+            _ => (format!("`{}`", setting.argument()), camel(setting.argument())),
+        };
         rows += &format!(
-            "| `{}` | `--{}` | {} | {} | {} | {} |\n",
+            "| `{}` | `--{}` | {python} | `{npm}` | {} | {} | {} | {} |\n",
             setting.name,
             setting.option(),
             values(setting),

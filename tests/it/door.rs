@@ -544,6 +544,13 @@ fn a_radius_is_a_length_or_a_share_and_makes_room() {
 }
 
 #[test]
+fn a_radius_of_adaptive_particles_is_refused() {
+    let sphere = Formula::parse("x^2 + y^2 + z^2 = 1").expect("a formula");
+    let refused = sample(sphere, &Settings::with_radius(Radius::Length(0.1)).adaptive()).err();
+    assert!(matches!(refused, Some(Error::Settings(SettingsError::RadiusOfAdaptive))), "{refused:?}");
+}
+
+#[test]
 fn settings_as_text_keep_the_box_and_refuse_names_that_they_do_not_have() {
     let in_box = Settings::with_count(7).in_box(Bounds::cube(1.5));
     let settings = settings!(radius: Some(0.1), survey_cells: Some(32); ..in_box);

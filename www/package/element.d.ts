@@ -29,7 +29,7 @@ export class MarchingParticles extends HTMLElement {
   controls: boolean;
   readonly view: View | null;
   readonly report: Report | null;
-  toFile(format: Format): Promise<Uint8Array<ArrayBuffer>>;
+  toFile(format: Exclude<Format, 'csv'>): Promise<Uint8Array<ArrayBuffer>>;
 }
 
 declare global {

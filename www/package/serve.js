@@ -6,9 +6,9 @@
  */
 import { nextBudget } from '../src/engine/bundle/budget.js';
 import { hasSimd } from '../src/engine/bundle/load.js';
+import { csv, ply } from '../src/engine/share/exports.js';
 import loadCore, { Core } from '../src/wasm/core/core.js';
 import loadPoints from '../src/wasm/points/points.js';
-import { csv, ply } from '../src/engine/share/exports.js';
 import { fitted } from './cloud.js';
 import { optionOf } from './options.js';
 import { pause } from './pause.js';
@@ -42,7 +42,7 @@ class Refusal extends Error {
 /** @param {Fault} fault */
 function refusalOf({ kind, message, start, end, suggestion, choices }) {
   // A setting that is out of its range begins its sentence.
-  const named = message.replace(/^[a-z_]+(?= is )/, optionOf);
+  const named = message.replace(/^([a-z_]+) is /, (_, setting) => `The option ${optionOf(setting)} is `);
   if (['request', 'settings', 'too_many', 'box', 'points'].includes(kind)) return new Refusal('InputError', named);
   return new Refusal('FormulaError', message, { start, end, suggestion, choices });
 }
@@ -60,7 +60,8 @@ function checkEffects(core, { given, settings }) {
     // Steps of relaxation count where a front cannot be refined.
     const conditions = given.includes(name) ? when.filter((condition) => condition.name !== 'method') : [];
     const failed = conditions.find((condition) => (chosen(condition.name) === condition.value) !== condition.equal);
-    if (failed) throw new Refusal('InputError', `${optionOf(name)}: it has no effect ${NEEDED[failed.name](failed)}.`);
+    if (failed)
+      throw new Refusal('InputError', `The option ${optionOf(name)} has no effect ${NEEDED[failed.name](failed)}.`);
   }
 }
 /** What a setting without effect needs. @type {Record<string, (failed: {value: string, equal: boolean}) => string>} */
@@ -219,7 +220,9 @@ export function serve({ post, load }) {
    * @param {Extract<Asked, {type: 'sample' | 'moved'}>} message @param {Core} core
    */
   async function made(message, core) {
-    const { id, field, settings, measure, type } = message;
+    const { id, field, measure, type } = message;
+    /** @type {Record<string, any>} */
+    const settings = message.settings;
     const of = { id, core };
     const answer = await taken(field, of);
     if (!answer.ok) throw refusalOf(answer.error);

@@ -70,7 +70,7 @@ export interface View {
   /** a PNG, in pixels of the picture where no size is given */
   picture(size?: { width?: number; height?: number; transparent?: boolean }): Promise<Blob>;
   /** the mesh of the particles as a file */
-  toFile(format: Format): Promise<Uint8Array<ArrayBuffer>>;
+  toFile(format: Exclude<Format, 'csv'>): Promise<Uint8Array<ArrayBuffer>>;
   /** the state as the fragment of a link to the page of Marching Particles */
   link(): Promise<string>;
   /** frees the workers, the graphics device and the canvas; what is waited for is rejected by a `DisposedError` */

@@ -33,6 +33,62 @@ test('a program in Node gets the particles of the native library, and ends', () 
   expect(execFileSync(process.execPath, [program], { encoding: 'utf8' }).trim()).toBe(golden.digest);
 });
 
+test('every setting of the core is an option', async () => {
+  const kept = readFileSync(new URL('../../../docs/settings.md', import.meta.url), 'utf8');
+  const names = [...kept.matchAll(/^(?:\|[^|]*){3}\| `(\w+)` \|/gm)].map(([, name]) => name);
+  expect(names.length).toBeGreaterThan(20);
+  const known = await made.sample('x', /** @type {any} */ ({ none: 1 })).catch(({ message }) => message);
+  for (const name of names) expect(known.split(/[ ,.]+/)).toContain(name);
+});
+
+test('a file of particles and a file of the mesh', async () => {
+  const ball = await made.sample(SPHERE, { count: 300, params: { a: 1 } });
+  const text = async (/** @type {Promise<Uint8Array>} */ file) => new TextDecoder('latin1').decode(await file);
+  const points = await text(ball.toFile('ply'));
+  expect(points).toContain(`element vertex ${ball.count}\n`);
+  expect(points).not.toContain('element face');
+  expect(points).toContain('comment marching_particles {');
+  expect(await text(ball.toFile('ply', { mesh: true }))).toContain('element face');
+  expect((await text(ball.toFile('csv'))).split('\n').length).toBe(ball.count + 2);
+  await expect(ball.toFile('csv', { mesh: true })).rejects.toMatchObject({ name: 'InputError' });
+});
+
+test('a cell of a sheet is a closed solid whose opposite faces match', async () => {
+  const bounds = /** @type {const} */ ({ min: [-3, -3, -3], max: [3, 3, 3] });
+  const gyroid = 'sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)';
+  const sheet = { bounds, closed: true, thickness: '0.4 + 0.02z', count: 2000 };
+  const solid = await made.sample(gyroid, /** @type {any} */ (sheet));
+  const { volume, components } = await solid.mesh();
+  expect(volume).toBeGreaterThan(10);
+  expect(components.every(({ open_edges }) => open_edges === 0)).toBe(true);
+});
+
+test('sizes are lengths or shares, and rows of points are taken', async () => {
+  const [length, share] = await Promise.all(
+    [0.02 * Math.sqrt(12), '2%'].map((radius) =>
+      made.sample(
+        SPHERE,
+        /** @type {any} */ ({ radius, bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, params: { a: 0.5 } }),
+      ),
+    ),
+  );
+  expect(length.count).toBe(share.count);
+  const rows = Array.from(
+    { length: ROUND.length / 3 },
+    (_, i) => /** @type {[number, number, number]} */ (ROUND.slice(3 * i, 3 * i + 3)),
+  );
+  const [flat, nested] = await Promise.all(
+    [{ points: ROUND }, { points: rows }].map((field) => made.sample(field, { count: 200 })),
+  );
+  expect(nested.digest).toBe(flat.digest);
+});
+
+test('a program on the command line of Node', () => {
+  const program = `import { sample } from 'marching-particles'; console.log((await sample('${SPHERE}', { count: 100 })).count > 50)`;
+  const given = ['--input-type=module', '--eval', program];
+  expect(execFileSync(process.execPath, given, { encoding: 'utf8', cwd: there.project }).trim()).toBe('true');
+});
+
 test('a program and the examples are checked by strict TypeScript', () => {
   there.write(
     'program.ts',
@@ -78,8 +134,7 @@ describe('a sample', () => {
     const ball = await made.sample(SPHERE, { count: 1000, params: { a: 4 }, seed: 3 });
     expect(ball.report).toMatchObject({ digest: ball.digest, components: 1 });
     expect([ball.points.length, ball.normals.length]).toEqual([3 * ball.count, 3 * ball.count]);
-    for (let i = 0; i < 3 * ball.count; i += 3)
-      expect(Math.hypot(...ball.points.subarray(i, i + 3))).toBeCloseTo(2, 4);
+    for (let i = 0; i < 3 * ball.count; i += 3) expect(Math.hypot(...ball.points.subarray(i, i + 3))).toBeCloseTo(2, 4);
     const mesh = await ball.mesh();
     expect(mesh.components).toMatchObject([{ triangles: 2 * ball.count - 4, euler: 2 }]);
     expect(mesh.volume).toBeCloseTo((32 / 3) * Math.PI, 0);
@@ -194,8 +249,7 @@ describe('a function of the program', () => {
     expect(many.digest).toBe(one.digest);
     expect(Math.abs(one.count - 1000)).toBeLessThan(40);
     expect(one.report).toMatchObject({ components: 1, digest: one.digest });
-    for (let i = 0; i < 3 * one.count; i += 3)
-      expect(Math.hypot(...one.points.subarray(i, i + 3))).toBeCloseTo(1, 4);
+    for (let i = 0; i < 3 * one.count; i += 3) expect(Math.hypot(...one.points.subarray(i, i + 3))).toBeCloseTo(1, 4);
     expect((await one.mesh()).components).toMatchObject([{ euler: 2, open_edges: 0 }]);
     expect((await one.toFile('stl')).length).toBeGreaterThan(84);
     await expect(one.moved({ a: 1 })).rejects.toMatchObject({ name: 'InputError' });
@@ -362,11 +416,11 @@ describe('what is wrong has a name and says what to do', () => {
     ['InputError', 'a function or points have none', () => 1, { params: { a: 1 } }],
     ['InputError', 'formula: for points', SPHERE, { formula: 'max(model, z)' }],
     ['InputError', 'formula: a text', { points: [1, 2, 3] }, { formula: 3 }],
-    ['InputError', 'radius: it has no effect with adaptive: true', SPHERE, { radius: 0.01, adaptive: true }],
-    ['InputError', 'grading: it has no effect without adaptive: true', SPHERE, { grading: 0.3 }],
-    ['InputError', 'periodic: it has no effect without closed: true', SPHERE, { periodic: true }],
+    ['InputError', 'The option radius has no effect with adaptive: true', SPHERE, { radius: 0.01, adaptive: true }],
+    ['InputError', 'option grading has no effect without adaptive: true', SPHERE, { grading: 0.3 }],
+    ['InputError', 'option periodic has no effect without closed: true', SPHERE, { periodic: true }],
     ['InputError', 'closed: for a formula by itself', () => 1, { closed: true }],
-    ['InputError', 'relax is 2000, but must lie between', SPHERE, { relax: 2000 }],
+    ['InputError', 'option relax is 2000, but must lie between', SPHERE, { relax: 2000 }],
     ['InputError', 'radius: a length above 0, or a share', SPHERE, { radius: '3' }],
     ['FormulaError', 'Thickness: Something is missing', SPHERE, { thickness: '0.1 +' }],
     ['InputError', 'adaptive: true or false', SPHERE, { adaptive: 'yes' }],
