@@ -251,6 +251,18 @@ fn the_compiler_that_is_promised_is_the_one_that_every_check_runs_with() {
 }
 
 #[test]
+fn everything_that_is_published_has_one_version() {
+    let version = env!("CARGO_PKG_VERSION");
+    for manifest in ["Cargo.toml", "python/Cargo.toml", "src/command/Cargo.toml"] {
+        assert!(read(manifest).contains(&format!("\nversion = \"{version}\"\n")), "{manifest}");
+    }
+    for manifest in ["www/package/package.json", "www/package.json"] {
+        assert!(read(manifest).contains(&format!("\"version\": \"{version}\"")), "{manifest}");
+    }
+    assert!(read("CHANGELOG.md").contains(&format!("## [{version}]")), "CHANGELOG.md");
+}
+
+#[test]
 fn the_table_of_settings_is_that_of_the_settings() {
     check_table("docs/settings.md", &settings_table());
 }
