@@ -10,7 +10,7 @@ import { meantBy } from './meant.js';
 import { createTextarea } from './textarea.js';
 
 /**
- * @import { Description, Engine } from '../../engine/types.js'
+ * @import { Description, Engine, MathNode } from '../../engine/types.js'
  * @import { Replace } from '../types.js'
  * @import { Change, Editor, FaultView, Repair } from './types.js'
  */
@@ -207,7 +207,9 @@ const LEAST_SIZE = 0.7;
 
 /** Shows the formula as mathematics, and says so where it is not the one in the editor. @param {Engine} engine */
 function createPreview(engine) {
-  const math = computed(() => engine.field.value?.mathml ?? null);
+  // As text it is the same while a parameter changes its value, and is not drawn and measured again.
+  const written = computed(() => JSON.stringify(engine.field.value?.mathml ?? null));
+  const math = computed(() => /** @type {MathNode | null} */ (JSON.parse(written.value)));
   // While the formula cannot be read, the last readable one stays, with a caption that says so.
   const isLast = computed(() => engine.fieldError.value !== null && math.value !== null);
   const id = uniqueId('preview');
