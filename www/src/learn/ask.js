@@ -155,7 +155,7 @@ function judge({ kind }, guess, right) {
   if (kind === 'pick') return guess === right ? 'Exactly there.' : '';
   if (guess === right) return 'Exactly.';
   const far = Math.abs(Number(guess) - Number(right));
-  return far <= Math.max(1, CLOSE * Number(right)) ? 'Close.' : `You said ${formatCount(guess)}.`;
+  return far <= CLOSE * Number(right) ? 'Close.' : `You said ${formatCount(guess)}.`;
 }
 
 /**
