@@ -70,10 +70,18 @@ impl Wall {
 }
 
 /// The shortest step that makes a place deeper within several walls, each given with the depth that
-/// is lacking and the direction into the region. A wall nearly parallel to those before is ignored,
-/// and so is a fourth one.
-fn step_within(walls: impl Iterator<Item = (f64, DVec3)>) -> DVec3 {
+/// is lacking and the direction into the region: along the surface of the piece, where its region
+/// is sure to go on, unless that is steep to the first wall. A wall nearly parallel to those before
+/// is ignored, and so is one more than there are dimensions.
+fn step_within(normal: DVec3, walls: impl Iterator<Item = (f64, DVec3)>) -> DVec3 {
+    /// Cosine of the largest angle between the surface and the shortest way from the first wall: the
+    /// way along the surface is twice as long there.
+    const STEEP: f64 = 0.5;
     let (mut across, mut step): (Vec<DVec3>, DVec3) = (Vec::new(), DVec3::ZERO);
+    let mut walls = walls.peekable();
+    if walls.peek().is_some_and(|(_, way)| way.reject_from_normalized(normal).length() > STEEP) {
+        across.push(normal);
+    }
     for (lacking, way) in walls {
         // The part of the direction along the walls before, which keeps the depth within them.
         let free = across.iter().fold(way, |free, n| free - *n * free.dot(*n));
@@ -117,6 +125,7 @@ impl EdgeTable {
         let walls = self.walls(label, q);
         let Some(nearest) = walls.iter().min_by(|a, b| a.near.total_cmp(&b.near)) else { return Plan::Whole };
         let beside = Plan::Vertex(nearest.end);
+        let normal = nearest.own.slope(q).1.normalize_or_zero();
         let mut p = q;
         // The walls that have moved the place, the last one first.
         let mut passed: Vec<usize> = Vec::new();
@@ -134,7 +143,7 @@ impl EdgeTable {
             passed.retain(|&k| k != worst);
             passed.insert(0, worst);
             let lacking = passed.iter().filter_map(|k| bounding.iter().find(|(wall, ..)| wall == k));
-            let step = step_within(lacking.map(|&(_, depth, way)| (1.01 * self.margin - depth, way)));
+            let step = step_within(normal, lacking.map(|&(_, depth, way)| (1.01 * self.margin - depth, way)));
             // Written so that NaN fails.
             let is_near = (p + step).distance(q) <= self.cell;
             if !is_near {

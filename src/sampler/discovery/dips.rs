@@ -74,7 +74,8 @@ impl Dip {
     pub(super) fn look(&self, value: f32, gradient: Vec3) -> Bottom {
         let bottom = End { place: self.bottom(), value, gradient };
         let [from, to] = self.ends;
-        if !value.is_finite() || (from.value < 0.0) == (value < 0.0) {
+        // Where f only touches zero, as between two solids that share a face, nothing is crossed.
+        if !value.is_finite() || value * from.value >= 0.0 {
             let part =
                 Self::along(self.axis, [from, bottom]).or_else(|| Self::along(self.axis, [bottom, to]));
             return Bottom::SameSign(part);

@@ -402,7 +402,19 @@ fn project(probe: &mut Probe, bounds: &Bounds, starts: Starts, spacing: f32, out
             }
         }
     }
-    let touching = touching(probe, start, &landed, is_unsure, LARGEST * spacing);
+    // Of a function with edges some solids may share a face. There f touches zero from below: it is
+    // no surface of the solid that they are together.
+    let is_black_box = probe.field.bounded().is_none() && probe.field.pieces().is_some();
+    let (touching, inner) =
+        touching(probe, start, &landed, |k| is_black_box || is_unsure[k], LARGEST * spacing);
+    if is_black_box && inner.len() < landed.iter().flatten().count() {
+        for &k in &inner {
+            out.area -= f64::from(areas[k].unwrap_or(0.0));
+            landed[k] = None;
+        }
+    }
+    let touching: Vec<usize> =
+        touching.into_iter().filter(|&k| is_unsure[k] && landed[k].is_some()).collect();
     let mut is_bare = |k: usize| probe.is_bare_zero(start[k].as_dvec3(), bare_size(spacing.into()));
     if selection(&touching, SAMPLES).any(|&k| is_bare(k)) {
         let bare: Vec<Vec3> = touching.iter().filter(|&&k| is_bare(k)).map(|&k| start[k]).collect();
@@ -454,35 +466,35 @@ fn project_on_branches(
     }
 }
 
-/// The unsure ones of the points that have landed, with these normals, on both sides of which f has
-/// the same sign.
+/// Those of the points that have landed, with these normals, on both sides of which f has the same
+/// sign, and those of them where it is negative. Only those are looked at that `is_asked` says.
 fn touching(
     probe: &mut Probe,
     points: &[Vec3],
     landed: &[Option<Vec3>],
-    is_unsure: &[bool],
+    is_asked: impl Fn(usize) -> bool,
     distance: f32,
-) -> Vec<usize> {
-    let mut touching = Vec::new();
+) -> (Vec<usize>, Vec<usize>) {
+    let (mut touching, mut inner) = (Vec::new(), Vec::new());
     let mut sides = [0.0; BATCH];
-    let unsure: Vec<(usize, Vec3)> = (landed.iter().zip(is_unsure).enumerate())
-        .filter_map(|(k, (normal, is_unsure))| normal.filter(|_| *is_unsure).map(|normal| (k, normal)))
+    let asked: Vec<(usize, Vec3)> = (landed.iter().enumerate())
+        .filter_map(|(k, normal)| normal.filter(|_| is_asked(k)).map(|normal| (k, normal)))
         .collect();
-    for chunk in unsure.chunks(BATCH / 2) {
+    for chunk in asked.chunks(BATCH / 2) {
         let beside: Vec<Vec3> = (chunk.iter())
             .flat_map(|&(k, normal)| [normal, -normal].map(|normal| points[k] + normal * distance))
             .collect();
         probe.field.values(&beside, &mut sides);
-        let sides = sides.as_chunks::<2>().0;
-        touching.extend(
-            chunk
-                .iter()
-                .zip(sides)
-                .filter(|(_, [ahead, behind])| ahead * behind >= 0.0)
-                .map(|((k, _), _)| *k),
-        );
+        for (&(k, _), [ahead, behind]) in chunk.iter().zip(sides.as_chunks::<2>().0) {
+            if ahead * behind >= 0.0 {
+                touching.push(k);
+            }
+            if ahead.max(*behind) < 0.0 {
+                inner.push(k);
+            }
+        }
     }
-    touching
+    (touching, inner)
 }
 
 /// The first of a selection of points that is a zero of f on a curve, or a point by itself.
