@@ -78,6 +78,15 @@ fn solids() -> Vec<Solid> {
             let turned = DVec2::from_angle(0.7 * p.z).rotate(p.truncate());
             block(turned.extend(p.z), dvec3(0.5, 0.5, 0.8)) * 0.8
         }),
+        // Within the bar its distance is that to a side, not one of the largest coordinate.
+        solid("a twisted bar by its distance", (2, 12, 8), 1.92, |p| {
+            let turned = DVec2::from_angle(0.8 * p.z).rotate(p.truncate());
+            let q = turned.extend(p.z).abs() - dvec3(0.6, 0.4, 1.0);
+            q.max(DVec3::ZERO).length() + q.max_element().min(0.0)
+        }),
+        solid("two blocks that share a face", (2, 12, 8), 1.92, |p| {
+            block(dvec3(p.x.abs() - 0.4, p.y, p.z), dvec3(0.4, 0.5, 0.6))
+        }),
         solid("nine boxes by round", (18, 108, 72), 0.864, |p| {
             block(dvec3(nearest_of(p.x, 0.6, 1.0), nearest_of(p.y, 0.6, 1.0), p.z), dvec3(0.2, 0.2, 0.3))
         }),
