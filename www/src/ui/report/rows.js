@@ -4,8 +4,8 @@ import { formatCount, formatFixed, formatSignificant, MISSING } from '../format.
 /** @import { Report, ReportRow } from '../../engine/types.js' */
 
 /**
- * Returns the value at a path such as `quality.six_neighbours`. It is null for a non-finite number, which stands for an undefined
- * figure.
+ * Returns the value at a path such as `quality.six_neighbours`. It is null for a non-finite number, which stands for an
+ * undefined figure.
  * @param {unknown} root
  * @param {string} key
  * @returns {unknown}

@@ -223,7 +223,9 @@ test('the charts of the levels', { tag: '@all' }, async ({ page }) => {
         /^[\d,]+ particles\. A hexagonal lattice of these discs would have [\d,]+ on this area.* there are 1\d\d\.\d% of that\.$/,
       ),
     ).toBeVisible();
-    const six = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.report().quality.six_neighbours);
+    const six = await page.evaluate(
+      () => /** @type {any} */ (window).marchingParticles.report().quality.six_neighbours,
+    );
     await expect(degree).toHaveAttribute('aria-label', new RegExp(`six: ${(100 * six).toFixed(1)}`));
     const deviation = async () => Number(/± ([\d.]+)/.exec((await nearest.getAttribute('aria-label')) ?? '')?.[1]);
     await expect(nearest).toHaveAttribute('aria-label', /^Distance of all [\d,]+ particles to/);

@@ -267,7 +267,15 @@ test('order decides where it differs by more than chance, then the hole, then th
 });
 
 test('a score is of the report’s own figures, of particles of many sizes of those against each size', async () => {
-  const quality = { six: 0.9, cover: 1.2, cover_local: 1.3, uncovered: 0.1, rho: 0.8, overlap_min: 0.7, area: 4 };
+  const quality = {
+    six_neighbours: 0.9,
+    cover: 1.2,
+    cover_local: 1.3,
+    uncovered: 0.1,
+    rho: 0.8,
+    overlap_min: 0.7,
+    area: 4,
+  };
   const places = {
     holes: [{ position: [0.9, 0, 0], radius: 0.4, ratio: 1.2 }],
     pairs: [{ particles: [0, 2], ratio: 0.8 }],
