@@ -70,6 +70,7 @@ mod sizing;
 mod smooth;
 mod solid_table;
 mod solids;
+mod spacing;
 mod systems;
 mod thickness;
 mod tips;

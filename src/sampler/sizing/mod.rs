@@ -1,8 +1,8 @@
-//! The radius field of adaptive sampling: a law gives the radius from the curvature, and its slope
-//! is limited.
+//! The radius field of adaptive sampling: a law gives the radius from the curvature, from a function
+//! of place or from both, and its slope is limited.
 //!
-//! r(x) = min(law(κ(x)), envelope(x)). The envelope is the minimum over the points y of the survey
-//! and of the creases of law(κ(y)) + L |x − y|: the largest function of slope L that is not above
+//! r(x) = min(law(x, κ(x)), envelope(x)). The envelope is the minimum over the points y of the survey
+//! and of the creases of law(y, κ(y)) + L |x − y|: the largest function of slope L that is not above
 //! the law at these points. So the radius grows no faster than this away from a bend, also away
 //! from a crease beside a patch so small that no point of the survey lies on it. The envelope is
 //! stored on the nodes of a grid near the surface and interpolated between them.
@@ -16,10 +16,11 @@ use crate::math::{Bounds, HEXAGONAL_CELL};
 use crate::sampler::constraint::Creases;
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::probe::Probe;
-use crate::sampler::settings::Settings;
+use crate::sampler::settings::{Settings, SettingsError};
 use crate::sampler::sizing::envelope::Envelope;
 use crate::sampler::sizing::laws::SizingLaw;
-use glam::Vec3;
+use crate::sampler::spacing::Spacing;
+use glam::{DVec3, Vec3};
 
 /// Rounds towards a predicted count. Each scales the radii by the square root of the ratio of the
 /// counts; more than one is necessary only because of the clamps and the slope.
@@ -28,9 +29,34 @@ const MAX_ROUNDS: u32 = 6;
 /// accurate.
 const PREDICTION_TOLERANCE: f64 = 2e-3;
 
+/// Share by which the slope may lower a wanted radius before that counts as smoothing.
+const SMOOTHED: f32 = 0.05;
+
+/// A spacing by a function that is asked for.
+#[derive(Clone, Debug)]
+pub(crate) struct Wish {
+    pub(crate) spacing: Spacing,
+    /// Whether the radius also follows the curvature, and is the smaller one of both.
+    pub(crate) bends: bool,
+    /// The point from which places are counted.
+    pub(crate) origin: DVec3,
+}
+
+/// Where the slope keeps the radius below the one that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Smoothing {
+    /// Share of the area where it does, by more than a twentieth.
+    pub(crate) share: f64,
+    /// The largest ratio of the radius that is asked for and the one that is met.
+    pub(crate) ratio: f64,
+    /// The place where it is, counted from the origin of the run.
+    pub(crate) position: Vec3,
+}
+
 /// The radius field of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Sizing {
+    wish: Option<Wish>,
     law: SizingLaw,
     /// Largest slope L.
     slope: f32,
@@ -47,17 +73,20 @@ pub(crate) struct Sizing {
 struct SurfaceSample {
     position: Vec3,
     curvature: Curvature,
+    /// Radius that is asked for; infinite where none is.
+    asked: f32,
     /// Area of the surface that the point represents; none on a crease.
     weight: f32,
 }
 
 impl Sizing {
-    /// Makes the radius field that `settings` ask for. This evaluates a Hessian at every point of
+    /// Makes the radius field that `settings` ask for, or a `wish`. This evaluates a Hessian at every point of
     /// the survey, and on every patch at each of the `creases`.
     pub(crate) fn new(
         probe: &mut Probe,
         bounds: &Bounds,
         settings: &Settings,
+        wish: Option<Wish>,
         survey: &Survey,
         creases: &Creases,
     ) -> Self {
@@ -70,6 +99,7 @@ impl Sizing {
             samples.extend(rows.map(|((&position, curvature), &weight)| SurfaceSample {
                 position,
                 curvature,
+                asked: f32::INFINITY,
                 weight,
             }));
         };
@@ -79,8 +109,20 @@ impl Sizing {
                 add(&mut probe.on(Some(patch)), &[position], &[0.0]);
             }
         }
+        if let Some(Wish { spacing, origin, .. }) = &wish {
+            let places: Vec<Vec3> = samples.iter().map(|sample| sample.position).collect();
+            let mut asked = vec![0.0; places.len()];
+            spacing.radii(*origin, &places, &mut asked);
+            samples.iter_mut().zip(asked).for_each(|(sample, asked)| sample.asked = asked);
+        }
+        let diagonal = bounds.diagonal();
+        let by_curvature = SizingLaw::new(settings, diagonal);
+        let law = wish
+            .as_ref()
+            .map_or(by_curvature, |wish| SizingLaw::asked(wish.bends.then_some(by_curvature), diagonal));
         let mut sizing = Self {
-            law: SizingLaw::new(settings, bounds.diagonal()),
+            wish,
+            law,
             slope: settings.grading as f32,
             envelope: Envelope::new(bounds, samples.iter().map(|sample| sample.position)),
             samples,
@@ -96,7 +138,51 @@ impl Sizing {
     /// the smallest radius if the curvature is undefined.
     #[inline]
     pub(crate) fn radius(&self, position: Vec3, curvature: &Curvature) -> f32 {
-        self.law.radius(curvature).min(self.envelope.at(position))
+        let mut radius = [0.0];
+        self.radii(&[position], core::slice::from_ref(curvature), &mut radius);
+        radius[0]
+    }
+
+    /// Writes the repulsion radius of a particle at each of some points of the surface, which have
+    /// these curvatures: [`Sizing::radius`].
+    #[inline]
+    pub(crate) fn radii(&self, positions: &[Vec3], curvatures: &[Curvature], radii: &mut [f32]) {
+        match &self.wish {
+            Some(Wish { spacing, origin, .. }) => spacing.radii(*origin, positions, radii),
+            None => radii.fill(f32::INFINITY),
+        }
+        for ((radius, &position), curvature) in radii.iter_mut().zip(positions).zip(curvatures) {
+            *radius = self.law.radius(*radius, curvature).min(self.envelope.at(position));
+        }
+    }
+
+    /// Checks the radii that are asked for at the points of the survey and of the creases.
+    ///
+    /// # Errors
+    ///
+    /// The first one that is not above 0.
+    pub(crate) fn check(&self) -> Result<(), SettingsError> {
+        let Some(Wish { spacing, origin, .. }) = &self.wish else { return Ok(()) };
+        let places: Vec<Vec3> = self.samples.iter().map(|sample| sample.position).collect();
+        let asked: Vec<f32> = self.samples.iter().map(|sample| sample.asked).collect();
+        spacing.check(*origin, &places, &asked)
+    }
+
+    /// Where the slope keeps the radius below the one that is asked for, if it does.
+    pub(crate) fn smoothing(&self) -> Option<Smoothing> {
+        self.wish.as_ref()?;
+        let (mut area, mut smoothed, mut worst) = (0.0, 0.0, (1.0 + SMOOTHED, None));
+        for sample in &self.samples {
+            let wanted = self.law.radius(sample.asked, &sample.curvature);
+            let ratio = wanted / self.envelope.at(sample.position);
+            area += f64::from(sample.weight);
+            smoothed += if ratio > 1.0 + SMOOTHED { f64::from(sample.weight) } else { 0.0 };
+            if ratio > worst.0 {
+                worst = (ratio, Some(sample.position));
+            }
+        }
+        let position = worst.1?;
+        Some(Smoothing { share: smoothed / area, ratio: worst.0.into(), position })
     }
 
     /// Returns the repulsion radius of a particle at a point of the surface. This evaluates a
@@ -177,12 +263,17 @@ impl Sizing {
     fn grade(&mut self) {
         self.envelope.fill(self.law.greatest());
         for sample in &self.samples {
-            self.envelope.lower(sample.position, self.law.radius(&sample.curvature), self.slope);
+            self.envelope.lower(
+                sample.position,
+                self.law.radius(sample.asked, &sample.curvature),
+                self.slope,
+            );
         }
         self.envelope.spread(self.slope);
         (self.predicted, self.smallest, self.largest) = (0.0, f32::INFINITY, 0.0);
         for sample in &self.samples {
-            let radius = self.law.radius(&sample.curvature).min(self.envelope.at(sample.position));
+            let radius =
+                self.law.radius(sample.asked, &sample.curvature).min(self.envelope.at(sample.position));
             self.predicted +=
                 f64::from(sample.weight) / (HEXAGONAL_CELL * f64::from(radius) * f64::from(radius));
             self.smallest = self.smallest.min(radius);
