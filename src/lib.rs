@@ -92,9 +92,9 @@
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
 //! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Body`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
 //! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measured`], [`Measures`], [`Cut`] |
-//! | its figures | [`Figures`] with the groups in [figures], [`Histogram`], [`Places`], [`Pair`], [`Hole`], [`Measurements`] |
+//! | its figures | [`Figures`] with the groups in [figures], [`Histogram`], [`Places`], [`Pair`], [`Hole`], [`Measurements`]; [`Value`], [`NamedValues`] |
 //! | what may be wrong | [`Warning`], [`Severity`], [`Doubt`], [`Refusal`], [`Spot`] |
-//! | why there is no result | [`Error`], [`SettingsError`], [`BoxError`], [`FollowError`]; of points [`JobError`], [`ReadError`], [`InputFormat`], [`CloudError`], [`FitError`] |
+//! | why there is no result | [`Error`], [`SettingsError`], [`BoxError`], [`FollowError`], [`ValueError`]; of points [`JobError`], [`ReadError`], [`InputFormat`], [`CloudError`], [`FitError`] |
 //! | files | [`Format`], [`ParticleFile`], [`MeshFormat`], [`MeshFile`], [`Bodies`], [`Vertices`], [`Placement`], [`Unit`], [`UpAxis`], [`RecordText`] |
 //!
 //! The modules behind the root are public for the project's own tests, benchmarks and page and may
@@ -179,10 +179,10 @@ pub use pointcloud::fit_points;
 pub use pointcloud::job::JobError;
 #[cfg(feature = "points")]
 pub use pointcloud::read::{InputFormat, ReadError};
-pub use quality::{Figures, Histogram, Hole, Measurements, Pair, Places, figures};
+pub use quality::{Figures, Histogram, Hole, Measurements, NamedValues, Pair, Places, figures};
 pub use run::{
     Cut, Error, Growth, Measured, Measures, MeshAnswer, MeshComponent, Proof, Radii, Report, Reporting, Run,
-    Sample, Severity, Start, Warning, sample,
+    Sample, Severity, Start, Value, ValueError, Warning, sample,
 };
 pub use sampler::{
     Doubt, FateCounts, FollowError, GapPolicy, LawKind, Method, Phase, Progress, Radius, Refusal, Sampled,

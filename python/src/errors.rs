@@ -1,6 +1,6 @@
 //! Errors of the core as exceptions of Python.
 
-use marching_particles::{Error, FieldError, FormulaError, FormulaErrorKind, JobError, SettingsError};
+use marching_particles::{Error, FieldError, FormulaError, FormulaErrorKind, JobError, SettingsError, ValueError};
 use pyo3::PyErr;
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -40,9 +40,18 @@ pub(crate) fn of_run(error: &Error) -> PyErr {
             python::EmptySurface::new_err(format!("{message}: pass bounds=((x0, y0, z0), (x1, y1, z1))"))
         }
         Error::Nothing { message, .. } => python::EmptySurface::new_err(message.clone()),
+        Error::Settings(SettingsError::SpacingFunction(error)) => of_field(error),
         Error::Settings(SettingsError::Memory { .. }) => PyMemoryError::new_err(error.to_string()),
         Error::Settings(error) => PyValueError::new_err(error.to_string()),
         _ => PyRuntimeError::new_err(error.to_string()),
+    }
+}
+
+/// The exception of a column of values.
+pub(crate) fn of_value(error: &ValueError) -> PyErr {
+    match error {
+        ValueError::Function(error) => of_field(error),
+        _ => PyValueError::new_err(error.to_string()),
     }
 }
 

@@ -2,12 +2,15 @@
 
 use crate::errors;
 use crate::field::Field;
-use marching_particles::{Bounds, Measured, Radius, Run, Settings, Vertices, Warning};
+use marching_particles::{
+    Bounds, Measured, NamedValues, Radius, Run, Settings, SpacedSettings, Spacing, Value, Vertices, Warning,
+};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::io::ErrorKind;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Units of work between two looks for Ctrl-C: milliseconds of a formula.
 const BUDGET: u32 = 5_000;
@@ -16,7 +19,9 @@ const REPORT_SLICES: u32 = 500;
 
 /// Samples a field. The GIL is released but for calls of functions of Python.
 #[pyfunction]
-#[pyo3(signature = (field, *, count, radius, share, bounds, adaptive, refined, seed, measure, progress))]
+#[pyo3(signature = (
+    field, *, count, radius, share, spacing, bounds, adaptive, refined, seed, values, measure, progress
+))]
 #[expect(clippy::too_many_arguments, reason = "they are named, and Python's")]
 pub(crate) fn sample(
     py: Python<'_>,
@@ -24,10 +29,12 @@ pub(crate) fn sample(
     count: Option<u32>,
     radius: Option<f64>,
     share: Option<f64>,
+    spacing: Option<Function>,
     bounds: Option<([f64; 3], [f64; 3])>,
     adaptive: bool,
     refined: bool,
     seed: u64,
+    values: Vec<(String, Function)>,
     measure: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Sample> {
@@ -41,10 +48,40 @@ pub(crate) fn sample(
     settings = if adaptive { settings.adaptive() } else { settings };
     settings = if refined { settings.refined() } else { settings };
     settings.bounds = bounds.map(|(min, max)| Bounds { min, max }).or(field.bounds);
-    py.detach(|| run(field, &settings, measure, progress.as_ref()))
+    let settings = match spacing {
+        None => settings.into(),
+        Some(Function::Formula(text)) => {
+            settings.spaced(Spacing::parse(&text).map_err(|error| errors::of_formula(&error, &text))?)
+        }
+        Some(Function::Field(function)) => settings.spaced(Spacing::by(Arc::clone(&function.get().field))),
+    };
+    let value = |(name, function)| {
+        let value = match function {
+            Function::Formula(text) => {
+                Value::parse(&text).map_err(|error| errors::of_formula(&error, &text))?
+            }
+            Function::Field(function) => Value::by(Arc::clone(&function.get().field)),
+        };
+        Ok((name, value))
+    };
+    let values = values.into_iter().map(value).collect::<PyResult<Vec<_>>>()?;
+    py.detach(|| run(field, settings, &values, measure, progress.as_ref()))
 }
 
-fn run(field: &Field, settings: &Settings, measure: bool, progress: Option<&Py<PyAny>>) -> PyResult<Sample> {
+/// A function of place, by a formula or by a function of Python.
+#[derive(FromPyObject)]
+pub(crate) enum Function {
+    Formula(String),
+    Field(Py<Field>),
+}
+
+fn run(
+    field: &Field,
+    settings: SpacedSettings,
+    values: &[(String, Value)],
+    measure: bool,
+    progress: Option<&Py<PyAny>>,
+) -> PyResult<Sample> {
     let raised = |error| errors::of_run(&error);
     let mut run = Run::start(&*field.field, settings).map_err(raised)?;
     let measured = if measure { Measured::Particles } else { Measured::Nothing };
@@ -69,7 +106,10 @@ fn run(field: &Field, settings: &Settings, measure: bool, progress: Option<&Py<P
             tell(reporting.fraction())?;
         }
     }
-    let sample = run.finish_with(measured).map_err(raised)?;
+    let mut sample = run.finish_with(measured).map_err(raised)?;
+    for (name, value) in values {
+        sample.add_value(&*field.field, name, value).map_err(|error| errors::of_value(&error))?;
+    }
     tell(1.0)?;
     Ok(Sample(sample))
 }
@@ -121,6 +161,12 @@ impl Sample {
 
     fn levels<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i32>> {
         PyArray1::from_iter(py, self.0.particles().level.iter().map(|level| level.cast_signed()))
+    }
+
+    /// The columns that were asked for, by name.
+    fn values<'py>(&self, py: Python<'py>) -> Vec<(String, Bound<'py, PyArray1<f32>>)> {
+        let column = |added: &NamedValues| (added.name.clone(), PyArray1::from_slice(py, &added.values));
+        self.0.values().iter().map(column).collect()
     }
 
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i32>>> {

@@ -13,6 +13,7 @@ mod report;
 mod sample;
 mod severity;
 mod state;
+mod values;
 mod warning;
 
 pub use measuring::Measured;
@@ -20,6 +21,7 @@ pub use mesh::{MeshAnswer, MeshComponent};
 pub use report::{Cut, Growth, Measures, Proof, Radii, Report, Reporting};
 pub use sample::{Sample, sample};
 pub use severity::Severity;
+pub use values::{Value, ValueError};
 pub use warning::Warning;
 
 use crate::differential::{self, Curvature};

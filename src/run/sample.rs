@@ -99,6 +99,10 @@ impl Sample {
         &self.measured
     }
 
+    pub(super) fn measured_mut(&mut self) -> &mut quality::Measurements {
+        &mut self.measured
+    }
+
     /// The clip box, in the coordinates of the field.
     #[must_use]
     pub fn bounds(&self) -> Bounds {

@@ -70,8 +70,12 @@ impl Debug for Spacing {
 }
 
 /// A spacing in the words of errors.
-const NOUN: Noun =
-    Noun { name: "spacing", examples: ["0.1", "0.02 + 0.1 hypot(x, y)", "if(z > 0, 0.02, 0.1)"] };
+const NOUN: Noun = Noun {
+    name: "spacing",
+    unknown: "The formula has no parameter",
+    others: "the parameters of the formula",
+    examples: ["0.1", "0.02 + 0.1 hypot(x, y)", "if(z > 0, 0.02, 0.1)"],
+};
 
 impl Spacing {
     /// The spacing by a formula of x, y and z, such as `0.02 + 0.1 hypot(x, y)`, in the language of

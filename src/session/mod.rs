@@ -7,6 +7,7 @@ mod fault;
 mod fitting;
 mod record;
 mod setting;
+mod spacing;
 
 pub use code::{Code, Language};
 pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, describe};
@@ -16,6 +17,7 @@ pub use record::{FileRecord, FileRequest};
 pub use setting::{
     Choice, Condition, Setting, SettingGroup, SettingKind, SettingScale, SettingValue, settings,
 };
+pub use spacing::SpacingText;
 
 use crate::extent::{FALLBACK, Reach};
 use crate::field::formula::{Formula, FormulaError, FormulaErrorKind, Grip, MODEL, MathNode, Parameter};
@@ -156,6 +158,8 @@ pub struct Session {
     /// Whether the surface, closed by no box, is bounded, if the clip box was fitted to it.
     reach: Option<Reach>,
     fitting: Fitting,
+    /// The spacing of the next runs, if it is by a formula.
+    spacing: Option<SpacingText>,
     /// The record of the present run.
     made: Option<FileRecord>,
     /// Whether the box of the present run is the one that a search for it finds.
@@ -183,6 +187,7 @@ impl Session {
             clip: surface.bounds,
             reach: None,
             fitting: Fitting::default(),
+            spacing: None,
             made: None,
             is_box_found: false,
             started: None,
@@ -490,6 +495,7 @@ impl Session {
         self.made = self.beginning(settings);
         self.is_box_found = self.fitting.is_fitted && !self.fitting.is_grown;
         self.started = Some(*settings);
+        self.run.set_spacing(self.next_spacing());
         self.run.begin(settings)
     }
 

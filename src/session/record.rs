@@ -1,7 +1,7 @@
 //! The record that a file carries, from which it can be made again, and the request for a mesh
 //! file.
 
-use super::{BoxFaces, Session, SolidSettings, Source};
+use super::{BoxFaces, Session, SolidSettings, Source, SpacingText};
 use crate::export::{self, Bodies, MeshFile, MeshFormat, Placement, Vertices};
 use crate::field::rbf::Pull;
 use crate::math::Bounds;
@@ -44,6 +44,9 @@ pub struct FileRecord {
     #[serde(default)]
     #[cfg_attr(test, ts(type = "Record<string, number | string>"))]
     pub solid: SolidSettings,
+    /// Spacing of the run, if it is by a formula.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spacing: Option<SpacingText>,
     /// Settings of the run.
     #[cfg_attr(test, ts(type = "Record<string, number | string>"))]
     pub settings: Settings,
@@ -110,6 +113,7 @@ impl Session {
             bounds: self.run.bounds(),
             faces: (self.fitting.choice.box_faces == BoxFaces::Closed).then_some(self.clip),
             solid: self.fitting.choice.clone(),
+            spacing: self.spacing.clone().filter(|_| self.next_spacing().is_some()),
             settings: Settings { bounds: None, ..*settings },
         })
     }

@@ -41,6 +41,8 @@ class Model(Field):
     @property
     def bounds(self) -> tuple[_Corner, _Corner]: ...
     @property
+    def values(self) -> dict[str, npt.NDArray[np.float32]]: ...
+    @property
     def report(self) -> dict[str, Any]: ...
     @property
     def warnings(self) -> list[str]: ...
@@ -77,13 +79,14 @@ def sample(
     *,
     count: Union[int, None] = None,
     radius: Union[float, str, None] = None,
-    spacing: Union[float, None] = None,
+    spacing: Union[float, str, _Function, Field, None] = None,
     bounds: Union[Sequence[Sequence[float]], npt.NDArray[Any], None] = None,
     params: Union[Mapping[str, float], None] = None,
     gradient: Union[_Function, None] = None,
     adaptive: bool = False,
     method: Literal["front", "refined"] = "front",
     seed: int = 0,
+    values: Union[Mapping[str, Union[str, _Function, Field]], None] = None,
     measure: bool = True,
     progress: Union[Callable[[float], object], None] = None,
 ) -> Sample: ...

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from . import _core
-from ._fields import field_of, integer, numbers
+from ._fields import Field, _parameters, field_of, integer, numbers
 
 METHODS = ("front", "refined")
 
@@ -87,6 +88,11 @@ class Sample:
         return self._core.levels()
 
     @cached_property
+    def values(self):
+        """The columns that ``values`` has asked for, a dict of arrays (n,), float32."""
+        return dict(self._core.values())
+
+    @cached_property
     def faces(self):
         """Triangles over the rows of ``points``, array (m, 3), int32, counter-clockwise seen from
         outside. Across sharp edges they share no row: :meth:`weld` joins them."""
@@ -137,7 +143,7 @@ class Sample:
 
     def to_pyvista(self):
         """The welded mesh as a ``pyvista.PolyData``, with the point data ``Normals``, ``radius``
-        and ``level``."""
+        and ``level``, and the values that were asked for."""
         import pyvista
 
         mesh = self.weld()
@@ -146,6 +152,8 @@ class Sample:
         data.point_data["Normals"] = mesh.normals
         data.point_data["radius"] = self.radii[mesh.rows]
         data.point_data["level"] = self.levels[mesh.rows]
+        for name, values in self.values.items():
+            data.point_data[name] = values[mesh.rows]
         return data
 
 
@@ -161,6 +169,7 @@ def sample(
     adaptive=False,
     method="front",
     seed=0,
+    values=None,
     measure=True,
     progress=None,
 ):
@@ -177,7 +186,11 @@ def sample(
         count: Number of particles, met to within 3 %; 1 to 4,000,000.
         radius: Repulsion radius, half the distance between neighbours: a length, or a share of the
             diagonal of the box such as ``"1%"``. Without count, radius and spacing it is 0.6 %.
-        spacing: Distance between neighbours, twice the radius.
+        spacing: Distance between neighbours, twice the radius: a number; a formula of x, y, z and
+            ``params`` such as ``"0.02 + 0.1 hypot(x, y)"``; or a function of points, as for
+            ``field``. It must be above 0 on the surface. Sizes change gradually along the surface;
+            a warning says where that is less than a formula or function asks. With ``count`` these
+            give the ratio of the distances, with ``adaptive`` the smaller size is taken.
         bounds: The box, ``((x0, y0, z0), (x1, y1, z1))``. Without it a model has its own, and
             another box is fitted to the surface; of functions and what is made of them only by
             their signs on grids, so give it where it is known.
@@ -188,6 +201,10 @@ def sample(
             one that keeps close to the surface.
         method: ``"front"``, or ``"refined"``: slower, with more particles that have six neighbours.
         seed: Seed of the point where the front begins, 0 to 2**64 - 1.
+        values: More columns, by name: formulas of x, y, z, the normal n_x, n_y, n_z, the principal
+            curvatures k_1 >= k_2, the direction d_x, d_y, d_z of k_1, radius, level, area (the
+            share of the surface) and ``params``, such as ``{"H": "(k_1 + k_2)/2"}``; or functions
+            of points. They are :attr:`Sample.values`, and files have them: PLY, CSV, NPY and GLB.
         measure: Whether the particles are measured. It may take longer than the sampling; without
             it the report has no quality figures.
         progress: A function that is called with the share of the work done, 0 to 1.
@@ -205,16 +222,19 @@ def sample(
     """
     sizes = {"count": count, "radius": radius, "spacing": spacing}
     given = [name for name, value in sizes.items() if value is not None]
-    if len(given) > 1:
+    is_varying = isinstance(spacing, str) or callable(spacing) or isinstance(spacing, Field)
+    if len(given) > 1 and not (is_varying and given == ["count", "spacing"]):
         raise ValueError(f"{' and '.join(given)} exclude each other: give one of them")
-    if adaptive and given in (["radius"], ["spacing"]):
+    if adaptive and not is_varying and given in (["radius"], ["spacing"]):
         raise ValueError(
             f"{given[0]} is for particles of one size: with adaptive=True give count, or no size"
         )
     if count is not None:
         count = integer("count", count, *_core.COUNTS)
-    share = None
-    if spacing is not None:
+    share, varying = None, None
+    if is_varying:
+        varying = _function("spacing", spacing, params)
+    elif spacing is not None:
         radius = _length("spacing", spacing) / 2
     elif isinstance(radius, str):
         radius, share = None, _share("radius", radius)
@@ -238,14 +258,34 @@ def sample(
         count=count,
         radius=radius,
         share=share,
+        spacing=varying,
         bounds=bounds,
         adaptive=bool(adaptive),
         refined=method == "refined",
         seed=integer("seed", seed, 0, 2**64 - 1),
+        values=_columns(values, params),
         measure=bool(measure),
         progress=progress,
     )
     return Sample(core)
+
+
+def _function(name, function, params):
+    """A function of place, as the core takes it: a formula, with the values of its parameters, or
+    the core's field of a function."""
+    if isinstance(function, str):
+        given = _parameters(params) if params is not None else []
+        used = [f"{own} = {value!r}; " for own, value in given if own in function]
+        return "".join(used) + function
+    return field_of(function, name=name)
+
+
+def _columns(values, params):
+    if values is None:
+        return []
+    if not isinstance(values, Mapping):
+        raise TypeError(f"values must be a dict of names and formulas or functions, and not {values!r}")
+    return [(name, _function(f"values[{name!r}]", value, params)) for name, value in values.items()]
 
 
 def _share(name, text):

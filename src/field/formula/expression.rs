@@ -11,6 +11,10 @@ use super::{Formula, Parameter, WrittenFormula, repair, syntax};
 pub(crate) struct Noun {
     /// Its name: `thickness`.
     pub(crate) name: &'static str,
+    /// The beginning of what is said of an unknown name, up to the name.
+    pub(crate) unknown: &'static str,
+    /// What it is made of beside x, y and z.
+    pub(crate) others: &'static str,
     /// Two examples, and an alternative to a condition in braces.
     pub(crate) examples: [&'static str; 3],
 }
@@ -29,7 +33,8 @@ impl Formula {
         noun: &Noun,
     ) -> Result<Self, FormulaError> {
         let equation = expression(text, parameters, noun)?;
-        let parameters = parameters.to_vec();
+        let is_named = |parameter: &&Parameter| text.contains(&*parameter.name);
+        let parameters: Vec<Parameter> = parameters.iter().filter(is_named).cloned().collect();
         let compiled = Compiled::new(&equation, &parameters)?;
         let (automatic, unused) = (Vec::new(), Vec::new());
         let written = WrittenFormula { text: text.to_owned(), equation, automatic, unused };
@@ -43,14 +48,11 @@ pub(super) fn expression(
     parameters: &[Parameter],
     noun: &Noun,
 ) -> Result<Equation, FormulaError> {
-    let Noun { name: what, examples: [number, formula, choice] } = *noun;
+    let Noun { name: what, unknown: no, others, examples: [number, formula, choice] } = *noun;
     let known: Vec<&str> = parameters.iter().map(|parameter| &*parameter.name).collect();
     let no_parameter = |name: &str| {
         let own = if known.is_empty() { "there is none".to_owned() } else { known.join(", ") };
-        format!(
-            "The formula has no parameter `{name}`: a {what} is made of x, y, z and the parameters of the \
-             formula ({own})"
-        )
+        format!("{no} `{name}`: a {what} is made of x, y, z and {others} ({own})")
     };
     let read = syntax(text, &known).map_err(|error| repair::throughout(text, &known, error));
     let (parsed, unknown) = read.map_err(|error| match (&error.kind, &error.name) {

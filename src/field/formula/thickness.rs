@@ -145,7 +145,12 @@ impl Sheet {
 }
 
 /// A thickness in the words of errors.
-const NOUN: Noun = Noun { name: "thickness", examples: ["0.2", "0.1 + 0.05 z", "if(z > 0, 0.2, 0.1)"] };
+const NOUN: Noun = Noun {
+    name: "thickness",
+    unknown: "The formula has no parameter",
+    others: "the parameters of the formula",
+    examples: ["0.2", "0.1 + 0.05 z", "if(z > 0, 0.2, 0.1)"],
+};
 
 /// The syntax tree of a thickness, whose names are those of parameters.
 fn expression(text: &str, parameters: &[Parameter]) -> Result<Equation, FormulaError> {
