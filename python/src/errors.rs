@@ -1,6 +1,8 @@
 //! Errors of the core as exceptions of Python.
 
-use marching_particles::{Error, FieldError, FormulaError, FormulaErrorKind, JobError, SettingsError, ValueError};
+use marching_particles::{
+    Error, FieldError, FormulaError, FormulaErrorKind, JobError, SettingsError, ValueError,
+};
 use pyo3::PyErr;
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;

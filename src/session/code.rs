@@ -161,6 +161,8 @@ impl Program<'_> {
             Some("close a solid by its box".to_owned())
         } else if solid.sheet().is_some() {
             Some("make a sheet of a thickness".to_owned())
+        } else if self.record.spacing.is_some() && language == Language::JavaScript {
+            Some("space particles by a formula (--spacing)".to_owned())
         } else if self.record.spacing.as_ref().is_some_and(SpacingText::is_limited) {
             Some("limit a spacing (--spacing-min, --spacing-max)".to_owned())
         } else if let Some(setting) = other {

@@ -46,6 +46,7 @@ pub struct FileRecord {
     pub solid: SolidSettings,
     /// Spacing of the run, if it is by a formula.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(test, ts(optional))]
     pub spacing: Option<SpacingText>,
     /// Settings of the run.
     #[cfg_attr(test, ts(type = "Record<string, number | string>"))]

@@ -16,9 +16,11 @@ pub struct SpacingText {
     pub formula: String,
     /// Smallest distance, which is taken where the formula is below it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(test, ts(optional))]
     pub smallest: Option<f64>,
     /// Largest distance, which is taken where the formula is above it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(test, ts(optional))]
     pub largest: Option<f64>,
 }
 

@@ -74,4 +74,5 @@ mod spacing;
 mod systems;
 mod thickness;
 mod tips;
+mod values;
 mod wrapped;

@@ -27,7 +27,7 @@ fn surface_points(field: &dyn Field, bounds: &Bounds, count: usize) -> Vec<DVec3
             p -= gradient * (f / gradient.length_squared());
         }
         let (f, gradient) = field.value_and_gradient(p);
-        if f.abs() < 1e-9 * gradient.length() && bounds.holds(p) {
+        if f.abs() < 1e-6 * gradient.length() && bounds.holds(p) {
             points.push(p);
         }
         if points.len() == count {
@@ -50,41 +50,38 @@ struct Fit {
     range: f64,
 }
 
-/// The fit of particles to `spacing`, times a scale, with this largest slope of the radius. A scale
-/// of 0 takes the one of the mean.
-fn fit(sample: &Sample, field: &dyn Field, spacing: &dyn Fn(DVec3) -> f64, slope: f64, scale: f64) -> Fit {
-    let particles = sample.particles();
+/// The fit of particles to `spacing`, with this largest slope of the radius: of some 600 of them.
+fn fit(sample: &Sample, field: &dyn Field, spacing: &dyn Fn(DVec3) -> f64, slope: f64) -> Fit {
+    let (particles, bounds) = (sample.particles(), sample.bounds());
     let places: Vec<DVec3> = (0..particles.len()).map(|i| particles.place(i)).collect();
-    // Beside the random points the particles themselves: where sizes are small there are more.
-    let mut known = surface_points(field, &sample.bounds(), 3_000);
-    known.extend(&places);
+    // Beside the random points some of the particles: where sizes are small there are more.
+    let mut known = surface_points(field, &bounds, 3_000);
+    known.extend(places.iter().step_by(1 + places.len() / 2_000));
     let known: Vec<(DVec3, f64)> = known.into_iter().map(|p| (p, spacing(p))).collect();
-    let wanted: Vec<f64> = places
-        .iter()
-        .map(|p| known.iter().fold(f64::INFINITY, |s, (q, wish)| s.min(wish + 2.0 * slope * p.distance(*q))))
-        .collect();
-    let mut ratios = Vec::new();
-    for (i, p) in places.iter().enumerate() {
+    let wanted = |i: usize| {
+        let p = places[i];
+        let graded = |(q, wish): &(DVec3, f64)| wish + 2.0 * slope * p.distance(*q);
+        known.iter().map(graded).fold(spacing(p), f64::min)
+    };
+    let (mut ratios, mut range) = (Vec::new(), [f64::INFINITY, 0.0_f64]);
+    for (i, p) in places.iter().enumerate().step_by(1 + places.len() / 600) {
+        let own = wanted(i);
+        range = [range[0].min(own), range[1].max(own)];
         // A particle at the border of the box has no neighbours beyond.
-        let room = (*p - sample.bounds().lo()).min(sample.bounds().hi() - *p).min_element();
-        if room < 1.5 * wanted[i] {
+        let room = (*p - bounds.lo()).min(bounds.hi() - *p).min_element();
+        if room < 1.5 * own {
             continue;
         }
         let mut near: Vec<(f64, usize)> = (0..places.len())
             .filter(|&j| j != i && particles.normal[i].dot(particles.normal[j]) > 0.0)
             .map(|j| (p.distance(places[j]), j))
-            .filter(|(distance, _)| *distance < 4.0 * wanted[i].max(0.01))
             .collect();
-        near.sort_by(|a, b| a.0.total_cmp(&b.0));
-        ratios.extend(near.iter().take(6).map(|(d, j)| d / (0.5 * (wanted[i] + wanted[*j]))));
+        near.select_nth_unstable_by(6, |a, b| a.0.total_cmp(&b.0));
+        ratios.extend(near[..6].iter().map(|&(distance, j)| distance / (0.5 * (own + wanted(j)))));
     }
-    let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
-    let unit = if scale == 0.0 { mean } else { scale };
-    let is_good = |ratio: &&f64| (0.8..=1.25).contains(&(**ratio / unit));
-    let good = ratios.iter().filter(is_good).count() as f64 / ratios.len() as f64;
-    let largest = wanted.iter().fold(0.0, |a: f64, b| a.max(*b));
-    let smallest = wanted.iter().fold(f64::INFINITY, |a: f64, b| a.min(*b));
-    Fit { good, mean, range: largest / smallest }
+    let count = ratios.len() as f64;
+    let good = ratios.iter().filter(|ratio| (0.8..=1.25).contains(*ratio)).count() as f64 / count;
+    Fit { good, mean: ratios.iter().sum::<f64>() / count, range: range[1] / range[0] }
 }
 
 fn formula(text: &str) -> Formula {
@@ -99,7 +96,7 @@ const CYCLIDE: &str = "(x^2 + y^2 + z^2 + 0.75 - 0.36)^2 = 4 (x - 0.1)^2 + 4 * 0
 type Wish = (&'static str, fn(DVec3) -> f64);
 
 const WISHES: [Wish; 4] = [
-    ("0.1 (1 - 0.82 z)/1.82", |p| 0.1 * (1.0 - 0.82 * p.z) / 1.82),
+    ("0.16 (1 - 0.82 z)/1.82", |p| 0.16 * (1.0 - 0.82 * p.z) / 1.82),
     ("0.02 + 0.1 hypot(x, y)", |p| 0.02 + 0.1 * p.x.hypot(p.y)),
     ("0.06 + 0.03 sin(4 x)", |p| 0.06 + 0.03 * (4.0 * p.x).sin()),
     // A jump.
@@ -115,7 +112,7 @@ fn particles_are_as_far_apart_as_a_formula_asks() {
                 let settings = settings!(method; ..Settings::default());
                 let spacing = Spacing::parse(text).expect("a formula");
                 let sample = sample(&field, settings.spaced(spacing)).expect("a sample");
-                let fit = fit(&sample, &field, &wish, settings.grading, 1.0);
+                let fit = fit(&sample, &field, &wish, settings.grading);
                 println!("{surface}, {text}, {method:?}: {} {fit:?}", sample.report().count);
                 assert!(fit.good >= 0.98, "{surface}, {text}, {method:?}: {fit:?}");
                 assert!((fit.mean - 1.0).abs() < 0.05, "{surface}, {text}, {method:?}: {fit:?}");
@@ -153,7 +150,7 @@ fn random_spacings_are_met_on_random_surfaces() {
             scales.sort_by(f64::total_cmp);
             let scale = if settings.size_mode == SizeMode::Count { scales[scales.len() / 2] } else { 1.0 };
             let scaled = move |p: DVec3| scale * wish(p);
-            let fit = fit(&sample, &field, &scaled, settings.grading, 1.0);
+            let fit = fit(&sample, &field, &scaled, settings.grading);
             println!("{surface}, {:?}: {} {fit:?}", settings.method, sample.report().count);
             assert!(fit.good >= 0.98, "{surface}, {settings:?}: {fit:?}");
             if settings.size_mode == SizeMode::Count {
@@ -197,7 +194,7 @@ fn a_surface_far_from_the_origin_has_the_same_sizes() {
     let spacing = Spacing::parse("0.1 + 0.08 (x - 5e6)").expect("a formula");
     let wish = |p: DVec3| 0.1 + 0.08 * (p.x - 5e6);
     let sample = sample(&far, Settings::default().spaced(spacing)).expect("a sample");
-    let fit = fit(&sample, &far, &wish, 0.2, 1.0);
+    let fit = fit(&sample, &far, &wish, 0.2);
     assert!(fit.good >= 0.98 && fit.range > 4.0, "{fit:?}");
 }
 
@@ -261,7 +258,7 @@ fn a_spacing_that_is_no_length_on_the_surface_is_refused_with_its_place() {
         let spacing = Spacing::parse(text).expect("a formula");
         let sample =
             sample(&field, Settings::default().spaced(spacing)).unwrap_or_else(|e| panic!("{text}: {e}"));
-        assert!(sample.report().count > 100, "{text}: {}", sample.report().count);
+        assert!(sample.report().count > 30, "{text}: {}", sample.report().count);
     }
 }
 

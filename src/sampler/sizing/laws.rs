@@ -6,7 +6,7 @@
 //! the curvature grows towards such a point.
 
 use crate::differential::Curvature;
-use crate::sampler::settings::{LEAST_SHARE, LawKind, MOST_SHARE, Settings};
+use crate::sampler::settings::{LawKind, Settings};
 
 /// Returns the radius that a law gives where the surface has a curvature. `size` is the chord error
 /// ε of the law by it, a length; of the others it is the factor s, a pure number.
@@ -68,10 +68,9 @@ impl SizingLaw {
         Self { bend: Some(bend), least, greatest, factor: 1.0 }
     }
 
-    /// Returns the law of radii that are asked for in a box with this diagonal, alone or as far as
-    /// a law of the curvature lets them.
-    pub(crate) fn asked(bend: Option<Self>, diagonal: f64) -> Self {
-        let (least, greatest) = ((LEAST_SHARE * diagonal) as f32, (MOST_SHARE * diagonal) as f32);
+    /// Returns the law of radii that are asked for, from the smallest to the largest one, alone or
+    /// as far as a law of the curvature lets them.
+    pub(crate) fn asked(bend: Option<Self>, [least, greatest]: [f32; 2]) -> Self {
         Self { bend: bend.and_then(|law| law.bend), least, greatest, factor: 1.0 }
     }
 

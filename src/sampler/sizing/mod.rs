@@ -5,10 +5,12 @@
 //! and of the creases of law(y, κ(y)) + L |x − y|: the largest function of slope L that is not above
 //! the law at these points. So the radius grows no faster than this away from a bend, also away
 //! from a crease beside a patch so small that no point of the survey lies on it. The envelope is
-//! stored on the nodes of a grid near the surface and interpolated between them.
+//! stored on the nodes of a grid near the surface and interpolated between them. Beside jumps of a
+//! function of place it is too coarse: points are added there, and asked one by one.
 
 mod envelope;
 mod laws;
+mod steep;
 
 use crate::differential::{Curvature, curvatures};
 use crate::field::Evaluator;
@@ -16,9 +18,10 @@ use crate::math::{Bounds, HEXAGONAL_CELL};
 use crate::sampler::constraint::Creases;
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::probe::Probe;
-use crate::sampler::settings::{Settings, SettingsError};
+use crate::sampler::settings::{LEAST_SHARE, MOST_SHARE, Settings, SettingsError, SizeMode};
 use crate::sampler::sizing::envelope::Envelope;
 use crate::sampler::sizing::laws::SizingLaw;
+use crate::sampler::sizing::steep::{StepPoint, Steps, step_points};
 use crate::sampler::spacing::Spacing;
 use glam::{DVec3, Vec3};
 
@@ -31,6 +34,10 @@ const PREDICTION_TOLERANCE: f64 = 2e-3;
 
 /// Share by which the slope may lower a wanted radius before that counts as smoothing.
 const SMOOTHED: f32 = 0.05;
+
+/// The distance from the step of a function to which the envelope is too coarse, in cells: nodes are
+/// up to a diagonal away, and the survey has a point within another cell.
+const STEP_REACH: f32 = 3.0;
 
 /// A spacing by a function that is asked for.
 #[derive(Clone, Debug)]
@@ -63,6 +70,8 @@ pub(crate) struct Sizing {
     /// The points of the survey, and those of the creases.
     samples: Vec<SurfaceSample>,
     envelope: Envelope,
+    /// The last ones of the points, which lie beside jumps, by their numbers; none without any.
+    steps: Option<Steps>,
     predicted: f64,
     smallest: f32,
     largest: f32,
@@ -115,17 +124,20 @@ impl Sizing {
             spacing.radii(*origin, &places, &mut asked);
             samples.iter_mut().zip(asked).for_each(|(sample, asked)| sample.asked = asked);
         }
-        let diagonal = bounds.diagonal();
-        let by_curvature = SizingLaw::new(settings, diagonal);
-        let law = wish
-            .as_ref()
-            .map_or(by_curvature, |wish| SizingLaw::asked(wish.bends.then_some(by_curvature), diagonal));
+        let by_curvature = SizingLaw::new(settings, bounds.diagonal());
+        let law = wish.as_ref().map_or(by_curvature, |wish| {
+            let limits = limits_of(settings, bounds, &samples);
+            SizingLaw::asked(wish.bends.then_some(by_curvature), limits)
+        });
+        let envelope = Envelope::new(bounds, samples.iter().map(|sample| sample.position));
+        let steps = wish.as_ref().and_then(|wish| add_steps(wish, &mut samples, STEP_REACH * envelope.cell));
         let mut sizing = Self {
             wish,
             law,
             slope: settings.grading as f32,
-            envelope: Envelope::new(bounds, samples.iter().map(|sample| sample.position)),
+            envelope,
             samples,
+            steps,
             predicted: 0.0,
             smallest: 0.0,
             largest: 0.0,
@@ -152,8 +164,22 @@ impl Sizing {
             None => radii.fill(f32::INFINITY),
         }
         for ((radius, &position), curvature) in radii.iter_mut().zip(positions).zip(curvatures) {
-            *radius = self.law.radius(*radius, curvature).min(self.envelope.at(position));
+            *radius = self.law.radius(*radius, curvature).min(self.limit_at(position));
         }
+    }
+
+    /// The largest radius that the slope allows.
+    #[inline]
+    fn limit_at(&self, position: Vec3) -> f32 {
+        let mut limit = self.envelope.at(position);
+        if let Some(steps) = &self.steps {
+            steps.near(position, |number, distance| {
+                let sample = &self.samples[number];
+                let radius = self.law.radius(sample.asked, &sample.curvature);
+                limit = limit.min(radius + self.slope * distance);
+            });
+        }
+        limit
     }
 
     /// Checks the radii that are asked for at the points of the survey and of the creases.
@@ -174,7 +200,7 @@ impl Sizing {
         let (mut area, mut smoothed, mut worst) = (0.0, 0.0, (1.0 + SMOOTHED, None));
         for sample in &self.samples {
             let wanted = self.law.radius(sample.asked, &sample.curvature);
-            let ratio = wanted / self.envelope.at(sample.position);
+            let ratio = wanted / self.limit_at(sample.position);
             area += f64::from(sample.weight);
             smoothed += if ratio > 1.0 + SMOOTHED { f64::from(sample.weight) } else { 0.0 };
             if ratio > worst.0 {
@@ -272,8 +298,7 @@ impl Sizing {
         self.envelope.spread(self.slope);
         (self.predicted, self.smallest, self.largest) = (0.0, f32::INFINITY, 0.0);
         for sample in &self.samples {
-            let radius =
-                self.law.radius(sample.asked, &sample.curvature).min(self.envelope.at(sample.position));
+            let radius = self.law.radius(sample.asked, &sample.curvature).min(self.limit_at(sample.position));
             self.predicted +=
                 f64::from(sample.weight) / (HEXAGONAL_CELL * f64::from(radius) * f64::from(radius));
             self.smallest = self.smallest.min(radius);
@@ -285,6 +310,37 @@ impl Sizing {
             (self.smallest, self.largest) = (self.law.greatest(), self.law.greatest());
         }
     }
+}
+
+/// The smallest and the largest radius that are taken of those asked for. Where a number of
+/// particles is wanted they are shares of what is to be scaled, and the points of the survey show
+/// how large they are.
+fn limits_of(settings: &Settings, bounds: &Bounds, samples: &[SurfaceSample]) -> [f32; 2] {
+    /// What lies between the points of the survey may be smaller by this factor.
+    const DEEPER: f32 = 0.25;
+    let asked = samples.iter().map(|sample| sample.asked).filter(|asked| *asked > 0.0 && asked.is_finite());
+    let [least, greatest] =
+        asked.fold([f32::INFINITY, 0.0], |[least, greatest], asked| [least.min(asked), greatest.max(asked)]);
+    if settings.size_mode == SizeMode::Count && least <= greatest {
+        return [DEEPER * least, greatest];
+    }
+    [LEAST_SHARE, MOST_SHARE].map(|share| (share * bounds.diagonal()) as f32)
+}
+
+/// Adds points beside the steps of the function, as samples of no area. Returns where they are, if
+/// there are any.
+fn add_steps(wish: &Wish, samples: &mut Vec<SurfaceSample>, reach: f32) -> Option<Steps> {
+    let places: Vec<Vec3> = samples.iter().map(|sample| sample.position).collect();
+    let asked: Vec<f32> = samples.iter().map(|sample| sample.asked).collect();
+    let ask = |places: &[Vec3], radii: &mut [f32]| wish.spacing.radii(wish.origin, places, radii);
+    // Neighbouring points are a cell apart, or its diagonal.
+    for StepPoint { position, asked, sample } in step_points(&places, &asked, 0.5 * reach, ask) {
+        let curvature = samples[sample].curvature;
+        samples.push(SurfaceSample { position, curvature, asked, weight: 0.0 });
+    }
+    let first = places.len();
+    let points = (first as u32..).zip(samples[first..].iter().map(|sample| sample.position));
+    (samples.len() > first).then(|| Steps::new(points, reach))
 }
 
 #[cfg(test)]
