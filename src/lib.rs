@@ -93,16 +93,16 @@
 //! | For | Items |
 //! |---|---|
 //! | the job | [`sample`], [`Sample`], [`Run`], [`Start`], [`Progress`], [`Phase`], [`StopReason`], [`Reporting`] |
-//! | its settings | [`Settings`], [`Sampling`], [`Radius`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Bounds`], [`Reach`] |
+//! | its settings | [`Settings`], [`Spacing`], [`SpacedSettings`], [`Sampling`], [`Radius`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Bounds`], [`Reach`] |
 //! | formulas | [`Formula`], [`Expr`], [`Parameter`], [`Thickness`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [`PorosityError`], [gallery] |
 //! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`PiecewiseFn`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Pieces`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [glam] |
 //! | solids of two fields | [`union`], [`intersection`], [`difference`], [`smooth_union`], [`offset`], [`Combined`] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
 //! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Body`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
 //! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measured`], [`Measures`], [`Cut`] |
-//! | its figures | [`Figures`] with the groups in [figures], [`Histogram`], [`Places`], [`Pair`], [`Hole`], [`Measurements`] |
+//! | its figures | [`Figures`] with the groups in [figures], [`Histogram`], [`Places`], [`Pair`], [`Hole`], [`Measurements`]; [`Value`], [`NamedValues`] |
 //! | what may be wrong | [`Warning`], [`Severity`], [`Doubt`], [`Refusal`], [`Spot`] |
-//! | why there is no result | [`Error`], [`SettingsError`], [`BoxError`], [`FollowError`]; of points [`JobError`], [`ReadError`], [`InputFormat`], [`CloudError`], [`FitError`] |
+//! | why there is no result | [`Error`], [`SettingsError`], [`BoxError`], [`FollowError`], [`ValueError`]; of points [`JobError`], [`ReadError`], [`InputFormat`], [`CloudError`], [`FitError`] |
 //! | files | [`Format`], [`ParticleFile`], [`MeshFormat`], [`MeshFile`], [`Bodies`], [`Vertices`], [`Placement`], [`Unit`], [`UpAxis`], [`RecordText`] |
 //!
 //! The modules behind the root are public for the project's own tests, benchmarks and page and may
@@ -187,14 +187,15 @@ pub use pointcloud::fit_points;
 pub use pointcloud::job::JobError;
 #[cfg(feature = "points")]
 pub use pointcloud::read::{InputFormat, ReadError};
-pub use quality::{Figures, Histogram, Hole, Measurements, Pair, Places, figures};
+pub use quality::{Figures, Histogram, Hole, Measurements, NamedValues, Pair, Places, figures};
 pub use run::{
     Cut, Error, Growth, Measured, Measures, MeshAnswer, MeshComponent, Proof, Radii, Report, Reporting, Run,
-    Sample, Severity, Start, Warning, sample,
+    Sample, Severity, Start, Value, ValueError, Warning, sample,
 };
 pub use sampler::{
     Doubt, FateCounts, FollowError, GapPolicy, LawKind, Method, Phase, Progress, Radius, Refusal, Sampled,
-    Sampling, Search, Settings, SettingsError, SizeMode, Spot, StopReason, Unsampled,
+    Sampling, Search, Settings, SettingsError, SizeMode, SpacedSettings, Spacing, Spot, StopReason,
+    Unsampled,
 };
 pub use topology::{Component, Topology};
 

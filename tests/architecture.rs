@@ -68,6 +68,7 @@ const ROOMS: [Room; 4] = [
         "sampler",
         &[
             ("settings", &[]),
+            ("spacing", &["settings"]),
             ("fates", &[]),
             ("phase", &[]),
             ("probe", &[]),
@@ -75,7 +76,7 @@ const ROOMS: [Room; 4] = [
             ("neighbours", &["probe"]),
             ("sheet", &["probe", "projection", "neighbours"]),
             ("discovery", &["probe", "projection", "sheet"]),
-            ("sizing", &["settings", "probe", "discovery", "constraint"]),
+            ("sizing", &["settings", "spacing", "probe", "discovery", "constraint"]),
             // Knows no front: it is where fronts begin.
             ("constraint", &["probe"]),
             (

@@ -1,8 +1,10 @@
 //! Errors of the core as exceptions of Python.
 
 use marching_particles::field::formula::Thickness;
-use marching_particles::session::{Condition, Fault, Setting, SolidSettings};
-use marching_particles::{Error, FieldError, FormulaError, FormulaErrorKind, JobError, SettingsError};
+use marching_particles::session::{Condition, Fault, FaultKind, Setting, SolidSettings};
+use marching_particles::{
+    Error, FieldError, FormulaError, FormulaErrorKind, JobError, SettingsError, ValueError,
+};
 use pyo3::PyErr;
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -34,9 +36,21 @@ pub(crate) fn of_formula(error: &FormulaError, text: &str) -> PyErr {
 
 /// The exception of what a session refuses: of the formula of a thickness, or of a setting.
 pub(crate) fn of_fault(fault: &Fault, solid: &SolidSettings) -> PyErr {
-    let Thickness::Formula(text) = &solid.thickness else {
-        return PyValueError::new_err(fault.message.clone());
-    };
+    match &solid.thickness {
+        Thickness::Formula(text) => of_text(fault, text),
+        Thickness::Number(_) => PyValueError::new_err(fault.message.clone()),
+    }
+}
+
+/// The exception of the formula of a spacing.
+pub(crate) fn of_spacing(fault: &Fault, text: &str) -> PyErr {
+    match fault.kind {
+        FaultKind::Settings => PyValueError::new_err(fault.message.clone()),
+        _ => of_text(fault, text),
+    }
+}
+
+fn of_text(fault: &Fault, text: &str) -> PyErr {
     // Python counts characters where the session counts UTF-16 code units.
     let characters = |unit: u32| {
         let before: Vec<u16> = text.encode_utf16().take(unit as usize).collect();
@@ -46,7 +60,7 @@ pub(crate) fn of_fault(fault: &Fault, solid: &SolidSettings) -> PyErr {
     let choices = fault.choices.to_vec();
     python::FormulaError::new_err((
         fault.message.clone(),
-        text.clone(),
+        text.to_owned(),
         span,
         fault.suggestion.clone(),
         choices,
@@ -76,9 +90,18 @@ pub(crate) fn of_run(error: &Error) -> PyErr {
             python::EmptySurface::new_err(format!("{message}: pass bounds=((x0, y0, z0), (x1, y1, z1))"))
         }
         Error::Nothing { message, .. } => python::EmptySurface::new_err(message.clone()),
+        Error::Settings(SettingsError::SpacingFunction(error)) => of_field(error),
         Error::Settings(SettingsError::Memory { .. }) => PyMemoryError::new_err(error.to_string()),
         Error::Settings(error) => PyValueError::new_err(error.to_string()),
         _ => PyRuntimeError::new_err(error.to_string()),
+    }
+}
+
+/// The exception of a column of values.
+pub(crate) fn of_value(error: &ValueError) -> PyErr {
+    match error {
+        ValueError::Function(error) => of_field(error),
+        _ => PyValueError::new_err(error.to_string()),
     }
 }
 

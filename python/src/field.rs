@@ -19,7 +19,7 @@ type Shared = Arc<dyn marching_particles::Field>;
 /// A field, with the box of its surface where it is known.
 #[pyclass(frozen, module = "marching_particles._core")]
 pub(crate) struct Field {
-    field: Shared,
+    pub(crate) field: Shared,
     bounds: Option<Bounds>,
     /// The request for a formula by itself; none for other fields.
     formula: Option<FieldRequest>,

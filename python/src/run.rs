@@ -2,14 +2,19 @@
 
 use crate::errors;
 use crate::field::Field;
-use marching_particles::session::{Asked, Fault, Lengths, Session, SolidSettings, without_effect};
-use marching_particles::{Bounds, Measured, RecordText, Settings, Vertices, Warning};
+use marching_particles::session::{
+    Asked, Fault, Lengths, Session, SolidSettings, SpacingText, without_effect,
+};
+use marching_particles::{
+    Bounds, Measured, NamedValues, RecordText, Settings, Spacing, Value, Vertices, Warning,
+};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde::Deserialize;
 use std::io::ErrorKind;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Units of work between two looks for Ctrl-C: milliseconds of a formula.
 const BUDGET: u32 = 5_000;
@@ -28,30 +33,54 @@ struct Options {
 
 /// Samples a field. The GIL is released but for calls of functions of Python.
 #[pyfunction]
-#[pyo3(signature = (field, options, *, bounds, measure, progress))]
+#[pyo3(signature = (field, options, *, spacing, bounds, values, measure, progress))]
+#[expect(clippy::too_many_arguments, reason = "they are named, and Python's")]
 pub(crate) fn sample(
     py: Python<'_>,
     field: &Field,
     options: &str,
+    spacing: Option<Function>,
     bounds: Option<([f64; 3], [f64; 3])>,
+    values: Vec<(String, Function)>,
     measure: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Sample> {
     let options: Options =
         serde_json::from_str(options).map_err(|error| PyValueError::new_err(error.to_string()))?;
     let given: Vec<&str> = options.given.iter().map(String::as_str).collect();
-    if let Some((setting, condition)) = without_effect(&given, &options.settings, &options.solid) {
+    if let Some((setting, condition)) =
+        without_effect(&given, &options.settings, &options.solid, spacing.is_some())
+    {
         return Err(errors::without_effect(&setting, condition));
     }
     let bounds = bounds.map(|(min, max)| Bounds { min, max });
     let measured = if measure { Measured::Particles } else { Measured::Nothing };
-    py.detach(|| run(field, options, bounds, measured, progress.as_ref()))
+    let value = |(name, function)| {
+        let value = match function {
+            Function::Formula(text) => {
+                Value::parse(&text).map_err(|error| errors::of_formula(&error, &text))?
+            }
+            Function::Field(function) => Value::by(Arc::clone(&function.get().field)),
+        };
+        Ok((name, value))
+    };
+    let values = values.into_iter().map(value).collect::<PyResult<Vec<_>>>()?;
+    py.detach(|| run(field, options, spacing, bounds, &values, measured, progress.as_ref()))
+}
+
+/// A function of place, by a formula or by a function of Python.
+#[derive(FromPyObject)]
+pub(crate) enum Function {
+    Formula(String),
+    Field(Py<Field>),
 }
 
 fn run(
     field: &Field,
     Options { settings, lengths, solid, .. }: Options,
+    spacing: Option<Function>,
     bounds: Option<Bounds>,
+    values: &[(String, Value)],
     measured: Measured,
     progress: Option<&Py<PyAny>>,
 ) -> PyResult<Sample> {
@@ -66,6 +95,14 @@ fn run(
     field.take(&mut session, bounds)?;
     let refused = |fault: Fault| errors::of_fault(&fault, &solid);
     session.choose(solid.clone()).map_err(refused)?;
+    match spacing {
+        None => {}
+        Some(Function::Formula(formula)) => {
+            let text = SpacingText { formula: formula.clone(), ..SpacingText::default() };
+            session.space(Some(text)).map_err(|fault| errors::of_spacing(&fault, &formula))?;
+        }
+        Some(Function::Field(function)) => session.space_by(Spacing::by(Arc::clone(&function.get().field))),
+    }
     let asked = Asked { settings, lengths };
     let within = |bounds: &Bounds| asked.within(bounds);
     while session.fit(&within, false, SLICES).is_none() {
@@ -84,7 +121,11 @@ fn run(
     }
     session.run.check_field().map_err(raised)?;
     let record = session.record(None).map(|made| serde_json::to_string(&made).expect("a record is data"));
-    let sample = session.finish(measured, |fraction| Ok::<(), Ended>(tell(fraction)?))?;
+    let surface = session.run.field().clone();
+    let mut sample = session.finish(measured, |fraction| Ok::<(), Ended>(tell(fraction)?))?;
+    for (name, value) in values {
+        sample.add_value(&*surface, name, value).map_err(|error| errors::of_value(&error))?;
+    }
     tell(1.0)?;
     Ok(Sample(sample.recorded(record.map_or_else(RecordText::default, |json| RecordText::new(&json)))))
 }
@@ -157,6 +198,12 @@ impl Sample {
 
     fn levels<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i32>> {
         PyArray1::from_iter(py, self.0.particles().level.iter().map(|level| level.cast_signed()))
+    }
+
+    /// The columns that were asked for, by name.
+    fn values<'py>(&self, py: Python<'py>) -> Vec<(String, Bound<'py, PyArray1<f32>>)> {
+        let column = |added: &NamedValues| (added.name.clone(), PyArray1::from_slice(py, &added.values));
+        self.0.values().iter().map(column).collect()
     }
 
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i32>>> {

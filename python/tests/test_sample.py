@@ -76,6 +76,40 @@ def test_the_spacing_is_twice_the_radius():
     np.testing.assert_allclose(radius.radii, 0.1, rtol=1e-6)
 
 
+def test_a_spacing_by_a_formula_or_a_function():
+    ball = "x^2 + y^2 + z^2 = a^2"
+    formula = mp.sample(ball, params={"a": 2}, spacing="0.1 a + 0.05 z")
+    function = mp.sample(ball, params={"a": 2}, spacing=lambda p: 0.2 + 0.05 * p[:, 2])
+    for sample in (formula, function):
+        wanted = 0.1 + 0.025 * sample.points[:, 2]
+        np.testing.assert_allclose(sample.radii, wanted, rtol=1e-3)
+    counted = mp.sample(ball, params={"a": 2}, count=2000, spacing="1 + 0.25 z")
+    assert abs(len(counted) - 2000) <= 60
+    ratio = counted.radii / (1 + 0.25 * counted.points[:, 2])
+    assert ratio.max() / ratio.min() < 1.01
+
+
+def test_what_a_spacing_raises_comes_through():
+    def fails(points):
+        raise ZeroDivisionError("no spacing")
+
+    with pytest.raises(ZeroDivisionError, match="no spacing"):
+        mp.sample("x^2+y^2+z^2=1", spacing=fails)
+
+
+def test_values_are_columns(tmp_path):
+    columns = {"H": "(k_1 + k_2)/2", "height": lambda p: p[:, 2], "area": "area", "b": "b x"}
+    with pytest.raises(ValueError, match="`Area`"):
+        mp.sample("x^2+y^2+z^2=4", count=500, values={"area": "1", "Area": "2"})
+    sample = mp.sample("x^2+y^2+z^2=4 + 0b", params={"b": 3}, count=500, values=columns)
+    np.testing.assert_allclose(sample.values["H"], 0.5, rtol=1e-3)
+    np.testing.assert_allclose(sample.values["height"], sample.points[:, 2], atol=1e-6)
+    np.testing.assert_allclose(sample.values["area"].sum(), 16 * np.pi, rtol=0.02)
+    np.testing.assert_allclose(sample.values["b"], 3 * sample.points[:, 0], rtol=1e-5)
+    sample.save(tmp_path / "ball.npy")
+    assert np.load(tmp_path / "ball.npy").shape == (len(sample), 10)
+
+
 def test_a_radius_may_be_a_share_of_the_diagonal():
     ball = mp.sample("x^2+y^2+z^2=1", radius="2 %", bounds=BOX)
     np.testing.assert_allclose(ball.radii, 0.02 * 3 * 3**0.5, rtol=1e-6)

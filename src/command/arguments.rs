@@ -1,6 +1,7 @@
 //! The command line's arguments, as clap reads and explains them.
 
 use crate::options::{SamplingOptions, list, number, whole};
+use crate::spacing::{SpacingOption, spacing, units};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -205,6 +206,25 @@ pub(crate) struct SampleArguments {
     #[command(flatten)]
     pub(crate) sampling: SamplingOptions,
 
+    /// Distance between neighbours, twice the radius: a length, a share of the box diagonal, or a
+    /// formula of x, y, z and the parameters, such as "0.02 + 0.1 hypot(x, y)". Sizes then change
+    /// by --grading at most; a note says where that is less than the formula asks. With --adaptive
+    /// the smaller size is taken; with --count the formula gives the ratio of the sizes
+    #[arg(
+        long, value_name = "LENGTH|FORMULA", value_parser = spacing, allow_hyphen_values = true,
+        conflicts_with = "radius_share", help_heading = "Sampling"
+    )]
+    pub(crate) spacing: Option<SpacingOption>,
+
+    /// Smallest distance between neighbours, for a formula of --spacing that is smaller somewhere,
+    /// or not above 0
+    #[arg(long, value_name = "LENGTH", value_parser = units, requires = "spacing", help_heading = "Sampling")]
+    pub(crate) spacing_min: Option<f64>,
+
+    /// Largest distance between neighbours, for a formula of --spacing that is larger somewhere
+    #[arg(long, value_name = "LENGTH", value_parser = units, requires = "spacing", help_heading = "Sampling")]
+    pub(crate) spacing_max: Option<f64>,
+
     /// File to write; its extension is its format: ply (position, normal, radius, level, parent,
     /// valence, distance to the nearest particle, residual, and whether a singular point is near),
     /// csv (the same, and what it was made from in a file of JSON beside it), xyz or npy (position,
@@ -212,6 +232,17 @@ pub(crate) struct SampleArguments {
     /// be given again; replaces what is there
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) out: Vec<PathBuf>,
+
+    /// Column of numbers at the particles for the files, NAME=FORMULA: a formula of x, y, z, the
+    /// normal n_x, n_y, n_z, the principal curvatures k_1 >= k_2 and the direction d_x, d_y, d_z of
+    /// k_1, radius, level, area (the share of the surface, of the mesh around the particle) and the
+    /// parameters, such as "H=(k_1+k_2)/2". ply and csv name it, npy has it after the normal, glb as
+    /// the attribute _NAME in capitals. May be given again
+    #[arg(
+        long = "value", value_name = "NAME=FORMULA", value_parser = value, allow_hyphen_values = true,
+        help_heading = "Output"
+    )]
+    pub(crate) values: Vec<(String, String)>,
 
     /// File for the triangle mesh over the particles; its extension is its format: glb (with
     /// normals, generation levels as colours), 3mf (with its unit), stl, obj or ply (with normals).
@@ -387,6 +418,11 @@ impl SampleArguments {
 
     /// Takes from the record of a file what is not given.
     pub(crate) fn complete(&mut self, record: FileRecord) {
+        // Who asks for a radius wants one size.
+        if let (None, Some(text), false) = (&self.spacing, &record.spacing, self.sampling.has_radius()) {
+            self.spacing = Some(SpacingOption::Formula(text.formula.clone()));
+            (self.spacing_min, self.spacing_max) = (text.smallest, text.largest);
+        }
         let surface = &mut self.surface;
         let is_model = surface.points.is_some()
             || surface.surface.as_deref().is_some_and(|id| model::find(id).is_some());
@@ -556,6 +592,12 @@ fn centres(text: &str) -> Result<u32, String> {
 fn parameter(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("a parameter is given as NAME=VALUE, like a=2")?;
     Ok((name.trim().to_owned(), number(value)?))
+}
+
+fn value(text: &str) -> Result<(String, String), String> {
+    let how = "a value is given as NAME=FORMULA, like H=(k_1+k_2)/2";
+    let (name, formula) = text.split_once('=').ok_or(how)?;
+    Ok((name.trim().to_owned(), formula.trim().to_owned()))
 }
 
 fn sweep(text: &str) -> Result<Sweep, String> {

@@ -2,13 +2,18 @@
 
 use crate::arguments::SampleArguments;
 use crate::failure::Failure;
+use crate::spacing::space;
 use crate::surface::{choose, fit};
 use marching_particles::field::model;
-use marching_particles::session::{Language, Session};
+use marching_particles::session::{Language, Session, SpacingText};
 use std::io::Write;
 use std::process::ExitCode;
 
-pub(crate) fn print(arguments: &SampleArguments, language: Language) -> Result<ExitCode, Failure> {
+pub(crate) fn print(
+    arguments: &SampleArguments,
+    spacing: Option<SpacingText>,
+    language: Language,
+) -> Result<ExitCode, Failure> {
     let surface = &arguments.surface;
     let id = surface.surface.as_deref();
     if surface.points.is_some() || id.is_some_and(|id| model::find(id).is_some()) {
@@ -16,6 +21,7 @@ pub(crate) fn print(arguments: &SampleArguments, language: Language) -> Result<E
     }
     let mut session = Session::without_surface();
     choose(&mut session, surface, arguments.quiet)?;
+    space(&mut session, spacing)?;
     let settings_in = |bounds: &_| arguments.sampling.settings_by_length(bounds);
     let mut settings = fit(&mut session, &settings_in, false)?;
     let found = session.run.bounds();

@@ -125,7 +125,11 @@ fn formula(f: &mut fmt::Formatter<'_>, text: &str, fault: &Fault) -> fmt::Result
 
 /// Why settings are refused, by the name of the option and with shares as they are typed.
 fn refusal(error: &SettingsError) -> String {
-    let SettingsError::OutOfRange { name, value, min, max } = error else { return error.to_string() };
+    let (name, value, min, max) = match error {
+        SettingsError::OutOfRange { name, value, min, max } => (name, value, min, max),
+        SettingsError::Spacing { value, .. } if !value.is_nan() => return format!("{error} (--spacing-min)"),
+        _ => return error.to_string(),
+    };
     let setting = settings().into_iter().find(|setting| setting.name == *name);
     let option = match setting {
         Some(setting) => setting.option(),

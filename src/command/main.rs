@@ -10,6 +10,7 @@ mod output;
 mod points;
 mod porosity;
 mod sample;
+mod spacing;
 mod summary;
 mod surface;
 mod surfaces;

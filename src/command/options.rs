@@ -27,6 +27,8 @@ const COUNT: &str = "count";
 const SIZE_MODE: &str = "size_mode";
 /// The option that asks for a radius.
 const RADIUS: &str = "radius_share";
+/// The largest slope of the sizes, whatever they follow.
+const GRADING: &str = "grading";
 /// The method, and the steps that only one of them takes.
 const METHOD: &str = "method";
 const RELAX_STEPS: &str = "relax_steps";
@@ -35,7 +37,7 @@ const MAX_PARTICLES: &str = "max_particles";
 
 /// A length on the command line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Length {
+pub(crate) enum Length {
     /// Share of the box diagonal.
     Share(f64),
     /// In the field's units.
@@ -98,7 +100,7 @@ pub(crate) fn list(text: &str) -> Vec<&str> {
 }
 
 /// A length from an argument.
-fn length(text: &str) -> Result<Length, String> {
+pub(crate) fn length(text: &str) -> Result<Length, String> {
     let length = match text.strip_suffix('%').map(str::trim) {
         // A decimal is rounded once, so that every share can be given.
         Some(percent) => match format!("{percent}e-2").parse() {
@@ -144,10 +146,34 @@ impl SamplingOptions {
         settings
     }
 
+    /// Whether a radius is asked for.
+    pub(crate) fn has_radius(&self) -> bool {
+        self.lengths.iter().any(|(given, _)| *given == RADIUS)
+    }
+
+    /// Whether sizes that follow the curvature are asked for.
+    pub(crate) fn is_adaptive(&self) -> bool {
+        self.values.get(SAMPLING).is_some_and(|sampling| sampling == ADAPTIVE)
+    }
+
+    /// Whether a number of particles is asked for.
+    pub(crate) fn is_counted(&self) -> bool {
+        self.values.contains_key(COUNT)
+    }
+
+    /// Asks for particles of one size, as far apart as this.
+    pub(crate) fn space_evenly(&mut self, spacing: Length) {
+        let radius = match spacing {
+            Length::Share(share) => Length::Share(0.5 * share),
+            Length::Units(length) => Length::Units(0.5 * length),
+        };
+        self.lengths.push((RADIUS, radius));
+    }
+
     /// Takes from settings what was not asked for.
     pub(crate) fn complete(&mut self, settings: &Settings) {
         // Who asks for a radius asks neither for a number of particles nor for many sizes.
-        if self.lengths.iter().any(|(given, _)| *given == RADIUS) {
+        if self.has_radius() {
             self.values.entry(SIZE_MODE).or_insert("radius".into());
             self.values.entry(SAMPLING).or_insert(UNIFORM.into());
         }
@@ -162,14 +188,16 @@ impl SamplingOptions {
         }
     }
 
-    /// Checks that every setting that was given has an effect beside the others.
-    pub(crate) fn check(&self) -> Result<(), Failure> {
+    /// Checks that every setting that was given has an effect beside the others, and beside a
+    /// spacing by a formula where one `is_spaced`.
+    pub(crate) fn check(&self, is_spaced: bool) -> Result<(), Failure> {
         let given: Vec<&str> = self.given.iter().map(|setting| setting.name).collect();
         let values = self.settings(&Bounds::cube(1.0));
-        match without_effect(&given, &values, &SolidSettings::default()) {
+        match without_effect(&given, &values, &SolidSettings::default(), is_spaced) {
             None => Ok(()),
             Some((setting, condition)) => {
                 let needed = match (condition.name, condition.equal) {
+                    (SAMPLING, _) if setting.name == GRADING => "--adaptive or a --spacing by a formula",
                     (SAMPLING, _) => "--adaptive",
                     (LAW, true) => "--law chord-error",
                     (LAW, false) => "--law max-curvature or --law sum-of-curvatures",

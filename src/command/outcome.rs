@@ -3,6 +3,7 @@
 use marching_particles::field::model::ModelInfo;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::Settings;
+use marching_particles::session::SpacingText;
 use marching_particles::{Bodies, Body, Inside, Placement, Report, Sample, Thickness, Triangulation, Unit};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -43,6 +44,8 @@ pub(crate) struct Outcome {
     pub(crate) settings: Settings,
     /// Thickness of the sheet, if one is sampled.
     pub(crate) thickness: Option<Thickness>,
+    /// Spacing by a formula, if there is one.
+    pub(crate) spacing: Option<SpacingText>,
     /// The porosity, if one is requested.
     pub(crate) porosity: Option<Porosity>,
     pub(crate) predicted_count: u64,

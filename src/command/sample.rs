@@ -6,6 +6,7 @@ use crate::failure::{Failure, LIMIT};
 use crate::outcome::{MeshCounts, Outcome, Seconds};
 use crate::output::{OutputFile, STANDARD, record_path};
 use crate::porosity::Wish;
+use crate::spacing::space;
 use crate::surface::{choose, fit};
 use crate::wall::Wall;
 use crate::{code, summary};
@@ -13,10 +14,10 @@ use indicatif::ProgressBar;
 use marching_particles::export::VERTICES;
 use marching_particles::math::grouped;
 use marching_particles::sampler::{COUNT_ROOM, SizeMode};
-use marching_particles::session::{FileRecord, Session, Source};
+use marching_particles::session::{Fault, FileRecord, Session, Source};
 use marching_particles::{
     Bounds, Error, Format, MeshFile, MeshFormat, ParticleFile, Phase, Placement, Reach, RecordText, Run,
-    Settings, StopReason, Vertices,
+    Settings, StopReason, Value, Vertices,
 };
 use std::borrow::Cow;
 use std::io::Write;
@@ -59,13 +60,14 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         let record = read_record(path, &arguments.surface)?;
         arguments.complete(record);
     }
-    arguments.sampling.check()?;
+    let spacing = arguments.spacing_text()?;
+    arguments.sampling.check(spacing.is_some())?;
     if !arguments.mesh.is_empty() || arguments.porosity.is_some() {
         arguments.sampling.prefer_refined();
     }
     let arguments = &arguments;
     if let Some((_, language)) = arguments.print {
-        return code::print(arguments, language);
+        return code::print(arguments, spacing, language);
     }
     let is_mesh =
         |extension: &str| MeshFormat::of_extension(extension).map(|_| "--mesh, which has triangles");
@@ -91,6 +93,8 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     if model.is_none() {
         seconds.points = 0.0;
     }
+    space(&mut session, spacing)?;
+    let values = values(&arguments.values, &session)?;
     let settings_in = |bounds: &Bounds| {
         let mut settings = arguments.sampling.settings(bounds);
         settings.bounds = arguments.surface.sampled;
@@ -142,6 +146,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     if model.is_some() {
         made.surface.clone_from(&arguments.surface.surface);
     }
+    let field = session.run.field().clone();
     bar.set_message("measuring");
     let sample = timed(&mut seconds.quality, || {
         session.finish(measured, |fraction| {
@@ -150,12 +155,18 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         })
     });
     bar.finish_and_clear();
-    let sample = sample.map_err(|error| match error {
+    let mut sample = sample.map_err(|error| match error {
         Error::Nothing { reason: StopReason::NoSurface, .. } if reach == Some(Reach::Nowhere) => {
             Failure::Nothing("there is no surface within ±10,000".to_owned())
         }
+        Error::Settings(error) => error.into(),
         error => Failure::Nothing(refusal_of_run(&error)),
     })?;
+    for (name, value) in values {
+        sample
+            .add_value(&*field, name, &value)
+            .map_err(|error| Failure::Usage(format!("--value: {error}")))?;
+    }
     let bodies = if is_joined { sample.mesh().bodies(sample.particles()) } else { Vec::new() };
     let placement = arguments.placement(arguments.bodies().size(&bodies).max_element());
     let mesh = is_joined.then(|| MeshCounts::new(&sample, &bodies, arguments.bodies(), placement));
@@ -190,6 +201,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         bounds: made.bounds,
         settings: made.settings,
         thickness: made.solid.sheet().cloned(),
+        spacing: made.spacing,
         porosity: wish.map(|wish| wish.outcome()),
         predicted_count,
         report,
@@ -212,6 +224,20 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         return Ok(ExitCode::from(LIMIT));
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The values of columns that are asked for, made of the parameters of the surface, too.
+fn values<'a>(given: &'a [(String, String)], session: &Session) -> Result<Vec<(&'a str, Value)>, Failure> {
+    let parameters = session.answer().parameters;
+    let value = |(name, text): &'a (String, String)| match Value::of_formula(text, &parameters) {
+        Ok(value) => Ok((name.as_str(), value)),
+        Err(error) => {
+            let fault = Fault::in_formula(error, text);
+            let message = format!("--value {name}: {}", fault.message);
+            Err(Failure::Formula { text: text.clone(), fault: Box::new(Fault { message, ..fault }) })
+        }
+    };
+    given.iter().map(value).collect()
 }
 
 /// Why there is no sample, by the names of the options.

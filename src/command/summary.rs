@@ -3,7 +3,7 @@
 use crate::outcome::{MeshCounts, Outcome, Porosity};
 use marching_particles::field::model::{ModelInfo, NormalSource};
 use marching_particles::math::{counted, grouped, significant};
-use marching_particles::session::{ReportRow, describe};
+use marching_particles::session::{ReportRow, SpacingText, describe};
 use marching_particles::{Cut, Inside, Severity, Thickness, Unit};
 use serde_json::Value;
 use std::io::{self, Write};
@@ -39,6 +39,16 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
             }
             _ => writeln!(out)?,
         }
+    }
+    if let Some(SpacingText { formula, smallest, largest }) = &outcome.spacing {
+        write!(out, "spacing {formula}")?;
+        if let Some(smallest) = smallest {
+            write!(out, ", at least {}", significant(*smallest))?;
+        }
+        if let Some(largest) = largest {
+            write!(out, ", at most {}", significant(*largest))?;
+        }
+        writeln!(out)?;
     }
     writeln!(
         out,

@@ -21,7 +21,7 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
     let (extension, format) = arguments.format;
     let in_directory = |error| Failure::File { path: arguments.out.clone(), error };
     std::fs::create_dir_all(&arguments.out).map_err(in_directory)?;
-    arguments.sampling.check()?;
+    arguments.sampling.check(false)?;
     let settings_in = |bounds: &Bounds| arguments.sampling.settings(bounds);
     let mut session = Session::without_surface();
     // The parameter has to be there.

@@ -100,14 +100,14 @@ impl<'a> File<'a> {
         let &Self { wish: MeshFile { format, placement, record, vertices: way, .. }, particles, .. } = self;
         let vertices = &self.content.vertices;
         match format {
-            MeshFormat::Glb => glb::write(particles, vertices, record, out),
+            MeshFormat::Glb => glb::write(particles, self.measured, vertices, record, out),
             MeshFormat::ThreeMf => three_mf::write(particles, vertices, placement, record, out),
             MeshFormat::Obj => mesh::obj(particles, [vertices, self.normals()], record, rows, out),
             MeshFormat::Stl => mesh::stl(particles, vertices, rows, out),
             MeshFormat::Ply if *way == Vertices::Columns => {
                 ply_columns(particles, self.measured, Some(&vertices.triangles), record, rows, out)
             }
-            MeshFormat::Ply => ply_mesh(particles, vertices, record, rows, out),
+            MeshFormat::Ply => ply_mesh(particles, self.measured, vertices, record, rows, out),
         }
     }
 }

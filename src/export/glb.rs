@@ -6,7 +6,9 @@ use super::RecordText;
 use super::vertices::Indexed;
 use crate::math::functions::{cos, pow, sin_cos};
 use crate::particles::Particles;
+use crate::quality::Measurements;
 use glam::{DVec3, Vec3};
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 /// Numbers of the specification: types of components and kinds of buffers.
@@ -22,7 +24,7 @@ const MATERIALS: &str =
 
 /// A column of the binary buffer, with its accessor.
 struct BufferColumn {
-    name: &'static str,
+    name: Cow<'static, str>,
     target: u32,
     /// Members of the accessor, which say how the numbers are read.
     accessor: String,
@@ -30,15 +32,17 @@ struct BufferColumn {
 }
 
 /// Writes the triangles with the normals of their vertices, the generation levels of their
-/// particles as colours and, for programs, as the attribute `_LEVEL`. The z axis, which points up
+/// particles as colours and, for programs, as the attribute `_LEVEL`, beside the values that were
+/// added. The z axis, which points up
 /// here, is turned to glTF's y. A mesh without triangles is an empty scene.
 pub(super) fn write(
     particles: &Particles,
+    measured: &Measurements,
     vertices: &Indexed,
     record: &RecordText,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let columns = columns(particles, vertices);
+    let columns = columns(particles, measured, vertices);
     let length: usize = columns.iter().map(|column| column.bytes.len()).sum();
     let mut text = document(&columns, length, particles.origin, record).into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
@@ -60,7 +64,11 @@ pub(super) fn write(
 
 /// The contents of the buffer; each column is a multiple of four bytes long. The triangles come
 /// last.
-fn columns(particles: &Particles, Indexed { rows, normals, triangles }: &Indexed) -> Vec<BufferColumn> {
+fn columns(
+    particles: &Particles,
+    measured: &Measurements,
+    Indexed { rows, normals, triangles }: &Indexed,
+) -> Vec<BufferColumn> {
     if triangles.is_empty() {
         return Vec::new();
     }
@@ -77,10 +85,21 @@ fn columns(particles: &Particles, Indexed { rows, normals, triangles }: &Indexed
         |vectors: &[Vec3]| vectors.iter().flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes).collect();
     let levels = rows.iter().map(|&row| particles.level[row as usize]);
     let colours = colours(levels.clone().max().unwrap_or(0));
-    let attribute = |name, accessor, bytes| BufferColumn { name, target: ARRAY_BUFFER, accessor, bytes };
+    let attribute = |name: &'static str, accessor, bytes| BufferColumn {
+        name: name.into(),
+        target: ARRAY_BUFFER,
+        accessor,
+        bytes,
+    };
+    let added = measured.values.iter().map(|added| BufferColumn {
+        name: format!("_{}", added.name.to_ascii_uppercase()).into(),
+        target: ARRAY_BUFFER,
+        accessor: accessor(FLOAT, "SCALAR", ""),
+        bytes: rows.iter().flat_map(|&row| added.values[row as usize].to_le_bytes()).collect(),
+    });
     let extent = format!(r#","min":{:?},"max":{:?}"#, lo.as_dvec3().to_array(), hi.as_dvec3().to_array());
     let index_count = 3 * triangles.len();
-    vec![
+    let mut columns = vec![
         attribute("POSITION", accessor(FLOAT, "VEC3", &extent), vectors(&positions)),
         attribute("NORMAL", accessor(FLOAT, "VEC3", ""), vectors(normals)),
         attribute(
@@ -94,13 +113,15 @@ fn columns(particles: &Particles, Indexed { rows, normals, triangles }: &Indexed
             accessor(FLOAT, "SCALAR", ""),
             levels.flat_map(|level| (level as f32).to_le_bytes()).collect(),
         ),
-        BufferColumn {
-            name: "indices",
-            target: ELEMENT_ARRAY_BUFFER,
-            accessor: format!(r#""componentType":{UNSIGNED_INT},"type":"SCALAR","count":{index_count}"#),
-            bytes: triangles.as_flattened().iter().flat_map(|index| index.to_le_bytes()).collect(),
-        },
-    ]
+    ];
+    columns.extend(added);
+    columns.push(BufferColumn {
+        name: "indices".into(),
+        target: ELEMENT_ARRAY_BUFFER,
+        accessor: format!(r#""componentType":{UNSIGNED_INT},"type":"SCALAR","count":{index_count}"#),
+        bytes: triangles.as_flattened().iter().flat_map(|index| index.to_le_bytes()).collect(),
+    });
+    columns
 }
 
 /// The text part, JSON: a scene with one mesh, and where its columns are in the buffer.

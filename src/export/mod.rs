@@ -38,7 +38,7 @@ pub enum Format {
     /// Text, one `x y z nx ny nz` per line.
     Xyz,
     /// NumPy array of shape (N, 6), `<f4`, or `<f8` where the particles have an origin of their
-    /// own: position and normal.
+    /// own: position and normal, and a column for each of the [values](crate::Sample::add_value).
     Npy,
 }
 
@@ -234,6 +234,11 @@ fn columns(particles: &Particles, measured: &quality::Measurements) -> Vec<&'sta
     COLUMNS.iter().filter(is_there).collect()
 }
 
+/// The values of a row in the columns that were added.
+fn added(measured: &quality::Measurements, row: usize) -> impl Iterator<Item = CellValue> + '_ {
+    measured.values.iter().map(move |added| CellValue::Float(added.values[row]))
+}
+
 /// Writes `particles` to `out`, which should be buffered: a record for each of their rows.
 /// `measured` is the report on them: where it is empty, its columns are left out; particles beyond
 /// its end get a valence of 0 and NaN for the rest. Floats in text are the shortest that read back
@@ -252,7 +257,7 @@ pub fn write(
         Format::Ply => ply_columns(particles, measured, None, record, 0..particles.len(), out),
         Format::Csv => csv(particles, measured, out),
         Format::Xyz => xyz(particles, out),
-        Format::Npy => npy(particles, out),
+        Format::Npy => npy(particles, measured, out),
     }
 }
 
@@ -267,12 +272,16 @@ fn ply_columns(
 ) -> io::Result<()> {
     let (n, columns) = (particles.len(), columns(particles, measured));
     if rows.start == 0 {
-        let properties = columns.iter().map(|column| (column.kind, column.name));
+        let added = measured.values.iter().map(|added| (ColumnKind::Float, &*added.name));
+        let properties = columns.iter().map(|column| (column.kind, column.name)).chain(added);
         ply_header(particles, n, properties, triangles.map(<[_]>::len), record, out)?;
     }
     for i in rows.start.min(n)..rows.end.min(n) {
         for column in &columns {
             (column.read)(particles, measured, i).write_binary(out)?;
+        }
+        for value in added(measured, i) {
+            value.write_binary(out)?;
         }
     }
     ply_faces(&triangles.unwrap_or_default()[rows.start.max(n) - n..rows.end.max(n) - n], out)
@@ -282,6 +291,7 @@ fn ply_columns(
 /// since there are readers that take no others.
 fn ply_mesh(
     particles: &Particles,
+    measured: &quality::Measurements,
     vertices: &Indexed,
     record: &RecordText,
     rows: Range<usize>,
@@ -289,14 +299,16 @@ fn ply_mesh(
 ) -> io::Result<()> {
     let (n, is_double) = (vertices.rows.len(), is_double(particles));
     if rows.start == 0 {
-        let properties = COLUMNS[..6].iter().map(|column| (ColumnKind::Coordinate, column.name));
+        let added = measured.values.iter().map(|added| &*added.name);
+        let names = COLUMNS[..6].iter().map(|column| column.name).chain(added);
+        let properties = names.map(|name| (ColumnKind::Coordinate, name));
         ply_header(particles, n, properties, Some(vertices.triangles.len()), record, out)?;
     }
     for i in rows.start.min(n)..rows.end.min(n) {
-        let normal = vertices.normals[i].to_array();
-        let normal =
-            normal.map(|c| if is_double { CellValue::Double(c.into()) } else { CellValue::Float(c) });
-        for value in coordinates(particles, vertices.rows[i] as usize).into_iter().chain(normal) {
+        let of_kind = |c: f32| if is_double { CellValue::Double(c.into()) } else { CellValue::Float(c) };
+        let (row, normal) = (vertices.rows[i] as usize, vertices.normals[i].to_array().map(of_kind));
+        let added = measured.values.iter().map(|added| of_kind(added.values[row]));
+        for value in coordinates(particles, row).into_iter().chain(normal).chain(added) {
             value.write_binary(out)?;
         }
     }
@@ -345,12 +357,16 @@ fn ply_header<'a>(
 /// take for them: a record has no place in it.
 fn csv(particles: &Particles, measured: &quality::Measurements, out: &mut dyn Write) -> io::Result<()> {
     let columns = columns(particles, measured);
-    let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
+    let of_program = measured.values.iter().map(|added| &*added.name);
+    let names: Vec<&str> = columns.iter().map(|column| column.name).chain(of_program).collect();
     writeln!(out, "{}", names.join(","))?;
     for i in 0..particles.len() {
         for (k, column) in columns.iter().enumerate() {
             out.write_all(if k == 0 { b"" } else { b"," })?;
             write!(out, "{}", (column.read)(particles, measured, i))?;
+        }
+        for value in added(measured, i) {
+            write!(out, ",{value}")?;
         }
         out.write_all(b"\n")?;
     }
@@ -365,10 +381,10 @@ fn xyz(particles: &Particles, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-fn npy(particles: &Particles, out: &mut dyn Write) -> io::Result<()> {
-    let kind = if is_double(particles) { "<f8" } else { "<f4" };
+fn npy(particles: &Particles, measured: &quality::Measurements, out: &mut dyn Write) -> io::Result<()> {
+    let (kind, width) = (if is_double(particles) { "<f8" } else { "<f4" }, 6 + measured.values.len());
     let mut header =
-        format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}, 6), }}", particles.len());
+        format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}, {}), }}", particles.len(), width);
     // Magic, version and length take 10 bytes. A line feed ends the header, and the data starts at
     // a multiple of 64.
     let padding = 64 - (10 + header.len() + 1) % 64;
@@ -379,10 +395,12 @@ fn npy(particles: &Particles, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(&length.to_le_bytes())?;
     out.write_all(header.as_bytes())?;
     for (i, n) in particles.normal.iter().enumerate() {
-        let normal = n.to_array().map(|value| {
+        let of_kind = |value: f32| {
             if is_double(particles) { CellValue::Double(value.into()) } else { CellValue::Float(value) }
-        });
-        for value in coordinates(particles, i).into_iter().chain(normal) {
+        };
+        let added = measured.values.iter().map(|added| of_kind(added.values[i]));
+        let normal = n.to_array().map(of_kind);
+        for value in coordinates(particles, i).into_iter().chain(normal).chain(added) {
             value.write_binary(out)?;
         }
     }

@@ -107,12 +107,23 @@ pub struct Measurements {
     pub histogram: Histogram,
     /// The crowded pairs and the wide holes.
     pub places: Places,
+    /// Columns that a program has [added](crate::Sample::add_value).
+    pub values: Vec<NamedValues>,
     /// The opening that the triangles of natural neighbours leave in the surface; none if they
     /// close it.
     pub(crate) opening: Option<Opening>,
     /// Sign of f inside of the parts of the surface that the triangles of natural neighbours close;
     /// none if they close no part.
     pub(crate) inside: Option<Inside>,
+}
+
+/// Numbers at the rows of the particles, with a name.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NamedValues {
+    /// The name: a letter, then letters, digits and _.
+    pub name: String,
+    /// A number for each row; NaN where there is none.
+    pub values: Vec<f32>,
 }
 
 impl Measurements {

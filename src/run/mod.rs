@@ -13,6 +13,7 @@ mod report;
 mod sample;
 mod severity;
 mod state;
+mod values;
 mod warning;
 
 pub use measuring::Measured;
@@ -20,6 +21,7 @@ pub use mesh::{MeshAnswer, MeshComponent};
 pub use report::{Cut, Growth, Measures, Proof, Radii, Report, Reporting};
 pub use sample::{Sample, sample};
 pub use severity::Severity;
+pub use values::{Value, ValueError};
 pub use warning::Warning;
 
 use crate::differential::{self, Curvature};
@@ -30,8 +32,8 @@ use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::quality;
 use crate::sampler::{
-    self, FollowError, FoundCreases, Progress, Sampler, Settings, SettingsError, StopReason,
-    bytes_per_particle,
+    self, FollowError, FoundCreases, Progress, Sampler, Settings, SettingsError, SpacedSettings, Spacing,
+    StopReason, bytes_per_particle,
 };
 use crate::slices::Work;
 use core::fmt::{self, Debug, Formatter};
@@ -39,7 +41,6 @@ use measuring::Measuring;
 use mesh::Meshing;
 use plan::Plan;
 use serde::Serialize;
-use state::failure_of;
 
 /// Bytes of a particle that is kept after the front: its position, normal and radius.
 const KEPT_BYTES: usize = 12 + 12 + 4;
@@ -143,6 +144,10 @@ struct RunState {
     known: Known,
     /// The creases of the surface in the box, if they were found before the start.
     creases: Option<FoundCreases>,
+    /// The spacing by a function of the next start, if one is asked for.
+    spacing: Option<Spacing>,
+    /// Why the particles of a run that has ended do not have it.
+    spacing_error: Option<SettingsError>,
     /// Limit on the number of particles: a run that expects more is refused.
     most_particles: usize,
     /// The report on the start.
@@ -209,10 +214,14 @@ impl<F: Field> Run<F> {
     ///
     /// If a setting or the box is out of its range, the memory does not hold the particles to
     /// expect, or a function of the program fails.
-    pub fn start<Kind>(field: impl IntoField<Kind, Field = F>, settings: &Settings) -> Result<Self, Error> {
+    pub fn start<Kind>(
+        field: impl IntoField<Kind, Field = F>,
+        settings: impl Into<SpacedSettings>,
+    ) -> Result<Self, Error> {
+        let SpacedSettings { settings, spacing } = settings.into();
         settings.validate()?;
         let field = field.into_field();
-        let state = RunState::started(&field, settings)?;
+        let state = RunState::started(&field, &settings, spacing)?;
         Ok(Self { field, state })
     }
 
@@ -227,16 +236,23 @@ impl<F: Field> Run<F> {
         self.state.begin(&self.field, settings)
     }
 
+    /// Takes the spacing by a function of the next start.
+    pub(crate) fn set_spacing(&mut self, spacing: Option<Spacing>) {
+        self.state.spacing = spacing;
+    }
+
     /// Starts anew with other settings. The survey is kept, unless the settings name another box.
     ///
     /// # Errors
     ///
     /// The errors of [`Run::start`].
-    pub fn restart(&mut self, settings: &Settings) -> Result<Start, Error> {
+    pub fn restart(&mut self, settings: impl Into<SpacedSettings>) -> Result<Start, Error> {
+        let SpacedSettings { settings, spacing } = settings.into();
+        self.set_spacing(spacing);
         if let Some(bounds) = settings.bounds.filter(|bounds| *bounds != self.bounds()) {
             self.set_bounds(bounds, None);
         }
-        Ok(self.begin(settings)?)
+        Ok(self.begin(&settings)?)
     }
 
     /// Says what the caller is going to do once the run has ended, measure and [join](Run::join)
@@ -348,9 +364,10 @@ impl<F: Field> Run<F> {
     ///
     /// # Errors
     ///
-    /// [`Error::Field`], if it has.
+    /// [`Error::Field`], if it has, and [`Error::Settings`] if it is that of a [`Spacing`], or if
+    /// the spacing is not above 0 at a particle.
     pub fn check_field(&self) -> Result<(), Error> {
-        failure_of(&self.field)
+        self.state.check_functions(&self.field)
     }
 
     /// Returns the reason if there is no particle, or its field has failed.

@@ -9,7 +9,7 @@ use crate::mesh::stars::Sheets;
 use crate::mesh::triangulation::Triangulation;
 use crate::particles::Particles;
 use crate::quality;
-use crate::sampler::Settings;
+use crate::sampler::SpacedSettings;
 use crate::slices;
 use std::ffi::OsStr;
 use std::fs::File;
@@ -44,7 +44,10 @@ use std::sync::{Arc, OnceLock};
 /// assert_eq!(sample.mesh().topology.components.len(), 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn sample<Kind>(field: impl IntoField<Kind>, settings: &Settings) -> Result<Sample, Error> {
+pub fn sample<Kind>(
+    field: impl IntoField<Kind>,
+    settings: impl Into<SpacedSettings>,
+) -> Result<Sample, Error> {
     let mut run = Run::start(field, settings)?;
     while run.step(u32::MAX).stop_reason.is_none() {}
     run.finish()
@@ -96,6 +99,10 @@ impl Sample {
     #[must_use]
     pub fn measured(&self) -> &quality::Measurements {
         &self.measured
+    }
+
+    pub(super) fn measured_mut(&mut self) -> &mut quality::Measurements {
+        &mut self.measured
     }
 
     /// The clip box, in the coordinates of the field.

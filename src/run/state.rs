@@ -10,8 +10,8 @@ use crate::field::{Evaluator, Field, Frame};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::sampler::{
-    self, FollowError, FoundCreases, Phase, Progress, Sampler, Settings, SettingsError, StopReason,
-    bytes_per_particle,
+    self, FollowError, FoundCreases, Phase, Progress, Sampler, Sampling, Settings, SettingsError, Spacing,
+    StopReason, bytes_per_particle,
 };
 use crate::slices;
 use glam::DVec3;
@@ -45,7 +45,7 @@ impl FieldState {
 }
 
 /// The error of a field whose functions have failed.
-pub(super) fn failure_of(field: &dyn Field) -> Result<(), Error> {
+fn failure_of(field: &dyn Field) -> Result<(), Error> {
     field.failure().map_or(Ok(()), |error| Err(Error::Field(error)))
 }
 
@@ -59,6 +59,8 @@ impl RunState {
             sampler: Sampler::default(),
             known: Known::Nothing,
             creases: None,
+            spacing: None,
+            spacing_error: None,
             most_particles: usize::MAX,
             start: Start::default(),
             last: None,
@@ -69,15 +71,20 @@ impl RunState {
     }
 
     /// [`Run::start`](super::Run::start), by settings that are valid.
-    pub(super) fn started(field: &dyn Field, settings: &Settings) -> Result<Self, Error> {
+    pub(super) fn started(
+        field: &dyn Field,
+        settings: &Settings,
+        spacing: Option<Spacing>,
+    ) -> Result<Self, Error> {
         let (bounds, reach) = match settings.bounds {
             Some(bounds) => (bounds, None),
             None => {
                 let extent = extent::find(field);
-                (extent.with_room(|bounds| settings.largest_share(bounds)), Some(extent.reach))
+                let share = |bounds: &Bounds| settings.largest_share_with(bounds, spacing.as_ref());
+                (extent.with_room(share), Some(extent.reach))
             }
         };
-        let mut run = Self { reach, ..Self::new(field, bounds) };
+        let mut run = Self { reach, spacing, ..Self::new(field, bounds) };
         let begun = run.begin(field, settings);
         failure_of(field)?;
         begun?;
@@ -88,7 +95,17 @@ impl RunState {
     pub(super) fn begin(&mut self, field: &dyn Field, settings: &Settings) -> Result<Start, SettingsError> {
         settings.validate()?;
         self.bounds.check()?;
-        let settings = &settings.in_shares_of(&self.bounds)?;
+        let mut settings = settings.in_shares_of(&self.bounds)?;
+        if let Some(spacing) = &self.spacing {
+            spacing.check_limits()?;
+            let bends = settings.sampling == Sampling::Adaptive;
+            self.sampler.set_spacing(Some((spacing.clone(), bends)));
+            // The sampler makes sizes that differ, whatever they follow.
+            settings.sampling = Sampling::Adaptive;
+        } else {
+            self.sampler.set_spacing(None);
+        }
+        let settings = &settings;
         self.sampler.limit_memory(self.most_particles.saturating_mul(bytes_per_particle(settings)));
         self.sampler.set_box_given(self.reach.is_none());
         let origin = self.bounds.local_origin();
@@ -128,7 +145,9 @@ impl RunState {
     /// [`Run::step`](super::Run::step).
     pub(super) fn step(&mut self, field: &dyn Field, budget: u32) -> Progress {
         let progress = self.sampler.step(&self.field.function(field), budget);
-        if field.failure().is_some() && progress.stop_reason.is_none() {
+        let has_failed = field.failure().is_some()
+            || self.spacing.as_ref().is_some_and(|spacing| spacing.failure().is_some());
+        if has_failed && progress.stop_reason.is_none() {
             return self.cancel(field);
         }
         if progress.phase == Phase::Relaxation && progress.relax_step == 0 && progress.relax_steps > 0 {
@@ -173,8 +192,23 @@ impl RunState {
         {
             *message = format!("{message} {cause}");
         }
+        self.spacing_error = None;
+        if progress.stop_reason.is_some()
+            && let Some(spacing) = &self.spacing
+        {
+            let Particles { local, origin, .. } = self.sampler.particles();
+            let mut radii = vec![0.0; local.len()];
+            spacing.radii(*origin, local, &mut radii);
+            self.spacing_error = spacing.check(*origin, local, &radii).err();
+        }
         self.last = Some(progress.clone());
         progress
+    }
+
+    /// [`Run::check_field`](super::Run::check_field).
+    pub(super) fn check_functions(&self, field: &dyn Field) -> Result<(), Error> {
+        failure_of(field)?;
+        self.spacing_error.clone().map_or(Ok(()), |error| Err(error.into()))
     }
 
     /// Drops a measurement under way and the mesh: they are of other particles, or of another
@@ -199,7 +233,7 @@ impl RunState {
 
     /// [`Run::check_not_empty`](super::Run::check_not_empty).
     pub(super) fn check_not_empty(&self, field: &dyn Field) -> Result<(), Error> {
-        failure_of(field)?;
+        self.check_functions(field)?;
         if self.count() > 0 {
             return Ok(());
         }

@@ -15,7 +15,8 @@ use crate::particles::Particles;
 use crate::quality::Measurements;
 use crate::quality::figures::Connectivity;
 use crate::sampler::{
-    COUNT_TOLERANCE, Doubt, FateCounts, Refusal, Sampled, SingularKind, SizeMode, StopReason, Unsampled,
+    COUNT_TOLERANCE, Doubt, FateCounts, Refusal, Sampled, SingularKind, SizeMode, Smoothing, StopReason,
+    Unsampled,
 };
 use core::fmt;
 use glam::DVec3;
@@ -75,6 +76,18 @@ pub enum Warning {
     SampledAs {
         /// The equation that is sampled.
         equation: String,
+    },
+    /// The spacing changes faster than the [grading](crate::Settings::grading) lets sizes follow.
+    Smoothed {
+        /// Share of the area on which particles are nearer to each other than is asked for, by more
+        /// than a twentieth.
+        share: f64,
+        /// Largest ratio of the spacing and the distance between neighbours.
+        ratio: f64,
+        /// The place where it is.
+        position: [f64; 3],
+        /// Radius of the run.
+        length: f64,
     },
     /// Cutters of a solid lie flush with faces of it.
     FlushFaces {
@@ -273,6 +286,7 @@ impl Warning {
             Self::Bare { .. } => ("bare", Caution),
             Self::Beyond { .. } => ("beyond", Caution),
             Self::SampledAs { .. } => ("sampled_as", Note),
+            Self::Smoothed { .. } => ("smoothed", Note),
             Self::FlushFaces { .. } => ("flush_faces", Note),
             Self::Unused { .. } => ("unused", Note),
             Self::Gradient { .. } => ("gradient", Fault),
@@ -386,6 +400,10 @@ impl RunState {
         if self.sampler.touches() {
             warnings.push(Warning::Touches);
         }
+        warnings.extend(self.sampler.smoothing().map(|Smoothing { share, ratio, position }| {
+            let position = self.place(position.as_dvec3().to_array());
+            Warning::Smoothed { share, ratio, position, length: self.sampler.radius() }
+        }));
         // Derivatives of a field that has bounds are derived, not given.
         let bounds = self.local_bounds();
         let evaluator = &mut *self.evaluator(field);
@@ -565,6 +583,13 @@ impl fmt::Display for Warning {
                 f,
                 "The same surface is sampled in a simpler form. The powers, roots or absolute values of whole factors in f \
                  have no gradient on the surface; without them it is {equation}"
+            ),
+            Self::Smoothed { share, ratio, position, length } => write!(
+                f,
+                "Particles lie closer than the spacing asks on {:.1} % of the surface: a larger grading follows it. Near {} the \
+                 spacing is {ratio:.2} times the distance of neighbours.",
+                100.0 * share,
+                place_text(*position, *length)
             ),
             Self::FlushFaces { faces } => write!(
                 f,

@@ -25,6 +25,7 @@ mod relaxation;
 mod settings;
 pub(crate) mod sheet;
 mod sizing;
+mod spacing;
 mod steps;
 
 pub use discovery::completeness::{Doubt, Sampled, Search, Unsampled};
@@ -36,10 +37,12 @@ pub use refine::{Refusal, Spot};
 pub use settings::{
     COUNT_ROOM, GapPolicy, LawKind, Method, Radius, Sampling, Settings, SettingsError, SizeMode,
 };
+pub use spacing::{SpacedSettings, Spacing};
 
 pub(crate) use attempt::COUNT_TOLERANCE;
 pub(crate) use discovery::precision::Blur;
 pub(crate) use discovery::singular::{SingularKind, SingularPlace};
+pub(crate) use sizing::Smoothing;
 
 use crate::field::edges::{self, KnownPieces};
 use crate::field::{Evaluator, Field, Frame, Pieces};
@@ -64,7 +67,7 @@ use probe::{Probe, ProbeMemory};
 use progress::RefineProgress;
 use refine::CoarseFronts;
 use relaxation::Relaxation;
-use sizing::Sizing;
+use sizing::{Sizing, Wish};
 use steps::SurveyCursor;
 
 /// Bytes per particle that have to be free before a run: the columns, neighbour lists and grid of a
@@ -84,6 +87,8 @@ pub(crate) fn bytes_per_particle(settings: &Settings) -> usize {
 #[derive(Default)]
 pub struct Sampler {
     settings: Settings,
+    /// The spacing by a function, if one is asked for, and whether sizes also follow the curvature.
+    spacing: Option<(Spacing, bool)>,
     bounds: Bounds,
     survey: Survey,
     /// The frame in which the field is evaluated.
@@ -323,10 +328,15 @@ impl Sampler {
         self.tools.memory.evaluations = 0;
         self.look_over(field, creases);
         let field = &mut *field.evaluator(self.frame);
+        let wish = self.wish();
         let sizing = (settings.sampling == Sampling::Adaptive).then(|| {
             let probe = &mut Probe::new(field, &mut self.tools.memory);
-            Sizing::new(probe, bounds, settings, &self.survey, &self.creases)
+            Sizing::new(probe, bounds, settings, wish, &self.survey, &self.creases)
         });
+        if let Some(Err(error)) = sizing.as_ref().map(Sizing::check) {
+            (self.method, self.stop_reason, self.phase) = (None, None, Phase::Idle);
+            return Err(error);
+        }
         self.counts.seeding_evaluations = self.tools.memory.evaluations;
         self.attempt = Attempt::first(settings, self.survey.area, bounds.diagonal(), sizing);
         if settings.method == Method::Refined {
@@ -523,6 +533,23 @@ impl Sampler {
         precision::blur(&mut *field.evaluator(self.frame), &self.output.particles)
     }
 
+    /// Takes the spacing of the next start, whose settings are those of adaptive sampling, and
+    /// whether sizes also follow the curvature.
+    pub(crate) fn set_spacing(&mut self, spacing: Option<(Spacing, bool)>) {
+        self.spacing = spacing;
+    }
+
+    /// The spacing that is asked for, in the frame of the run.
+    fn wish(&self) -> Option<Wish> {
+        let (spacing, bends) = self.spacing.clone()?;
+        Some(Wish { spacing, bends, origin: self.frame.origin })
+    }
+
+    /// Where the slope keeps the radius of the start below the one that a spacing asks for.
+    pub(crate) fn smoothing(&self) -> Option<Smoothing> {
+        self.attempt.sizing.as_ref()?.smoothing()
+    }
+
     /// Refuses runs that need more than about `bytes` from now on.
     pub fn limit_memory(&mut self, bytes: usize) {
         self.memory_limit = Some(bytes);
@@ -611,6 +638,7 @@ impl Sampler {
         let bounds = &{ self.bounds };
         let frame = frame_for(function, self.output.particles.origin, bounds);
         let field = &mut *function.evaluator(frame);
+        let wish = self.wish();
         let probe = &mut Probe::new(field, &mut self.tools.memory);
         let seen = survey(probe, bounds, None);
         if seen.area == 0.0 {
@@ -619,7 +647,7 @@ impl Sampler {
         }
         (self.survey, self.frame) = (seen, frame);
         let sizing = (self.settings.sampling == Sampling::Adaptive)
-            .then(|| Sizing::new(probe, bounds, &self.settings, &self.survey, &self.creases));
+            .then(|| Sizing::new(probe, bounds, &self.settings, wish, &self.survey, &self.creases));
         let (area, growth) = (self.survey.area, self.tools.flow.growth());
         self.attempt.move_on(&self.settings, area, bounds.diagonal(), sizing, growth);
         self.components.begin(field, bounds, &[]);

@@ -1,6 +1,7 @@
 //! Settings of a run, with the paper's values as defaults.
 
-use crate::math::{Bounds, BoxError, shortest_text};
+use crate::field::FieldError;
+use crate::math::{Bounds, BoxError, place_text, shortest_text};
 use core::fmt;
 use core::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
@@ -149,8 +150,8 @@ pub const COUNT_ROOM: f64 = 1.1;
 
 /// The smallest and the largest radius that are accepted, as shares of the diagonal: on an area of
 /// one squared diagonal they give 29 million particles and 7.
-const LEAST_SHARE: f64 = 1e-4;
-const MOST_SHARE: f64 = 0.2;
+pub(crate) const LEAST_SHARE: f64 = 1e-4;
+pub(crate) const MOST_SHARE: f64 = 0.2;
 
 /// A setting that is a number: its name, its smallest and largest value, and how it is read.
 type Number = (&'static str, f64, f64, fn(&Settings) -> f64);
@@ -210,11 +211,37 @@ pub enum SettingsError {
         /// Particles to expect.
         particles: u64,
     },
+    /// A [spacing](super::Spacing) is not above 0 at a place of the surface, or has no value there.
+    #[error(fmt = no_length)]
+    Spacing {
+        /// The spacing there, NaN where it has no value.
+        value: f64,
+        /// The place, in the coordinates of the field.
+        position: [f64; 3],
+    },
+    /// The function of a [spacing](super::Spacing) has failed: its error.
+    #[error("the function of the spacing has failed: {0}")]
+    SpacingFunction(FieldError),
 }
 
 fn out_of_range(name: &str, value: &f64, min: &f64, max: &f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let [value, min, max] = [*value, *min, *max].map(shortest_text);
     write!(f, "{name} is {value}, but must lie between {min} and {max}")
+}
+
+fn no_length(value: &f64, position: &[f64; 3], f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    // Six digits of the largest coordinate.
+    let length = position.iter().fold(0.0, |a: f64, x| a.max(x.abs())) * 1e-2;
+    let place = place_text(*position, length);
+    if value.is_nan() {
+        return write!(f, "the spacing has no value at {place}, on the surface: it must be a number there");
+    }
+    let value = shortest_text(*value);
+    write!(
+        f,
+        "the spacing is {value} at {place}, on the surface, but must be above 0: change it, or give a \
+         smallest spacing"
+    )
 }
 
 impl Settings {

@@ -3,7 +3,7 @@
 //! defaults, and nothing else.
 
 use super::setting::{Setting, SettingGroup, SettingValue, with_values};
-use super::{BoxCell, BoxFaces, BoxMode, FileRecord, Session};
+use super::{BoxCell, BoxFaces, BoxMode, FileRecord, Session, SpacingText};
 use crate::field::formula::Thickness;
 use crate::field::gallery;
 use crate::math::{Bounds, grouped, shortest_text};
@@ -113,6 +113,11 @@ impl Program<'_> {
         self.settings.sampling == Sampling::Adaptive
     }
 
+    /// Whether the sizes are those of the law of the curvature or of a spacing, and no radius is.
+    fn are_graded(&self) -> bool {
+        self.is_adaptive() || self.record.spacing.is_some()
+    }
+
     /// The box that is sampled, if it has to be said. Around a closed solid it is that of the
     /// settings alone.
     fn sampled_box(&self) -> Option<Bounds> {
@@ -130,12 +135,14 @@ impl Program<'_> {
         let (values, usual) = (with_values(&self.settings), with_values(&usual));
         let is_effective = |setting: &Setting| {
             // The steps of the front count where it cannot be refined.
-            setting.when.iter().filter(|condition| condition.name != "method").all(|condition| {
-                let holds = values.iter().any(|other| {
-                    other.name == condition.name && other.default == SettingValue::Choice(condition.value)
-                });
-                holds == condition.equal
-            })
+            let is_grading = setting.name == "grading" && self.are_graded();
+            is_grading
+                || setting.when.iter().filter(|condition| condition.name != "method").all(|condition| {
+                    let holds = values.iter().any(|other| {
+                        other.name == condition.name && other.default == SettingValue::Choice(condition.value)
+                    });
+                    holds == condition.equal
+                })
         };
         let is_other = |(value, usual): &(&Setting, Setting)| {
             let is_own = value.group == SettingGroup::Box || NAMED.contains(&value.name);
@@ -158,7 +165,13 @@ impl Program<'_> {
                 "{name} cannot take a seed above {LAST_SAFE}: Rust and the command line can"
             ));
         }
-        Ok(())
+        let is_python = language == Language::Python;
+        let unsaid = match &self.record.spacing {
+            Some(_) if !is_python => "space particles by a formula (--spacing)",
+            Some(spacing) if spacing.is_limited() => "limit a spacing (--spacing-min, --spacing-max)",
+            _ => return Ok(()),
+        };
+        Err(format!("{} cannot {unsaid}: Rust and the command line can", language.runner()))
     }
 
     fn rust(&self) -> String {
@@ -197,7 +210,7 @@ impl Program<'_> {
         }
         let mut assigned = Vec::new();
         match (settings.radius, settings.radius_share) {
-            _ if self.is_adaptive() || settings.size_mode == SizeMode::Count => {}
+            _ if self.are_graded() || settings.size_mode == SizeMode::Count => {}
             (Some(length), _) => assigned.push(format!("settings.radius = Some({length:?});")),
             (None, share) if share == Settings::DEFAULT.radius_share => {}
             (None, share) => assigned.push(format!("settings.radius_share = {share:?};")),
@@ -214,6 +227,9 @@ impl Program<'_> {
             };
             assigned.push(format!("settings.{} = {value};", setting.name));
         }
+        if record.spacing.is_some() {
+            imports.push("Spacing");
+        }
         imports.sort_unstable();
         imports.dedup();
         let mut text = format!("use marching_particles::{{{}}};\n\n", imports.join(", "));
@@ -225,7 +241,17 @@ impl Program<'_> {
             push_chain(&mut text, "let mut settings = ", &made, ";");
             assigned.iter().for_each(|line| push_line(&mut text, line));
         }
-        push_line(&mut text, "let particles = sample(surface, &settings)?;");
+        match &record.spacing {
+            None => push_line(&mut text, "let particles = sample(surface, &settings)?;"),
+            Some(written @ SpacingText { smallest, largest, .. }) => {
+                let formula = written.alone(&record.parameters);
+                let mut spacing = vec![format!("Spacing::parse({formula:?})?")];
+                spacing.extend(smallest.map(|length| format!(".at_least({length:?})")));
+                spacing.extend(largest.map(|length| format!(".at_most({length:?})")));
+                push_chain(&mut text, "let spacing = ", &spacing, ";");
+                push_line(&mut text, "let particles = sample(surface, settings.spaced(spacing))?;");
+            }
+        }
         push_line(&mut text, "println!(\"{} particles\", particles.report().count);");
         push_line(&mut text, "Ok(())");
         text.push_str("}\n");
@@ -253,12 +279,15 @@ impl Program<'_> {
         }
         match (settings.size_mode, settings.radius) {
             (SizeMode::Count, _) => given.push(("count", settings.count.to_string())),
-            _ if self.is_adaptive() => {}
+            _ if self.are_graded() => {}
             (SizeMode::Radius, Some(length)) => given.push(("radius", shortest_text(length))),
             (SizeMode::Radius, None) if settings.radius_share == Settings::DEFAULT.radius_share => {}
             (SizeMode::Radius, None) => {
                 given.push(("radius", quoted(&percent_text(settings.radius_share), quote)));
             }
+        }
+        if let Some(spacing) = &record.spacing {
+            given.push(("spacing", quoted(&spacing.formula, quote)));
         }
         // Around a closed solid the box is the one whose faces close it.
         if let Some(Bounds { min, max }) = record.faces.or(self.sampled_box()) {
@@ -373,7 +402,7 @@ impl Program<'_> {
         }
         match (settings.size_mode, settings.radius) {
             (SizeMode::Count, _) => words.push(format!("--count {}", settings.count)),
-            _ if self.is_adaptive() => {}
+            _ if self.are_graded() => {}
             (SizeMode::Radius, Some(length)) => words.push(format!("--radius {}", shortest_text(length))),
             (SizeMode::Radius, None) => {
                 words.push(format!("--radius {}", percent_text(settings.radius_share)));
@@ -381,6 +410,11 @@ impl Program<'_> {
         }
         if self.is_adaptive() {
             words.push("--adaptive".to_owned());
+        }
+        if let Some(SpacingText { formula, smallest, largest }) = &record.spacing {
+            words.push(format!("--spacing {}", in_shell(formula)));
+            words.extend(smallest.map(|length| format!("--spacing-min {}", shortest_text(length))));
+            words.extend(largest.map(|length| format!("--spacing-max {}", shortest_text(length))));
         }
         if settings.method == Method::Refined {
             words.push("--method refined".to_owned());

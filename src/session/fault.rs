@@ -15,6 +15,8 @@ pub enum FaultKind {
     Settings,
     /// The formula of the thickness has a mistake; the span is in it.
     Thickness,
+    /// The formula of the spacing has a mistake; the span is in it.
+    Spacing,
     /// A run would have more particles than the limit allows, see [`Fault::excess`].
     TooMany,
     /// There is no surface of that name.
@@ -104,5 +106,12 @@ impl Fault {
     pub fn in_thickness(error: FormulaError, text: &str) -> Self {
         let message = format!("Thickness: {}", error.message);
         Self { kind: FaultKind::Thickness, message, ..Self::in_formula(error, text) }
+    }
+
+    /// An error in the formula `text` of the spacing.
+    #[must_use]
+    pub fn in_spacing(error: FormulaError, text: &str) -> Self {
+        let message = format!("Spacing: {}", error.message);
+        Self { kind: FaultKind::Spacing, message, ..Self::in_formula(error, text) }
     }
 }

@@ -289,7 +289,8 @@ impl Session {
             Source::Function(field) => search.step(|| Arc::clone(field), budget),
             Source::Points { .. } => None,
         }?;
-        let clip = found.with_room(|bounds| settings_in(bounds).largest_share(bounds));
+        let spacing = self.next_spacing();
+        let clip = found.with_room(|bounds| settings_in(bounds).largest_share_with(bounds, spacing.as_ref()));
         let before = (only_grows && self.fitting.is_fitted).then_some(self.clip);
         let grown = before.map_or(clip, |before| clip.joined(&before));
         self.fitting.is_grown = grown != clip;
@@ -327,7 +328,9 @@ impl Session {
             return Some((bounds, None));
         }
         let found = self.fitting.closed.step(|| solid.clone(), budget)?;
-        let bounds = found.with_room(|bounds| settings_in(bounds).largest_share(bounds));
+        let spacing = self.next_spacing();
+        let bounds =
+            found.with_room(|bounds| settings_in(bounds).largest_share_with(bounds, spacing.as_ref()));
         Some((bounds, Some(found.reach)))
     }
 

@@ -8,6 +8,7 @@ mod fault;
 mod fitting;
 mod record;
 mod setting;
+mod spacing;
 
 pub use asked::{Asked, Lengths};
 pub use code::{Code, Language};
@@ -19,6 +20,7 @@ pub use setting::{
     Choice, Condition, Setting, SettingGroup, SettingKind, SettingScale, SettingValue, settings,
     without_effect,
 };
+pub use spacing::SpacingText;
 
 use crate::extent::{FALLBACK, Reach};
 use crate::field::formula::{Formula, FormulaError, FormulaErrorKind, Grip, MODEL, MathNode, Parameter};
@@ -28,7 +30,7 @@ use crate::field::rbf::{Pull, RbfData, RbfField, pulled_box};
 use crate::field::{Combined, Field};
 use crate::math::Bounds;
 use crate::run::{Error, Measured, Report, Run, Sample, Start, Warning};
-use crate::sampler::{FollowError, Settings, SettingsError};
+use crate::sampler::{FollowError, Settings, SettingsError, Spacing};
 use core::ops::Deref;
 use fitting::Fitting;
 use glam::DVec3;
@@ -159,6 +161,10 @@ pub struct Session {
     /// Whether the surface, closed by no box, is bounded, if the clip box was fitted to it.
     reach: Option<Reach>,
     fitting: Fitting,
+    /// The spacing of the next runs, if it is by a formula.
+    spacing: Option<SpacingText>,
+    /// That spacing, if it is by a function of the program.
+    spacing_function: Option<Spacing>,
     /// The record of the present run.
     made: Option<FileRecord>,
     /// Whether the box of the present run is the one that a search for it finds.
@@ -186,6 +192,8 @@ impl Session {
             clip: surface.bounds,
             reach: None,
             fitting: Fitting::default(),
+            spacing: None,
+            spacing_function: None,
             made: None,
             is_box_found: false,
             started: None,
@@ -493,6 +501,7 @@ impl Session {
         self.made = self.beginning(settings);
         self.is_box_found = self.fitting.is_fitted && !self.fitting.is_grown;
         self.started = Some(*settings);
+        self.run.set_spacing(self.next_spacing());
         self.run.begin(settings)
     }
 

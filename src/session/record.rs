@@ -1,7 +1,7 @@
 //! The record that a file carries, from which it can be made again, and the request for a mesh
 //! file.
 
-use super::{BoxFaces, Session, SolidSettings, Source};
+use super::{BoxFaces, Session, SolidSettings, Source, SpacingText};
 use crate::export::{self, Bodies, MeshFile, MeshFormat, Placement, Vertices};
 use crate::field::rbf::Pull;
 use crate::math::Bounds;
@@ -44,6 +44,10 @@ pub struct FileRecord {
     #[serde(default)]
     #[cfg_attr(test, ts(type = "Record<string, number | string>"))]
     pub solid: SolidSettings,
+    /// Spacing of the run, if it is by a formula.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(test, ts(optional))]
+    pub spacing: Option<SpacingText>,
     /// Settings of the run.
     #[cfg_attr(test, ts(type = "Record<string, number | string>"))]
     pub settings: Settings,
@@ -81,9 +85,12 @@ impl Session {
         Some(record)
     }
 
-    /// The record of a run that starts now; none for a function of the program, which no record
-    /// can hold.
+    /// The record of a run that starts now; none where a function of the program gives the
+    /// surface or the spacing, which no record can hold.
     pub(super) fn beginning(&self, settings: &Settings) -> Option<FileRecord> {
+        if self.spacing_function.is_some() {
+            return None;
+        }
         let (formula, parameters, model, pulls) = match self.source() {
             Source::Formula(field) => (field.text().to_owned(), field.parameters(), None, Vec::new()),
             Source::Points { info, field, within } => {
@@ -110,6 +117,7 @@ impl Session {
             bounds: self.run.bounds(),
             faces: (self.fitting.choice.box_faces == BoxFaces::Closed).then_some(self.clip),
             solid: self.fitting.choice.clone(),
+            spacing: self.spacing.clone().filter(|_| self.next_spacing().is_some()),
             settings: Settings { bounds: None, ..*settings },
         })
     }

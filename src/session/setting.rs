@@ -88,12 +88,14 @@ impl Setting {
     }
 }
 
-/// A setting that is given where it has no effect, and the condition that does not hold.
+/// A setting that is given where it has no effect, and the condition that does not hold. Beside a
+/// spacing by a function, by which the run `is_spaced`, grading has one.
 #[must_use]
 pub fn without_effect(
     given: &[&str],
     values: &Settings,
     solid: &SolidSettings,
+    is_spaced: bool,
 ) -> Option<(Setting, Condition)> {
     let choices = [
         ("sampling", SettingValue::from(values.sampling)),
@@ -106,7 +108,9 @@ pub fn without_effect(
         // Steps of relaxation count where a front cannot be refined: the method is no condition.
         chosen.is_some_and(|&(_, value)| (value == SettingValue::Choice(condition.value)) != condition.equal)
     };
-    let mut all = settings().into_iter().filter(|setting| given.contains(&setting.name));
+    let mut all = settings()
+        .into_iter()
+        .filter(|setting| given.contains(&setting.name) && !(is_spaced && setting.name == "grading"));
     all.find_map(|setting| setting.when.iter().find(fails).map(|&condition| (setting, condition)))
 }
 

@@ -41,6 +41,8 @@ class Model(Field):
     @property
     def bounds(self) -> tuple[_Corner, _Corner]: ...
     @property
+    def values(self) -> dict[str, npt.NDArray[np.float32]]: ...
+    @property
     def report(self) -> dict[str, Any]: ...
     @property
     def warnings(self) -> list[str]: ...
@@ -81,7 +83,7 @@ def sample(
     field: _Surface,
     *,
     count: Union[SupportsIndex, None] = None,
-    spacing: Union[SupportsFloat, None] = None,
+    spacing: Union[SupportsFloat, str, _Function, Field, None] = None,
     radius: Union[_Size, None] = None,
     bounds: Union[Sequence[Sequence[float]], npt.NDArray[Any], None] = None,
     params: Union[Mapping[str, float], None] = None,
@@ -102,6 +104,7 @@ def sample(
     gaps: Union[Literal["fill", "leave"], None] = None,
     seed: SupportsIndex = 0,
     max_particles: Union[SupportsIndex, None] = None,
+    values: Union[Mapping[str, Union[str, _Function, Field]], None] = None,
     measure: bool = True,
     progress: Union[Callable[[float], object], None] = None,
 ) -> Sample: ...

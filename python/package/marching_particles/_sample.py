@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from . import _core
-from ._fields import field_of, numbers
+from ._fields import Field, _parameters, field_of, numbers
 from ._options import settings_of
 
 class SampleWarning(NamedTuple):
@@ -85,6 +86,11 @@ class Sample:
         return self._core.levels()
 
     @cached_property
+    def values(self):
+        """The columns that ``values`` has asked for, a dict of arrays (n,), float32."""
+        return dict(self._core.values())
+
+    @cached_property
     def faces(self):
         """Triangles over the rows of ``points``, array (m, 3), int32, counter-clockwise seen from
         outside. With ``points`` and ``normals`` they shade sharp edges sharply, since across one
@@ -143,7 +149,7 @@ class Sample:
 
     def to_pyvista(self):
         """The mesh as a ``pyvista.PolyData``, with the point data ``Normals``, ``radius``
-        and ``level``."""
+        and ``level``, and the values that were asked for."""
         import pyvista
 
         mesh = self.mesh()
@@ -152,6 +158,8 @@ class Sample:
         data.point_data["Normals"] = mesh.normals
         data.point_data["radius"] = self.radii[mesh.rows]
         data.point_data["level"] = self.levels[mesh.rows]
+        for name, values in self.values.items():
+            data.point_data[name] = values[mesh.rows]
         return data
 
     def to_meshio(self):
@@ -191,6 +199,7 @@ def sample(
     gaps=None,
     seed=0,
     max_particles=None,
+    values=None,
     measure=True,
     progress=None,
 ):
@@ -205,7 +214,11 @@ def sample(
             :func:`fit_points`; or a :class:`Field` from :func:`union` and the like. f < 0 inside.
             What a function raises comes through unchanged.
         count: Number of particles, met to within 3 %; 1 to 4,000,000.
-        spacing: Distance between neighbours, twice the radius.
+        spacing: Distance between neighbours, twice the radius: a number; a formula of x, y, z and
+            ``params`` such as ``"0.02 + 0.1 hypot(x, y)"``; or a function of points, as for
+            ``field``. It must be above 0 on the surface. Sizes change gradually along the surface;
+            a warning says where that is less than a formula or function asks. With ``count`` these
+            give the ratio of the distances, with ``adaptive`` the smaller size is taken.
         radius: Repulsion radius, half the distance between neighbours: a length, or a share of the
             diagonal of the box such as ``"1%"``. Without count, spacing and radius it is 0.6 %.
         bounds: The box, ``((x0, y0, z0), (x1, y1, z1))``. Without it a model has its own, and
@@ -238,6 +251,10 @@ def sample(
             they do not.
         seed: Seed of the point where the front begins, 0 to 2**64 - 1.
         max_particles: Number of particles at which the run stops.
+        values: More columns, by name: formulas of x, y, z, the normal n_x, n_y, n_z, the principal
+            curvatures k_1 >= k_2, the direction d_x, d_y, d_z of k_1, radius, level, area (the
+            share of the surface) and ``params``, such as ``{"H": "(k_1 + k_2)/2"}``; or functions
+            of points. They are :attr:`Sample.values`, and files have them: PLY, CSV, NPY and GLB.
         measure: Whether the particles are measured. It may take longer than the sampling; without
             it the report has no quality figures.
         progress: A function that is called with the share of the work done, 0 to 1.
@@ -253,10 +270,13 @@ def sample(
         TypeError: If an argument is of a wrong type.
         MemoryError: If there is not enough memory for the particles.
     """
+    is_varying = isinstance(spacing, str) or callable(spacing) or isinstance(spacing, Field)
+    if is_varying and radius is not None:
+        raise ValueError("spacing and radius exclude each other: give one of them")
     options = settings_of(
         {
             "count": count,
-            "spacing": spacing,
+            "spacing": None if is_varying else spacing,
             "radius": radius,
             "adaptive": adaptive,
             "law": law,
@@ -293,6 +313,37 @@ def sample(
         if given:
             raise ValueError(f"{given[0]} is for a formula by itself")
     core = _core.sample(
-        core_field, options, bounds=bounds, measure=bool(measure), progress=progress
+        core_field,
+        options,
+        spacing=_spacing(spacing, core_field, params) if is_varying else None,
+        bounds=bounds,
+        values=_columns(values, params),
+        measure=bool(measure),
+        progress=progress,
     )
     return Sample(core)
+
+
+def _spacing(spacing, core_field, params):
+    # Its formula has the parameters of the one that is sampled.
+    if isinstance(spacing, str) and core_field.is_formula:
+        return spacing
+    return _function("spacing", spacing, params)
+
+
+def _function(name, function, params):
+    """A function of place, as the core takes it: a formula, with the values of its parameters, or
+    the core's field of a function."""
+    if isinstance(function, str):
+        given = _parameters(params) if params is not None else []
+        used = [f"{own} = {value!r}; " for own, value in given if own in function]
+        return "".join(used) + function
+    return field_of(function, name=name)
+
+
+def _columns(values, params):
+    if values is None:
+        return []
+    if not isinstance(values, Mapping):
+        raise TypeError(f"values must be a dict of names and formulas or functions, and not {values!r}")
+    return [(name, _function(f"values[{name!r}]", value, params)) for name, value in values.items()]

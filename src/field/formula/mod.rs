@@ -57,6 +57,7 @@ mod elsewhere;
 mod error;
 mod eval;
 mod evaluator;
+mod expression;
 mod graph;
 mod interval;
 mod latex;
@@ -91,6 +92,7 @@ pub use ast::{FUNCTIONS, FunctionInfo};
 pub use builder::Expr;
 pub use control::Grip;
 pub use error::{FormulaError, FormulaErrorKind, Mended, utf16_offset};
+pub(crate) use expression::Noun;
 pub use lex::name_pattern;
 pub use mathml::{MathGroup, MathNode, MathToken};
 #[doc(hidden)]

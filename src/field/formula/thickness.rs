@@ -2,9 +2,10 @@
 //! the formula whose surface it thickens.
 
 use super::ast::{Equation, Expr, ExprKind, Factor};
-use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
+use super::error::FormulaError;
+use super::expression::Noun;
 use super::graph::{Graph, Id};
-use super::{Parameter, build, display, number, repair, syntax};
+use super::{Parameter, build, display, number};
 use core::fmt::{self, Display, Formatter};
 use serde::de::{self, Deserializer, Visitor};
 use serde::{Deserialize, Serialize};
@@ -143,37 +144,15 @@ impl Sheet {
     }
 }
 
+/// A thickness in the words of errors.
+const NOUN: Noun = Noun {
+    name: "thickness",
+    unknown: "The formula has no parameter",
+    others: "the parameters of the formula",
+    examples: ["0.2", "0.1 + 0.05 z", "if(z > 0, 0.2, 0.1)"],
+};
+
 /// The syntax tree of a thickness, whose names are those of parameters.
 fn expression(text: &str, parameters: &[Parameter]) -> Result<Equation, FormulaError> {
-    let known: Vec<&str> = parameters.iter().map(|parameter| &*parameter.name).collect();
-    let no_parameter = |name: &str| {
-        let own = if known.is_empty() { "there is none".to_owned() } else { known.join(", ") };
-        format!(
-            "The formula has no parameter `{name}`: a thickness is made of x, y, z and the parameters of the \
-             formula ({own})"
-        )
-    };
-    let read = syntax(text, &known).map_err(|error| repair::throughout(text, &known, error));
-    let (parsed, unknown) = read.map_err(|error| match (&error.kind, &error.name) {
-        (ErrorKind::Empty, _) => FormulaError { message: EXAMPLES.to_owned(), ..error },
-        // What the name may be meant for is suggested, but it cannot become a slider.
-        (_, Some(name)) => FormulaError { message: no_parameter(name), name: None, ..error },
-        _ => error,
-    })?;
-    if let Some(right) = &parsed.equation.right {
-        let span = parsed.equation.left.span.end..right.span.end;
-        return Err(
-            FormulaError::new(ErrorKind::UnexpectedSymbol, span, "A thickness has no `=`").suggest("")
-        );
-    }
-    if let Some(condition) = parsed.equation.region.first() {
-        let message = "A thickness has no condition in braces: `if(z > 0, 0.2, 0.1)` chooses one";
-        return Err(FormulaError::new(ErrorKind::UnexpectedSymbol, condition.span.clone(), message));
-    }
-    match parsed.names.into_iter().find(|(name, _)| unknown.contains(name)) {
-        Some((name, span)) => Err(FormulaError::new(ErrorKind::UnknownName, span, no_parameter(&name))),
-        None => Ok(parsed.equation),
-    }
+    super::expression::expression(text, parameters, &NOUN)
 }
-
-const EXAMPLES: &str = "A thickness is a number such as `0.2`, or a formula such as `0.1 + 0.05 z`";

@@ -20,6 +20,7 @@ fn the_first_sentence_is_short_and_names_no_part_of_the_method() {
         Warning::Beyond { bounds: Bounds::cube(1.0 / 3.0) },
         Warning::SampledAs { equation: "x = 0".to_owned() },
         Warning::FlushFaces { faces: vec!["z - 1 = 0".to_owned()] },
+        Warning::Smoothed { share: 0.123_45, ratio: 12.345, position, length },
         Warning::Unused { names: vec!["c_rgb".to_owned(), "r".to_owned()] },
         Warning::Gradient { position, length },
         Warning::Count { count: 8_406, wanted: 8_000 },

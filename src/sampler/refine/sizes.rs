@@ -37,8 +37,10 @@ impl Net {
         ground.probe.count(range.len() as u64);
         let points = &self.position[range.clone()];
         curvatures(ground.probe.field, points, curvature);
-        for ((size, &p), curvature) in self.size[range].iter_mut().zip(points).zip(curvature) {
-            let whole = sizing.radius(p, curvature) / unit;
+        let sizes = &mut self.size[range];
+        sizing.radii(points, curvature, sizes);
+        for size in sizes {
+            let whole = *size / unit;
             *size = if is_whole { whole } else { whole.sqrt() };
         }
     }

@@ -268,6 +268,7 @@ impl Repulsion for Overlap<'_> {
             last: [Curvature::default(); BATCH],
         };
         let mut normal = [Vec3::ZERO; BATCH];
+        let mut radius = [0.0; BATCH];
         let mut ok = [false; BATCH];
         for (part, needs_curvature) in [(0..due, true), (due..n, false)] {
             let count = part.len();
@@ -280,12 +281,15 @@ impl Repulsion for Overlap<'_> {
             let min_gradient = self.min_gradient;
             let place = &mut position[..count];
             probe.land_along_gradient(place, &mut normal, &mut ok, min_gradient, &mut descents, MAX_NEWTON);
+            if needs_curvature {
+                self.sizing.radii(&position[..count], &descents.last[..count], &mut radius[..count]);
+            }
             for (m, &k) in order.iter().enumerate() {
                 landing.position[k] = position[m];
                 landing.normal[k] = normal[m];
                 landing.ok[k] = ok[m];
                 if needs_curvature {
-                    landing.radius[k] = self.sizing.radius(position[m], &descents.last[m]);
+                    landing.radius[k] = radius[m];
                     landing.radius_travel[k] = 0.0;
                 }
             }

@@ -30,12 +30,23 @@ fn law_radius(law: LawKind, size: f32, curvature: &Curvature) -> f32 {
     }
 }
 
-/// The law of a run, with its clamp, and the factor on all radii that makes the count match.
+/// A law of the curvature with its clamp.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SizingLaw {
+struct Bend {
     law: LawKind,
     /// Chord error or factor of the law.
     size: f32,
+    least: f32,
+    greatest: f32,
+}
+
+/// The law of a run: the radius that follows the curvature, the one that is asked for at a place,
+/// or the smaller one of both, with its clamp and the factor on all radii that makes the count
+/// match.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SizingLaw {
+    /// The law of the curvature, if the radius follows it.
+    bend: Option<Bend>,
     /// Smallest and largest radius, before the factor.
     least: f32,
     greatest: f32,
@@ -43,20 +54,24 @@ pub(crate) struct SizingLaw {
 }
 
 impl SizingLaw {
-    /// Returns the law that `settings` ask for in a box with this diagonal.
+    /// Returns the law that `settings` ask for in a box with this diagonal, of radii that follow
+    /// the curvature.
     pub(crate) fn new(settings: &Settings, diagonal: f64) -> Self {
         let law = settings.radius_law;
         let size = match law {
             LawKind::ChordError => settings.chord_error * diagonal,
             LawKind::MaxCurvature | LawKind::SumOfCurvatures => settings.curvature_scale,
         };
-        Self {
-            law,
-            size: size as f32,
-            least: (settings.radius_min_share * diagonal) as f32,
-            greatest: (settings.radius_max_share * diagonal) as f32,
-            factor: 1.0,
-        }
+        let least = (settings.radius_min_share * diagonal) as f32;
+        let greatest = (settings.radius_max_share * diagonal) as f32;
+        let bend = Bend { law, size: size as f32, least, greatest };
+        Self { bend: Some(bend), least, greatest, factor: 1.0 }
+    }
+
+    /// Returns the law of radii that are asked for, from the smallest to the largest one, alone or
+    /// as far as a law of the curvature lets them.
+    pub(crate) fn asked(bend: Option<Self>, [least, greatest]: [f32; 2]) -> Self {
+        Self { bend: bend.and_then(|law| law.bend), least, greatest, factor: 1.0 }
     }
 
     /// Returns the law with all radii and the clamp multiplied by `factor`.
@@ -79,11 +94,17 @@ impl SizingLaw {
         self.greatest * self.factor
     }
 
-    /// Returns the radius where the surface has this curvature.
+    /// Returns the radius where the surface has this curvature, and `asked` is asked for: infinity
+    /// where nothing is.
     #[inline]
-    pub(crate) fn radius(&self, curvature: &Curvature) -> f32 {
-        let radius = law_radius(self.law, self.size, curvature);
-        // NaN, which stands for an undefined curvature, is not above the smallest radius.
+    pub(crate) fn radius(&self, asked: f32, curvature: &Curvature) -> f32 {
+        let bend = self.bend.as_ref().map_or(f32::INFINITY, |bend| {
+            let radius = law_radius(bend.law, bend.size, curvature);
+            // NaN, which stands for an undefined curvature, is not above the smallest radius.
+            if radius > bend.least { radius.min(bend.greatest) } else { bend.least }
+        });
+        // The minimum of a number and NaN is the number.
+        let radius = bend.min(asked);
         let radius = if radius > self.least { radius.min(self.greatest) } else { self.least };
         radius * self.factor
     }
@@ -133,15 +154,15 @@ mod tests {
             let law = SizingLaw::new(&settings, 2.0);
             let larger = law.scaled(3.0);
             let nowhere = curved(f32::NAN, f32::NAN);
-            assert_eq!(law.radius(&nowhere), law.least(), "{radius_law:?}");
-            assert_eq!(law.radius(&curved(1e30, 1e30)), law.least(), "{radius_law:?}");
-            assert_eq!(law.radius(&curved(0.0, 0.0)), law.greatest(), "{radius_law:?}");
+            assert_eq!(law.radius(f32::INFINITY, &nowhere), law.least(), "{radius_law:?}");
+            assert_eq!(law.radius(f32::INFINITY, &curved(1e30, 1e30)), law.least(), "{radius_law:?}");
+            assert_eq!(law.radius(f32::INFINITY, &curved(0.0, 0.0)), law.greatest(), "{radius_law:?}");
             let mut before = law.greatest();
             for k in -40..60 {
                 let curvature = curved(libm::powf(1.3, k as f32), 0.0);
-                let radius = law.radius(&curvature);
+                let radius = law.radius(f32::INFINITY, &curvature);
                 assert!(radius >= law.least() && radius <= before, "{radius_law:?} at {curvature:?}");
-                assert!((larger.radius(&curvature) / radius - 3.0).abs() < 1e-5);
+                assert!((larger.radius(f32::INFINITY, &curvature) / radius - 3.0).abs() < 1e-5);
                 before = radius;
             }
         }

@@ -1,14 +1,16 @@
-//! The radius field of adaptive sampling: a law gives the radius from the curvature, and its slope
-//! is limited.
+//! The radius field of adaptive sampling: a law gives the radius from the curvature, from a function
+//! of place or from both, and its slope is limited.
 //!
-//! r(x) = min(law(κ(x)), envelope(x)). The envelope is the minimum over the points y of the survey
-//! and of the creases of law(κ(y)) + L |x − y|: the largest function of slope L that is not above
+//! r(x) = min(law(x, κ(x)), envelope(x)). The envelope is the minimum over the points y of the survey
+//! and of the creases of law(y, κ(y)) + L |x − y|: the largest function of slope L that is not above
 //! the law at these points. So the radius grows no faster than this away from a bend, also away
 //! from a crease beside a patch so small that no point of the survey lies on it. The envelope is
-//! stored on the nodes of a grid near the surface and interpolated between them.
+//! stored on the nodes of a grid near the surface and interpolated between them. Beside jumps of a
+//! function of place it is too coarse: points are added there, and asked one by one.
 
 mod envelope;
 mod laws;
+mod steep;
 
 use crate::differential::{Curvature, curvatures};
 use crate::field::Evaluator;
@@ -16,10 +18,12 @@ use crate::math::{Bounds, HEXAGONAL_CELL};
 use crate::sampler::constraint::Creases;
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::probe::Probe;
-use crate::sampler::settings::Settings;
+use crate::sampler::settings::{LEAST_SHARE, MOST_SHARE, Settings, SettingsError, SizeMode};
 use crate::sampler::sizing::envelope::Envelope;
 use crate::sampler::sizing::laws::SizingLaw;
-use glam::Vec3;
+use crate::sampler::sizing::steep::{StepPoint, Steps, step_points};
+use crate::sampler::spacing::Spacing;
+use glam::{DVec3, Vec3};
 
 /// Rounds towards a predicted count. Each scales the radii by the square root of the ratio of the
 /// counts; more than one is necessary only because of the clamps and the slope.
@@ -28,15 +32,46 @@ const MAX_ROUNDS: u32 = 6;
 /// accurate.
 const PREDICTION_TOLERANCE: f64 = 2e-3;
 
+/// Share by which the slope may lower a wanted radius before that counts as smoothing.
+const SMOOTHED: f32 = 0.05;
+
+/// The distance from the step of a function to which the envelope is too coarse, in cells: nodes are
+/// up to a diagonal away, and the survey has a point within another cell.
+const STEP_REACH: f32 = 3.0;
+
+/// A spacing by a function that is asked for.
+#[derive(Clone, Debug)]
+pub(crate) struct Wish {
+    pub(crate) spacing: Spacing,
+    /// Whether the radius also follows the curvature, and is the smaller one of both.
+    pub(crate) bends: bool,
+    /// The point from which places are counted.
+    pub(crate) origin: DVec3,
+}
+
+/// Where the slope keeps the radius below the one that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Smoothing {
+    /// Share of the area where it does, by more than a twentieth.
+    pub(crate) share: f64,
+    /// The largest ratio of the radius that is asked for and the one that is met.
+    pub(crate) ratio: f64,
+    /// The place where it is, counted from the origin of the run.
+    pub(crate) position: Vec3,
+}
+
 /// The radius field of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Sizing {
+    wish: Option<Wish>,
     law: SizingLaw,
     /// Largest slope L.
     slope: f32,
     /// The points of the survey, and those of the creases.
     samples: Vec<SurfaceSample>,
     envelope: Envelope,
+    /// The last ones of the points, which lie beside jumps, by their numbers; none without any.
+    steps: Option<Steps>,
     predicted: f64,
     smallest: f32,
     largest: f32,
@@ -47,17 +82,20 @@ pub(crate) struct Sizing {
 struct SurfaceSample {
     position: Vec3,
     curvature: Curvature,
+    /// Radius that is asked for; infinite where none is.
+    asked: f32,
     /// Area of the surface that the point represents; none on a crease.
     weight: f32,
 }
 
 impl Sizing {
-    /// Makes the radius field that `settings` ask for. This evaluates a Hessian at every point of
+    /// Makes the radius field that `settings` ask for, or a `wish`. This evaluates a Hessian at every point of
     /// the survey, and on every patch at each of the `creases`.
     pub(crate) fn new(
         probe: &mut Probe,
         bounds: &Bounds,
         settings: &Settings,
+        wish: Option<Wish>,
         survey: &Survey,
         creases: &Creases,
     ) -> Self {
@@ -70,6 +108,7 @@ impl Sizing {
             samples.extend(rows.map(|((&position, curvature), &weight)| SurfaceSample {
                 position,
                 curvature,
+                asked: f32::INFINITY,
                 weight,
             }));
         };
@@ -79,11 +118,26 @@ impl Sizing {
                 add(&mut probe.on(Some(patch)), &[position], &[0.0]);
             }
         }
+        if let Some(Wish { spacing, origin, .. }) = &wish {
+            let places: Vec<Vec3> = samples.iter().map(|sample| sample.position).collect();
+            let mut asked = vec![0.0; places.len()];
+            spacing.radii(*origin, &places, &mut asked);
+            samples.iter_mut().zip(asked).for_each(|(sample, asked)| sample.asked = asked);
+        }
+        let by_curvature = SizingLaw::new(settings, bounds.diagonal());
+        let law = wish.as_ref().map_or(by_curvature, |wish| {
+            let limits = limits_of(settings, bounds, &samples);
+            SizingLaw::asked(wish.bends.then_some(by_curvature), limits)
+        });
+        let envelope = Envelope::new(bounds, samples.iter().map(|sample| sample.position));
+        let steps = wish.as_ref().and_then(|wish| add_steps(wish, &mut samples, STEP_REACH * envelope.cell));
         let mut sizing = Self {
-            law: SizingLaw::new(settings, bounds.diagonal()),
+            wish,
+            law,
             slope: settings.grading as f32,
-            envelope: Envelope::new(bounds, samples.iter().map(|sample| sample.position)),
+            envelope,
             samples,
+            steps,
             predicted: 0.0,
             smallest: 0.0,
             largest: 0.0,
@@ -96,7 +150,65 @@ impl Sizing {
     /// the smallest radius if the curvature is undefined.
     #[inline]
     pub(crate) fn radius(&self, position: Vec3, curvature: &Curvature) -> f32 {
-        self.law.radius(curvature).min(self.envelope.at(position))
+        let mut radius = [0.0];
+        self.radii(&[position], core::slice::from_ref(curvature), &mut radius);
+        radius[0]
+    }
+
+    /// Writes the repulsion radius of a particle at each of some points of the surface, which have
+    /// these curvatures: [`Sizing::radius`].
+    #[inline]
+    pub(crate) fn radii(&self, positions: &[Vec3], curvatures: &[Curvature], radii: &mut [f32]) {
+        match &self.wish {
+            Some(Wish { spacing, origin, .. }) => spacing.radii(*origin, positions, radii),
+            None => radii.fill(f32::INFINITY),
+        }
+        for ((radius, &position), curvature) in radii.iter_mut().zip(positions).zip(curvatures) {
+            *radius = self.law.radius(*radius, curvature).min(self.limit_at(position));
+        }
+    }
+
+    /// The largest radius that the slope allows.
+    #[inline]
+    fn limit_at(&self, position: Vec3) -> f32 {
+        let mut limit = self.envelope.at(position);
+        if let Some(steps) = &self.steps {
+            steps.near(position, |number, distance| {
+                let sample = &self.samples[number];
+                let radius = self.law.radius(sample.asked, &sample.curvature);
+                limit = limit.min(radius + self.slope * distance);
+            });
+        }
+        limit
+    }
+
+    /// Checks the radii that are asked for at the points of the survey and of the creases.
+    ///
+    /// # Errors
+    ///
+    /// The first one that is not above 0.
+    pub(crate) fn check(&self) -> Result<(), SettingsError> {
+        let Some(Wish { spacing, origin, .. }) = &self.wish else { return Ok(()) };
+        let places: Vec<Vec3> = self.samples.iter().map(|sample| sample.position).collect();
+        let asked: Vec<f32> = self.samples.iter().map(|sample| sample.asked).collect();
+        spacing.check(*origin, &places, &asked)
+    }
+
+    /// Where the slope keeps the radius below the one that is asked for, if it does.
+    pub(crate) fn smoothing(&self) -> Option<Smoothing> {
+        self.wish.as_ref()?;
+        let (mut area, mut smoothed, mut worst) = (0.0, 0.0, (1.0 + SMOOTHED, None));
+        for sample in &self.samples {
+            let wanted = self.law.radius(sample.asked, &sample.curvature);
+            let ratio = wanted / self.limit_at(sample.position);
+            area += f64::from(sample.weight);
+            smoothed += if ratio > 1.0 + SMOOTHED { f64::from(sample.weight) } else { 0.0 };
+            if ratio > worst.0 {
+                worst = (ratio, Some(sample.position));
+            }
+        }
+        let position = worst.1?;
+        Some(Smoothing { share: smoothed / area, ratio: worst.0.into(), position })
     }
 
     /// Returns the repulsion radius of a particle at a point of the surface. This evaluates a
@@ -177,12 +289,16 @@ impl Sizing {
     fn grade(&mut self) {
         self.envelope.fill(self.law.greatest());
         for sample in &self.samples {
-            self.envelope.lower(sample.position, self.law.radius(&sample.curvature), self.slope);
+            self.envelope.lower(
+                sample.position,
+                self.law.radius(sample.asked, &sample.curvature),
+                self.slope,
+            );
         }
         self.envelope.spread(self.slope);
         (self.predicted, self.smallest, self.largest) = (0.0, f32::INFINITY, 0.0);
         for sample in &self.samples {
-            let radius = self.law.radius(&sample.curvature).min(self.envelope.at(sample.position));
+            let radius = self.law.radius(sample.asked, &sample.curvature).min(self.limit_at(sample.position));
             self.predicted +=
                 f64::from(sample.weight) / (HEXAGONAL_CELL * f64::from(radius) * f64::from(radius));
             self.smallest = self.smallest.min(radius);
@@ -194,6 +310,37 @@ impl Sizing {
             (self.smallest, self.largest) = (self.law.greatest(), self.law.greatest());
         }
     }
+}
+
+/// The smallest and the largest radius that are taken of those asked for. Where a number of
+/// particles is wanted they are shares of what is to be scaled, and the points of the survey show
+/// how large they are.
+fn limits_of(settings: &Settings, bounds: &Bounds, samples: &[SurfaceSample]) -> [f32; 2] {
+    /// What lies between the points of the survey may be smaller by this factor.
+    const DEEPER: f32 = 0.25;
+    let asked = samples.iter().map(|sample| sample.asked).filter(|asked| *asked > 0.0 && asked.is_finite());
+    let [least, greatest] =
+        asked.fold([f32::INFINITY, 0.0], |[least, greatest], asked| [least.min(asked), greatest.max(asked)]);
+    if settings.size_mode == SizeMode::Count && least <= greatest {
+        return [DEEPER * least, greatest];
+    }
+    [LEAST_SHARE, MOST_SHARE].map(|share| (share * bounds.diagonal()) as f32)
+}
+
+/// Adds points beside the steps of the function, as samples of no area. Returns where they are, if
+/// there are any.
+fn add_steps(wish: &Wish, samples: &mut Vec<SurfaceSample>, reach: f32) -> Option<Steps> {
+    let places: Vec<Vec3> = samples.iter().map(|sample| sample.position).collect();
+    let asked: Vec<f32> = samples.iter().map(|sample| sample.asked).collect();
+    let ask = |places: &[Vec3], radii: &mut [f32]| wish.spacing.radii(wish.origin, places, radii);
+    // Neighbouring points are a cell apart, or its diagonal.
+    for StepPoint { position, asked, sample } in step_points(&places, &asked, 0.5 * reach, ask) {
+        let curvature = samples[sample].curvature;
+        samples.push(SurfaceSample { position, curvature, asked, weight: 0.0 });
+    }
+    let first = places.len();
+    let points = (first as u32..).zip(samples[first..].iter().map(|sample| sample.position));
+    (samples.len() > first).then(|| Steps::new(points, reach))
 }
 
 #[cfg(test)]

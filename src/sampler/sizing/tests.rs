@@ -13,7 +13,7 @@ fn sizing_of(surface: &Surface, settings: &Settings) -> Sizing {
     let mut memory = ProbeMemory::default();
     let probe = &mut Probe::new(&mut *evaluator, &mut memory);
     let found = survey(probe, &surface.bounds, None);
-    Sizing::new(probe, &surface.bounds, settings, &found, &Creases::default())
+    Sizing::new(probe, &surface.bounds, settings, None, &found, &Creases::default())
 }
 
 fn smooth() -> impl Iterator<Item = &'static Surface> {
@@ -40,7 +40,7 @@ fn the_envelope_lies_above_the_law_by_no_more_than_a_cell() {
         for sample in &sizing.samples {
             // In the middle of a cell the nodes are half a diagonal away.
             let slack = sizing.slope * sizing.envelope.cell * 0.87;
-            let law = sizing.law.radius(&sample.curvature);
+            let law = sizing.law.radius(f32::INFINITY, &sample.curvature);
             let bound = sizing.envelope(sample.position);
             assert!(bound <= law + 1.001 * slack, "{}: envelope {bound}, law {law}", surface.id);
             assert!(bound >= sizing.law.least() && bound <= sizing.law.greatest());

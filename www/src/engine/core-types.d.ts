@@ -170,7 +170,7 @@ export type Fault = {
 };
 
 /** Kind of the error with which a command is refused. */
-export type FaultKind = "request" | "settings" | "thickness" | "too_many" | "unknown_surface" | "box" | "points" | FormulaErrorKind;
+export type FaultKind = "request" | "settings" | "thickness" | "spacing" | "too_many" | "unknown_surface" | "box" | "points" | FormulaErrorKind;
 
 /** The field as it now is. */
 export type FieldAnswer = {
@@ -344,6 +344,8 @@ export type FileRecord = {
   faces: Bounds | null,
   /** Settings of the solid that is made of the surface before it is sampled. */
   solid: Record<string, number | string>,
+  /** Spacing of the run, if it is by a formula. */
+  spacing?: SpacingText,
   /** Settings of the run. */
   settings: Record<string, number | string>,
 };
@@ -1297,6 +1299,17 @@ export type SolvedModel = {
   info: ModelInfo,
   /** Box to sample in. */
   bounds: Bounds,
+};
+
+/** A spacing by a formula, as it is written: see [`Spacing`]. A record has it beside the settings. */
+export type SpacingText = {
+  /** Distance between neighbours, in x, y, z and the parameters of the formula whose surface is
+* sampled, such as `0.02 + 0.1 hypot(x, y)`. */
+  formula: string,
+  /** Smallest distance, which is taken where the formula is below it. */
+  smallest?: number,
+  /** Largest distance, which is taken where the formula is above it. */
+  largest?: number,
 };
 
 /** Report on the start of a run: the radius, estimates and warnings. */

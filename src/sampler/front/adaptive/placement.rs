@@ -84,27 +84,30 @@ pub(crate) struct DirectPlacement {
     gradient: Vec<Vec3>,
     hessian: Vec<Sym3<f32>>,
     curvature: Vec<Curvature>,
+    /// Radii of the law at the points.
+    radius: Vec<f32>,
     landing: Vec<CircleLanding>,
 }
 
 impl DirectPlacement {
-    fn evaluate(&mut self, probe: &mut Probe) {
+    fn evaluate(&mut self, probe: &mut Probe, sizing: &Sizing) {
         let n = self.points.len();
         self.value.resize(BATCH, 0.0);
         self.gradient.resize(BATCH, Vec3::ZERO);
         self.hessian.resize(BATCH, Sym3::default());
         self.curvature.resize(BATCH, Curvature::default());
+        self.radius.resize(BATCH, 0.0);
         probe.hessians(&self.points, &mut self.value[..n], &mut self.gradient[..n], &mut self.hessian[..n]);
         curvatures_of(&self.gradient[..n], &self.hessian[..n], &mut self.curvature[..n]);
+        sizing.radii(&self.points, &self.curvature[..n], &mut self.radius[..n]);
     }
 
     /// Evaluates normal, radius and curvature at one point on the surface or near it.
     pub(crate) fn look(&mut self, probe: &mut Probe, sizing: &Sizing, position: Vec3) -> SurfacePoint {
         self.points.clear();
         self.points.push(position);
-        self.evaluate(probe);
-        let curvature = self.curvature[0];
-        let radius = sizing.radius(position, &curvature);
+        self.evaluate(probe, sizing);
+        let (curvature, radius) = (self.curvature[0], self.radius[0]);
         SurfacePoint { position, normal: self.gradient[0] / self.gradient[0].length(), radius, curvature }
     }
 
@@ -149,7 +152,7 @@ impl DirectPlacement {
             self.points.extend(active[..count].iter().map(|a| {
                 ChildCircle { radius: a.distance, ..proposals[a.proposal as usize].circle }.point(a.turn)
             }));
-            self.evaluate(probe);
+            self.evaluate(probe, sizing);
             let mut kept = 0;
             for k in 0..count {
                 let mut a = active[k];
@@ -186,7 +189,7 @@ impl DirectPlacement {
         let hessian = &self.hessian[k];
         let curvature = self.curvature[k];
         let slope = gradient.length();
-        let radius = proposal.graded(sizing.radius(position, &curvature), sizing.least());
+        let radius = proposal.graded(self.radius[k], sizing.least());
         let tolerance = tolerance(radius);
         let residual = tolerance.residual;
         // NaN is never greater.

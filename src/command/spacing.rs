@@ -1,0 +1,93 @@
+//! The options of the spacing.
+
+use crate::arguments::SampleArguments;
+use crate::failure::Failure;
+use crate::options::{Length, length, number};
+use marching_particles::math::shortest_text;
+use marching_particles::session::{FaultKind, Session, SpacingText};
+
+/// A spacing on the command line.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum SpacingOption {
+    /// The same everywhere.
+    Even(Length),
+    /// By a formula.
+    Formula(String),
+}
+
+/// A spacing from an argument: a length, or a formula, whose mistakes the session finds.
+pub(crate) fn spacing(text: &str) -> Result<SpacingOption, String> {
+    if text.trim_end().ends_with('%') || number(text).is_ok() {
+        return length(text).map(SpacingOption::Even);
+    }
+    Ok(SpacingOption::Formula(text.to_owned()))
+}
+
+/// A positive length in the units of the coordinates.
+pub(crate) fn units(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        length if length > 0.0 => Ok(length),
+        _ => Err("it must be positive".to_owned()),
+    }
+}
+
+impl SampleArguments {
+    /// The spacing by a formula. One that is the same everywhere becomes a radius, unless sizes
+    /// follow the curvature, too.
+    pub(crate) fn spacing_text(&mut self) -> Result<Option<SpacingText>, Failure> {
+        let (smallest, largest) = (self.spacing_min, self.spacing_max);
+        let is_limited = smallest.or(largest).is_some();
+        let is_adaptive = self.sampling.is_adaptive();
+        let refused = match &self.spacing {
+            None => return Ok(None),
+            Some(SpacingOption::Formula(text)) => {
+                return Ok(Some(SpacingText { formula: text.clone(), smallest, largest }));
+            }
+            Some(SpacingOption::Even(_)) if is_limited => {
+                "--spacing-min and --spacing-max have no effect without a formula in --spacing"
+            }
+            Some(SpacingOption::Even(_)) if self.sampling.is_counted() => {
+                "--count chooses the distance of particles of one size: leave out --spacing, or give it a \
+                 formula"
+            }
+            Some(SpacingOption::Even(Length::Share(_))) if is_adaptive => {
+                "beside --adaptive, --spacing takes a length or a formula, not a share of the box diagonal"
+            }
+            Some(SpacingOption::Even(Length::Units(length))) if is_adaptive => {
+                let formula = shortest_text(*length);
+                return Ok(Some(SpacingText { formula, smallest, largest }));
+            }
+            Some(SpacingOption::Even(length)) => {
+                self.sampling.space_evenly(*length);
+                return Ok(None);
+            }
+        };
+        Err(Failure::Usage(refused.to_owned()))
+    }
+}
+
+/// Has the session space the particles of its runs.
+pub(crate) fn space(session: &mut Session, text: Option<SpacingText>) -> Result<(), Failure> {
+    let formula = text.as_ref().map_or_else(String::new, |text| text.formula.clone());
+    session.space(text).map_err(|fault| match fault.kind {
+        FaultKind::Spacing => Failure::Formula { text: formula, fault: Box::new(fault) },
+        _ => Failure::Usage(fault.message),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spacing_is_a_length_or_a_formula() {
+        let formula = |text: &str| Ok(SpacingOption::Formula(text.to_owned()));
+        assert_eq!(spacing("1/20"), Ok(SpacingOption::Even(Length::Units(0.05))));
+        assert_eq!(spacing("1 %"), Ok(SpacingOption::Even(Length::Share(0.01))));
+        assert_eq!(spacing("0.1 + z"), formula("0.1 + z"));
+        assert_eq!(spacing("x % 2"), formula("x % 2"));
+        for bad in ["0", "-1", "0%", "z %"] {
+            assert!(spacing(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! Values at the particles, by formulas and functions: more columns for files and programs.
+
+use super::Sample;
+use crate::differential::{Curvature, curvatures};
+use crate::export::COLUMNS;
+use crate::field::formula::{Formula, FormulaError, Noun, Parameter};
+use crate::field::{BATCH, Field, FieldError, Frame, IntoField};
+use crate::particles::Particles;
+use crate::quality::NamedValues;
+use core::fmt::{self, Debug, Formatter};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// A number at each particle, by a formula or a function of place.
+///
+/// ```
+/// use marching_particles::{Format, Formula, Settings, Value, sample};
+///
+/// let torus = Formula::parse("(hypot(x, y) - 1)^2 + z^2 = 0.16")?;
+/// let mut sample = sample(&torus, &Settings::with_count(2_000))?;
+/// sample.add_value(&torus, "mean_curvature", &Value::parse("(k_1 + k_2)/2")?)?;
+/// sample.add_value(&torus, "height", &Value::by(|p: marching_particles::glam::DVec3| p.z))?;
+/// let mut file = Vec::new();
+/// sample.write(Format::Csv, &mut file)?;
+/// assert!(file.windows(21).any(|text| text == b"mean_curvature,height"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone)]
+pub struct Value(Source);
+
+#[derive(Clone)]
+enum Source {
+    Formula(Formula),
+    Function(Arc<dyn Field>),
+}
+
+impl Debug for Value {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match &self.0 {
+            Source::Formula(formula) => f.debug_tuple("Value").field(&formula.text()).finish(),
+            Source::Function(_) => f.write_str("Value(a function)"),
+        }
+    }
+}
+
+/// Why a sample has no such values.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ValueError {
+    /// The name is none that every file can have.
+    #[error(
+        "`{name}` cannot be the name of values: take a letter, then letters, digits and _, and no name of another column"
+    )]
+    Name {
+        /// The name.
+        name: String,
+    },
+    /// The function has failed: its error.
+    #[error("the function of the values has failed: {0}")]
+    Function(FieldError),
+}
+
+/// A value in the words of errors.
+const NOUN: Noun = Noun {
+    name: "value",
+    unknown: "A particle has no",
+    others: "the quantities of a particle",
+    examples: ["1", "0.5 (k_1 + k_2)", "if(z > 0, 1, 0)"],
+};
+
+/// A quantity of a particle: its name in formulas, and how it is read.
+type Quantity = (&'static str, fn(&At) -> f32);
+
+const QUANTITIES: [Quantity; 11] = [
+    ("n_x", |at| at.particles.normal[at.row].x),
+    ("n_y", |at| at.particles.normal[at.row].y),
+    ("n_z", |at| at.particles.normal[at.row].z),
+    ("k_1", |at| at.curvature.k1),
+    ("k_2", |at| at.curvature.k2),
+    ("d_x", |at| at.curvature.direction.x),
+    ("d_y", |at| at.curvature.direction.y),
+    ("d_z", |at| at.curvature.direction.z),
+    ("radius", |at| at.particles.radius[at.row]),
+    ("level", |at| at.particles.level[at.row] as f32),
+    ("area", |at| at.area),
+];
+
+/// Quantities that follow from the second derivatives, and from the mesh.
+const CURVED: [&str; 5] = ["k_1", "k_2", "d_x", "d_y", "d_z"];
+const AREA: &str = "area";
+
+/// What is known of a row of the particles.
+struct At<'a> {
+    particles: &'a Particles,
+    row: usize,
+    curvature: Curvature,
+    area: f32,
+}
+
+impl Value {
+    /// The value of a formula of the place x, y, z and of
+    ///
+    /// | name | quantity |
+    /// |---|---|
+    /// | `n_x`, `n_y`, `n_z` | the unit normal, along the gradient of f |
+    /// | `k_1`, `k_2` | principal curvatures, the larger one first; positive where the surface bends away from its normal, in inverse units of length |
+    /// | `d_x`, `d_y`, `d_z` | unit principal direction of `k_1`, of either sign |
+    /// | `radius` | repulsion radius |
+    /// | `level` | generation level |
+    /// | `area` | share of the surface: a third of the triangles of the mesh around it, which adds up to the area of the mesh |
+    ///
+    /// So `0.5 (k_1 + k_2)` is the mean curvature and `k_1 k_2` the Gaussian one. On an edge, where
+    /// there is no curvature, what is made of it is NaN.
+    ///
+    /// # Errors
+    ///
+    /// Any of [`FormulaErrorKind`](crate::FormulaErrorKind), with its span in bytes of `text`:
+    /// `UnknownName` for another name.
+    pub fn parse(text: &str) -> Result<Self, FormulaError> {
+        Self::of_formula(text, &[])
+    }
+
+    /// [`Value::parse`], with the values of more names.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Value::parse`].
+    #[doc(hidden)]
+    pub fn of_formula(text: &str, parameters: &[Parameter]) -> Result<Self, FormulaError> {
+        let is_own = |parameter: &&Parameter| QUANTITIES.iter().all(|(name, _)| *name != parameter.name);
+        let mut known: Vec<Parameter> = parameters.iter().filter(is_own).cloned().collect();
+        known.extend(QUANTITIES.iter().map(|(name, _)| Parameter::automatic(name)));
+        Ok(Self(Source::Formula(Formula::expression(text, &known, &NOUN)?)))
+    }
+
+    /// The value of a function of place: anything that can be [sampled](IntoField), as a function
+    /// of a point or one of a batch of points that may fail. It is asked once for each row of the
+    /// particles.
+    pub fn by<Kind>(function: impl IntoField<Kind, Field: 'static>) -> Self {
+        Self(Source::Function(Arc::new(function.into_field())))
+    }
+
+    /// Whether the formula takes one of these quantities.
+    fn takes(&self, names: &[&str]) -> bool {
+        match &self.0 {
+            Source::Formula(formula) => formula.parameters().iter().any(|own| names.contains(&&*own.name)),
+            Source::Function(_) => false,
+        }
+    }
+}
+
+impl Sample {
+    /// Adds a column of numbers at the rows of the particles, which files get as well: PLY and CSV
+    /// under its name, NPY after the others, and GLB as the attribute `_NAME` in capitals. `field`
+    /// is the one that was sampled, or a reference to it: the curvatures are those of its values.
+    ///
+    /// # Errors
+    ///
+    /// If the name is that of another column, or is none that a file can have; or a function of
+    /// the program fails.
+    pub fn add_value<Kind>(
+        &mut self,
+        field: impl IntoField<Kind>,
+        name: &str,
+        value: &Value,
+    ) -> Result<(), ValueError> {
+        let is_taken = COLUMNS.iter().map(|column| column.name).chain(self.values().iter().map(|v| &*v.name));
+        let is_word = name.starts_with(|c: char| c.is_ascii_alphabetic())
+            && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        // GLB has the names in capitals.
+        if !is_word || is_taken.into_iter().any(|known| known.eq_ignore_ascii_case(name)) {
+            return Err(ValueError::Name { name: name.to_owned() });
+        }
+        let values = self.column(&field.into_field(), value)?;
+        self.measured_mut().values.push(NamedValues { name: name.to_owned(), values });
+        Ok(())
+    }
+
+    /// The columns that were [added](Sample::add_value).
+    #[must_use]
+    pub fn values(&self) -> &[NamedValues] {
+        &self.measured().values
+    }
+
+    fn column(&self, field: &dyn Field, value: &Value) -> Result<Vec<f32>, ValueError> {
+        let particles = self.particles();
+        let count = particles.len();
+        let places: Vec<DVec3> = (0..count).map(|row| particles.place(row)).collect();
+        let formula = match &value.0 {
+            Source::Formula(formula) => formula,
+            Source::Function(function) => {
+                let mut values = vec![0.0; count];
+                for (places, values) in places.chunks(BATCH).zip(values.chunks_mut(BATCH)) {
+                    function.values(places, values);
+                }
+                let failure = function.failure().map(ValueError::Function);
+                return failure.map_or_else(|| Ok(values.into_iter().map(|v| v as f32).collect()), Err);
+            }
+        };
+        let mut curvature = vec![Curvature::default(); if value.takes(&CURVED) { count } else { 0 }];
+        if !curvature.is_empty() {
+            let frame = Frame { length: self.bounds().diagonal(), ..Frame::around(particles.origin) };
+            curvatures(&mut *field.evaluator(frame), &particles.local, &mut curvature);
+        }
+        if let Some(error) = field.failure() {
+            return Err(ValueError::Function(error));
+        }
+        let area = if value.takes(&[AREA]) { self.areas() } else { Vec::new() };
+        let is_taken = |(name, _): &&Quantity| value.takes(&[name]);
+        let taken: Vec<&Quantity> = QUANTITIES.iter().filter(is_taken).collect();
+        let mut formula = formula.clone();
+        let value_at = |(row, place): (usize, DVec3)| {
+            let curvature = curvature.get(row).copied().unwrap_or_default();
+            let at = At { particles, row, curvature, area: area.get(row).copied().unwrap_or(0.0) };
+            let is_set =
+                taken.iter().all(|(name, read)| formula.set_parameter(name, read(&at).into()).is_ok());
+            if is_set { formula.value(place) as f32 } else { f32::NAN }
+        };
+        Ok(places.into_iter().enumerate().map(value_at).collect())
+    }
+
+    /// The share of each row in the area of the mesh.
+    fn areas(&self) -> Vec<f32> {
+        let (mesh, particles) = (self.mesh(), self.particles());
+        let mut areas = vec![0.0_f64; particles.len()];
+        for k in 0..mesh.triangles.len() {
+            let corners = mesh.outward_corners(k);
+            let [a, b, c] = corners.map(|row| particles.local[row as usize].as_dvec3());
+            let third = (b - a).cross(c - a).length() / 6.0;
+            corners.iter().for_each(|&row| areas[row as usize] += third);
+        }
+        areas.into_iter().map(|area| area as f32).collect()
+    }
+}

@@ -1,0 +1,91 @@
+//! The spacing of a session's runs, as it is written.
+
+use super::{Fault, FaultKind, Session, Source};
+use crate::field::formula::Parameter;
+use crate::math::shortest_text;
+use crate::sampler::Spacing;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// A spacing by a formula, as it is written: see [`Spacing`]. A record has it beside the settings.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct SpacingText {
+    /// Distance between neighbours, in x, y, z and the parameters of the formula whose surface is
+    /// sampled, such as `0.02 + 0.1 hypot(x, y)`.
+    pub formula: String,
+    /// Smallest distance, which is taken where the formula is below it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(test, ts(optional))]
+    pub smallest: Option<f64>,
+    /// Largest distance, which is taken where the formula is above it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(test, ts(optional))]
+    pub largest: Option<f64>,
+}
+
+impl SpacingText {
+    /// Whether there is a smallest or a largest distance.
+    pub(super) fn is_limited(&self) -> bool {
+        self.smallest.or(self.largest).is_some()
+    }
+
+    /// The formula with the values of these parameters, as it stands alone.
+    pub(super) fn alone(&self, parameters: &BTreeMap<String, f64>) -> String {
+        let used = parameters.iter().filter(|(name, _)| self.formula.contains(name.as_str()));
+        let mut text: String =
+            used.map(|(name, value)| format!("{name} = {}; ", shortest_text(*value))).collect();
+        text.push_str(&self.formula);
+        text
+    }
+
+    /// The spacing, with these parameters of the formula whose surface is sampled.
+    fn spacing(&self, parameters: &[Parameter]) -> Result<Spacing, Fault> {
+        let spacing = Spacing::of_formula(&self.formula, parameters)
+            .map_err(|error| Fault::in_spacing(error, &self.formula))?;
+        let spacing = self.smallest.into_iter().fold(spacing, Spacing::at_least);
+        let spacing = self.largest.into_iter().fold(spacing, Spacing::at_most);
+        spacing.check_limits().map_err(|error| Fault::new(FaultKind::Settings, &error))?;
+        Ok(spacing)
+    }
+}
+
+impl Session {
+    /// Chooses the spacing of the next runs; none for sizes by the settings alone. It is made of
+    /// the parameters of the present formula. Where another one does not have them, there is no
+    /// spacing.
+    ///
+    /// # Errors
+    ///
+    /// If the formula of the spacing has a mistake, or a limit is out of its range; nothing is
+    /// changed then.
+    pub fn space(&mut self, text: Option<SpacingText>) -> Result<(), Fault> {
+        if let Some(text) = &text {
+            text.spacing(self.own_parameters())?;
+        }
+        (self.spacing, self.spacing_function) = (text, None);
+        Ok(())
+    }
+
+    /// Chooses a spacing by a function of the program for the next runs, which no record can hold.
+    pub fn space_by(&mut self, spacing: Spacing) {
+        self.spacing_function = Some(spacing);
+    }
+
+    /// The spacing of a run that starts now.
+    pub(super) fn next_spacing(&self) -> Option<Spacing> {
+        if let Some(spacing) = &self.spacing_function {
+            return Some(spacing.clone());
+        }
+        self.spacing.as_ref()?.spacing(self.own_parameters()).ok()
+    }
+
+    /// The parameters of the present formula.
+    fn own_parameters(&self) -> &[Parameter] {
+        match self.source() {
+            Source::Formula(field) => field.parameters(),
+            Source::Points { within: Some(formula), .. } => &formula.parameters,
+            Source::Points { .. } | Source::Function(_) => &[],
+        }
+    }
+}
