@@ -56,7 +56,7 @@ def test_an_unknown_parameter_is_named():
         ({"radius": float("nan")}, ValueError, "radius is nan"),
         ({"radius": 100.0, "bounds": BOX}, ValueError, "radius is 100, but must lie between"),
         ({"spacing": "wide"}, mp.FormulaError, "has no parameter `wide`: a spacing is made of"),
-        ({"spacing": [1]}, TypeError, "spacing must be a number"),
+        ({"spacing": [1]}, ValueError, "spacing must be a number"),
         ({"spacing": "0.1 x"}, ValueError, "on the surface, but must be above 0"),
         ({"spacing": lambda p: p}, mp.FieldError, "spacing returned an array of the shape"),
         ({"values": {"H": "k_3"}}, mp.FormulaError, "A particle has no `k_3`"),
