@@ -116,6 +116,9 @@ pub mod export;
 pub mod extent;
 #[doc(hidden)]
 pub mod field;
+#[cfg(feature = "images")]
+#[doc(hidden)]
+pub mod image;
 #[doc(hidden)]
 pub mod lesson;
 #[doc(hidden)]
@@ -160,10 +163,14 @@ pub use field::model::{CENTRES, GivenMesh, GivenTopology, ModelInfo, NormalSourc
 pub use field::rbf::RbfField;
 pub use field::{
     BatchField, Bounded, Combined, Enclosure, Evaluator, Facts, Field, FieldError, FnField, Frame, IntoField,
-    Jet, Pieces, PiecewiseFn, SharedError, UnitCell, difference, gallery, intersection, offset, smooth_union,
+    Jet, Pieces, PiecewiseFn, SharedError, UnitCell, Within, difference, gallery, intersection, offset, smooth_union,
     union,
 };
 pub use glam;
+#[cfg(feature = "images")]
+pub use image::{
+    Image, ImageError, ImageField, ImageFormat, ImageReadError, Placement as ImagePlacement, Voxel, VoxelType,
+};
 pub use math::{Bounds, BoxError, Interval, Sym3};
 pub use mesh::bodies::{Bodies, Body};
 pub use mesh::facing::Inside;
