@@ -169,7 +169,8 @@ pub use field::{
 pub use glam;
 #[cfg(feature = "images")]
 pub use image::{
-    Image, ImageError, ImageField, ImageFormat, ImageReadError, Placement as ImagePlacement, Voxel, VoxelType,
+    DEFAULT_LABEL_WIDTH, Image, ImageError, ImageField, ImageFormat, ImageReadError, Label,
+    Placement as ImagePlacement, Voxel, VoxelType,
 };
 pub use math::{Bounds, BoxError, Interval, Sym3};
 pub use mesh::bodies::{Bodies, Body};

@@ -9,12 +9,15 @@ mod bricks;
 mod field;
 mod filter;
 mod kernel;
+mod labels;
 mod otsu;
 mod placement;
 mod read;
+mod smooth;
 mod voxels;
 
 pub use field::ImageField;
+pub use labels::{DEFAULT_LABEL_WIDTH, Label};
 pub use placement::Placement;
 pub use read::{ImageFormat, ImageReadError, MAX_IMAGE_BYTES};
 pub use voxels::{Voxel, VoxelType};
@@ -23,7 +26,7 @@ use core::fmt::{self, Debug, Formatter};
 use glam::{DMat3, DVec3};
 use otsu::Histogram;
 use std::sync::Arc;
-use voxels::Voxels;
+use voxels::{Layout, Voxels};
 
 /// Why an image makes no field. The message says what is wrong, where, and what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -81,6 +84,30 @@ pub enum ImageError {
         /// Largest voxel.
         max: f64,
     },
+    /// The width of a Gaussian is out of its range.
+    #[error("the width {width} of the Gaussian is not between 0 and 100 voxels")]
+    Width {
+        /// The width in voxels.
+        width: f64,
+    },
+    /// No voxel has the label, or all have.
+    #[error("{}", no_label(*value, *count, known))]
+    NoLabel {
+        /// The label.
+        value: f64,
+        /// Number of voxels that have it.
+        count: usize,
+        /// The labels of the image; empty if its voxels are no labels.
+        known: Vec<f64>,
+    },
+    /// Nothing is left of a label after the Gaussian.
+    #[error("nothing is left of the label {value}, whose parts are thinner than the Gaussian of {width} voxels; use a smaller width")]
+    Thin {
+        /// The label.
+        value: f64,
+        /// The width of the Gaussian in voxels.
+        width: f64,
+    },
     /// The axes of the image do not span space.
     #[error(
         "the axes of the image are {}, {} and {}, which are not finite or lie in a plane; give spacings above \
@@ -91,6 +118,21 @@ pub enum ImageError {
         /// The steps from voxel to voxel along each axis.
         axes: [DVec3; 3],
     },
+}
+
+/// Why a label has no surface.
+fn no_label(value: f64, count: usize, known: &[f64]) -> String {
+    /// Labels that a message lists.
+    const LISTED: usize = 20;
+    if count > 0 {
+        return format!("all voxels have the label {value}, so it has no boundary in the image");
+    }
+    if known.is_empty() {
+        return format!("no voxel has the label {value}; the values of this image are no labels: choose an iso value");
+    }
+    let listed: Vec<String> = known.iter().take(LISTED).map(f64::to_string).collect();
+    let more = if known.len() > LISTED { ", …" } else { "" };
+    format!("no voxel has the label {value}; those of the image are {}{more}", listed.join(", "))
 }
 
 /// A grid of voxels with a place in space.
@@ -146,6 +188,24 @@ impl Image {
     /// [`Constant`](ImageError::Constant).
     pub fn new<T: Voxel>(size: [usize; 3], voxels: impl AsRef<[T]>) -> Result<Self, ImageError> {
         Self::of(size, Voxels::new(voxels.as_ref()))
+    }
+
+    /// [`Image::new`] from the bytes of numbers of a type in the byte order of the machine.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Image::new`].
+    pub fn from_bytes(
+        size: [usize; 3],
+        voxel_type: VoxelType,
+        bytes: impl Into<Arc<[u8]>>,
+    ) -> Result<Self, ImageError> {
+        let bytes = bytes.into();
+        let len = bytes.len() / voxel_type.bytes();
+        let wanted = size.iter().fold(1_u64, |product, &n| product.saturating_mul(n as u64));
+        let wrong = ImageError::Size { size, wanted, found: len as u64 };
+        let layout = Layout::plain(voxel_type, cfg!(target_endian = "big"));
+        Self::of(size, Voxels::of_file(bytes, layout, len).ok_or(wrong)?)
     }
 
     /// The image with these voxels, one unit apart.
@@ -278,3 +338,6 @@ impl Image {
         self.voxels.at(i + self.size[0] * (j + self.size[1] * k))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -25,6 +25,23 @@ impl Histogram {
     /// largest (Otsu's equation 14). Where many are as good, as between two peaks, it is the one in
     /// their middle.
     pub(super) fn otsu(&self) -> f64 {
+        let [first, last] = self.best();
+        self.min + self.width * (0.5 * (first + last) as f64 + 1.0)
+    }
+
+    /// The mean values of the two classes.
+    pub(super) fn means(&self) -> [f64; 2] {
+        let cut = self.best()[0] + 1;
+        let mean = |first: usize, counts: &[u64]| {
+            let count: u64 = counts.iter().sum();
+            let sum: f64 = (first..).zip(counts).map(|(bin, count)| (bin as f64 + 0.5) * *count as f64).sum();
+            self.min + self.width * sum / count as f64
+        };
+        [mean(0, &self.counts[..cut]), mean(cut, &self.counts[cut..])]
+    }
+
+    /// The first and the last of the bins behind which the classes part best.
+    fn best(&self) -> [usize; 2] {
         let total: u64 = self.counts.iter().sum();
         let all: u64 = (0..).zip(&self.counts).map(|(bin, count)| bin * count).sum();
         let (mut below, mut sum) = (0, 0);
@@ -45,6 +62,6 @@ impl Histogram {
                 last = bin;
             }
         }
-        self.min + self.width * (0.5 * (first + last) as f64 + 1.0)
+        [first, last]
     }
 }

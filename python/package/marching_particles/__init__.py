@@ -19,6 +19,7 @@ from ._fields import (
     smooth_union,
     union,
 )
+from ._image import Image
 from ._sample import Mesh, Sample, Warning, sample
 
 __all__ = [
@@ -26,6 +27,7 @@ __all__ = [
     "Field",
     "FieldError",
     "FormulaError",
+    "Image",
     "Mesh",
     "Model",
     "Sample",

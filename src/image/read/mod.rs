@@ -264,3 +264,6 @@ fn sniff(start: &[u8]) -> Result<ImageFormat, ImageReadError> {
     let advice = "choose a file of an image";
     Err(ImageReadError::Unknown { found: "a file of no known kind", advice })
 }
+
+#[cfg(test)]
+mod tests;
