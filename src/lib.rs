@@ -163,8 +163,8 @@ pub use field::model::{CENTRES, GivenMesh, GivenTopology, ModelInfo, NormalSourc
 pub use field::rbf::RbfField;
 pub use field::{
     BatchField, Bounded, Combined, Enclosure, Evaluator, Facts, Field, FieldError, FnField, Frame, IntoField,
-    Jet, Pieces, PiecewiseFn, SharedError, UnitCell, Within, difference, gallery, intersection, offset, smooth_union,
-    union,
+    Jet, Pieces, PiecewiseFn, SharedError, UnitCell, Within, difference, gallery, intersection, offset,
+    smooth_union, union,
 };
 pub use glam;
 #[cfg(feature = "images")]

@@ -428,7 +428,11 @@ impl SampleArguments {
             surface.add_parameters(record.parameters);
             return self.sampling.complete(&record.settings);
         }
-        if surface.surface.is_none() && surface.formula.is_none() && surface.points.is_none() && surface.image.is_none() {
+        if surface.surface.is_none()
+            && surface.formula.is_none()
+            && surface.points.is_none()
+            && surface.image.is_none()
+        {
             let own = record.surface.as_deref().and_then(gallery::find).map(|own| record.solid.own_box(own));
             if surface.bounds.is_none() && own != Some(record.bounds) {
                 surface.bounds = Some(BoxChoice::Given(record.faces.unwrap_or(record.bounds)));

@@ -93,9 +93,14 @@ fn notes(image: &Image, surface: &Image, arguments: &SurfaceArguments) -> Vec<St
         if (2..=FEW).contains(&labels.len()) {
             let listed: Vec<String> = labels
                 .iter()
-                .map(|label| format!("{} ({} voxels)", significant(label.value), grouped(label.voxels as usize)))
+                .map(|label| {
+                    format!("{} ({} voxels)", significant(label.value), grouped(label.voxels as usize))
+                })
                 .collect();
-            notes.push(format!("The values look like labels, of which --label takes one: {}.", listed.join(", ")));
+            notes.push(format!(
+                "The values look like labels, of which --label takes one: {}.",
+                listed.join(", ")
+            ));
         }
     }
     notes

@@ -46,10 +46,12 @@ fn read_record(path: &Path, surface: &SurfaceArguments) -> Result<FileRecord, Fa
         Failure::Usage(format!("the record in {} could not be read: {error}", path.display()))
     })?;
     match &record.model {
-        Some(model) if surface.surface.is_none() && surface.points.is_none() && surface.image.is_none() => Err(Failure::Usage(format!(
-            "{} was made from points, {model}: name them with --surface or --points, beside --like",
-            path.display()
-        ))),
+        Some(model) if surface.surface.is_none() && surface.points.is_none() && surface.image.is_none() => {
+            Err(Failure::Usage(format!(
+                "{} was made from points, {model}: name them with --surface or --points, beside --like",
+                path.display()
+            )))
+        }
         _ => Ok(record),
     }
 }
@@ -80,7 +82,9 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     check_vertices(arguments)?;
     check_placement(arguments)?;
     let records: Vec<PathBuf> = (arguments.out.iter().zip(&formats))
-        .filter(|(path, format)| **format == Format::Csv && !is_standard(path) && arguments.surface.image.is_none())
+        .filter(|(path, format)| {
+            **format == Format::Csv && !is_standard(path) && arguments.surface.image.is_none()
+        })
         .map(|(path, _)| record_path(path))
         .collect();
     let paths: Vec<&PathBuf> = arguments.out.iter().chain(&arguments.mesh).chain(&records).collect();

@@ -209,6 +209,11 @@ pub struct Facts {
     /// A box that holds the whole surface, if the field knows one. The box of a run is fitted to it,
     /// and the surface is not searched elsewhere.
     pub within: Option<Within>,
+    /// The box in which f is known, as that of an image, if it is not known everywhere.
+    pub domain: Option<Bounds>,
+    /// The distance between the values that f is interpolated from, if it is: that of the voxels of
+    /// an image. Nothing is known of what is finer.
+    pub resolution: Option<f64>,
 }
 
 /// A box that holds the whole surface of a field.

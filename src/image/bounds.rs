@@ -82,7 +82,13 @@ impl Bricks {
     }
 
     /// Joins bounds over many cells to `found`.
-    fn over_cells(&self, first: [usize; 3], last: [usize; 3], wanted: &Range<usize>, found: &mut Derivatives) {
+    fn over_cells(
+        &self,
+        first: [usize; 3],
+        last: [usize; 3],
+        wanted: &Range<usize>,
+        found: &mut Derivatives,
+    ) {
         let blocks = [first, last].map(|cell| cell.map(|c| c / SIDE));
         let [first_block, last_block] = blocks;
         if (0..3).any(|axis| last_block[axis] - first_block[axis] >= BLOCKS) {
@@ -94,7 +100,8 @@ impl Bricks {
         }
         for_each_cell(first_block, last_block, |block| {
             let within = |cell: [usize; 3], of_end: usize| {
-                [0, 1, 2].map(|a| if block[a] == blocks[of_end][a] { cell[a] % SIDE } else { of_end * (SIDE - 1) })
+                [0, 1, 2]
+                    .map(|a| if block[a] == blocks[of_end][a] { cell[a] % SIDE } else { of_end * (SIDE - 1) })
             };
             let (lo, hi) = (within(first, 0), within(last, 1));
             let is_whole = lo == [0; 3] && hi == [SIDE - 1; 3];
@@ -113,7 +120,13 @@ fn hull(a: Interval, b: Interval) -> Interval {
 }
 
 /// Joins the hull of the Bézier points over a part of a cell of a brick to `found`, axis by axis.
-fn bezier(brick: Brick, cell: [usize; 3], part: [[f64; 2]; 3], wanted: &Range<usize>, found: &mut Derivatives) {
+fn bezier(
+    brick: Brick,
+    cell: [usize; 3],
+    part: [[f64; 2]; 3],
+    wanted: &Range<usize>,
+    found: &mut Derivatives,
+) {
     let [x, y, z] = part.map(|[from, to]| bezier_weights(from, to));
     let dot = |w: &[f64; 4], c: &[f64; 4]| (w[0] * c[0] + w[1] * c[1]) + (w[2] * c[2] + w[3] * c[3]);
     let mut rows = [[[0.0_f64; 4]; 4]; 4];

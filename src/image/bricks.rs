@@ -240,8 +240,7 @@ impl Bricks {
                     if is_cell && hull[0] <= 0.0 && hull[1] >= 0.0 {
                         let [lo, hi] = self.surface.unwrap_or([cell, cell]);
                         let ends = |a: usize| (lo[a].min(cell[a]), hi[a].max(cell[a]));
-                        self.surface =
-                            Some([[0, 1, 2].map(|a| ends(a).0), [0, 1, 2].map(|a| ends(a).1)]);
+                        self.surface = Some([[0, 1, 2].map(|a| ends(a).0), [0, 1, 2].map(|a| ends(a).1)]);
                     }
                 }
                 derivatives

@@ -3,9 +3,7 @@
 use super::bricks::{Brick, Bricks, SIDE, WIDE, for_each_cell};
 use super::kernel::{Number, weights};
 use super::{Image, ImageError, Placement};
-use crate::field::{
-    BATCH, Bounded, Enclosure, Evaluator, Facts, Field, Frame, Jet, Within,
-};
+use crate::field::{BATCH, Bounded, Enclosure, Evaluator, Facts, Field, Frame, Jet, Within};
 use crate::math::{Bounds, Interval, Sym3};
 use core::fmt::{self, Debug, Formatter};
 use glam::{DVec3, Vec3};
@@ -247,7 +245,10 @@ impl Field for ImageField {
     }
 
     fn facts(&self) -> Facts {
-        Facts { within: self.within(), ..Facts::default() }
+        let last = DVec3::from_array(self.image.size.map(|n| (n - 1) as f64));
+        let domain = self.placement().points(&Bounds::new(DVec3::ZERO, last));
+        let spacing = self.placement().spacing().into_iter().fold(f64::INFINITY, f64::min);
+        Facts { within: self.within(), domain: Some(domain), resolution: Some(spacing), ..Facts::default() }
     }
 
     fn is_smooth(&self) -> bool {
@@ -392,15 +393,14 @@ impl Bounded for ImageEvaluator<'_> {
             if own.is_apart_from(within) {
                 return;
             }
-            let cut = Bounds::new(own.lo().max(within.lo()), own.hi().min(within.hi()));
+            let cut = own.overlap(within);
             // A cell that only touches the box has a neighbour that holds what they share.
             if (0..3).any(|a| within.min[a] < within.max[a] && cut.min[a] >= cut.max[a]) {
                 return;
             }
             let known = self.enclosure(&cut);
             // Where f ends, the highest point of the surface may lie on its border.
-            let may_be_highest =
-                !known.defined || sides.iter().all(|&side| known.gradient[side].holds(0.0));
+            let may_be_highest = !known.defined || sides.iter().all(|&side| known.gradient[side].holds(0.0));
             if known.may_vanish && may_be_highest {
                 out.push(cut);
             }

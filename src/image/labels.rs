@@ -76,7 +76,8 @@ impl Image {
             *distance = if *is_inside { distance.sqrt() - half } else { half - outside.sqrt() };
         }
         blur(self.size, &mut distances, deviations(self, width));
-        let lost = distances.iter().zip(&is_inside).filter(|(value, inside)| **inside && **value <= 0.0).count();
+        let lost =
+            distances.iter().zip(&is_inside).filter(|(value, inside)| **inside && **value <= 0.0).count();
         if lost == count {
             return Err(ImageError::Thin { value, width });
         }
@@ -177,8 +178,12 @@ mod tests {
                 let apart = |other: usize| -> f64 {
                     place(at).iter().zip(place(other)).map(|(a, b)| (a - b) * (a - b)).sum()
                 };
-                let nearest = (0..count).filter(|&other| is_in[other]).map(apart).fold(f64::INFINITY, f64::min);
-                assert!((f64::from(*found) - nearest).abs() < 1e-5 * (1.0 + nearest), "{size:?} {at}: {found} {nearest}");
+                let nearest =
+                    (0..count).filter(|&other| is_in[other]).map(apart).fold(f64::INFINITY, f64::min);
+                assert!(
+                    (f64::from(*found) - nearest).abs() < 1e-5 * (1.0 + nearest),
+                    "{size:?} {at}: {found} {nearest}"
+                );
             }
         }
     }

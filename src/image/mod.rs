@@ -75,7 +75,9 @@ pub enum ImageError {
         value: f64,
     },
     /// The iso value is not between the smallest and the largest voxel.
-    #[error("the iso value {iso} is outside the image, whose voxels are {min} to {max}; choose one between them")]
+    #[error(
+        "the iso value {iso} is outside the image, whose voxels are {min} to {max}; choose one between them"
+    )]
     Outside {
         /// The iso value.
         iso: f64,
@@ -101,7 +103,9 @@ pub enum ImageError {
         known: Vec<f64>,
     },
     /// Nothing is left of a label after the Gaussian.
-    #[error("nothing is left of the label {value}, whose parts are thinner than the Gaussian of {width} voxels; use a smaller width")]
+    #[error(
+        "nothing is left of the label {value}, whose parts are thinner than the Gaussian of {width} voxels; use a smaller width"
+    )]
     Thin {
         /// The label.
         value: f64,
@@ -128,7 +132,9 @@ fn no_label(value: f64, count: usize, known: &[f64]) -> String {
         return format!("all voxels have the label {value}, so it has no boundary in the image");
     }
     if known.is_empty() {
-        return format!("no voxel has the label {value}; the values of this image are no labels: choose an iso value");
+        return format!(
+            "no voxel has the label {value}; the values of this image are no labels: choose an iso value"
+        );
     }
     let listed: Vec<String> = known.iter().take(LISTED).map(f64::to_string).collect();
     let more = if known.len() > LISTED { ", …" } else { "" };

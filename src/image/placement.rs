@@ -153,7 +153,10 @@ impl Placement {
         let entry = |a: usize, b: usize| {
             let (left, right) = (self.inverse.col(a).to_array(), self.inverse.col(b).to_array());
             let terms = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
-            sum(terms.map(|(i, j)| (left[i] * right[j], h.at(i, j))).filter(|(w, _)| *w != 0.0).map(|(w, x)| x * w))
+            sum(terms
+                .map(|(i, j)| (left[i] * right[j], h.at(i, j)))
+                .filter(|(w, _)| *w != 0.0)
+                .map(|(w, x)| x * w))
         };
         Sym3 {
             xx: entry(0, 0),
@@ -168,8 +171,7 @@ impl Placement {
 
 /// The sum of a few intervals, rounded outward.
 fn sum(terms: impl Iterator<Item = Interval>) -> Interval {
-    let (total, size) = terms.fold((Interval::new(0.0, 0.0), 0.0), |(total, size), term| {
-        (total + term, size + term.magnitude())
-    });
+    let (total, size) = terms
+        .fold((Interval::new(0.0, 0.0), 0.0), |(total, size), term| (total + term, size + term.magnitude()));
     total.widened(ROUNDING * size)
 }

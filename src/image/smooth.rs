@@ -30,7 +30,9 @@ pub(super) fn deviations(image: &Image, width: f64) -> [f64; 3] {
 /// The weights of a Gaussian at 0, 1, 2, …; they add up to 1 with those of the other side.
 fn gaussian(deviation: f64) -> Vec<f32> {
     let reach = libm::ceil(REACH * deviation) as usize;
-    let weight = |k: usize| if k == 0 { 1.0 } else { libm::exp(-0.5 * (k as f64 / deviation) * (k as f64 / deviation)) };
+    let weight = |k: usize| {
+        if k == 0 { 1.0 } else { libm::exp(-0.5 * (k as f64 / deviation) * (k as f64 / deviation)) }
+    };
     let weights: Vec<f64> = (0..=reach).map(weight).collect();
     let sum = weights[0] + 2.0 * weights[1..].iter().sum::<f64>();
     weights.iter().map(|weight| (weight / sum) as f32).collect()
@@ -114,7 +116,8 @@ impl Image {
                     let mut difference = 0.0;
                     for at in 0..27 {
                         let steps = [at % 3, at / 3 % 3, at / 9];
-                        let weight: f64 = steps.iter().map(|&step| if step == 1 { -2.0 } else { 1.0 }).product();
+                        let weight: f64 =
+                            steps.iter().map(|&step| if step == 1 { -2.0 } else { 1.0 }).product();
                         difference += weight * self.voxel([i + steps[0], j + steps[1], k + steps[2]]);
                     }
                     sizes.push(difference.abs());

@@ -106,7 +106,11 @@ fn batches_are_the_single_points_rounded() {
         for (k, p) in points.iter().enumerate() {
             let exact = evaluator.jet(p.as_dvec3());
             assert!((f64::from(value[k]) - exact.value).abs() < 2e-2, "{p}: {} {exact:?}", value[k]);
-            assert!((gradient[k].as_dvec3() - exact.gradient).length() < 5e-2, "{p}: {} {exact:?}", gradient[k]);
+            assert!(
+                (gradient[k].as_dvec3() - exact.gradient).length() < 5e-2,
+                "{p}: {} {exact:?}",
+                gradient[k]
+            );
             for (a, b) in hessian[k].entries().into_iter().zip(exact.hessian.entries()) {
                 assert!((f64::from(a) - b).abs() < 0.5, "{p}: {a} {b}");
             }
@@ -141,7 +145,8 @@ fn bounds_hold_what_is_in_the_box() {
             proven += usize::from(known.value.excludes_zero());
             for corner in 0..8 {
                 let share = DVec3::from_array([0, 1, 2].map(|a| f64::from(corner >> a & 1)));
-                let at = (bounds.lo() + share * bounds.size() * between(&mut random, 0.0, 1.0)).min(bounds.hi());
+                let at =
+                    (bounds.lo() + share * bounds.size() * between(&mut random, 0.0, 1.0)).min(bounds.hi());
                 let jet = field.jet(at);
                 if jet.value.is_nan() {
                     assert!(!known.defined, "{at} {bounds:?}");
@@ -150,12 +155,17 @@ fn bounds_hold_what_is_in_the_box() {
                 // Away from the surface f is another function of the same sign.
                 let indices = field.image().placement().index(at);
                 if !is_near(field, indices) {
-                    assert!(known.value.lo < 0.0 && jet.value < 0.0 || known.value.hi > 0.0 && jet.value > 0.0);
+                    assert!(
+                        known.value.lo < 0.0 && jet.value < 0.0 || known.value.hi > 0.0 && jet.value > 0.0
+                    );
                     continue;
                 }
                 assert!(known.value.holds(jet.value), "{at} {bounds:?}: {jet:?} {known:?}");
                 for axis in 0..3 {
-                    assert!(known.gradient[axis].holds(jet.gradient[axis]), "{at} {bounds:?}: {jet:?} {known:?}");
+                    assert!(
+                        known.gradient[axis].holds(jet.gradient[axis]),
+                        "{at} {bounds:?}: {jet:?} {known:?}"
+                    );
                 }
                 for (bounds, entry) in second.entries().into_iter().zip(jet.hessian.entries()) {
                     assert!(bounds.widened(1e-9).holds(entry), "{at}: {entry} {bounds:?}");
@@ -370,7 +380,10 @@ fn what_is_no_image_is_refused_by_its_fault() {
         assert!(matches!(image.at(iso), Err(ImageError::Outside { .. })), "{iso}");
     }
     for spacing in [[0.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, f64::NAN], [1.0, f64::INFINITY, 1.0]] {
-        assert!(matches!(image.clone().with_spacing(spacing), Err(ImageError::Singular { .. })), "{spacing:?}");
+        assert!(
+            matches!(image.clone().with_spacing(spacing), Err(ImageError::Singular { .. })),
+            "{spacing:?}"
+        );
     }
     let flat = [[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.0]];
     assert!(matches!(image.with_affine(flat), Err(ImageError::Singular { .. })));

@@ -149,8 +149,11 @@ impl Voxels {
             ($number:ty) => {
                 for (k, bytes) in from.chunks(step * size).take(count).enumerate() {
                     let bytes = bytes[..size].try_into().unwrap_or_default();
-                    let number =
-                        if is_big_endian { <$number>::from_be_bytes(bytes) } else { <$number>::from_le_bytes(bytes) };
+                    let number = if is_big_endian {
+                        <$number>::from_be_bytes(bytes)
+                    } else {
+                        <$number>::from_le_bytes(bytes)
+                    };
                     take(k, number as f64 * slope + intercept);
                 }
             };

@@ -679,6 +679,8 @@ impl Field for Formula {
             unused: self.written.equation.unused(),
             why_constant: first.map(|first| spelling::no_coordinate(&first.name)),
             within: None,
+            domain: None,
+            resolution: None,
         }
     }
 

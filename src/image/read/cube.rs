@@ -35,7 +35,13 @@ pub(super) fn begins_with(start: &[u8]) -> bool {
 
 fn head(start: &[u8]) -> Result<Head, ImageReadError> {
     let row = |number: usize| {
-        row(start, number).ok_or_else(|| wrong(FORMAT, format!("line {number}"), "it is no whole number with a vector; export the file again"))
+        row(start, number).ok_or_else(|| {
+            wrong(
+                FORMAT,
+                format!("line {number}"),
+                "it is no whole number with a vector; export the file again",
+            )
+        })
     };
     let vector = |row: &[f64]| DVec3::from_slice(&row[1..4]);
     let first = row(3)?;
@@ -43,7 +49,13 @@ fn head(start: &[u8]) -> Result<Head, ImageReadError> {
     // A negative number of voxels says that lengths are in ångström.
     let size = [0, 1, 2].map(|k| rows[k][0].abs() as usize);
     let values = first.get(4).map_or(1, |values| values.max(1.0) as usize);
-    Ok(Head { atoms: first[0] as i64, origin: vector(&first), size, axes: [0, 1, 2].map(|k| vector(&rows[k])), values })
+    Ok(Head {
+        atoms: first[0] as i64,
+        origin: vector(&first),
+        size,
+        axes: [0, 1, 2].map(|k| vector(&rows[k])),
+        values,
+    })
 }
 
 /// Reads a cube file, whose last axis changes fastest.
@@ -60,7 +72,9 @@ pub(super) fn read(mut file: Unpacked) -> Result<Image, ImageReadError> {
     let text = file.all(HEADER.saturating_add(count.saturating_mul(VALUE * values.max(64) as u64)))?;
     // Two comments, four rows and the atoms; a negative number of them says that a list of orbitals
     // follows.
-    let mut at = lines(&text).nth(5 + atoms.unsigned_abs().min(1 << 20) as usize).map_or(text.len(), |(.., behind)| behind);
+    let mut at = lines(&text)
+        .nth(5 + atoms.unsigned_abs().min(1 << 20) as usize)
+        .map_or(text.len(), |(.., behind)| behind);
     let mut notes = Vec::new();
     let mut words = words(&text[at..]);
     if atoms < 0 {
@@ -80,11 +94,15 @@ pub(super) fn read(mut file: Unpacked) -> Result<Image, ImageReadError> {
     for index in 0..count {
         let Some((_, word)) = words.next() else {
             let (needed, found) = (count * values as u64, index * values as u64);
-            let message = format!("{needed} values are promised and {found} follow; the file is cut off: export it again");
+            let message = format!(
+                "{needed} values are promised and {found} follow; the file is cut off: export it again"
+            );
             return Err(wrong(FORMAT, "values", message));
         };
         let value: Option<f64> = word.replace(['D', 'd'], "E").parse().ok();
-        let value = value.ok_or_else(|| wrong(FORMAT, format!("value {}", index + 1), format!("{} is not a number", quoted(word))))?;
+        let value = value.ok_or_else(|| {
+            wrong(FORMAT, format!("value {}", index + 1), format!("{} is not a number", quoted(word)))
+        })?;
         voxels.push(value as f32);
         for _ in 1..values {
             words.next();

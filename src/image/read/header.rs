@@ -20,7 +20,8 @@ pub(super) fn wrong(
 pub(super) fn quoted(text: &str) -> String {
     /// Longer than the name of a type, shorter than a line.
     const SHOWN: usize = 40;
-    let mut shown: String = text.trim().chars().take(SHOWN).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    let mut shown: String =
+        text.trim().chars().take(SHOWN).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
     if text.trim().chars().count() > SHOWN {
         shown.push('…');
     }
@@ -81,8 +82,15 @@ pub(super) fn type_of_name(name: &str) -> Option<VoxelType> {
         "short" | "short int" | "signed short" | "signed short int" | "int16" | "int16_t" => VoxelType::I16,
         "uint" | "unsigned int" | "uint32" | "uint32_t" => VoxelType::U32,
         "int" | "signed int" | "int32" | "int32_t" => VoxelType::I32,
-        "ulonglong" | "unsigned long long" | "unsigned long long int" | "uint64" | "uint64_t" => VoxelType::U64,
-        "longlong" | "long long" | "long long int" | "signed long long" | "signed long long int" | "int64"
+        "ulonglong" | "unsigned long long" | "unsigned long long int" | "uint64" | "uint64_t" => {
+            VoxelType::U64
+        }
+        "longlong"
+        | "long long"
+        | "long long int"
+        | "signed long long"
+        | "signed long long int"
+        | "int64"
         | "int64_t" => VoxelType::I64,
         "float" => VoxelType::F32,
         "double" => VoxelType::F64,

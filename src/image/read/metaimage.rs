@@ -35,14 +35,23 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
     let (mut is_big_endian, mut is_packed, mut skip) = (false, false, 0);
     let mut found = None;
     for (number, line, behind) in lines(start) {
-        let Some((key, value)) = line.split_once('=').map(|(key, value)| (key.trim(), value.trim())) else { continue };
+        let Some((key, value)) = line.split_once('=').map(|(key, value)| (key.trim(), value.trim())) else {
+            continue;
+        };
         let entry = || format!("line {number}, {key}");
-        let wrong_number = || wrong(FORMAT, entry(), format!("{} is not what belongs here; export the file again", quoted(value)));
+        let wrong_number = || {
+            wrong(
+                FORMAT,
+                entry(),
+                format!("{} is not what belongs here; export the file again", quoted(value)),
+            )
+        };
         let list = || numbers(value).ok_or_else(wrong_number);
         let is_true = value.eq_ignore_ascii_case("true");
         match key {
             "DimSize" => {
-                let sizes: Option<Vec<usize>> = value.split_whitespace().map(|word| word.parse().ok()).collect();
+                let sizes: Option<Vec<usize>> =
+                    value.split_whitespace().map(|word| word.parse().ok()).collect();
                 size = Some(sizes.ok_or_else(wrong_number)?);
             }
             "ElementSpacing" => spacing = list()?,
@@ -60,7 +69,8 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
                 return Err(wrong(FORMAT, entry(), "voxels as text are not read; save them as binary"));
             }
             "ElementType" => {
-                let message = || format!("voxels of type {} are not read; convert them to MET_FLOAT", quoted(value));
+                let message =
+                    || format!("voxels of type {} are not read; convert them to MET_FLOAT", quoted(value));
                 voxel_type = Some(type_of(value).ok_or_else(|| wrong(FORMAT, entry(), message()))?);
             }
             "ElementDataFile" => {
@@ -101,7 +111,11 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
     let source = match data_file {
         "LOCAL" | "Local" | "local" => Source::Here(end + skip),
         name if name == "LIST" || name.starts_with("LIST ") || name.contains('%') => {
-            return Err(wrong(FORMAT, "ElementDataFile", "a list of files is not read; save the data as one"));
+            return Err(wrong(
+                FORMAT,
+                "ElementDataFile",
+                "a list of files is not read; save the data as one",
+            ));
         }
         name => Source::Beside(name.to_owned()),
     };

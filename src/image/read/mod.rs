@@ -100,7 +100,9 @@ pub enum ImageReadError {
         bytes: u64,
     },
     /// Compressed data cannot be unpacked.
-    #[error("the compressed data is damaged after {unpacked} bytes ({message}); copy or export the file again")]
+    #[error(
+        "the compressed data is damaged after {unpacked} bytes ({message}); copy or export the file again"
+    )]
     Damaged {
         /// Bytes that could be unpacked.
         unpacked: u64,
@@ -108,7 +110,9 @@ pub enum ImageReadError {
         message: String,
     },
     /// The voxels are in a file beside the header that is not there.
-    #[error("the voxels of this {format} header are in the file {name} beside it, which cannot be read: {message}")]
+    #[error(
+        "the voxels of this {format} header are in the file {name} beside it, which cannot be read: {message}"
+    )]
     Beside {
         /// Format of the header.
         format: ImageFormat,
@@ -123,7 +127,7 @@ pub enum ImageReadError {
 }
 
 /// Where a reader gets the file of a name beside the one that is read.
-pub type Beside<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, String>;
+type Beside<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, String>;
 
 /// What the header of a file says.
 struct Header {

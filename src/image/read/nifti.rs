@@ -17,7 +17,10 @@ fn is_big_endian(start: &[u8]) -> Option<bool> {
         let fields = Fields { bytes: start, is_big_endian };
         match fields.i32(0) {
             SIZE_1 => start.len() >= SIZE_1 as usize && (1..=7).contains(&fields.i16(40)),
-            SIZE_2 => start.len() >= SIZE_2 as usize && start.get(4..7).is_some_and(|magic| magic == b"n+2" || magic == b"ni2"),
+            SIZE_2 => {
+                start.len() >= SIZE_2 as usize
+                    && start.get(4..7).is_some_and(|magic| magic == b"n+2" || magic == b"ni2")
+            }
             _ => false,
         }
     })
@@ -112,9 +115,14 @@ pub(super) fn header(name: &str, start: &[u8]) -> Result<Header, ImageReadError>
     let entries = entries(start);
     let axes = entries.dim[0].clamp(1, 7) as usize;
     let size = core::array::from_fn(|k| if k < axes { entries.dim[k + 1] } else { 1 });
-    let more = entries.dim[1..=axes].iter().skip(3).fold(1, |product: i64, &n| product.saturating_mul(n.max(1)));
+    let more =
+        entries.dim[1..=axes].iter().skip(3).fold(1, |product: i64, &n| product.saturating_mul(n.max(1)));
     if let Some(k) = size.iter().position(|&n| n < 1) {
-        return Err(wrong(FORMAT, format!("dim[{}]", k + 1), format!("{} voxels along an axis; export the file again", size[k])));
+        return Err(wrong(
+            FORMAT,
+            format!("dim[{}]", k + 1),
+            format!("{} voxels along an axis; export the file again", size[k]),
+        ));
     }
     let (voxel_type, step) = voxel_type(entries.datatype)?;
     let mut notes = Vec::new();
@@ -124,13 +132,19 @@ pub(super) fn header(name: &str, start: &[u8]) -> Result<Header, ImageReadError>
     if step > 1 {
         notes.push(first_of(step, "colours"));
     }
-    let is_scaled = entries.slope != 0.0 && entries.slope.is_finite() && entries.intercept.is_finite() && step == 1;
+    let is_scaled =
+        entries.slope != 0.0 && entries.slope.is_finite() && entries.intercept.is_finite() && step == 1;
     let (slope, intercept) = if is_scaled { (entries.slope, entries.intercept) } else { (1.0, 0.0) };
     let first = if entries.first.is_finite() { entries.first.max(0.0) as usize } else { 0 };
     let (matrix, origin) = placement(&entries, &mut notes);
     let source = if entries.is_single { Source::Here(first) } else { Source::Beside(data_name(name)) };
-    let layout =
-        Layout { first, step, slope, intercept, ..Layout::plain(voxel_type, is_big_endian(start).unwrap_or(false)) };
+    let layout = Layout {
+        first,
+        step,
+        slope,
+        intercept,
+        ..Layout::plain(voxel_type, is_big_endian(start).unwrap_or(false))
+    };
     Ok(Header {
         format: FORMAT,
         size: size.map(|n| n as usize),

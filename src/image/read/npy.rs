@@ -20,14 +20,21 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
     };
     let end = from.checked_add(length).ok_or_else(cut)?;
     let text = String::from_utf8_lossy(start.get(from..end).ok_or_else(cut)?).into_owned();
-    let descr = entry(&text, "descr").ok_or_else(|| wrong(FORMAT, "descr", "it is missing; save the array again"))?;
+    let descr =
+        entry(&text, "descr").ok_or_else(|| wrong(FORMAT, "descr", "it is missing; save the array again"))?;
     let (voxel_type, is_big_endian) = voxel_type(descr)?;
     let is_fortran = entry(&text, "fortran_order").is_some_and(|value| value.starts_with("True"));
     let shape = entry(&text, "shape").and_then(|value| value.strip_prefix('(')?.split(')').next());
     let shape: Option<Vec<usize>> = shape.and_then(|shape| {
-        shape.split(',').map(str::trim).filter(|word| !word.is_empty()).map(|word| word.parse().ok()).collect()
+        shape
+            .split(',')
+            .map(str::trim)
+            .filter(|word| !word.is_empty())
+            .map(|word| word.parse().ok())
+            .collect()
     });
-    let shape = shape.ok_or_else(|| wrong(FORMAT, "shape", "it is no list of whole numbers; save the array again"))?;
+    let shape = shape
+        .ok_or_else(|| wrong(FORMAT, "shape", "it is no list of whole numbers; save the array again"))?;
     let mut notes = Vec::new();
     let (size, step) = match shape[..] {
         [x, y, z] => ([x, y, z], 1),
@@ -48,8 +55,7 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
     let axes = DVec3::AXES;
     let [x, y, z] = size;
     // The axis that changes fastest comes first.
-    let (size, axes) =
-        if is_fortran { (size, axes) } else { ([z, y, x], [axes[2], axes[1], axes[0]]) };
+    let (size, axes) = if is_fortran { (size, axes) } else { ([z, y, x], [axes[2], axes[1], axes[0]]) };
     Ok(Header {
         format: FORMAT,
         size,
@@ -64,7 +70,8 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
 
 /// What follows the name of an entry of the dictionary.
 fn entry<'a>(text: &'a str, name: &str) -> Option<&'a str> {
-    let (_, rest) = [format!("'{name}'"), format!("\"{name}\"")].iter().find_map(|key| text.split_once(key.as_str()))?;
+    let (_, rest) =
+        [format!("'{name}'"), format!("\"{name}\"")].iter().find_map(|key| text.split_once(key.as_str()))?;
     Some(rest.trim_start().strip_prefix(':')?.trim_start())
 }
 
@@ -84,7 +91,8 @@ fn voxel_type(descr: &str) -> Result<(VoxelType, bool), ImageReadError> {
         "f4" => VoxelType::F32,
         "f8" => VoxelType::F64,
         _ => {
-            let message = format!("voxels of type {} are not read; convert them with astype('float32')", quoted(word));
+            let message =
+                format!("voxels of type {} are not read; convert them with astype('float32')", quoted(word));
             return Err(wrong(FORMAT, "descr", message));
         }
     };

@@ -61,11 +61,13 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
     let missing = |entry: &str| wrong(FORMAT, entry, "it is missing; export the file again");
     let end = end.ok_or_else(|| wrong(FORMAT, "end", "the header does not end; export the file again"))?;
     let name = entries.type_name.ok_or_else(|| missing("type"))?;
-    let voxel_type = type_of_name(name)
-        .ok_or_else(|| wrong(FORMAT, "type", format!("voxels of type {} are not read; convert them to float", quoted(name))))?;
+    let voxel_type = type_of_name(name).ok_or_else(|| {
+        wrong(FORMAT, "type", format!("voxels of type {} are not read; convert them to float", quoted(name)))
+    })?;
     let sizes = entries.sizes.ok_or_else(|| missing("sizes"))?;
     let sizes: Option<Vec<usize>> = sizes.split_whitespace().map(|word| word.parse().ok()).collect();
-    let sizes = sizes.ok_or_else(|| wrong(FORMAT, "sizes", "these are no whole numbers; export the file again"))?;
+    let sizes =
+        sizes.ok_or_else(|| wrong(FORMAT, "sizes", "these are no whole numbers; export the file again"))?;
     let kinds: Vec<&str> = entries.kinds.unwrap_or_default().split_whitespace().collect();
     let directions = entries.directions.map(vectors).transpose()?;
     let is_spatial = |axis: usize| match (&directions, kinds.get(axis)) {
@@ -81,7 +83,9 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
     if [second, third] != [first + 1, first + 2] {
         return Err(wrong(FORMAT, "kinds", "the axes in space do not follow each other; save one volume"));
     }
-    let product = |axes: core::ops::Range<usize>| sizes[axes].iter().fold(1, |product: usize, &n| product.saturating_mul(n));
+    let product = |axes: core::ops::Range<usize>| {
+        sizes[axes].iter().fold(1, |product: usize, &n| product.saturating_mul(n))
+    };
     let (step, volumes) = (product(0..first), product(third + 1..sizes.len()));
     let mut notes = Vec::new();
     if step > 1 {
@@ -103,7 +107,11 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
     let is_big_endian = entries.endian.is_some_and(|endian| endian.eq_ignore_ascii_case("big"));
     let skip = entries.byte_skip.unwrap_or("0").parse::<usize>();
     let (Ok(skip), None | Some("0")) = (skip, entries.line_skip) else {
-        return Err(wrong(FORMAT, "byte skip or line skip", "only a number of bytes is read; save the data without skips"));
+        return Err(wrong(
+            FORMAT,
+            "byte skip or line skip",
+            "only a number of bytes is read; save the data without skips",
+        ));
     };
     let source = match entries.data_file {
         None => Source::Here(end.saturating_add(skip)),
@@ -134,21 +142,34 @@ fn placement(
         None => DVec3::ZERO,
         Some(text) => match vectors(text)?[..] {
             [Some(origin)] => origin,
-            _ => return Err(wrong(FORMAT, "space origin", "it is no vector of three numbers; export the file again")),
+            _ => {
+                return Err(wrong(
+                    FORMAT,
+                    "space origin",
+                    "it is no vector of three numbers; export the file again",
+                ));
+            }
         },
     };
     if let Some(directions) = directions {
         return Ok((core::array::from_fn(|k| directions[axes[k]].unwrap_or(DVec3::AXES[k])), origin));
     }
     let Some(text) = entries.spacings else { return Ok((DVec3::AXES, origin)) };
-    let spacings = numbers(text).ok_or_else(|| wrong(FORMAT, "spacings", "these are no numbers; export the file again"))?;
+    let spacings = numbers(text)
+        .ok_or_else(|| wrong(FORMAT, "spacings", "these are no numbers; export the file again"))?;
     let spacing = |k: usize| spacings.get(axes[k]).copied().filter(|length| !length.is_nan()).unwrap_or(1.0);
     Ok((core::array::from_fn(|k| DVec3::AXES[k] * spacing(k)), origin))
 }
 
 /// The vectors of a text such as `none (1,0,0) (0,1,0) (0,0,2)`.
 fn vectors(text: &str) -> Result<Vec<Option<DVec3>>, ImageReadError> {
-    let wrong = || wrong(FORMAT, "space directions or space origin", format!("{} is no vector of three numbers; export the file again", quoted(text)));
+    let wrong = || {
+        wrong(
+            FORMAT,
+            "space directions or space origin",
+            format!("{} is no vector of three numbers; export the file again", quoted(text)),
+        )
+    };
     let mut found = Vec::new();
     let mut rest = text.trim();
     while !rest.is_empty() {
@@ -157,7 +178,8 @@ fn vectors(text: &str) -> Result<Vec<Option<DVec3>>, ImageReadError> {
             rest = after.trim_start();
             continue;
         }
-        let (inner, after) = rest.strip_prefix('(').and_then(|rest| rest.split_once(')')).ok_or_else(wrong)?;
+        let (inner, after) =
+            rest.strip_prefix('(').and_then(|rest| rest.split_once(')')).ok_or_else(wrong)?;
         match numbers(&inner.replace(',', " ")).as_deref() {
             Some(&[x, y, z]) => found.push(Some(DVec3::new(x, y, z))),
             _ => return Err(wrong()),

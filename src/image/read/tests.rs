@@ -85,7 +85,9 @@ fn the_quaternion_of_a_nifti_header_turns_and_flips() {
 
 #[test]
 fn a_file_that_is_cut_off_is_refused() {
-    for name in ["nifti-1-big", "nifti-2", "nifti-gzip", "nrrd-raw", "nrrd-gzip", "npy-c", "mha", "mha-zlib", "cube"] {
+    for name in
+        ["nifti-1-big", "nifti-2", "nifti-gzip", "nrrd-raw", "nrrd-gzip", "npy-c", "mha", "mha-zlib", "cube"]
+    {
         let bytes = seed(name);
         // The last line feed of a text is not missed, nor are the check sums of compressed data.
         let spared = match name {

@@ -21,6 +21,7 @@ fn the_first_sentence_is_short_and_names_no_part_of_the_method() {
         Warning::SampledAs { equation: "x = 0".to_owned() },
         Warning::FlushFaces { faces: vec!["z - 1 = 0".to_owned()] },
         Warning::Unused { names: vec!["c_rgb".to_owned(), "r".to_owned()] },
+        Warning::Finer { spacing: 0.123456, resolution: 1.0 },
         Warning::Gradient { position, length },
         Warning::Count { count: 8_406, wanted: 8_000 },
         Warning::Unpaired { axis: 0, repeats: true },
