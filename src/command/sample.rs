@@ -193,6 +193,8 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         Origin::Points(model) => (Some(model), None),
         Origin::Image(image) => (None, Some(image)),
     };
+    let mut sampled = settings;
+    sampled.bounds = None;
     let thickness = made.as_ref().and_then(|made| made.solid.sheet().cloned());
     let (surface, formula, parameters) =
         made.map_or_else(Default::default, |made| (made.surface, made.formula, made.parameters));
@@ -204,7 +206,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         formula,
         parameters,
         bounds,
-        settings: Settings { bounds: None, ..settings },
+        settings: sampled,
         thickness,
         porosity: wish.map(|wish| wish.outcome()),
         predicted_count,
