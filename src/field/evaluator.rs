@@ -288,8 +288,8 @@ pub trait Bounded: Evaluator {
 
     /// Adds boxes in the box `within`, whose sides may have no length. Each zero of the factor in
     /// `within` at which its derivatives along all of the axes `sides` vanish must be in a box of a
-    /// part, and each end of the surface where f is defined no longer. Of the other zeros as many as
-    /// possible should be in none.
+    /// part, and each end of the surface where f is defined no longer. Of the other zeros as many
+    /// as possible should be in none.
     fn cells(&mut self, factor: usize, part: usize, within: &Bounds, sides: &[usize], out: &mut Vec<Bounds>) {
         let _ = (factor, part, within, sides, out);
     }

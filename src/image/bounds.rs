@@ -1,6 +1,6 @@
 //! Bounds of the spline and its derivatives over boxes of indices.
 //!
-//! Over up to eight cells they are those of the Bézier points of the part of each cell that is in
+//! Over up to 27 cells they are those of the Bézier points of the part of each cell that is in
 //! the box, exact for single points. Over more cells they are hulls of the coefficients and their
 //! differences, and over many blocks bounds that are kept for each.
 
@@ -12,8 +12,9 @@ use core::ops::Range;
 /// Bounds of the derivatives of [`ORDERS`], over indices.
 pub(super) type Derivatives = [Interval; 10];
 
-/// Cells that are bounded by Bézier points at most.
-const FEW: usize = 8;
+/// Cells that are bounded by Bézier points at most: a voxel of an image that is turned in space
+/// lies in a box of up to three along each axis.
+const FEW: usize = 27;
 /// Blocks along each axis whose bounds are joined at most; over more of them slopes are those of
 /// the whole image.
 const BLOCKS: usize = 4;
@@ -33,8 +34,8 @@ pub(super) struct Found {
 }
 
 impl Bricks {
-    /// Bounds of the derivatives of the [`ORDERS`] in `wanted` over a box of indices of voxels; none
-    /// where the spline is not defined. The other ones are empty.
+    /// Bounds of the derivatives of the [`ORDERS`] in `wanted` over a box of indices of voxels;
+    /// none where the spline is not defined. The other ones are empty.
     pub(super) fn enclose(&self, indices: &Bounds, wanted: Range<usize>) -> Option<Found> {
         let (mut first, mut last) = ([0; 3], [0; 3]);
         let (mut from, mut to) = ([0.0; 3], [0.0; 3]);

@@ -32,7 +32,7 @@ pub struct ImageField {
     image: Image,
     iso: f64,
     is_inverted: bool,
-    bricks: Arc<Bricks>,
+    pub(super) bricks: Arc<Bricks>,
 }
 
 impl Debug for ImageField {
@@ -157,8 +157,8 @@ impl ImageField {
         }
     }
 
-    /// The box in which the surface lies, with the room that it needs, and whether the border of the
-    /// image cuts it.
+    /// The box in which the surface lies, with the room that it needs, and whether the border of
+    /// the image cuts it.
     fn within(&self) -> Option<Within> {
         let (mut indices, cut) = self.bricks.surface_box()?;
         let is_cut = cut.as_flattened().contains(&true);
@@ -171,6 +171,12 @@ impl ImageField {
         }
         Some(Within { bounds: self.placement().points(&indices), is_cut })
     }
+}
+
+/// For each of four coefficients its weights in the value, the slope and the second derivative.
+#[inline(always)]
+fn columns<T: Number>(weights: &[[T; 4]; 3]) -> impl Iterator<Item = [T; 3]> {
+    (0..4).map(|k| weights.map(|row| row[k]))
 }
 
 /// The derivatives up to those of `ORDER` of a spline at a point of a cell, over indices.
@@ -187,24 +193,24 @@ fn spline<T: Number, const ORDER: usize>(brick: Brick, cell: [usize; 3], t: [T; 
         }
     };
     let mut sums = [[zero; 4]; 6];
-    for k in 0..4 {
+    for (k, [value, slope, bend]) in columns(&z).enumerate() {
         let mut rows = [[zero; 4]; 3];
-        for j in 0..4 {
+        for (j, weights) in columns(&y).enumerate() {
             let at = WIDE * (j + WIDE * k);
             let c: [T; 4] = core::array::from_fn(|i| T::from(window[at + i]));
-            for (order, row) in rows.iter_mut().enumerate().take(ORDER + 1) {
-                add(row, &c, y[order][j]);
+            for (row, weight) in rows.iter_mut().zip(weights).take(ORDER + 1) {
+                add(row, &c, weight);
             }
         }
-        add(&mut sums[0], &rows[0], z[0][k]);
+        add(&mut sums[0], &rows[0], value);
         if ORDER >= 1 {
-            add(&mut sums[1], &rows[1], z[0][k]);
-            add(&mut sums[2], &rows[0], z[1][k]);
+            add(&mut sums[1], &rows[1], value);
+            add(&mut sums[2], &rows[0], slope);
         }
         if ORDER >= 2 {
-            add(&mut sums[3], &rows[2], z[0][k]);
-            add(&mut sums[4], &rows[1], z[1][k]);
-            add(&mut sums[5], &rows[0], z[2][k]);
+            add(&mut sums[3], &rows[2], value);
+            add(&mut sums[4], &rows[1], slope);
+            add(&mut sums[5], &rows[0], bend);
         }
     }
     let dot = |a: &[T; 4], b: &[T; 4]| (a[0] * b[0] + a[2] * b[2]) + (a[1] * b[1] + a[3] * b[3]);

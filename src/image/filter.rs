@@ -15,8 +15,8 @@
 use super::Image;
 use std::collections::VecDeque;
 
-/// Weights of the filter on each side. The first one that is left out is 6 · 10⁻⁸ of the middle one,
-/// the rounding of single precision.
+/// Weights of the filter on each side. The first one that is left out is 6 · 10⁻⁸ of the middle
+/// one, the rounding of single precision.
 pub(super) const REACH: usize = 12;
 
 /// Coefficients that are computed before the first voxel of a row: one for the first cell, and one

@@ -43,15 +43,17 @@ impl Image {
     }
 
     /// The image of the signed distance from the boundary of a label, positive inside, blurred by a
-    /// Gaussian of `width` voxels, [`DEFAULT_LABEL_WIDTH`] for a start: its surface is that [at](Image::at)
+    /// Gaussian of `width` voxels, [`DEFAULT_LABEL_WIDTH`] for a start: its surface is that
+    /// [at](Image::at)
     /// 0. The distance is that to the nearest voxel on the other side, less half a voxel (P.
     /// Felzenszwalb & D. Huttenlocher, "Distance Transforms of Sampled Functions", Theory of
     /// Computing 8, 2012).
     ///
-    /// The boundary of a label is known to half a voxel, and the surface keeps within that of smooth
-    /// bodies. The Gaussian levels the steps between voxels: with a width of 1, normals turn by some
-    /// 4° from them, with 1.5 by 2°, without it by 26°. It rounds corners by about its width, and a
-    /// part that is thinner than two widths is lost, which a [note](Image::notes) says.
+    /// The boundary of a label is known to half a voxel, and the surface keeps within that of
+    /// smooth bodies. The Gaussian levels the steps between voxels: with a width of 1, normals turn
+    /// by some 4° from them, with 1.5 by 2°, without it by 26°. It rounds corners by about its
+    /// width, and a part that is thinner than two widths is lost, which a [note](Image::notes)
+    /// says.
     ///
     /// # Errors
     ///

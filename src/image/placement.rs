@@ -37,7 +37,8 @@ impl Placement {
     pub fn new(matrix: DMat3, origin: DVec3) -> Result<Self, ImageError> {
         let axes = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
         let lengths = axes.map(DVec3::length);
-        // Divided by one length after the other, since their product may leave the range of numbers.
+        // Divided by one length after the other, since their product may leave the range of
+        // numbers.
         let [x, y, z] = core::array::from_fn(|k: usize| axes[k] / lengths[k]);
         let share = x.cross(y).dot(z).abs();
         let inverse = matrix.inverse();

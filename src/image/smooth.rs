@@ -9,9 +9,10 @@ use crate::math::median;
 const REACH: f64 = 4.0;
 /// Voxels along each axis at which the noise is measured at most; their median hardly changes with
 /// more.
-const SAMPLED: usize = 64;
+const SAMPLED: usize = 32;
 /// Noise that is left on purpose, as a share of the contrast: it moves the surface of an edge that
-/// is blurred by a voxel by some fiftieth of a voxel. More leaves specks, less rounds what is small.
+/// is blurred by a voxel by some fiftieth of a voxel. More leaves specks, less rounds what is
+/// small.
 const LEFT: f64 = 0.01;
 /// Widths of the Gaussian against noise, in voxels: narrower ones hardly lower it, and wider ones
 /// remove what is a few voxels wide.
@@ -69,10 +70,10 @@ pub(super) fn blur(size: [usize; 3], voxels: &mut [f32], deviations: [f64; 3]) {
 }
 
 impl Image {
-    /// The image blurred by a Gaussian, whose standard deviation is `width` voxels of the coarser of
-    /// the two axes with the smaller spacings, the same length along all axes. It lowers noise, and
-    /// moves a surface of mean curvature H by about H times the square of that length towards the
-    /// inside of its bends. The voxels become numbers in single precision.
+    /// The image blurred by a Gaussian, whose standard deviation is `width` voxels of the coarser
+    /// of the two axes with the smaller spacings, the same length along all axes. It lowers noise,
+    /// and moves a surface of mean curvature H by about H times the square of that length towards
+    /// the inside of its bends. The voxels become numbers in single precision.
     ///
     /// # Errors
     ///
@@ -94,10 +95,10 @@ impl Image {
 
     /// The standard deviation of the noise in the values of the voxels. It is measured by the
     /// differences of second order along all three axes at once, which vanish on everything that is
-    /// smooth along one of them, as the median of their sizes at up to 64³ places (after J. Immerkær,
-    /// "Fast Noise Variance Estimation", Computer Vision and Image Understanding 64, 1996, who takes
-    /// the mean in two dimensions). Noise must be independent from voxel to voxel; that of a scan
-    /// that was resampled is underestimated.
+    /// smooth along one of them, as the median of their sizes at up to 32³ places (after J.
+    /// Immerkær, "Fast Noise Variance Estimation", Computer Vision and Image Understanding 64,
+    /// 1996, who takes the mean in two dimensions). Noise must be independent from voxel to voxel;
+    /// that of a scan that was resampled is underestimated.
     #[must_use]
     pub fn noise(&self) -> f64 {
         /// √(1² + 2² + 1²)³, by which the differences are larger than the noise.
@@ -135,7 +136,7 @@ impl Image {
     pub fn width_against_noise(&self) -> f64 {
         let [dark, bright] = Histogram::of(self).means();
         let excess = self.noise() / (LEFT * (bright - dark));
-        if !(excess > 1.0) {
+        if excess.is_nan() || excess <= 1.0 {
             return 0.0;
         }
         let width = libm::cbrt(excess * excess) / libm::sqrt(4.0 * core::f64::consts::PI);

@@ -153,18 +153,19 @@ enum Source {
 }
 
 impl Image {
-    /// Reads a file: NIfTI-1 or -2 (`.nii`, `.nii.gz`, or `.hdr` with `.img`), NRRD (`.nrrd`, `.nhdr`),
-    /// NumPy (`.npy`), MetaImage (`.mha`, `.mhd`) or Gaussian cube (`.cube`). The content decides,
-    /// not the name. Of a file with several volumes or values for each voxel the first is read,
-    /// which a [note](Image::notes) says. Lengths are in the unit of the file: millimetres in medical
-    /// images, bohr in cubes.
+    /// Reads a file: NIfTI-1 or -2 (`.nii`, `.nii.gz`, or `.hdr` with `.img`), NRRD (`.nrrd`,
+    /// `.nhdr`), NumPy (`.npy`), MetaImage (`.mha`, `.mhd`) or Gaussian cube (`.cube`). The content
+    /// decides, not the name. Of a file with several volumes or values for each voxel the first is
+    /// read, which a [note](Image::notes) says. Lengths are in the unit of the file: millimetres in
+    /// medical images, bohr in cubes.
     ///
     /// `name` is the name of the file without its folder. A header whose voxels are in another file
     /// asks `beside` for it, by its name.
     ///
     /// # Errors
     ///
-    /// If the file cannot be read or its voxels make no image: what is wrong, where, and what to do.
+    /// If the file cannot be read or its voxels make no image: what is wrong, where, and what to
+    /// do.
     pub fn read(
         name: &str,
         bytes: Vec<u8>,

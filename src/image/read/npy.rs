@@ -13,9 +13,9 @@ pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
     let cut = || wrong(FORMAT, "length", "the file ends within its header; save it again");
     let version = *start.get(6).ok_or_else(cut)?;
-    let (length, from): (usize, usize) = match start.get(8..12).ok_or_else(cut)? {
-        &[a, b, ..] if version == 1 => (usize::from(u16::from_le_bytes([a, b])), 10),
-        &[a, b, c, d] => (u32::from_le_bytes([a, b, c, d]) as usize, 12),
+    let (length, from): (usize, usize) = match *start.get(8..12).ok_or_else(cut)? {
+        [a, b, ..] if version == 1 => (usize::from(u16::from_le_bytes([a, b])), 10),
+        [a, b, c, d] => (u32::from_le_bytes([a, b, c, d]) as usize, 12),
         _ => return Err(cut()),
     };
     let end = from.checked_add(length).ok_or_else(cut)?;
