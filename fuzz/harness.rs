@@ -1,10 +1,11 @@
-//! What must hold of any formula, file and request. Each function takes any bytes and panics where
+//! What must hold of any formula, file, image and request. Each function takes any bytes and panics where
 //! something does not hold.
 //!
 //! libFuzzer calls them (`targets/`), and so does `tests/it/fuzz.rs`, with mutations of the files
 //! in `seeds/`.
 
 use glam::{DVec3, Vec3};
+use marching_particles::Image;
 use marching_particles::field::Frame;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::{Enclosure, Field, Jet};
@@ -316,4 +317,36 @@ pub fn run(
     let is_whole = search != Search::Proven || sampled.missing == Some(sampled.without.len());
     assert!(is_whole, "{}: {sampled:?}", context());
     Some(Outcome { digest: session.run.particles().digest(), search })
+}
+
+/// A file of an image: it is refused with a message, or it is an image whose voxels are finite, with
+/// a surface between its darkest and its brightest voxel whose field has finite values there.
+pub fn image(bytes: &[u8]) {
+    let beside = |name: &str| Err(format!("{name} is not read here"));
+    let image = match Image::read("scan.hdr", bytes.to_vec(), beside) {
+        Ok(image) => image,
+        Err(error) => {
+            let message = error.to_string();
+            assert!(!message.is_empty() && !message.chars().any(char::is_control), "{error:?}");
+            return;
+        }
+    };
+    let [min, max] = image.range();
+    assert!(min.is_finite() && max.is_finite() && min < max, "{image:?}");
+    let voxels: usize = image.size().iter().product();
+    assert!(voxels <= image.bytes() && image.size().iter().all(|&n| n >= 2), "{image:?}");
+    // A few million voxels take seconds.
+    if voxels > 100_000 {
+        return;
+    }
+    let Ok(field) = image.at(image.otsu()) else { return };
+    let mut random = Random::of(bytes);
+    for _ in 0..4 {
+        let index = DVec3::from_array(image.size().map(|n| random.between(0.0, (n - 1) as f64)));
+        let p = image.placement().point(index);
+        let back = image.placement().index(p) - index;
+        if p.is_finite() && back.abs().max_element() < 1e-6 {
+            assert!(!field.value(p).is_nan(), "{image:?} at {index}");
+        }
+    }
 }

@@ -48,7 +48,8 @@
 //!
 //! # Features
 //!
-//! `points`, which is on by default, fits surfaces to points. With `parallel` all threads of the
+//! `points` and `images`, which are on by default, fit surfaces to points and find them in
+//! three-dimensional images. With `parallel` all threads of the
 //! current [rayon](https://docs.rs/rayon) pool share measuring, fits to points and parts of the
 //! mesh, natively; the results are the same. Functions of the program are then called from several
 //! threads at once. A program that does such work in [steps](Reporting::step) takes them in a
@@ -95,9 +96,10 @@
 //! | the job | [`sample`], [`Sample`], [`Run`], [`Start`], [`Progress`], [`Phase`], [`StopReason`], [`Reporting`] |
 //! | its settings | [`Settings`], [`Spacing`], [`SpacedSettings`], [`Sampling`], [`Radius`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Bounds`], [`Reach`] |
 //! | formulas | [`Formula`], [`Expr`], [`Parameter`], [`Thickness`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [`PorosityError`], [gallery] |
-//! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`PiecewiseFn`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Pieces`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [glam] |
+//! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`PiecewiseFn`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Pieces`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [`Within`], [glam] |
 //! | solids of two fields | [`union`], [`intersection`], [`difference`], [`smooth_union`], [`offset`], [`Combined`] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
+//! | three-dimensional images | [`Image`], [`ImageField`], [`ImagePlacement`], [`Voxel`], [`VoxelType`], [`Label`], [`DEFAULT_LABEL_WIDTH`], [`ImageFormat`], [`ImageError`], [`ImageReadError`] |
 //! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Body`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
 //! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measured`], [`Measures`], [`Cut`] |
 //! | its figures | [`Figures`] with the groups in [figures], [`Histogram`], [`Places`], [`Pair`], [`Hole`], [`Measurements`]; [`Value`], [`NamedValues`] |
@@ -124,6 +126,9 @@ pub mod export;
 pub mod extent;
 #[doc(hidden)]
 pub mod field;
+#[cfg(feature = "images")]
+#[doc(hidden)]
+pub mod image;
 #[doc(hidden)]
 pub mod lesson;
 #[doc(hidden)]
@@ -168,10 +173,15 @@ pub use field::model::{CENTRES, GivenMesh, GivenTopology, ModelInfo, NormalSourc
 pub use field::rbf::RbfField;
 pub use field::{
     BatchField, Bounded, Combined, Enclosure, Evaluator, Facts, Field, FieldError, FnField, Frame, IntoField,
-    Jet, Pieces, PiecewiseFn, SharedError, UnitCell, difference, gallery, intersection, offset, smooth_union,
-    union,
+    Jet, Pieces, PiecewiseFn, SharedError, UnitCell, Within, difference, gallery, intersection, offset,
+    smooth_union, union,
 };
 pub use glam;
+#[cfg(feature = "images")]
+pub use image::{
+    DEFAULT_LABEL_WIDTH, Image, ImageError, ImageField, ImageFormat, ImageReadError, Label,
+    Placement as ImagePlacement, Voxel, VoxelType,
+};
 pub use math::{Bounds, BoxError, Interval, Sym3};
 pub use mesh::bodies::{Bodies, Body};
 pub use mesh::facing::Inside;

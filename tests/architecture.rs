@@ -12,7 +12,7 @@ type Room = (&'static str, &'static [(&'static str, &'static [&'static str])]);
 /// Who may use whom in the rooms whose order is a decision. A module of a listed room that is not
 /// listed has no place in it yet; what is not listed may not be used. Parents, which declare their
 /// modules, may be used by them.
-const ROOMS: [Room; 4] = [
+const ROOMS: [Room; 5] = [
     (
         "",
         &[
@@ -23,6 +23,8 @@ const ROOMS: [Room; 4] = [
             ("differential", &["math", "field"]),
             // A box is found before anything is sampled.
             ("extent", &["math", "slices", "field"]),
+            // Three-dimensional images and their files: fields like any other.
+            ("image", &["math", "field"]),
             // From a file to a field. The core that samples is built without it.
             ("pointcloud", &["math", "field", "spatial", "topology", "slices"]),
             // Particles, meshes of them and the search among them know no field: they hold whatever
@@ -113,6 +115,22 @@ const ROOMS: [Room; 4] = [
                     "flow",
                 ],
             ),
+        ],
+    ),
+    (
+        "image",
+        &[
+            ("voxels", &[]),
+            ("placement", &[]),
+            ("kernel", &[]),
+            ("otsu", &[]),
+            ("filter", &[]),
+            ("bricks", &["filter"]),
+            ("bounds", &["bricks", "kernel"]),
+            ("field", &["bricks", "kernel", "placement"]),
+            ("smooth", &["otsu", "voxels"]),
+            ("labels", &["smooth", "voxels"]),
+            ("read", &["placement", "voxels"]),
         ],
     ),
     (

@@ -147,7 +147,7 @@ pub(crate) struct Sweep {
 const SAMPLE_LONG: &str = "\
 Sample a surface, write it to files and say how good it is.
 
-Name a surface, give a formula, or give a file of points, with or without normals. Say how fine: by the radius of the particles (neighbours sit two radii apart) or by \
+Name a surface, give a formula, a file of points, with or without normals, or a three-dimensional image. Say how fine: by the radius of the particles (neighbours sit two radii apart) or by \
 their number. Without --out and --mesh nothing is written, only measured.";
 
 const SAMPLE_AFTER: &str = "\
@@ -173,6 +173,8 @@ Examples:
   marching-particles sample --like part.glb --radius 0.3% --mesh finer.glb
   marching-particles sample --points scan.ply --centres 400 --out even.ply --mesh even.glb
   marching-particles sample --points scan.ply --formula \"max(model, abs(z) - 0.1)\" --mesh slice.stl
+  marching-particles sample --image scan.nii.gz --iso 300 --count 50000 --mesh bone.stl
+  marching-particles sample --image organs.nrrd --label 3 --mesh liver.stl
   marching-particles sample --surface torus --mesh - --format glb --quiet | viewer
   marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --count 5000 --print python
   marching-particles sample --formula \"(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3\" --relax 0
@@ -180,7 +182,7 @@ Examples:
 Exit codes:
   0  done
   1  a file could not be read or written
-  2  the command, the formula, a setting or a file of points cannot be understood
+  2  the command, the formula, a setting or a file of points or of an image cannot be understood
   3  there is nothing to sample: no surface in the box, a constant or undefined formula
   4  more particles than the limit; what was placed before it was reached is written";
 
@@ -200,7 +202,7 @@ pub(crate) struct SampleArguments {
     /// Share of the box of --closed that the sheet leaves empty, by the volume of the mesh: 70% or
     /// 0.7. Finds the thickness; a --thickness by a formula is scaled. Corrected by up to two more
     /// runs. For formulas
-    #[arg(long, value_name = "SHARE%", value_parser = porosity, requires = "closed", conflicts_with = "points", help_heading = "Surface")]
+    #[arg(long, value_name = "SHARE%", value_parser = porosity, requires = "closed", conflicts_with_all = ["points", "image"], help_heading = "Surface")]
     pub(crate) porosity: Option<f64>,
 
     #[command(flatten)]
@@ -283,7 +285,7 @@ pub(crate) struct SampleArguments {
     /// --unit
     #[arg(
         long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true,
-        conflicts_with_all = ["thickness", "porosity", "points", "print"], help_heading = "Output"
+        conflicts_with_all = ["thickness", "porosity", "points", "image", "print"], help_heading = "Output"
     )]
     pub(crate) wall: Option<Length>,
 
@@ -307,7 +309,7 @@ pub(crate) struct SampleArguments {
     /// Print the program that makes these particles, in place of making them: on the library in
     /// Rust, on the package for npm (js), on the Python package, or as a command (shell). No file
     /// is written; --mesh chooses the method as usual. For formulas
-    #[arg(long, value_name = "LANGUAGE", value_parser = one_of(&Language::ALL), conflicts_with_all = ["json", "porosity"], help_heading = "Output")]
+    #[arg(long, value_name = "LANGUAGE", value_parser = one_of(&Language::ALL), conflicts_with_all = ["json", "porosity", "image"], help_heading = "Output")]
     pub(crate) print: Option<(&'static str, Language)>,
 
     /// Print nothing but errors, and the line of --json; show no progress bar (there is none
@@ -334,6 +336,35 @@ pub(crate) struct SurfaceArguments {
     /// come from the file, else from its faces, else they are estimated
     #[arg(long, value_name = "FILE", conflicts_with = "surface", help_heading = "Surface")]
     pub(crate) points: Option<PathBuf>,
+
+    /// File of a three-dimensional image: NIfTI (.nii, .nii.gz, .hdr), NRRD, NumPy (.npy), MetaImage
+    /// (.mha, .mhd) or Gaussian cube. The surface is that on which its voxels have the value --iso.
+    /// Coordinates are those of the file: millimetres in medical images
+    #[arg(
+        long, value_name = "FILE", help_heading = "Surface",
+        conflicts_with_all = ["surface", "formula", "points", "parameters", "closed", "thickness"]
+    )]
+    pub(crate) image: Option<PathBuf>,
+
+    /// Value of the voxels of --image on the surface, between its darkest and its brightest one. By
+    /// default it separates dark from bright voxels best, by Otsu's method
+    #[arg(long, value_name = "NUMBER", value_parser = number, requires = "image", allow_hyphen_values = true, help_heading = "Surface")]
+    pub(crate) iso: Option<f64>,
+
+    /// Label whose boundary is the surface, for an --image in which whole numbers say to which body
+    /// a voxel belongs
+    #[arg(long, value_name = "NUMBER", value_parser = number, requires = "image", conflicts_with = "iso", help_heading = "Surface")]
+    pub(crate) label: Option<f64>,
+
+    /// Width of a Gaussian in voxels, in the plane of the slices: over the voxels of --image,
+    /// against noise [default: by the noise that is measured, 0 or from 0.7 to 2], or over the
+    /// distances from --label, against steps [default: 1]
+    #[arg(long, value_name = "VOXELS", value_parser = number, requires = "image", help_heading = "Surface")]
+    pub(crate) smooth: Option<f64>,
+
+    /// Take the darker voxels of --image as inside, instead of the brighter ones
+    #[arg(long, requires = "image", help_heading = "Surface")]
+    pub(crate) dark_inside: bool,
 
     /// Centres of the surface among the points of --points or of a model, 100 to 800: more follow
     /// finer details and take longer [default: 200]
@@ -433,7 +464,11 @@ impl SampleArguments {
             surface.add_parameters(record.parameters);
             return self.sampling.complete(&record.settings);
         }
-        if surface.surface.is_none() && surface.formula.is_none() && surface.points.is_none() {
+        if surface.surface.is_none()
+            && surface.formula.is_none()
+            && surface.points.is_none()
+            && surface.image.is_none()
+        {
             let own = record.surface.as_deref().and_then(gallery::find).map(|own| record.solid.own_box(own));
             if surface.bounds.is_none() && own != Some(record.bounds) {
                 surface.bounds = Some(BoxChoice::Given(record.faces.unwrap_or(record.bounds)));

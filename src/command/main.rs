@@ -4,6 +4,7 @@ mod arguments;
 mod bar;
 mod code;
 mod failure;
+mod image;
 mod options;
 mod outcome;
 mod output;

@@ -1,5 +1,6 @@
 //! Result of a run.
 
+use crate::image::ImageInfo;
 use marching_particles::field::model::ModelInfo;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::Settings;
@@ -11,7 +12,7 @@ use std::collections::BTreeMap;
 /// Wall times of the phases in seconds.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(crate) struct Seconds {
-    /// Time to read points and to fit a field to them.
+    /// Time to read points and to fit a field to them, or to read an image and to filter it.
     pub(crate) points: f64,
     pub(crate) seeding: f64,
     pub(crate) generation: f64,
@@ -38,6 +39,9 @@ pub(crate) struct Outcome {
     pub(crate) surface: Option<String>,
     /// Report of the fit, for a surface near points.
     pub(crate) model: Option<ModelInfo>,
+    /// The image, for a surface in one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) image: Option<ImageInfo>,
     pub(crate) formula: String,
     pub(crate) parameters: BTreeMap<String, f64>,
     pub(crate) bounds: Bounds,

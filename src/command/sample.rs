@@ -7,7 +7,7 @@ use crate::outcome::{MeshCounts, Outcome, Seconds};
 use crate::output::{OutputFile, STANDARD, record_path};
 use crate::porosity::Wish;
 use crate::spacing::space;
-use crate::surface::{choose, fit};
+use crate::surface::{Origin, choose, fit};
 use crate::wall::Wall;
 use crate::{code, summary};
 use indicatif::ProgressBar;
@@ -47,10 +47,12 @@ fn read_record(path: &Path, surface: &SurfaceArguments) -> Result<FileRecord, Fa
         Failure::Usage(format!("the record in {} could not be read: {error}", path.display()))
     })?;
     match &record.model {
-        Some(model) if surface.surface.is_none() && surface.points.is_none() => Err(Failure::Usage(format!(
-            "{} was made from points, {model}: name them with --surface or --points, beside --like",
-            path.display()
-        ))),
+        Some(model) if surface.surface.is_none() && surface.points.is_none() && surface.image.is_none() => {
+            Err(Failure::Usage(format!(
+                "{} was made from points, {model}: name them with --surface or --points, beside --like",
+                path.display()
+            )))
+        }
         _ => Ok(record),
     }
 }
@@ -82,15 +84,17 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     check_vertices(arguments)?;
     check_placement(arguments)?;
     let records: Vec<PathBuf> = (arguments.out.iter().zip(&formats))
-        .filter(|(path, format)| **format == Format::Csv && !is_standard(path))
+        .filter(|(path, format)| {
+            **format == Format::Csv && !is_standard(path) && arguments.surface.image.is_none()
+        })
         .map(|(path, _)| record_path(path))
         .collect();
     let paths: Vec<&PathBuf> = arguments.out.iter().chain(&arguments.mesh).chain(&records).collect();
     let mut outputs = OutputFile::beside(&paths)?.into_iter();
     let mut seconds = Seconds::default();
     let mut session = Session::without_surface();
-    let model = timed(&mut seconds.points, || choose(&mut session, &arguments.surface, arguments.quiet))?;
-    if model.is_none() {
+    let origin = timed(&mut seconds.points, || choose(&mut session, &arguments.surface, arguments.quiet))?;
+    if matches!(origin, Origin::Formula) {
         seconds.points = 0.0;
     }
     space(&mut session, spacing)?;
@@ -140,11 +144,15 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         }
     };
     let reach = session.run.reach();
-    let mut made = session.record(None).expect("a run that has started has a record");
-    // The steps that were asked for, though an even surface takes fewer.
-    made.settings.relax_steps = settings.relax_steps;
-    if model.is_some() {
-        made.surface.clone_from(&arguments.surface.surface);
+    let bounds = session.run.bounds();
+    // No record holds an image.
+    let mut made = session.record(None);
+    if let Some(made) = &mut made {
+        // The steps that were asked for, though an even surface takes fewer.
+        made.settings.relax_steps = settings.relax_steps;
+        if matches!(origin, Origin::Points(_)) {
+            made.surface.clone_from(&arguments.surface.surface);
+        }
     }
     let field = session.run.field().clone();
     bar.set_message("measuring");
@@ -172,7 +180,10 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     let mesh = is_joined.then(|| MeshCounts::new(&sample, &bodies, arguments.bodies(), placement));
     let is_printed =
         mesh_formats.iter().any(|format| matches!(format, MeshFormat::Stl | MeshFormat::ThreeMf));
-    let record = RecordText::new(&serde_json::to_string(&made).map_err(std::io::Error::other)?);
+    let record = match &made {
+        Some(made) => RecordText::new(&serde_json::to_string(made).map_err(std::io::Error::other)?),
+        None => RecordText::default(),
+    };
     timed(&mut seconds.writing, || {
         for (format, output) in formats.into_iter().zip(outputs.by_ref()) {
             let file = ParticleFile { format, record: record.clone() };
@@ -192,16 +203,28 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
 
     let report = sample.report().clone();
     let capped = report.stop_reason == Some(StopReason::Cap);
+    let (model, image) = match origin {
+        Origin::Formula => (None, None),
+        Origin::Points(model) => (Some(model), None),
+        Origin::Image(image) => (None, Some(image)),
+    };
+    let mut sampled = settings;
+    sampled.bounds = None;
+    let thickness = made.as_ref().and_then(|made| made.solid.sheet().cloned());
+    let spacing = made.as_ref().and_then(|made| made.spacing.clone());
+    let (surface, formula, parameters) =
+        made.map_or_else(Default::default, |made| (made.surface, made.formula, made.parameters));
     let outcome = Outcome {
         version: env!("CARGO_PKG_VERSION"),
-        surface: made.surface,
+        surface,
         model,
-        formula: made.formula,
-        parameters: made.parameters,
-        bounds: made.bounds,
-        settings: made.settings,
-        thickness: made.solid.sheet().cloned(),
-        spacing: made.spacing,
+        image,
+        formula,
+        parameters,
+        bounds,
+        settings: sampled,
+        thickness,
+        spacing,
         porosity: wish.map(|wish| wish.outcome()),
         predicted_count,
         report,

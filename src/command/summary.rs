@@ -15,9 +15,10 @@ const COLUMN: usize = 13;
 
 pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     let report = &outcome.report;
-    match &outcome.model {
-        Some(model) => points(out, outcome.surface.as_deref().unwrap_or("points"), model)?,
-        None => writeln!(out, "{}: {}", outcome.surface.as_deref().unwrap_or("formula"), outcome.formula)?,
+    match (&outcome.model, &outcome.image) {
+        (_, Some(image)) => image.lines().iter().try_for_each(|line| writeln!(out, "{line}"))?,
+        (Some(model), _) => points(out, outcome.surface.as_deref().unwrap_or("points"), model)?,
+        _ => writeln!(out, "{}: {}", outcome.surface.as_deref().unwrap_or("formula"), outcome.formula)?,
     }
     if !outcome.parameters.is_empty() {
         let values: Vec<String> = outcome
@@ -60,6 +61,9 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     let s = &outcome.seconds;
     if outcome.model.is_some() {
         write!(out, "points {}, ", time(s.points))?;
+    }
+    if outcome.image.is_some() {
+        write!(out, "image {}, ", time(s.points))?;
     }
     write!(out, "seeding {}, generation {}", time(s.seeding), time(s.generation))?;
     if s.refinement > 0.0 {

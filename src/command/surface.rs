@@ -3,6 +3,7 @@
 use crate::arguments::{BoxChoice, SurfaceArguments};
 use crate::bar::bar;
 use crate::failure::Failure;
+use crate::image::{self, ImageInfo};
 use crate::points;
 use marching_particles::field::formula::{self, MODEL};
 use marching_particles::field::model::{self, ModelInfo};
@@ -13,6 +14,7 @@ use marching_particles::session::{
     BoxFaces, Fault, FaultKind, FieldAnswer, FieldRequest, Session, SolidSettings, Source,
 };
 use marching_particles::{Bounds, Field, Parameter, Settings, Thickness, gallery};
+use std::sync::Arc;
 
 /// The fit to a file of points or a built-in model, if one is requested.
 fn fit_points(arguments: &SurfaceArguments, quiet: bool) -> Result<Option<Fit>, Failure> {
@@ -52,15 +54,28 @@ fn fit_points(arguments: &SurfaceArguments, quiet: bool) -> Result<Option<Fit>, 
     Ok(fit)
 }
 
-/// Has the session take the surface that the arguments name. Returns the report of the fit, for a
-/// surface near points.
+/// What a surface is made from that is no formula.
+#[derive(Clone, Debug)]
+pub(crate) enum Origin {
+    Formula,
+    /// Points, with the report of the fit.
+    Points(ModelInfo),
+    Image(ImageInfo),
+}
+
+/// Has the session take the surface that the arguments name.
 pub(crate) fn choose(
     session: &mut Session,
     arguments: &SurfaceArguments,
     quiet: bool,
-) -> Result<Option<ModelInfo>, Failure> {
+) -> Result<Origin, Failure> {
     let (solid, given) = (arguments.solid(), arguments.bounds.and_then(BoxChoice::given));
     let refused = |fault| refused_field(arguments, fault);
+    if let Some((field, info)) = image::of_arguments(arguments)? {
+        session.set_function(Arc::new(field), given).map_err(refused)?;
+        session.choose(solid).map_err(|fault| Failure::Usage(fault.message))?;
+        return Ok(Origin::Image(info));
+    }
     let mut request =
         FieldRequest { bounds: given, pulls: arguments.pulls.clone(), ..FieldRequest::default() };
     if let Some(fit) = fit_points(arguments, quiet)? {
@@ -74,7 +89,7 @@ pub(crate) fn choose(
         request.parameters = arguments.parameters.iter().cloned().collect();
         let answer = session.set_points(fit.data, fit.info.clone(), fit.bounds, &request).map_err(refused)?;
         check_parameters(arguments, &answer)?;
-        return Ok(Some(fit.info));
+        return Ok(Origin::Points(fit.info));
     }
     request.formula.clone_from(&arguments.formula);
     request.surface.clone_from(&arguments.surface);
@@ -97,7 +112,7 @@ pub(crate) fn choose(
     check_parameters(arguments, &answer)?;
     // Its thickness may have names of the formula.
     session.choose(solid.clone()).map_err(|fault| refused_solid(&solid, fault))?;
-    Ok(None)
+    Ok(Origin::Formula)
 }
 
 /// Why a solid was refused.

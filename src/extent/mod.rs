@@ -18,7 +18,7 @@ mod walk;
 pub(crate) use grid::CELLS;
 pub(crate) use sampled::defined_share;
 
-use crate::field::{Bounded, Field, Frame};
+use crate::field::{Bounded, Field, Frame, Within};
 use crate::math::Bounds;
 use crate::slices::{self, pause};
 use glam::DVec3;
@@ -120,6 +120,10 @@ pub fn find(field: &dyn Field) -> Extent {
 
 /// [`find`] in slices of some 32 cells each.
 pub(crate) async fn find_in_slices(field: &dyn Field) -> Extent {
+    if let Some(Within { bounds, is_cut }) = field.facts().within {
+        let reach = if is_cut { Reach::Endless } else { Reach::Bounded };
+        return Extent { bounds: placeable(&bounds), reach };
+    }
     let mut evaluator = field.evaluator(Frame::default());
     let found = match evaluator.bounded() {
         Some(bounded) => scanned(field, bounded).await,

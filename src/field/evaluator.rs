@@ -276,6 +276,23 @@ pub trait Bounded: Evaluator {
     ///
     /// Under the same conditions as [`Bounded::enclose`].
     fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]);
+
+    /// Number of parts in which the field names the [cells](Bounded::cells) of a factor with which
+    /// the search for components begins; 0, the default, if it begins with the box of the run. It
+    /// is for fields that know where their surface is, as an image with many voxels does: a search
+    /// that begins with the box may have to open all of them.
+    fn parts(&mut self, factor: usize) -> usize {
+        let _ = factor;
+        0
+    }
+
+    /// Adds boxes in the box `within`, whose sides may have no length. Each zero of the factor in
+    /// `within` at which its derivatives along all of the axes `sides` vanish must be in a box of a
+    /// part, and each end of the surface where f is defined no longer. Of the other zeros as many
+    /// as possible should be in none.
+    fn cells(&mut self, factor: usize, part: usize, within: &Bounds, sides: &[usize], out: &mut Vec<Bounds>) {
+        let _ = (factor, part, within, sides, out);
+    }
 }
 
 /// An evaluator of a function that is one of several smooth functions at each point, its *pieces*:

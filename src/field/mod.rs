@@ -206,6 +206,24 @@ pub struct Facts {
     pub unused: Vec<String>,
     /// A sentence for the user on why f is the same everywhere, if it is known.
     pub why_constant: Option<String>,
+    /// A box that holds the whole surface, if the field knows one. The box of a run is fitted to it,
+    /// and the surface is not searched elsewhere.
+    pub within: Option<Within>,
+    /// The box in which f is known, as that of an image, if it is not known everywhere.
+    pub domain: Option<Bounds>,
+    /// The distance between the values that f is interpolated from, if it is: that of the voxels of
+    /// an image. Nothing is known of what is finer.
+    pub resolution: Option<f64>,
+}
+
+/// A box that holds the whole surface of a field.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Within {
+    /// The box.
+    pub bounds: Bounds,
+    /// Whether the surface would go on through faces of the box, as that of an image does at its
+    /// border. A run then takes the box as it is; otherwise it leaves room around it.
+    pub is_cut: bool,
 }
 
 /// A field that finds out by itself where its [pieces](Pieces) meet.

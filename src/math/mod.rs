@@ -267,6 +267,13 @@ impl Bounds {
         Self::new(self.lo().min(other.lo()), self.hi().max(other.hi()))
     }
 
+    /// The box of the points that are in both. Where they have none in common, a smallest corner is
+    /// above the largest.
+    #[must_use]
+    pub fn overlap(&self, other: &Self) -> Self {
+        Self::new(self.lo().max(other.lo()), self.hi().min(other.hi()))
+    }
+
     /// Diagonals of a box with which the squares of radii are normal numbers in single precision.
     pub const DIAGONALS: RangeInclusive<f64> = 1e-12..=1e12;
 

@@ -124,8 +124,8 @@ impl RunState {
         self.last = None;
         self.measuring = Measuring::default();
         self.meshing = Meshing::default();
+        let warnings = self.known_at_start(field, start, settings.max_particles);
         let sampler::Forecast { radius, predicted_count, area } = start;
-        let warnings = self.known_at_start(field, predicted_count, settings.max_particles);
         self.start = Start { radius, predicted_count, area, warnings };
         Ok(self.start.clone())
     }

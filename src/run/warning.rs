@@ -8,15 +8,15 @@ use super::report::creases_and_seams;
 use super::{Report, RunState, Severity, check};
 use crate::field::Field;
 use crate::field::model::{GivenMesh, GivenTopology, ModelInfo};
-use crate::math::{Bounds, counted, place_text};
+use crate::math::{Bounds, counted, place_text, significant};
 use crate::mesh::facing::Inside;
 use crate::mesh::triangulation::Triangulation;
 use crate::particles::Particles;
 use crate::quality::Measurements;
 use crate::quality::figures::Connectivity;
 use crate::sampler::{
-    COUNT_TOLERANCE, Doubt, FateCounts, Refusal, Sampled, SingularKind, SizeMode, Smoothing, StopReason,
-    Unsampled,
+    COUNT_TOLERANCE, Doubt, FateCounts, Forecast, Refusal, Sampled, SingularKind, SizeMode, Smoothing,
+    StopReason, Unsampled,
 };
 use core::fmt;
 use glam::DVec3;
@@ -34,6 +34,10 @@ const CLOSE_COUNT: usize = 8;
 /// Places of components without a particle that are named in words: as many as a note of some four
 /// lines holds. It is a choice of length; the report has all of them.
 const NAMED: usize = 4;
+
+/// Distance of particles, as a share of that of the voxels of an image, below which they are said
+/// to be finer than it: with half of it each voxel has four.
+const FINEST: f64 = 0.5;
 
 /// Largest difference of the areas of a mesh and of the surface fitted to it that is not told, as a
 /// share of the mesh's. Of smooth meshes it is 0.1 %; rounded edges take 2 % of a cylinder, 4 % of
@@ -93,6 +97,13 @@ pub enum Warning {
     FlushFaces {
         /// The faces, as equations.
         faces: Vec<String>,
+    },
+    /// The particles are finer than what the field is interpolated from.
+    Finer {
+        /// Distance between neighbouring particles.
+        spacing: f64,
+        /// Distance between the values that are interpolated.
+        resolution: f64,
     },
     /// Names that the formula defines, and that nothing uses.
     Unused {
@@ -288,6 +299,7 @@ impl Warning {
             Self::SampledAs { .. } => ("sampled_as", Note),
             Self::Smoothed { .. } => ("smoothed", Note),
             Self::FlushFaces { .. } => ("flush_faces", Note),
+            Self::Finer { .. } => ("finer", Note),
             Self::Unused { .. } => ("unused", Note),
             Self::Gradient { .. } => ("gradient", Fault),
             Self::Count { .. } => ("count", Caution),
@@ -390,10 +402,11 @@ impl Warning {
 }
 
 impl RunState {
-    /// Returns the warnings that are known at the start: `predicted` particles are expected, and
-    /// `limit` are allowed.
-    pub(super) fn known_at_start(&mut self, field: &dyn Field, predicted: u64, limit: u32) -> Vec<Warning> {
+    /// Returns the warnings that are known at the start, at which this is expected, and `limit`
+    /// particles are allowed.
+    pub(super) fn known_at_start(&mut self, field: &dyn Field, start: Forecast, limit: u32) -> Vec<Warning> {
         let mut warnings = Vec::new();
+        let Forecast { predicted_count: predicted, radius, .. } = start;
         if predicted > u64::from(limit) {
             warnings.push(Warning::Limit { predicted, limit });
         }
@@ -415,6 +428,10 @@ impl RunState {
         }
         let facts = field.facts();
         warnings.extend(facts.sampled_as.map(|equation| Warning::SampledAs { equation }));
+        let spacing = 2.0 * radius;
+        if let Some(resolution) = facts.resolution.filter(|resolution| spacing < FINEST * resolution) {
+            warnings.push(Warning::Finer { spacing, resolution });
+        }
         if !facts.unused.is_empty() {
             warnings.push(Warning::Unused { names: facts.unused });
         }
@@ -596,6 +613,13 @@ impl fmt::Display for Warning {
                 "A cutter lies flush with a face of the solid, and no skin is left between them. {} {}.",
                 if faces.len() == 1 { "It is" } else { "They are" },
                 faces.join(", ")
+            ),
+            Self::Finer { spacing, resolution } => write!(
+                f,
+                "The particles are finer than the image, and show how its voxels are interpolated. They are {} apart, the \
+                 voxels {}.",
+                significant(*spacing),
+                significant(*resolution)
             ),
             Self::Unused { names } => {
                 let (verb, names) = (if names.len() == 1 { "is" } else { "are" }, names.join(", "));

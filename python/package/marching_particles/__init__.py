@@ -19,6 +19,7 @@ from ._fields import (
     smooth_union,
     union,
 )
+from ._image import Image
 from ._report import Report
 from ._sample import Mesh, Sample, SampleWarning, sample
 
@@ -27,6 +28,7 @@ __all__ = [
     "Field",
     "FieldError",
     "FormulaError",
+    "Image",
     "Mesh",
     "Model",
     "Report",

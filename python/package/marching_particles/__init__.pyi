@@ -47,6 +47,32 @@ class Model(Field):
     @property
     def warnings(self) -> list[str]: ...
 
+class Image(Field):
+    def __init__(
+        self,
+        array: Any,
+        *,
+        spacing: Union[float, Sequence[float], None] = None,
+        origin: Union[Sequence[float], None] = None,
+        affine: Union[npt.ArrayLike, None] = None,
+        iso: Union[float, None] = None,
+        label: Union[int, None] = None,
+        smooth: Union[float, None] = None,
+        inside: Literal["bright", "dark"] = "bright",
+    ) -> None: ...
+    @property
+    def bounds(self) -> tuple[_Corner, _Corner]: ...
+    @property
+    def iso(self) -> float: ...
+    @property
+    def smooth(self) -> float: ...
+    @property
+    def noise(self) -> float: ...
+    @property
+    def range(self) -> tuple[float, float]: ...
+    @property
+    def notes(self) -> list[str]: ...
+
 class Sample:
     def __len__(self) -> int: ...
     @property

@@ -12,7 +12,7 @@ mod evaluator;
 mod rule;
 mod ties;
 
-use super::{Evaluator, Facts, Field, FieldError, Frame, IntoField, Jet, Piecewise, edges};
+use super::{Evaluator, Facts, Field, FieldError, Frame, IntoField, Jet, Piecewise, Within, edges};
 use crate::math::Bounds;
 use crate::slices::Work;
 use core::fmt::{self, Debug, Formatter};
@@ -209,21 +209,32 @@ impl Field for Combination {
         Box::new(CombinationEvaluator::new(self, frame))
     }
 
-    /// The periods that all parts have, and what any part leaves unused.
+    /// The periods that all parts have, and what any part leaves unused. The surface lies where
+    /// those of the parts do, and in the box in which all of them are known.
     fn facts(&self) -> Facts {
-        let mut periods = self.parts.iter().map(|part| part.facts().periods);
+        let facts: Vec<Facts> = self.parts.iter().map(|part| part.facts()).collect();
+        let mut periods = facts.iter().map(|facts| facts.periods);
         let first = periods.next().unwrap_or_default();
         let common = periods.fold(first, |common, own| {
             core::array::from_fn(|axis| common[axis].filter(|_| common[axis] == own[axis]))
         });
         let mut unused: Vec<String> = Vec::new();
-        for name in self.parts.iter().flat_map(|part| part.facts().unused) {
+        for name in facts.iter().flat_map(|facts| &facts.unused) {
             // The parts of one formula have the same definitions.
-            if !unused.contains(&name) {
-                unused.push(name);
+            if !unused.contains(name) {
+                unused.push(name.clone());
             }
         }
-        Facts { periods: common, unused, ..Facts::default() }
+        let domain = facts.iter().filter_map(|facts| facts.domain).reduce(|a, b| a.overlap(&b));
+        let has_zeros_of_parts = self.is_extreme() || matches!(self.rule, Rule::Turned { shift: 0.0, .. });
+        let own: Option<Vec<Within>> = facts.iter().map(|facts| facts.within).collect();
+        let within = own.filter(|_| has_zeros_of_parts).and_then(|own| {
+            own.into_iter()
+                .reduce(|a, b| Within { bounds: a.bounds.joined(&b.bounds), is_cut: a.is_cut || b.is_cut })
+        });
+        let within = within.or(domain.map(|bounds| Within { bounds, is_cut: true }));
+        let resolution = facts.iter().filter_map(|facts| facts.resolution).reduce(f64::min);
+        Facts { periods: common, unused, within, domain, resolution, ..Facts::default() }
     }
 
     fn calls(&self) -> Option<u64> {

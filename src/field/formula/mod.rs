@@ -680,6 +680,9 @@ impl Field for Formula {
             flush_faces: self.flush.to_vec(),
             unused: self.written.equation.unused(),
             why_constant: first.map(|first| spelling::no_coordinate(&first.name)),
+            within: None,
+            domain: None,
+            resolution: None,
         }
     }
 

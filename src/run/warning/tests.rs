@@ -22,6 +22,7 @@ fn the_first_sentence_is_short_and_names_no_part_of_the_method() {
         Warning::FlushFaces { faces: vec!["z - 1 = 0".to_owned()] },
         Warning::Smoothed { share: 0.123_45, ratio: 12.345, position, length },
         Warning::Unused { names: vec!["c_rgb".to_owned(), "r".to_owned()] },
+        Warning::Finer { spacing: 0.123456, resolution: 1.0 },
         Warning::Gradient { position, length },
         Warning::Count { count: 8_406, wanted: 8_000 },
         Warning::Unpaired { axis: 0, repeats: true },

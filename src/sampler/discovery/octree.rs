@@ -159,6 +159,7 @@ pub(crate) struct Octree {
 #[derive(Clone, Debug, Default)]
 struct FactorSearch {
     factor: usize,
+    unnamed: Unnamed,
     /// Cells of the level under way; those before `next` have been visited.
     level: Vec<Cell>,
     next: usize,
@@ -174,6 +175,15 @@ struct FactorSearch {
     searched: usize,
     /// Singular points that were found, so that each is treated once.
     met: Vec<DVec3>,
+}
+
+/// The strata of the box and the parts of the field in which it has to name cells.
+#[derive(Clone, Debug, Default)]
+struct Unnamed {
+    strata: Vec<Cell>,
+    parts: usize,
+    /// The part that is next.
+    next: usize,
 }
 
 /// The searches of the factors take turns, so that those that need few cells leave theirs to the
@@ -202,11 +212,35 @@ impl Octree {
         self.state = if has_bounds { SearchState::Ready } else { SearchState::Unavailable };
     }
 
-    /// The search of a factor of the field, which begins with the box, its faces and its edges.
-    fn search_of(&self, factor: usize) -> FactorSearch {
-        let mut level = vec![Cell { bounds: self.region.bounds, level: 0 }];
-        push_boundary(&mut level, &self.region.bounds);
-        FactorSearch { factor, level, ..FactorSearch::default() }
+    /// The search of a factor of the field, which begins with the box, its faces and its edges, or
+    /// with the cells that the field names in them.
+    fn search_of(&self, field: &mut dyn Bounded, factor: usize) -> FactorSearch {
+        let mut strata = vec![Cell { bounds: self.region.bounds, level: 0 }];
+        push_boundary(&mut strata, &self.region.bounds);
+        let search = FactorSearch { factor, ..FactorSearch::default() };
+        match field.parts(factor) {
+            0 => FactorSearch { level: strata, ..search },
+            parts => FactorSearch { unnamed: Unnamed { strata, parts, next: 0 }, ..search },
+        }
+    }
+
+    /// Has the field name the cells of one of its parts in all strata, and returns their number.
+    fn name_cells(&mut self, field: &mut dyn Bounded) -> usize {
+        let whole = self.region.bounds.size().max_element();
+        let FactorSearch { factor, unnamed, level, .. } = &mut self.search;
+        let (before, mut found) = (level.len(), Vec::new());
+        for stratum in &unnamed.strata {
+            let sides: Vec<usize> = stratum.axes().sides.into_iter().flatten().collect();
+            found.clear();
+            field.cells(*factor, unnamed.next, &stratum.bounds, &sides, &mut found);
+            level.extend(found.iter().map(|&bounds| {
+                // What a cell of this size would be after its halvings.
+                let share = (whole / bounds.size().max_element()).clamp(1.0, f64::from(1_u32 << DEPTH));
+                Cell { bounds, level: libm::floor(libm::log2(share)) as u8 }
+            }));
+        }
+        unnamed.next += 1;
+        level.len() - before
     }
 
     /// Gives the next search its turn. Those for which no cell is left end; the cells that are open
@@ -260,7 +294,7 @@ impl Octree {
         if self.state == SearchState::Ready {
             if bounds_say_something(field, &self.region.bounds) {
                 self.state = SearchState::Running;
-                let waiting = (0..field.factors()).map(|factor| self.search_of(factor)).collect();
+                let waiting = (0..field.factors()).map(|factor| self.search_of(field, factor)).collect();
                 self.turns = Turns { waiting, ..Turns::default() };
                 self.begin_turn();
             } else {
@@ -268,6 +302,11 @@ impl Octree {
             }
         }
         while budget > 0 && !self.is_done() {
+            if self.search.unnamed.next < self.search.unnamed.parts {
+                let named = self.name_cells(field);
+                budget = budget.saturating_sub(UNITS * (1 + named) as u32);
+                continue;
+            }
             let count = HEAVY.min(self.search.level.len() - self.search.next);
             self.visit(field, self.search.next..self.search.next + count);
             self.search.next += count;
@@ -417,15 +456,15 @@ mod tests {
         let field = Formula::as_written(text, &[]).expect("a formula");
         let mut evaluator = field.evaluator(Frame::default());
         let field = evaluator.bounded().expect("a formula has bounds");
-        let begun = || {
+        let begun = |field: &mut dyn Bounded| {
             let mut octree = Octree { most: MOST_CELLS, ..Octree::default() };
             octree.begin(true, &Bounds::cube(1.0));
-            octree.search = octree.search_of(0);
+            octree.search = octree.search_of(field, 0);
             octree
         };
         // All that visiting the cells leads to, and the cells of the next level among it.
         let visited = |field: &mut dyn Bounded, cells: &[Cell]| {
-            let mut octree = begun();
+            let mut octree = begun(field);
             octree.search.level = cells.to_vec();
             octree.visit(field, 0..cells.len());
             let mut all: Vec<Bounds> = octree.search.halves.iter().map(|cell| cell.bounds).collect();
@@ -438,7 +477,7 @@ mod tests {
             all.sort_by(|a, b| a.partial_cmp(b).expect("finite corners"));
             all
         };
-        let (mut cells, mut several) = (begun().search.level, 0);
+        let (mut cells, mut several) = (begun(field).search.level, 0);
         while !cells.is_empty() {
             let mut next = Vec::new();
             for batch in cells.chunks(HEAVY) {

@@ -7,6 +7,7 @@ mod code;
 #[path = "../../../../tests/it/golden.rs"]
 #[expect(dead_code, reason = "no bytes are digested here")]
 mod golden;
+mod images;
 mod spacing;
 mod sweeps;
 mod thickness;

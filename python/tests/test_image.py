@@ -1,0 +1,79 @@
+"""Three-dimensional images as fields."""
+
+from types import SimpleNamespace
+
+import marching_particles as mp
+import numpy as np
+import pytest
+
+
+def ball(shape=(30, 28, 26), middle=(14.2, 13.1, 12.4), radius=9.0):
+    indices = np.indices(shape).reshape(3, -1).T
+    return (radius - np.linalg.norm(indices - middle, axis=1)).reshape(shape)
+
+
+def distances(sample, middle):
+    return np.linalg.norm(sample.points - middle, axis=1)
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+@pytest.mark.parametrize("dtype", ["<f4", ">f8", "float16", "int16"])
+def test_array_is_indexed_by_x_y_and_z(order, dtype):
+    voxels = np.asarray(100 * ball(), dtype=dtype, order=order)
+    sample = mp.sample(mp.Image(voxels, iso=0, smooth=0), count=500)
+    assert np.abs(distances(sample, (14.2, 13.1, 12.4)) - 9).max() < 0.05
+    assert sample.report["components"] == 1
+
+
+def test_affine_places_the_image():
+    affine = np.array([[0, -0.5, 0, 3], [0.5, 0, 0, -2], [0, 0, 0.5, 7], [0, 0, 0, 1]])
+    middle = affine[:3] @ [14.2, 13.1, 12.4, 1]
+    image = mp.Image(ball(), affine=affine, iso=0, smooth=0)
+    assert np.abs(distances(mp.sample(image, count=500), middle) - 4.5).max() < 0.03
+    same = mp.Image(SimpleNamespace(dataobj=ball(), affine=affine), iso=0, smooth=0)
+    assert np.allclose(same.bounds, image.bounds)
+    spaced = mp.Image(ball(), spacing=(0.5, 0.5, 0.5), origin=(1, 2, 3), iso=0, smooth=0)
+    assert np.abs(distances(mp.sample(spaced, count=500), [8.1, 8.55, 9.2]) - 4.5).max() < 0.03
+
+
+def test_coordinates_of_xarray_place_the_image():
+    shape = (26, 28, 30)
+    places = {"z": 10 + 2 * np.arange(26), "y": -np.arange(28.0), "x": np.arange(30) / 2}
+    coords = {name: SimpleNamespace(values=place) for name, place in places.items()}
+    array = SimpleNamespace(
+        values=ball().transpose(), dims=("z", "y", "x"), coords=coords, sizes=dict(zip("zyx", shape))
+    )
+    low, high = mp.Image(array, iso=0, smooth=0).bounds
+    middle = np.add(low, high) / 2
+    assert np.abs(middle - [7.1, -13.1, 10 + 2 * 12.4]).max() < 1
+
+
+def test_labels_and_iso_are_chosen():
+    labels = (ball() > 0) * 3
+    image = mp.Image(labels, label=3)
+    assert image.smooth == 1
+    sample = mp.sample(image, count=500)
+    assert np.abs(distances(sample, (14.2, 13.1, 12.4)) - 9).max() < 0.7
+    grey = mp.Image(1000 / (1 + np.exp(-ball())))
+    assert 450 < grey.iso < 550
+    with pytest.raises(ValueError, match="those of the image are 0, 3"):
+        mp.Image(labels, label=2)
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "words"),
+    [
+        (lambda: mp.Image(np.zeros((4, 4))), ValueError, "three axes"),
+        (lambda: mp.Image(np.zeros((4, 4, 4))), ValueError, "have the value 0"),
+        (lambda: mp.Image(np.full((4, 4, 4), "a")), TypeError, "type"),
+        (lambda: mp.Image(np.full((4, 4, 4), np.nan)), ValueError, "not finite"),
+        (lambda: mp.Image(ball(), iso=99), ValueError, "outside"),
+        (lambda: mp.Image(ball(), iso=1, label=1), TypeError, "not both"),
+        (lambda: mp.Image(ball(), affine=np.zeros((3, 4))), ValueError, "plane"),
+        (lambda: mp.Image(ball(), affine=np.eye(2)), ValueError, "shape"),
+        (lambda: mp.Image(ball(), inside="left"), ValueError, "bright"),
+    ],
+)
+def test_wrong_images_are_refused(make, error, words):
+    with pytest.raises(error, match=words):
+        make()

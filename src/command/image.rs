@@ -1,0 +1,148 @@
+//! Fields from three-dimensional images.
+
+use crate::arguments::SurfaceArguments;
+use crate::failure::Failure;
+use marching_particles::math::{grouped, significant};
+use marching_particles::{DEFAULT_LABEL_WIDTH, Image, ImageError, ImageField};
+use serde::Serialize;
+use std::path::Path;
+
+/// The image and the surface in it, as the report names them.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct ImageInfo {
+    /// Name of the file.
+    pub(crate) name: String,
+    /// Voxels along each axis.
+    pub(crate) size: [usize; 3],
+    /// Distances between voxels along each axis.
+    pub(crate) spacing: [f64; 3],
+    pub(crate) voxel_type: String,
+    /// Smallest and largest voxel.
+    pub(crate) range: [f64; 2],
+    /// The value on the surface.
+    pub(crate) iso: f64,
+    /// Whether Otsu's method has chosen it.
+    pub(crate) is_otsu: bool,
+    /// The label whose boundary is sampled.
+    pub(crate) label: Option<f64>,
+    /// Width of the Gaussian in voxels, 0 for none.
+    pub(crate) smooth: f64,
+    /// Whether the width is that for the noise, as a share of the contrast, or the usual one of
+    /// labels.
+    pub(crate) is_smooth_chosen: bool,
+    /// Standard deviation of the noise, in the values of the voxels.
+    pub(crate) noise: f64,
+    /// Whether darker voxels are inside.
+    pub(crate) is_dark_inside: bool,
+    /// What the reader has decided.
+    pub(crate) notes: Vec<String>,
+    /// Bytes of the voxels, and of what the field takes beside them.
+    pub(crate) bytes: [usize; 2],
+}
+
+/// The field of the image in a file, if one is requested.
+pub(crate) fn of_arguments(arguments: &SurfaceArguments) -> Result<Option<(ImageField, ImageInfo)>, Failure> {
+    let Some(path) = &arguments.image else { return Ok(None) };
+    let unreadable = |error| Failure::Unreadable { path: path.clone(), error };
+    let wrong = |error: &dyn std::fmt::Display| Failure::Usage(format!("{}: {error}", path.display()));
+    let bytes = std::fs::read(path).map_err(unreadable)?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let image = Image::read(&name, bytes, |name| read_beside(path, name)).map_err(|error| wrong(&error))?;
+    let (surface, iso, smooth) = prepared(&image, arguments).map_err(|error| wrong(&error))?;
+    let field = surface.at(iso).map_err(|error| wrong(&error))?;
+    let field = if arguments.dark_inside { field.inverted() } else { field };
+    let info = ImageInfo {
+        name,
+        size: image.size(),
+        spacing: image.placement().spacing(),
+        voxel_type: image.voxel_type().to_string(),
+        range: image.range(),
+        iso,
+        is_otsu: arguments.iso.is_none() && arguments.label.is_none(),
+        label: arguments.label,
+        smooth,
+        is_smooth_chosen: arguments.smooth.is_none(),
+        noise: image.noise(),
+        is_dark_inside: arguments.dark_inside,
+        notes: notes(&image, &surface, arguments),
+        bytes: [surface.bytes(), field.bytes()],
+    };
+    Ok(Some((field, info)))
+}
+
+/// The image that is sampled, filtered as it was asked for, with its iso value and the width of the
+/// Gaussian.
+fn prepared(image: &Image, arguments: &SurfaceArguments) -> Result<(Image, f64, f64), ImageError> {
+    if let Some(label) = arguments.label {
+        let width = arguments.smooth.unwrap_or(DEFAULT_LABEL_WIDTH);
+        return Ok((image.label(label, width)?, 0.0, width));
+    }
+    let width = arguments.smooth.unwrap_or_else(|| image.width_against_noise());
+    let smoothed = if width == 0.0 { image.clone() } else { image.smoothed(width)? };
+    let iso = arguments.iso.unwrap_or_else(|| smoothed.otsu());
+    Ok((smoothed, iso, width))
+}
+
+/// What the reader has decided, and what else the user should know.
+fn notes(image: &Image, surface: &Image, arguments: &SurfaceArguments) -> Vec<String> {
+    /// Different values of an image that look like labels.
+    const FEW: usize = 32;
+    let mut notes = surface.notes().to_vec();
+    if arguments.label.is_none() && arguments.iso.is_none() {
+        let labels = image.labels();
+        if (2..=FEW).contains(&labels.len()) {
+            let listed: Vec<String> = labels
+                .iter()
+                .map(|label| {
+                    format!("{} ({} voxels)", significant(label.value), grouped(label.voxels as usize))
+                })
+                .collect();
+            notes.push(format!(
+                "The values look like labels, of which --label takes one: {}.",
+                listed.join(", ")
+            ));
+        }
+    }
+    notes
+}
+
+/// The file of this name in the folder of another one. A header must not name files elsewhere.
+fn read_beside(path: &Path, name: &str) -> Result<Vec<u8>, String> {
+    if Path::new(name).components().count() != 1 || Path::new(name).file_name().is_none() {
+        return Err("it is not in the same folder".to_owned());
+    }
+    std::fs::read(path.with_file_name(name)).map_err(|error| error.to_string())
+}
+
+impl ImageInfo {
+    /// The lines of the report.
+    pub(crate) fn lines(&self) -> Vec<String> {
+        let [x, y, z] = self.size;
+        let spacing = self.spacing.map(significant).join(" × ");
+        let [min, max] = self.range.map(significant);
+        let chosen = if self.is_otsu { " (Otsu's; --iso sets another)" } else { "" };
+        let inside = if self.is_dark_inside { "darker" } else { "brighter" };
+        let surface = match self.label {
+            Some(label) => format!("surface of the label {}", significant(label)),
+            None => format!("surface at the value {}{chosen}, {inside} voxels inside", significant(self.iso)),
+        };
+        let mut lines = vec![
+            format!("image: {}", self.name),
+            format!("{x} × {y} × {z} voxels of {spacing}, {}, {min} to {max}", self.voxel_type),
+            surface,
+        ];
+        if self.smooth > 0.0 {
+            let width = significant(self.smooth);
+            let (what, why) = match self.label {
+                Some(_) => ("the distance from the label", "against the steps between voxels".to_owned()),
+                None => ("the voxels", format!("against noise of {}", significant(self.noise))),
+            };
+            let chosen = if self.is_smooth_chosen { "; --smooth sets another width" } else { "" };
+            lines.push(format!(
+                "{what} smoothed by a Gaussian of {width} voxels {why}: it rounds corners by about as much{chosen}"
+            ));
+        }
+        lines.extend(self.notes.iter().map(|note| format!("note: {note}")));
+        lines
+    }
+}

@@ -1,0 +1,76 @@
+//! Surfaces in three-dimensional images.
+
+use crate::cli::{fails, file, run, sample, stdout};
+use std::fs;
+use std::path::PathBuf;
+
+/// Writes an array as NumPy would, the first axis fastest.
+fn npy(name: &str, size: [usize; 3], descr: &str, voxels: &[u8]) -> PathBuf {
+    let [x, y, z] = size;
+    let mut header =
+        format!("{{'descr': '{descr}', 'fortran_order': True, 'shape': ({x}, {y}, {z}), }}").into_bytes();
+    header.resize(117, b' ');
+    header.push(b'\n');
+    let length = (header.len() as u16).to_le_bytes();
+    let bytes = [b"\x93NUMPY\x01\x00".as_slice(), &length, &header, voxels].concat();
+    let path = file(name);
+    fs::write(&path, bytes).expect("written");
+    path
+}
+
+/// The distance of each voxel of a cube from its middle.
+fn distances(side: usize) -> impl Iterator<Item = f64> {
+    let off = move |at: usize| (at % side) as f64 - 0.5 * (side - 1) as f64;
+    (0..side * side * side)
+        .map(move |at| (off(at).powi(2) + off(at / side).powi(2) + off(at / side / side).powi(2)).sqrt())
+}
+
+fn ball(name: &str) -> String {
+    let voxels: Vec<u8> = distances(24).flat_map(|d| ((8.0 - d) * 100.0).to_le_bytes()).collect();
+    npy(name, [24; 3], "<f8", &voxels).display().to_string()
+}
+
+#[test]
+fn an_image_is_sampled_at_the_value_that_is_said() {
+    let path = ball("ball.npy");
+    let mesh = file("ball.stl").display().to_string();
+    let run = sample(&["--image", &path, "--iso", "0", "--smooth", "0", "--count", "800", "--mesh", &mesh]);
+    assert_eq!((&run["image"]["iso"], &run["image"]["is_otsu"]), (&0.0.into(), &false.into()));
+    assert_eq!(run["proof"]["search"], "proven");
+    assert_eq!((&run["mesh"]["euler"], &run["mesh"]["borders"]), (&2.into(), &0.into()));
+    let volume = run["mesh"]["volume"].as_f64().expect("a closed mesh");
+    let exact = 4.0 / 3.0 * std::f64::consts::PI * 512.0;
+    assert!((volume / exact - 1.0).abs() < 0.02, "{volume} {exact}");
+}
+
+#[test]
+fn the_report_says_how_the_value_was_chosen() {
+    let path = ball("chosen.npy");
+    let text = stdout(&run(&["sample", "--image", &path, "--count", "500"]));
+    assert!(text.starts_with("image: chosen.npy\n24 × 24 × 24 voxels of 1 × 1 × 1, float64"), "{text}");
+    assert!(text.contains("(Otsu's; --iso sets another), brighter voxels inside"), "{text}");
+}
+
+#[test]
+fn labels_are_listed_and_sampled() {
+    let voxels: Vec<u8> = distances(24).map(|d| u8::from(d < 8.0) * 5).collect();
+    let path = npy("labels.npy", [24; 3], "|u1", &voxels).display().to_string();
+    let run = sample(&["--image", &path, "--label", "5", "--count", "800"]);
+    assert_eq!((&run["image"]["label"], &run["quality"]["euler"]), (&5.0.into(), &2.into()));
+    let text = stdout(&crate::cli::run(&["sample", "--image", &path, "--count", "500", "--report", "none"]));
+    assert!(text.contains("--label takes one: 0 (") && text.contains("5 ("), "{text}");
+    let message = fails(2, &["sample", "--image", &path, "--label", "4"]);
+    assert!(message.contains("those of the image are 0, 5"), "{message}");
+}
+
+#[test]
+fn images_that_cannot_be_sampled_are_refused() {
+    let path = ball("refused.npy");
+    assert!(fails(2, &["sample", "--image", &path, "--iso", "1e9"]).contains("choose one between them"));
+    assert!(fails(1, &["sample", "--image", "no such file"]).contains("no such file"));
+    fails(2, &["sample", "--image", &path, "--formula", "x"]);
+    fails(2, &["sample", "--iso", "1"]);
+    let cut = file("cut.npy");
+    fs::write(&cut, &fs::read(&path).expect("read")[..5_000]).expect("written");
+    assert!(fails(2, &["sample", "--image", &cut.display().to_string()]).contains("cut off"));
+}

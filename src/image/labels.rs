@@ -1,0 +1,192 @@
+//! Labels: whole numbers that say to which organ, grain or phase a voxel belongs.
+
+use super::smooth::{blur, deviations};
+use super::voxels::Voxels;
+use super::{Image, ImageError};
+use std::collections::BTreeMap;
+
+/// Width of the Gaussian over the distances from a label, in voxels. With less, the steps of the
+/// voxels show in the normals; with more, corners are rounded more.
+pub const DEFAULT_LABEL_WIDTH: f64 = 1.0;
+/// Labels of an image at most. More values are grey values.
+const MOST_LABELS: usize = 4096;
+/// Share of a label's voxels that the Gaussian may leave outside of its surface without a note.
+const LOST: f64 = 0.05;
+
+/// A label of an image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Label {
+    /// The value of its voxels.
+    pub value: f64,
+    /// Number of its voxels.
+    pub voxels: u64,
+}
+
+impl Image {
+    /// The labels of an image whose voxels are whole numbers, in order, the background 0 included;
+    /// empty if they are no whole numbers or there are more than 4096 different ones.
+    #[must_use]
+    pub fn labels(&self) -> Vec<Label> {
+        let mut counts: BTreeMap<i64, u64> = BTreeMap::new();
+        let mut are_labels = true;
+        self.voxels.for_each(|value| {
+            are_labels &= libm::trunc(value) == value && value.abs() < 1e15;
+            if are_labels {
+                *counts.entry(value as i64).or_default() += 1;
+                are_labels &= counts.len() <= MOST_LABELS;
+            }
+        });
+        if !are_labels {
+            return Vec::new();
+        }
+        counts.into_iter().map(|(value, voxels)| Label { value: value as f64, voxels }).collect()
+    }
+
+    /// The image of the signed distance from the boundary of a label, positive inside, blurred by a
+    /// Gaussian of `width` voxels, [`DEFAULT_LABEL_WIDTH`] for a start: its surface is that
+    /// [at](Image::at)
+    /// 0. The distance is that to the nearest voxel on the other side, less half a voxel (P.
+    /// Felzenszwalb & D. Huttenlocher, "Distance Transforms of Sampled Functions", Theory of
+    /// Computing 8, 2012).
+    ///
+    /// The boundary of a label is known to half a voxel, and the surface keeps within that of
+    /// smooth bodies. The Gaussian levels the steps between voxels: with a width of 1, normals turn
+    /// by some 4° from them, with 1.5 by 2°, without it by 26°. It rounds corners by about its
+    /// width, and a part that is thinner than two widths is lost, which a [note](Image::notes)
+    /// says.
+    ///
+    /// # Errors
+    ///
+    /// [`ImageError::NoLabel`] if no voxel, or every one, has the label, [`ImageError::Thin`] if
+    /// nothing of it is left, and [`ImageError::Width`] if the width is not between 0 and 100.
+    pub fn label(&self, value: f64, width: f64) -> Result<Self, ImageError> {
+        if !(0.0..=100.0).contains(&width) {
+            return Err(ImageError::Width { width });
+        }
+        let mut is_inside = Vec::with_capacity(self.voxels.len());
+        self.voxels.for_each(|voxel| is_inside.push(voxel == value));
+        let count = is_inside.iter().filter(|inside| **inside).count();
+        if count == 0 || count == is_inside.len() {
+            let known = self.labels().iter().map(|label| label.value).collect();
+            return Err(ImageError::NoLabel { value, count, known });
+        }
+        let spacing = self.placement.spacing();
+        let mut distances = squared_distances(self.size, spacing, |at| !is_inside[at]);
+        let outside = squared_distances(self.size, spacing, |at| is_inside[at]);
+        let half = 0.5 * spacing.into_iter().fold(f64::INFINITY, f64::min) as f32;
+        for ((distance, outside), is_inside) in distances.iter_mut().zip(outside).zip(&is_inside) {
+            *distance = if *is_inside { distance.sqrt() - half } else { half - outside.sqrt() };
+        }
+        blur(self.size, &mut distances, deviations(self, width));
+        let lost =
+            distances.iter().zip(&is_inside).filter(|(value, inside)| **inside && **value <= 0.0).count();
+        if lost == count {
+            return Err(ImageError::Thin { value, width });
+        }
+        let mut notes = self.notes.to_vec();
+        if lost as f64 > LOST * count as f64 {
+            notes.push(format!(
+                "{:.0} % of the label's voxels are outside of its surface: what is thinner than two voxels is lost; a \
+                 smaller width keeps more of it.",
+                100.0 * lost as f64 / count as f64
+            ));
+        }
+        let image = Self::of(self.size, Voxels::new(&distances))?;
+        Ok(Self { placement: self.placement, notes: notes.into(), ..image })
+    }
+}
+
+/// The squared distances from each voxel to the nearest one of a set, which has a voxel.
+fn squared_distances(size: [usize; 3], spacing: [f64; 3], is_in: impl Fn(usize) -> bool) -> Vec<f32> {
+    let count: usize = size.iter().product();
+    let mut squares: Vec<f32> = (0..count).map(|at| if is_in(at) { 0.0 } else { f32::INFINITY }).collect();
+    let strides = [1, size[0], size[0] * size[1]];
+    for axis in 0..3 {
+        let (n, stride) = (size[axis], strides[axis]);
+        let mut envelope = Envelope::new(n, spacing[axis]);
+        let mut line = vec![0.0; n];
+        for start in (0..count).filter(|at| at / stride % n == 0) {
+            for (k, value) in line.iter_mut().enumerate() {
+                *value = f64::from(squares[start + stride * k]);
+            }
+            envelope.lower(&line, |k, value| squares[start + stride * k] = value as f32);
+        }
+    }
+    squares
+}
+
+/// The lower envelope of the parabolas over the places of a line.
+struct Envelope {
+    spacing: f64,
+    /// The places whose parabolas are in the envelope, and from where on.
+    places: Vec<(usize, f64)>,
+}
+
+impl Envelope {
+    fn new(n: usize, spacing: f64) -> Self {
+        Self { spacing, places: Vec::with_capacity(n) }
+    }
+
+    /// Calls `store` with the least of `line[k]` + (x − x_k)² at each place x.
+    fn lower(&mut self, line: &[f64], mut store: impl FnMut(usize, f64)) {
+        self.places.clear();
+        let x = |k: usize| self.spacing * k as f64;
+        for (k, &height) in line.iter().enumerate().filter(|(_, height)| height.is_finite()) {
+            let from = loop {
+                let Some(&(last, from)) = self.places.last() else { break f64::NEG_INFINITY };
+                // Where the parabolas of both places meet.
+                let rise = height - line[last];
+                let meet = 0.5 * (x(k) + x(last)) + 0.5 * rise / (x(k) - x(last));
+                if meet > from {
+                    break meet;
+                }
+                self.places.pop();
+            };
+            self.places.push((k, from));
+        }
+        if self.places.is_empty() {
+            return;
+        }
+        let mut at = 0;
+        for k in 0..line.len() {
+            while self.places.get(at + 1).is_some_and(|(_, from)| *from < x(k)) {
+                at += 1;
+            }
+            let (nearest, _) = self.places[at];
+            let away = x(k) - x(nearest);
+            store(k, line[nearest] + away * away);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_core::{Rng, SeedableRng};
+    use rand_pcg::Pcg32;
+
+    #[test]
+    fn distances_are_those_of_all_pairs() {
+        let mut random = Pcg32::seed_from_u64(3);
+        for (size, spacing) in [([5, 4, 6], [1.0, 1.0, 1.0]), ([7, 3, 4], [0.5, 2.0, 1.25])] {
+            let count: usize = size.iter().product();
+            let is_in: Vec<bool> = (0..count).map(|at| at == 0 || random.next_u32() % 9 == 0).collect();
+            let found = squared_distances(size, spacing, |at| is_in[at]);
+            let place = |at: usize| {
+                let steps = [at % size[0], at / size[0] % size[1], at / size[0] / size[1]];
+                [0, 1, 2].map(|a| steps[a] as f64 * spacing[a])
+            };
+            for (at, found) in found.iter().enumerate() {
+                let apart = |other: usize| -> f64 {
+                    place(at).iter().zip(place(other)).map(|(a, b)| (a - b) * (a - b)).sum()
+                };
+                let nearest =
+                    (0..count).filter(|&other| is_in[other]).map(apart).fold(f64::INFINITY, f64::min);
+                assert!(
+                    (f64::from(*found) - nearest).abs() < 1e-5 * (1.0 + nearest),
+                    "{size:?} {at}: {found} {nearest}"
+                );
+            }
+        }
+    }
+}

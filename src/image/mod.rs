@@ -1,0 +1,349 @@
+//! Three-dimensional images as fields: CT and MR volumes, cubes of densities, arrays.
+//!
+//! An [`Image`] is a grid of voxels with a place in space. An [`ImageField`] is the surface in it
+//! on which the grey value has one value, the *iso value*: the zero set of a cubic spline through
+//! all voxels. A file becomes an image by [`Image::read`], a program's array by [`Image::new`].
+
+mod bounds;
+mod bricks;
+mod field;
+mod filter;
+mod kernel;
+mod labels;
+mod otsu;
+mod placement;
+mod read;
+mod smooth;
+mod voxels;
+
+pub use field::ImageField;
+pub use labels::{DEFAULT_LABEL_WIDTH, Label};
+pub use placement::Placement;
+pub use read::{ImageFormat, ImageReadError, MAX_IMAGE_BYTES};
+pub use voxels::{Voxel, VoxelType};
+
+use core::fmt::{self, Debug, Formatter};
+use glam::{DMat3, DVec3};
+use otsu::Histogram;
+use std::sync::Arc;
+use voxels::{Layout, Voxels};
+
+/// Why an image makes no field. The message says what is wrong, where, and what to do.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ImageError {
+    /// The image has a single voxel along an axis.
+    #[error(
+        "the image has {} × {} × {} voxels, and a surface takes two or more along each axis; \
+         give a volume, not a single slice",
+        size[0], size[1], size[2]
+    )]
+    Flat {
+        /// Voxels along each axis.
+        size: [usize; 3],
+    },
+    /// The numbers of voxels along the axes and the number of values disagree.
+    #[error(
+        "an image of {} × {} × {} voxels takes {wanted} values, and {found} were given; check the order and \
+         the length of its axes",
+        size[0], size[1], size[2]
+    )]
+    Size {
+        /// Voxels along each axis.
+        size: [usize; 3],
+        /// Their product.
+        wanted: u64,
+        /// Number of values that were given.
+        found: u64,
+    },
+    /// A voxel is NaN or infinite.
+    #[error(
+        "{count} voxels are not finite numbers, the first one at ({}, {}, {}); give them a value, such as that of \
+         the background",
+        first[0], first[1], first[2]
+    )]
+    NotFinite {
+        /// Number of such voxels.
+        count: usize,
+        /// Indices of the first one.
+        first: [usize; 3],
+    },
+    /// All voxels have the same value.
+    #[error("all voxels have the value {value}, so there is no surface between them; choose another image")]
+    Constant {
+        /// The value.
+        value: f64,
+    },
+    /// The iso value is not between the smallest and the largest voxel.
+    #[error(
+        "the iso value {iso} is outside the image, whose voxels are {min} to {max}; choose one between them"
+    )]
+    Outside {
+        /// The iso value.
+        iso: f64,
+        /// Smallest voxel.
+        min: f64,
+        /// Largest voxel.
+        max: f64,
+    },
+    /// The width of a Gaussian is out of its range.
+    #[error("the width {width} of the Gaussian is not between 0 and 100 voxels")]
+    Width {
+        /// The width in voxels.
+        width: f64,
+    },
+    /// No voxel has the label, or all have.
+    #[error("{}", no_label(*value, *count, known))]
+    NoLabel {
+        /// The label.
+        value: f64,
+        /// Number of voxels that have it.
+        count: usize,
+        /// The labels of the image; empty if its voxels are no labels.
+        known: Vec<f64>,
+    },
+    /// Nothing is left of a label after the Gaussian.
+    #[error(
+        "nothing is left of the label {value}, whose parts are thinner than the Gaussian of {width} voxels; use a smaller width"
+    )]
+    Thin {
+        /// The label.
+        value: f64,
+        /// The width of the Gaussian in voxels.
+        width: f64,
+    },
+    /// The axes of the image do not span space.
+    #[error(
+        "the axes of the image are {}, {} and {}, which are not finite or lie in a plane; give spacings above \
+         zero, or an affine matrix with an inverse",
+        axes[0], axes[1], axes[2]
+    )]
+    Singular {
+        /// The steps from voxel to voxel along each axis.
+        axes: [DVec3; 3],
+    },
+}
+
+/// Why a label has no surface.
+fn no_label(value: f64, count: usize, known: &[f64]) -> String {
+    /// Labels that a message lists.
+    const LISTED: usize = 20;
+    if count > 0 {
+        return format!("all voxels have the label {value}, so it has no boundary in the image");
+    }
+    if known.is_empty() {
+        return format!(
+            "no voxel has the label {value}; the values of this image are no labels: choose an iso value"
+        );
+    }
+    let listed: Vec<String> = known.iter().take(LISTED).map(f64::to_string).collect();
+    let more = if known.len() > LISTED { ", …" } else { "" };
+    format!("no voxel has the label {value}; those of the image are {}{more}", listed.join(", "))
+}
+
+/// A grid of voxels with a place in space.
+///
+/// The voxels stay what they are in the file or the array, in their own type and byte order; copies
+/// of an image and its fields share them. Voxel (i, j, k) lies at the point to which
+/// [`Placement`] maps these indices, the centre of the voxel. The image fills the box of the
+/// centres.
+///
+/// ```
+/// use marching_particles::{Image, Settings, sample};
+///
+/// // A ball of radius 10 voxels, bright in the dark, as an array in which x changes fastest.
+/// let distance = |i: usize| {
+///     let offset = |k: usize| (k % 32) as f32 - 15.5;
+///     (offset(i).powi(2) + offset(i / 32).powi(2) + offset(i / 1024).powi(2)).sqrt()
+/// };
+/// let voxels: Vec<f32> = (0..32 * 32 * 32).map(|i| 10.0 - distance(i)).collect();
+/// let image = Image::new([32, 32, 32], voxels)?.with_spacing([0.5; 3])?;
+///
+/// let ball = sample(image.at(0.0)?, &Settings::with_count(500))?;
+/// assert_eq!(ball.report().proof.components, 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone)]
+pub struct Image {
+    size: [usize; 3],
+    voxels: Voxels,
+    placement: Placement,
+    range: [f64; 2],
+    notes: Arc<[String]>,
+}
+
+impl Debug for Image {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Image")
+            .field("size", &self.size)
+            .field("voxel_type", &self.voxel_type())
+            .field("placement", &self.placement)
+            .field("range", &self.range)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Image {
+    /// The image with these voxels, of which the index along the first axis changes fastest: voxel
+    /// (i, j, k) is `voxels[i + size[0] * (j + size[1] * k)]`. Voxels are one unit apart, and voxel
+    /// (0, 0, 0) is at the origin.
+    ///
+    /// # Errors
+    ///
+    /// [`ImageError::Size`], [`Flat`](ImageError::Flat), [`NotFinite`](ImageError::NotFinite) or
+    /// [`Constant`](ImageError::Constant).
+    pub fn new<T: Voxel>(size: [usize; 3], voxels: impl AsRef<[T]>) -> Result<Self, ImageError> {
+        Self::of(size, Voxels::new(voxels.as_ref()))
+    }
+
+    /// [`Image::new`] from the bytes of numbers of a type in the byte order of the machine.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Image::new`].
+    pub fn from_bytes(
+        size: [usize; 3],
+        voxel_type: VoxelType,
+        bytes: impl Into<Arc<[u8]>>,
+    ) -> Result<Self, ImageError> {
+        let bytes = bytes.into();
+        let len = bytes.len() / voxel_type.bytes();
+        let wanted = size.iter().fold(1_u64, |product, &n| product.saturating_mul(n as u64));
+        let wrong = ImageError::Size { size, wanted, found: len as u64 };
+        let layout = Layout::plain(voxel_type, cfg!(target_endian = "big"));
+        Self::of(size, Voxels::of_file(bytes, layout, len).ok_or(wrong)?)
+    }
+
+    /// The image with these voxels, one unit apart.
+    fn of(size: [usize; 3], voxels: Voxels) -> Result<Self, ImageError> {
+        let wanted = size.iter().try_fold(1_u64, |product, &n| product.checked_mul(n as u64));
+        let found = voxels.len() as u64;
+        if wanted != Some(found) {
+            return Err(ImageError::Size { size, wanted: wanted.unwrap_or(u64::MAX), found });
+        }
+        if size.iter().any(|&n| n < 2) {
+            return Err(ImageError::Flat { size });
+        }
+        let range = voxels.range().map_err(|(count, first)| {
+            let first = [first % size[0], first / size[0] % size[1], first / size[0] / size[1]];
+            ImageError::NotFinite { count, first }
+        })?;
+        if range[0] == range[1] {
+            return Err(ImageError::Constant { value: range[0] });
+        }
+        Ok(Self { size, voxels, placement: Placement::default(), range, notes: Arc::default() })
+    }
+
+    /// The image with `spacing` between neighbouring voxels along each axis, and its origin and
+    /// directions as they are.
+    ///
+    /// # Errors
+    ///
+    /// [`ImageError::Singular`] if one is not positive.
+    pub fn with_spacing(self, spacing: [f64; 3]) -> Result<Self, ImageError> {
+        let [x, y, z] = self.placement.directions();
+        let axes = [x * spacing[0], y * spacing[1], z * spacing[2]];
+        if spacing.iter().any(|&length| length <= 0.0) {
+            return Err(ImageError::Singular { axes });
+        }
+        let origin = self.placement.origin();
+        self.placed(Placement::new(DMat3::from_cols(axes[0], axes[1], axes[2]), origin)?)
+    }
+
+    /// The image with voxel (0, 0, 0) at this point.
+    ///
+    /// # Errors
+    ///
+    /// [`ImageError::Singular`] if it is not finite.
+    pub fn with_origin(self, origin: DVec3) -> Result<Self, ImageError> {
+        let placement = Placement::new(self.placement.matrix(), origin)?;
+        self.placed(placement)
+    }
+
+    /// The image in the place to which an affine map brings the indices of its voxels. Row r is
+    /// coordinate r: x = `rows[0]` · (i, j, k, 1), as in the affine matrix of a NIfTI file.
+    ///
+    /// # Errors
+    ///
+    /// [`ImageError::Singular`] if the map has no inverse or is not finite.
+    pub fn with_affine(self, rows: [[f64; 4]; 3]) -> Result<Self, ImageError> {
+        self.placed(Placement::from_rows(rows)?)
+    }
+
+    fn placed(self, placement: Placement) -> Result<Self, ImageError> {
+        Ok(Self { placement, ..self })
+    }
+
+    /// The surface on which the image has the value `iso`: brighter voxels are inside. See
+    /// [`ImageField::inverted`].
+    ///
+    /// # Errors
+    ///
+    /// [`ImageError::Outside`] if no voxel, or every voxel, is brighter.
+    pub fn at(&self, iso: f64) -> Result<ImageField, ImageError> {
+        ImageField::new(self, iso, false)
+    }
+
+    /// Number of voxels along each axis.
+    #[must_use]
+    pub fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    /// The map from indices of voxels to points.
+    #[must_use]
+    pub fn placement(&self) -> Placement {
+        self.placement
+    }
+
+    /// Smallest and largest value of the voxels.
+    #[must_use]
+    pub fn range(&self) -> [f64; 2] {
+        self.range
+    }
+
+    /// The type in which the voxels are kept.
+    #[must_use]
+    pub fn voxel_type(&self) -> VoxelType {
+        self.voxels.voxel_type()
+    }
+
+    /// What a reader has decided where the file leaves a choice, in sentences for the user.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// The iso value that separates dark from bright voxels best: the one with the largest variance
+    /// between the two classes, on a histogram of 256 bins (N. Otsu, "A Threshold Selection Method
+    /// from Gray-Level Histograms", IEEE Transactions on Systems, Man, and Cybernetics 9, 1979).
+    #[must_use]
+    pub fn otsu(&self) -> f64 {
+        Histogram::of(self).otsu()
+    }
+
+    /// Bytes of memory that the voxels take.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.voxels.bytes()
+    }
+
+    /// The number halfway between the smallest and the largest voxel, from which the filters count
+    /// values.
+    fn middle(&self) -> f64 {
+        0.5 * self.range[0] + 0.5 * self.range[1]
+    }
+
+    /// Writes the values, counted from `zero`, of the voxels (0, j, k), (1, j, k), …
+    fn row(&self, j: usize, k: usize, zero: f64, out: &mut [f32]) {
+        self.voxels.write(self.size[0] * (j + self.size[1] * k), zero, out);
+    }
+
+    /// The value of a voxel.
+    fn voxel(&self, [i, j, k]: [usize; 3]) -> f64 {
+        self.voxels.at(i + self.size[0] * (j + self.size[1] * k))
+    }
+}
+
+#[cfg(test)]
+mod tests;

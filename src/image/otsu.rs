@@ -1,0 +1,67 @@
+//! The histogram of an image, and the threshold of Otsu in it.
+
+use super::Image;
+
+/// Bins of a histogram: Otsu's threshold is one of their edges.
+const BINS: usize = 256;
+
+/// How many voxels have a value in each of the bins between the smallest and the largest one.
+pub(super) struct Histogram {
+    counts: Vec<u64>,
+    min: f64,
+    width: f64,
+}
+
+impl Histogram {
+    pub(super) fn of(image: &Image) -> Self {
+        let [min, max] = image.range;
+        let width = (max - min) / BINS as f64;
+        let mut counts = vec![0; BINS];
+        image.voxels.for_each(|value| counts[(((value - min) / width) as usize).min(BINS - 1)] += 1);
+        Self { counts, min, width }
+    }
+
+    /// The edge between two bins for which the variance between the classes, w₀ w₁ (μ₁ − μ₀)², is
+    /// largest (Otsu's equation 14). Where many are as good, as between two peaks, it is the one in
+    /// their middle.
+    pub(super) fn otsu(&self) -> f64 {
+        let [first, last] = self.best();
+        self.min + self.width * (0.5 * (first + last) as f64 + 1.0)
+    }
+
+    /// The mean values of the two classes.
+    pub(super) fn means(&self) -> [f64; 2] {
+        let cut = self.best()[0] + 1;
+        let mean = |first: usize, counts: &[u64]| {
+            let count: u64 = counts.iter().sum();
+            let sum: f64 = (first..).zip(counts).map(|(bin, count)| (bin as f64 + 0.5) * *count as f64).sum();
+            self.min + self.width * sum / count as f64
+        };
+        [mean(0, &self.counts[..cut]), mean(cut, &self.counts[cut..])]
+    }
+
+    /// The first and the last of the bins behind which the classes part best.
+    fn best(&self) -> [usize; 2] {
+        let total: u64 = self.counts.iter().sum();
+        let all: u64 = (0..).zip(&self.counts).map(|(bin, count)| bin * count).sum();
+        let (mut below, mut sum) = (0, 0);
+        let (mut best, mut first, mut last) = (-1.0, 0, 0);
+        for (bin, &count) in self.counts.iter().enumerate().take(BINS - 1) {
+            below += count;
+            sum += bin as u64 * count;
+            let above = total - below;
+            if below == 0 || above == 0 {
+                continue;
+            }
+            let apart = (all - sum) as f64 / above as f64 - sum as f64 / below as f64;
+            let between = below as f64 * above as f64 * apart * apart;
+            if between > best {
+                (best, first) = (between, bin);
+            }
+            if between >= best {
+                last = bin;
+            }
+        }
+        [first, last]
+    }
+}

@@ -1,0 +1,274 @@
+//! Readers of files of images: NIfTI, NRRD, NumPy, MetaImage and Gaussian cube files, detected by
+//! content.
+//!
+//! A file is not trusted: the sizes that its header promises are compared with what follows before
+//! memory is allocated, and compressed data is unpacked up to the promised size alone. The voxels
+//! stay in the bytes of the file.
+
+mod cube;
+mod header;
+mod metaimage;
+mod nifti;
+mod npy;
+mod nrrd;
+mod zip;
+
+use super::voxels::{Layout, Voxels};
+use super::{Image, ImageError, Placement};
+use core::fmt::{self, Display, Formatter};
+use glam::{DMat3, DVec3};
+use std::sync::Arc;
+use zip::Unpacked;
+
+/// Largest size of the voxels of a file, in bytes: 1024³ voxels of 16 bits.
+pub const MAX_IMAGE_BYTES: u64 = 1 << 31;
+
+/// Formats of files that are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ImageFormat {
+    /// NIfTI-1 and NIfTI-2, in one file or as a header with its data beside it.
+    Nifti,
+    /// Nearly raw raster data, with its data in the file or beside it.
+    Nrrd,
+    /// An array of NumPy.
+    Npy,
+    /// MetaImage of ITK, with its data in the file or beside it.
+    MetaImage,
+    /// Cube file of Gaussian.
+    Cube,
+}
+
+impl Display for ImageFormat {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Nifti => "NIfTI",
+            Self::Nrrd => "NRRD",
+            Self::Npy => "NumPy",
+            Self::MetaImage => "MetaImage",
+            Self::Cube => "cube",
+        })
+    }
+}
+
+/// Why a file of an image cannot be read. The message says what is wrong, where, and what to do.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ImageReadError {
+    /// The file is empty.
+    #[error("the file is empty; choose one that holds an image")]
+    Empty,
+    /// The file has none of the known formats.
+    #[error("this is {found}, and what is read is NIfTI, NRRD, NumPy, MetaImage and Gaussian cube; {advice}")]
+    Unknown {
+        /// Name of the format that the content seems to have.
+        found: &'static str,
+        /// Advice for the user.
+        advice: &'static str,
+    },
+    /// An entry of the header is wrong.
+    #[error("{format} header, {entry}: {message}")]
+    Header {
+        /// Format of the file.
+        format: ImageFormat,
+        /// The line or the field.
+        entry: String,
+        /// The error in words.
+        message: String,
+    },
+    /// The file ends too early.
+    #[error(
+        "the {format} header promises {needed} bytes of voxels, and {found} follow; the file is cut off or its header \
+         is wrong: export it again"
+    )]
+    CutOff {
+        /// Format of the file.
+        format: ImageFormat,
+        /// Bytes that the header promises.
+        needed: u64,
+        /// Bytes that are there.
+        found: u64,
+    },
+    /// The voxels take more than [`MAX_IMAGE_BYTES`].
+    #[error(
+        "the image has {} MB of voxels, and up to {} MB are read; cut out the part that matters, or keep every \
+         second voxel",
+        bytes.div_ceil(1_000_000), MAX_IMAGE_BYTES / 1_000_000
+    )]
+    TooLarge {
+        /// Bytes of the voxels.
+        bytes: u64,
+    },
+    /// Compressed data cannot be unpacked.
+    #[error(
+        "the compressed data is damaged after {unpacked} bytes ({message}); copy or export the file again"
+    )]
+    Damaged {
+        /// Bytes that could be unpacked.
+        unpacked: u64,
+        /// The error in words.
+        message: String,
+    },
+    /// The voxels are in a file beside the header that is not there.
+    #[error(
+        "the voxels of this {format} header are in the file {name} beside it, which cannot be read: {message}"
+    )]
+    Beside {
+        /// Format of the header.
+        format: ImageFormat,
+        /// Name of the file.
+        name: String,
+        /// Why it cannot be read.
+        message: String,
+    },
+    /// The voxels make no image.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+}
+
+/// Where a reader gets the file of a name beside the one that is read.
+type Beside<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, String>;
+
+/// What the header of a file says.
+struct Header {
+    format: ImageFormat,
+    /// Voxels along the axes, the one that changes fastest first.
+    size: [usize; 3],
+    /// The step from voxel to voxel along each of these axes, and the point of the first one.
+    axes: [DVec3; 3],
+    origin: DVec3,
+    layout: Layout,
+    /// Whether the voxels are compressed by themselves, as gzip or zlib.
+    is_packed: bool,
+    source: Source,
+    notes: Vec<String>,
+}
+
+/// Where the voxels are.
+enum Source {
+    /// In the file itself, from a byte on.
+    Here(usize),
+    /// In a file beside it.
+    Beside(String),
+}
+
+impl Image {
+    /// Reads a file: NIfTI-1 or -2 (`.nii`, `.nii.gz`, or `.hdr` with `.img`), NRRD (`.nrrd`,
+    /// `.nhdr`), NumPy (`.npy`), MetaImage (`.mha`, `.mhd`) or Gaussian cube (`.cube`). The content
+    /// decides, not the name. Of a file with several volumes or values for each voxel the first is
+    /// read, which a [note](Image::notes) says. Lengths are in the unit of the file: millimetres in
+    /// medical images, bohr in cubes.
+    ///
+    /// `name` is the name of the file without its folder. A header whose voxels are in another file
+    /// asks `beside` for it, by its name.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be read or its voxels make no image: what is wrong, where, and what to
+    /// do.
+    pub fn read(
+        name: &str,
+        bytes: Vec<u8>,
+        beside: impl Fn(&str) -> Result<Vec<u8>, String>,
+    ) -> Result<Self, ImageReadError> {
+        read(name, bytes, &beside)
+    }
+}
+
+fn read(name: &str, bytes: Vec<u8>, beside: Beside) -> Result<Image, ImageReadError> {
+    if bytes.is_empty() {
+        return Err(ImageReadError::Empty);
+    }
+    // Of compressed files the header is unpacked first, which says how much is to follow.
+    let mut file = Unpacked::new(bytes);
+    let start = file.start(header::LONGEST)?;
+    let header = match sniff(&start)? {
+        ImageFormat::Nifti => nifti::header(name, &start),
+        ImageFormat::Nrrd => nrrd::header(&start),
+        ImageFormat::Npy => npy::header(&start),
+        ImageFormat::MetaImage => metaimage::header(&start),
+        ImageFormat::Cube => return cube::read(file),
+    }?;
+    image(header, file, beside)
+}
+
+/// The image of a header.
+fn image(header: Header, file: Unpacked, beside: Beside) -> Result<Image, ImageReadError> {
+    let Header { format, size, axes, origin, mut layout, is_packed, source, notes } = header;
+    let voxel = (layout.voxel_type.bytes() as u64).saturating_mul(layout.step as u64);
+    let needed = size.iter().fold(voxel, |product, &n| product.saturating_mul(n as u64));
+    if needed > MAX_IMAGE_BYTES {
+        return Err(ImageReadError::TooLarge { bytes: needed });
+    }
+    if size.contains(&0) {
+        return Err(ImageError::Flat { size }.into());
+    }
+    let (mut file, mut first) = match source {
+        Source::Here(first) => (file, first),
+        Source::Beside(name) => {
+            let bytes = beside(&name).map_err(|message| {
+                // A name from a file is shown, and may hold anything.
+                let name = name.escape_debug().take(80).collect();
+                ImageReadError::Beside { format, name, message }
+            })?;
+            (Unpacked::new(bytes), layout.first)
+        }
+    };
+    if is_packed {
+        let mut inner = file.all(MAX_IMAGE_BYTES)?;
+        inner.drain(..first.min(inner.len()));
+        (file, first) = (Unpacked::packed(inner), 0);
+    }
+    let data: Arc<[u8]> = file.all(needed.saturating_add(first as u64))?.into();
+    layout.first = first;
+    let found = (data.len() as u64).saturating_sub(layout.first as u64);
+    let len = (needed / voxel) as usize;
+    let cut_off = ImageReadError::CutOff { format, needed, found };
+    let voxels = Voxels::of_file(data, layout, len).ok_or(cut_off)?;
+    let image = Image::of(size, voxels)?;
+    let placement = Placement::new(DMat3::from_cols(axes[0], axes[1], axes[2]), origin)?;
+    Ok(Image { placement, notes: notes.into(), ..image })
+}
+
+/// First bytes of other formats, with their name and an advice for the user.
+const KNOWN: [(&[u8], &str, &str); 8] = [
+    (b"II*\0", "a TIFF picture", "save the stack as NRRD, as ImageJ does"),
+    (b"MM\0*", "a TIFF picture", "save the stack as NRRD, as ImageJ does"),
+    (b"PK\x03\x04", "a ZIP archive (npz is such)", "unpack it first"),
+    (b"\x89HDF", "an HDF5 file (MINC is such)", "convert it to NIfTI"),
+    (b"ply", "a file of points", "give it as points"),
+    (b"\x89PNG", "a PNG picture", "give a volume, not a single slice"),
+    (b"\xff\xd8\xff", "a JPEG picture", "give a volume, not a single slice"),
+    (b"BZh", "a bzip2 archive", "unpack it first"),
+];
+
+/// The format of a file, by its first bytes.
+fn sniff(start: &[u8]) -> Result<ImageFormat, ImageReadError> {
+    if let Some(&(_, found, advice)) = KNOWN.iter().find(|(magic, ..)| start.starts_with(magic)) {
+        return Err(ImageReadError::Unknown { found, advice });
+    }
+    if start.get(128..132) == Some(b"DICM") {
+        let advice = "convert the series to NIfTI, as dcm2niix does";
+        return Err(ImageReadError::Unknown { found: "a slice in DICOM", advice });
+    }
+    if nifti::begins_with(start) {
+        return Ok(ImageFormat::Nifti);
+    }
+    if start.starts_with(b"NRRD0") {
+        return Ok(ImageFormat::Nrrd);
+    }
+    if start.starts_with(npy::MAGIC) {
+        return Ok(ImageFormat::Npy);
+    }
+    if metaimage::begins_with(start) {
+        return Ok(ImageFormat::MetaImage);
+    }
+    if cube::begins_with(start) {
+        return Ok(ImageFormat::Cube);
+    }
+    let advice = "choose a file of an image";
+    Err(ImageReadError::Unknown { found: "a file of no known kind", advice })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,54 @@
+//! The bytes of a file that may be compressed, unpacked up to a limit.
+
+use super::ImageReadError;
+use flate2::bufread::{MultiGzDecoder, ZlibDecoder};
+use std::io::{Cursor, Read};
+
+const GZIP: &[u8] = b"\x1f\x8b";
+
+/// A file, of which what has been unpacked so far is kept.
+pub(super) struct Unpacked {
+    bytes: Vec<u8>,
+    /// What follows them, in compressed form.
+    rest: Option<Box<dyn Read>>,
+}
+
+impl Unpacked {
+    /// A file that is compressed if it begins like a gzip file.
+    pub(super) fn new(bytes: Vec<u8>) -> Self {
+        if bytes.starts_with(GZIP) { Self::packed(bytes) } else { Self { bytes, rest: None } }
+    }
+
+    /// Data in the form of gzip, or of zlib.
+    pub(super) fn packed(bytes: Vec<u8>) -> Self {
+        let is_gzip = bytes.starts_with(GZIP);
+        let bytes = Cursor::new(bytes);
+        let rest: Box<dyn Read> =
+            if is_gzip { Box::new(MultiGzDecoder::new(bytes)) } else { Box::new(ZlibDecoder::new(bytes)) };
+        Self { bytes: Vec::new(), rest: Some(rest) }
+    }
+
+    /// Unpacks until there are so many bytes, or all.
+    fn unpack(&mut self, count: u64) -> Result<(), ImageReadError> {
+        let Some(rest) = &mut self.rest else { return Ok(()) };
+        let wanted = count.saturating_sub(self.bytes.len() as u64);
+        let read = rest.take(wanted).read_to_end(&mut self.bytes);
+        let damaged = |error: std::io::Error| ImageReadError::Damaged {
+            unpacked: self.bytes.len() as u64,
+            message: error.to_string(),
+        };
+        read.map(drop).map_err(damaged)
+    }
+
+    /// The first bytes of the file, `count` or all that it has.
+    pub(super) fn start(&mut self, count: usize) -> Result<Vec<u8>, ImageReadError> {
+        self.unpack(count as u64)?;
+        Ok(self.bytes[..count.min(self.bytes.len())].to_vec())
+    }
+
+    /// All bytes; of compressed ones, at most about `limit`.
+    pub(super) fn all(mut self, limit: u64) -> Result<Vec<u8>, ImageReadError> {
+        self.unpack(limit)?;
+        Ok(self.bytes)
+    }
+}

@@ -1,0 +1,390 @@
+//! Fields of images, held to the functions that the images were made from.
+
+use super::{Image, ImageError, ImageField};
+use crate::extent::{self, Reach};
+use crate::field::{Enclosure, Field, Frame};
+use crate::math::{Bounds, Interval, Sym3};
+use crate::run::{Report, sample};
+use crate::sampler::{Search, Settings};
+use glam::{DVec3, Vec3, dvec3};
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
+
+/// The image of a function of the indices.
+fn image_of(size: [usize; 3], f: impl Fn(DVec3) -> f64) -> Image {
+    let mut voxels = Vec::new();
+    for k in 0..size[2] {
+        for j in 0..size[1] {
+            for i in 0..size[0] {
+                voxels.push(f(dvec3(i as f64, j as f64, k as f64)) as f32);
+            }
+        }
+    }
+    Image::new(size, voxels).expect("an image")
+}
+
+/// A solid with the signed distance `d`, bright in the dark, with an edge that is blurred as by a
+/// scanner: the sigmoid is as steep as a Gaussian of 0.8 voxels.
+fn blurred(d: f64) -> f64 {
+    900.0 / (1.0 + libm::exp(2.0 * d))
+}
+
+fn torus(p: DVec3, middle: DVec3, [big, small]: [f64; 2]) -> f64 {
+    let p = p - middle;
+    let around = p.truncate().length() - big;
+    libm::sqrt(around * around + p.z * p.z) - small
+}
+
+fn random_images() -> impl Iterator<Item = ImageField> {
+    let mut random = Pcg32::seed_from_u64(11);
+    [[12, 9, 10], [5, 21, 8], [2, 3, 30]].into_iter().map(move |size| {
+        let count: usize = size.iter().product();
+        let noise: Vec<i16> = (0..count).map(|_| (random.next_u32() % 1000) as i16).collect();
+        let image = Image::new(size, noise).expect("an image");
+        let rows = [[0.4, 0.1, 0.0, -3.0], [-0.2, 0.7, 0.0, 2.0], [0.0, 0.3, -1.5, 50.0]];
+        image.with_affine(rows).expect("an affine map").at(480.5).expect("a surface")
+    })
+}
+
+fn between(random: &mut Pcg32, lo: f64, hi: f64) -> f64 {
+    lo + (hi - lo) * f64::from(random.next_u32()) / 4_294_967_296.0
+}
+
+/// A point among the voxels.
+fn point_in(field: &ImageField, random: &mut Pcg32) -> DVec3 {
+    let size = field.image().size();
+    let index = DVec3::from_array([0, 1, 2].map(|a| between(random, -0.9, size[a] as f64 - 0.1)));
+    field.image().placement().point(index)
+}
+
+#[test]
+fn the_spline_has_the_value_of_each_voxel() {
+    for field in random_images() {
+        let image = field.image();
+        let size = image.size();
+        for at in 0..size.iter().product() {
+            let index = [at % size[0], at / size[0] % size[1], at / size[0] / size[1]];
+            let p = image.placement().point(DVec3::from_array(index.map(|i| i as f64)));
+            let (found, wanted) = (field.value(p), 480.5 - image.voxel(index));
+            assert!((found - wanted).abs() < 2e-3, "{size:?} {index:?}: {found} {wanted}");
+        }
+    }
+}
+
+#[test]
+fn derivatives_are_those_of_the_value() {
+    let mut random = Pcg32::seed_from_u64(5);
+    for field in random_images() {
+        for _ in 0..300 {
+            let p = point_in(&field, &mut random);
+            let (h, jet) = (1e-4, field.jet(p));
+            for (axis, unit) in DVec3::AXES.into_iter().enumerate() {
+                let (ahead, behind) = (field.jet(p + h * unit), field.jet(p - h * unit));
+                let slope = (ahead.value - behind.value) / (2.0 * h);
+                assert!((jet.gradient[axis] - slope).abs() < 1e-2, "{p}: {jet:?} {slope}");
+                let bend = (ahead.gradient - behind.gradient) / (2.0 * h);
+                for other in 0..3 {
+                    // The third derivatives jump between cells.
+                    assert!((jet.hessian.at(axis, other) - bend[other]).abs() < 3.0, "{p}: {jet:?} {bend}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn batches_are_the_single_points_rounded() {
+    let mut random = Pcg32::seed_from_u64(6);
+    for field in random_images() {
+        let origin = field.image().placement().point(dvec3(1.0, 1.0, 1.0));
+        let mut evaluator = field.evaluator(Frame::around(origin));
+        let points: Vec<Vec3> =
+            (0..100).map(|_| (point_in(&field, &mut random) - origin).as_vec3()).collect();
+        let (mut value, mut gradient) = (vec![0.0; 100], vec![Vec3::ZERO; 100]);
+        let mut hessian = vec![Sym3::default(); 100];
+        evaluator.hessians(&points, &mut value, &mut gradient, &mut hessian);
+        for (k, p) in points.iter().enumerate() {
+            let exact = evaluator.jet(p.as_dvec3());
+            assert!((f64::from(value[k]) - exact.value).abs() < 2e-2, "{p}: {} {exact:?}", value[k]);
+            assert!(
+                (gradient[k].as_dvec3() - exact.gradient).length() < 5e-2,
+                "{p}: {} {exact:?}",
+                gradient[k]
+            );
+            for (a, b) in hessian[k].entries().into_iter().zip(exact.hessian.entries()) {
+                assert!((f64::from(a) - b).abs() < 0.5, "{p}: {a} {b}");
+            }
+        }
+    }
+}
+
+/// Bounds of all orders over a box.
+fn bounds_over(field: &ImageField, bounds: &Bounds) -> (Enclosure, Sym3<Interval>) {
+    let mut evaluator = field.evaluator(Frame::default());
+    let bounded = evaluator.bounded().expect("an image has bounds");
+    let mut known = [Enclosure::UNKNOWN];
+    let mut second = [Sym3::splat(Interval::EVERYTHING)];
+    bounded.enclose(0, &[*bounds], &mut known);
+    bounded.enclose_second(0, &[*bounds], &mut second);
+    (known[0], second[0])
+}
+
+#[test]
+fn bounds_hold_what_is_in_the_box() {
+    let mut random = Pcg32::seed_from_u64(8);
+    let smooth = image_of([40, 33, 28], |p| 16.0 - (p - dvec3(19.0, 15.0, 14.0)).length()).at(6.0);
+    let fields: Vec<ImageField> = random_images().chain([smooth.expect("a surface")]).collect();
+    let mut proven = 0;
+    for field in &fields {
+        for _ in 0..2_000 {
+            let (p, q) = (point_in(field, &mut random), point_in(field, &mut random));
+            let share = libm::exp(between(&mut random, -8.0, 0.0));
+            let q = p + share * (q - p);
+            let bounds = Bounds::new(p.min(q), p.max(q));
+            let (known, second) = bounds_over(field, &bounds);
+            proven += usize::from(known.value.excludes_zero());
+            for corner in 0..8 {
+                let share = DVec3::from_array([0, 1, 2].map(|a| f64::from(corner >> a & 1)));
+                let at =
+                    (bounds.lo() + share * bounds.size() * between(&mut random, 0.0, 1.0)).min(bounds.hi());
+                let jet = field.jet(at);
+                if jet.value.is_nan() {
+                    assert!(!known.defined, "{at} {bounds:?}");
+                    continue;
+                }
+                // Away from the surface f is another function of the same sign.
+                let indices = field.image().placement().index(at);
+                if !is_near(field, indices) {
+                    assert!(
+                        known.value.lo < 0.0 && jet.value < 0.0 || known.value.hi > 0.0 && jet.value > 0.0
+                    );
+                    continue;
+                }
+                assert!(known.value.holds(jet.value), "{at} {bounds:?}: {jet:?} {known:?}");
+                for axis in 0..3 {
+                    assert!(
+                        known.gradient[axis].holds(jet.gradient[axis]),
+                        "{at} {bounds:?}: {jet:?} {known:?}"
+                    );
+                }
+                for (bounds, entry) in second.entries().into_iter().zip(jet.hessian.entries()) {
+                    assert!(bounds.widened(1e-9).holds(entry), "{at}: {entry} {bounds:?}");
+                }
+            }
+        }
+    }
+    assert!(proven > 500, "{proven}");
+}
+
+/// Whether the spline is kept in the block around these indices.
+fn is_near(field: &ImageField, indices: DVec3) -> bool {
+    let block = (indices + 1.0).to_array().map(|i| i.max(0.0) as usize / super::bricks::SIDE);
+    field.bricks.brick(block).is_some()
+}
+
+#[test]
+fn bounds_of_a_point_are_tight() {
+    let mut random = Pcg32::seed_from_u64(9);
+    for field in random_images() {
+        for _ in 0..200 {
+            let p = point_in(&field, &mut random);
+            let (known, _) = bounds_over(&field, &Bounds::point(p));
+            assert!(known.value.hi - known.value.lo < 1e-8, "{p}: {known:?}");
+        }
+    }
+}
+
+#[test]
+fn coefficients_do_not_depend_on_what_is_far_away() {
+    // An image and a part of it that holds its extremes, so that values are counted from the same
+    // number.
+    let f = |p: DVec3| blurred((p - dvec3(30.0, 31.0, 29.0)).length() - 9.3);
+    let whole = image_of([60, 60, 60], f);
+    let corner = dvec3(3.0, 2.0, 4.0);
+    let mut voxels = Vec::new();
+    let size = [54, 55, 53];
+    for k in 0..size[2] {
+        for j in 0..size[1] {
+            for i in 0..size[0] {
+                voxels.push(whole.voxel([i + 3, j + 2, k + 4]) as f32);
+            }
+        }
+    }
+    let (bright, dark) = (whole.range()[1] as f32, whole.range()[0] as f32);
+    (voxels[0], voxels[1]) = (bright, dark);
+    let part = Image::new(size, voxels).expect("an image");
+    assert_eq!(part.range(), whole.range());
+    let (whole, part) = (whole.at(400.0).expect("a surface"), part.at(400.0).expect("a surface"));
+    let mut random = Pcg32::seed_from_u64(4);
+    for _ in 0..500 {
+        let offset = dvec3(between(&mut random, -9.0, 9.0), between(&mut random, -9.0, 9.0), 0.25);
+        let p = (dvec3(30.0, 31.0, 29.0) + offset * 64.0).round() / 64.0 + offset.round();
+        if is_near(&whole, p) && is_near(&part, p - corner) {
+            assert_eq!(whole.value(p).to_bits(), part.value(p - corner).to_bits(), "{p}");
+        }
+    }
+}
+
+/// The report on a field, proven to have this many components.
+fn proven(field: ImageField, count: u32, components: usize) -> Report {
+    let sample = sample(field, &Settings::with_count(count)).expect("a sample");
+    let report = sample.report().clone();
+    assert_eq!(report.proof.search, Search::Proven, "{:?}", report.proof);
+    assert_eq!(report.proof.components, components);
+    report
+}
+
+#[test]
+fn surfaces_of_images_are_those_of_their_functions() {
+    let middle = dvec3(31.6, 31.2, 31.7);
+    let ball = |p: DVec3| (p - middle).length() - 24.0;
+    let ring = |p: DVec3| torus(p, middle, [18.0, 8.0]);
+    let shapes: [(&dyn Fn(DVec3) -> f64, i64); 2] = [(&ball, 2), (&ring, 0)];
+    for (distance, euler) in shapes {
+        let field = image_of([64, 64, 64], |p| blurred(distance(p))).at(450.0).expect("a surface");
+        let sample = sample(field, &Settings::with_count(4_000)).expect("a sample");
+        assert_eq!(sample.report().proof.search, Search::Proven, "{:?}", sample.report().proof);
+        assert!(sample.mesh().topology.is_closed());
+        assert_eq!(sample.mesh().topology.euler(), euler);
+        let mut worst = [0.0_f64; 2];
+        for (k, n) in sample.particles().normal.iter().enumerate() {
+            let (p, h) = (sample.particles().place(k), 1e-4);
+            let slope = |unit: DVec3| (distance(p + h * unit) - distance(p - h * unit)) / (2.0 * h);
+            let gradient = DVec3::from_array(DVec3::AXES.map(slope));
+            worst[0] = worst[0].max(distance(p).abs());
+            worst[1] = worst[1].max(libm::acos(gradient.dot(n.as_dvec3()).min(1.0)).to_degrees());
+        }
+        // In voxels, and in degrees.
+        assert!(worst[0] < 0.02 && worst[1] < 1.0, "{euler}: {worst:?}");
+    }
+}
+
+#[test]
+fn many_parts_are_found_with_proof() {
+    let mut random = Pcg32::seed_from_u64(20);
+    let balls: Vec<(DVec3, f64)> = (0..27)
+        .map(|k| {
+            let cell = dvec3((k % 3) as f64, (k / 3 % 3) as f64, (k / 9) as f64);
+            let mut off = || between(&mut random, -2.0, 2.0);
+            (20.0 * cell + 11.0 + dvec3(off(), off(), off()), 3.0 + (k % 5) as f64)
+        })
+        .collect();
+    let nearest = |p: DVec3| balls.iter().map(|(c, r)| (p - *c).length() - r).fold(f64::INFINITY, f64::min);
+    let field = image_of([64, 64, 64], |p| blurred(nearest(p))).at(450.0).expect("a surface");
+    proven(field, 20_000, 27);
+}
+
+#[test]
+fn a_flip_keeps_outside_outside() {
+    let ball = image_of([24, 24, 24], |p| 9.0 - (p - dvec3(11.0, 12.0, 11.5)).length());
+    let rows = [[0.0, -1.0, 0.0, 5.0], [-2.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0]];
+    let ball = ball.with_affine(rows).expect("an affine map").at(0.0).expect("a surface");
+    let middle = ball.image().placement().point(dvec3(11.0, 12.0, 11.5));
+    for field in [ball.clone(), ball.inverted()] {
+        let outward = if field.is_inverted() { -1.0 } else { 1.0 };
+        assert_eq!(field.value(middle) < 0.0, outward > 0.0);
+        let (_, gradient) = field.value_and_gradient(middle + dvec3(8.0, 0.0, 0.0));
+        assert!(outward * gradient.x > 0.0);
+    }
+}
+
+#[test]
+fn the_box_is_that_of_the_surface_or_of_the_image_that_cuts_it() {
+    let ball = image_of([40, 40, 40], |p| 6.0 - (p - dvec3(12.0, 20.0, 25.0)).length()).at(0.0);
+    let extent = extent::find(&ball.expect("a surface"));
+    assert_eq!(extent.reach, Reach::Bounded);
+    let around = Bounds::new(dvec3(6.0, 14.0, 19.0), dvec3(18.0, 26.0, 31.0));
+    assert!(extent.bounds.enlarged(1e-9).holds_inside(&around), "{extent:?}");
+    assert!(around.enlarged(2.5).holds_inside(&extent.bounds), "{extent:?}");
+
+    let rod = image_of([40, 30, 20], |p| 6.0 - (p - dvec3(20.0, 15.0, 0.0)).truncate().length()).at(0.0);
+    let rod = rod.expect("a surface");
+    let extent = extent::find(&rod);
+    assert_eq!((extent.reach, extent.bounds.min[2], extent.bounds.max[2]), (Reach::Endless, 0.0, 19.0));
+    let sample = sample(rod, &Settings::with_count(1_500)).expect("a sample");
+    let topology = &sample.mesh().topology;
+    assert_eq!((topology.euler(), topology.borders.len()), (0, 2));
+    assert_eq!(sample.report().proof.search, Search::Proven, "{:?}", sample.report().proof);
+}
+
+#[test]
+fn otsu_parts_two_peaks_in_their_middle() {
+    let two = image_of([8, 8, 8], |p| if p.x < 4.0 { 10.0 } else { 30.0 });
+    assert!((two.otsu() - 20.0).abs() < 0.2, "{}", two.otsu());
+}
+
+#[test]
+fn noise_is_measured_and_its_gaussian_chosen() {
+    let mut random = Pcg32::seed_from_u64(2);
+    // A sum of twelve uniform numbers is all but normal.
+    let mut normal = move || (0..12).map(|_| between(&mut random, 0.0, 1.0)).sum::<f64>() - 6.0;
+    let ball = |p: DVec3| blurred((p - 23.5).length() - 15.0);
+    let clean = image_of([48, 48, 48], ball);
+    assert!(clean.noise() < 1.0, "{}", clean.noise());
+    assert_eq!(clean.width_against_noise(), 0.0);
+    let count = 48 * 48 * 48;
+    let noise: Vec<f64> = (0..count).map(|_| 54.0 * normal()).collect();
+    let noisy = image_of([48, 48, 48], |p| {
+        let at = p.x as usize + 48 * (p.y as usize + 48 * p.z as usize);
+        ball(p) + noise[at]
+    });
+    assert!((noisy.noise() / 54.0 - 1.0).abs() < 0.05, "{}", noisy.noise());
+    let width = noisy.width_against_noise();
+    assert!((0.8..1.1).contains(&width), "{width}");
+    let smoothed = noisy.smoothed(width).expect("an image");
+    proven(smoothed.at(450.0).expect("a surface"), 2_000, 1);
+}
+
+#[test]
+fn labels_become_smooth_closed_surfaces() {
+    let (big, small) = (dvec3(24.0, 24.0, 24.0), dvec3(8.0, 8.0, 9.0));
+    let voxels: Vec<u8> = (0..48 * 48 * 48)
+        .map(|at| {
+            let p = dvec3((at % 48) as f64, (at / 48 % 48) as f64, (at / 48 / 48) as f64);
+            if (p - small).length() < 6.0 { 7 } else { u8::from((p - big).length() < 15.0) * 3 }
+        })
+        .collect();
+    let image = Image::new([48, 48, 48], &voxels).expect("an image");
+    let values: Vec<f64> = image.labels().iter().map(|label| label.value).collect();
+    assert_eq!(values, [0.0, 3.0, 7.0]);
+    let total: u64 = image.labels().iter().map(|label| label.voxels).sum();
+    assert_eq!(total, 48 * 48 * 48);
+    for (label, middle, radius) in [(3.0, big, 15.0), (7.0, small, 6.0)] {
+        let surface = image.label(label, 1.0).expect("a label").at(0.0).expect("a surface");
+        let sample = sample(surface, &Settings::with_count(2_000)).expect("a sample");
+        assert_eq!(sample.report().proof.search, Search::Proven, "{:?}", sample.report().proof);
+        assert_eq!(sample.mesh().topology.euler(), 2);
+        let places = (0..sample.particles().len()).map(|k| sample.particles().place(k));
+        let distances = places.map(|p| (p - middle).length() - radius);
+        let worst = distances.fold(0.0_f64, |worst, d| worst.max(d.abs()));
+        assert!(worst < 0.75, "{label}: {worst}");
+    }
+    assert!(matches!(image.label(5.0, 1.0), Err(ImageError::NoLabel { count: 0, .. })));
+    let sheet: Vec<u8> = (0..1000).map(|at| u8::from(at / 100 == 5)).collect();
+    let sheet = Image::new([10, 10, 10], &sheet).expect("an image");
+    assert!(matches!(sheet.label(1.0, 2.0), Err(ImageError::Thin { .. })), "{:?}", sheet.label(1.0, 2.0));
+}
+
+#[test]
+fn what_is_no_image_is_refused_by_its_fault() {
+    let refused = |size, voxels: &[f32]| Image::new(size, voxels).expect_err("no image");
+    assert!(matches!(refused([2, 2, 2], &[0.0; 7]), ImageError::Size { wanted: 8, found: 7, .. }));
+    assert!(matches!(refused([usize::MAX, 2, 2], &[0.0; 7]), ImageError::Size { .. }));
+    assert!(matches!(refused([4, 2, 1], &[0.0; 8]), ImageError::Flat { .. }));
+    assert!(matches!(refused([2, 2, 2], &[3.0; 8]), ImageError::Constant { value: 3.0 }));
+    let mut voxels = [0.0; 8];
+    (voxels[3], voxels[6]) = (f32::NAN, f32::INFINITY);
+    assert_eq!(refused([2, 2, 2], &voxels), ImageError::NotFinite { count: 2, first: [1, 1, 0] });
+    let image = image_of([3, 3, 3], |p| p.x);
+    for iso in [-1.0, 0.0, 2.0, 3.0, f64::NAN] {
+        assert!(matches!(image.at(iso), Err(ImageError::Outside { .. })), "{iso}");
+    }
+    for spacing in [[0.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, f64::NAN], [1.0, f64::INFINITY, 1.0]] {
+        assert!(
+            matches!(image.clone().with_spacing(spacing), Err(ImageError::Singular { .. })),
+            "{spacing:?}"
+        );
+    }
+    let flat = [[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.0]];
+    assert!(matches!(image.with_affine(flat), Err(ImageError::Singular { .. })));
+}

@@ -1,0 +1,206 @@
+//! The voxels of an image, as they are in its file: in their own type and byte order.
+
+use bytemuck::NoUninit;
+use core::fmt::{self, Display, Formatter};
+use std::sync::Arc;
+
+/// Type of the voxels of a file or an array.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VoxelType {
+    /// Whole numbers of 8 bits without a sign.
+    U8,
+    /// Whole numbers of 8 bits.
+    I8,
+    /// Whole numbers of 16 bits without a sign.
+    U16,
+    /// Whole numbers of 16 bits.
+    I16,
+    /// Whole numbers of 32 bits without a sign.
+    U32,
+    /// Whole numbers of 32 bits.
+    I32,
+    /// Whole numbers of 64 bits without a sign.
+    U64,
+    /// Whole numbers of 64 bits.
+    I64,
+    /// Numbers in single precision.
+    F32,
+    /// Numbers in double precision.
+    F64,
+}
+
+impl VoxelType {
+    /// Bytes of a voxel.
+    #[must_use]
+    pub fn bytes(self) -> usize {
+        match self {
+            Self::U8 | Self::I8 => 1,
+            Self::U16 | Self::I16 => 2,
+            Self::U32 | Self::I32 | Self::F32 => 4,
+            Self::U64 | Self::I64 | Self::F64 => 8,
+        }
+    }
+
+    /// Whether these are whole numbers, as labels are.
+    #[must_use]
+    pub fn is_whole(self) -> bool {
+        !matches!(self, Self::F32 | Self::F64)
+    }
+}
+
+impl Display for VoxelType {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::U8 => "uint8",
+            Self::I8 => "int8",
+            Self::U16 => "uint16",
+            Self::I16 => "int16",
+            Self::U32 => "uint32",
+            Self::I32 => "int32",
+            Self::U64 => "uint64",
+            Self::I64 => "int64",
+            Self::F32 => "float32",
+            Self::F64 => "float64",
+        })
+    }
+}
+
+/// A number that voxels of a program's array can be.
+pub trait Voxel: NoUninit {
+    /// Its type.
+    const TYPE: VoxelType;
+}
+
+macro_rules! voxel {
+    ($($number:ty => $name:ident),*) => {
+        $(impl Voxel for $number {
+            const TYPE: VoxelType = VoxelType::$name;
+        })*
+    };
+}
+
+voxel!(u8 => U8, i8 => I8, u16 => U16, i16 => I16, u32 => U32, i32 => I32, u64 => U64, i64 => I64, f32 => F32, f64 => F64);
+
+/// How the bytes of a file stand for voxels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Layout {
+    pub(super) voxel_type: VoxelType,
+    /// Whether the first byte of a number is its largest.
+    pub(super) is_big_endian: bool,
+    /// Offset of the first voxel in bytes.
+    pub(super) first: usize,
+    /// Numbers from a voxel to the next: more than one where each voxel has several.
+    pub(super) step: usize,
+    /// A value is `slope` times the number of the file, plus `intercept`.
+    pub(super) slope: f64,
+    pub(super) intercept: f64,
+}
+
+impl Layout {
+    /// One number after the other from the first byte on.
+    pub(super) fn plain(voxel_type: VoxelType, is_big_endian: bool) -> Self {
+        Self { voxel_type, is_big_endian, first: 0, step: 1, slope: 1.0, intercept: 0.0 }
+    }
+}
+
+/// Voxels in a row, which copies share.
+#[derive(Clone)]
+pub(super) struct Voxels {
+    data: Arc<[u8]>,
+    layout: Layout,
+    len: usize,
+}
+
+impl Voxels {
+    /// The numbers of an array.
+    pub(super) fn new<T: Voxel>(numbers: &[T]) -> Self {
+        let layout = Layout::plain(T::TYPE, cfg!(target_endian = "big"));
+        Self { data: bytemuck::cast_slice(numbers).into(), layout, len: numbers.len() }
+    }
+
+    /// The first `len` voxels of a file; none if it has fewer.
+    pub(super) fn of_file(data: impl Into<Arc<[u8]>>, layout: Layout, len: usize) -> Option<Self> {
+        let data = data.into();
+        let size = layout.voxel_type.bytes();
+        let last = len.checked_sub(1)?.checked_mul(layout.step)?.checked_mul(size)?;
+        let end = layout.first.checked_add(last)?.checked_add(size)?;
+        (end <= data.len()).then_some(Self { data, layout, len })
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.len
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        self.data.len()
+    }
+
+    pub(super) fn voxel_type(&self) -> VoxelType {
+        self.layout.voxel_type
+    }
+
+    /// Calls `take` with the values of `count` voxels from `first` on.
+    #[allow(trivial_numeric_casts, reason = "one of the types is already double precision")]
+    fn each(&self, first: usize, count: usize, mut take: impl FnMut(usize, f64)) {
+        let Layout { voxel_type, is_big_endian, step, slope, intercept, .. } = self.layout;
+        let size = voxel_type.bytes();
+        let from = &self.data[self.layout.first + first * step * size..];
+        macro_rules! read {
+            ($number:ty) => {
+                for (k, bytes) in from.chunks(step * size).take(count).enumerate() {
+                    let bytes = bytes[..size].try_into().unwrap_or_default();
+                    let number = if is_big_endian {
+                        <$number>::from_be_bytes(bytes)
+                    } else {
+                        <$number>::from_le_bytes(bytes)
+                    };
+                    take(k, number as f64 * slope + intercept);
+                }
+            };
+        }
+        match voxel_type {
+            VoxelType::U8 => read!(u8),
+            VoxelType::I8 => read!(i8),
+            VoxelType::U16 => read!(u16),
+            VoxelType::I16 => read!(i16),
+            VoxelType::U32 => read!(u32),
+            VoxelType::I32 => read!(i32),
+            VoxelType::U64 => read!(u64),
+            VoxelType::I64 => read!(i64),
+            VoxelType::F32 => read!(f32),
+            VoxelType::F64 => read!(f64),
+        }
+    }
+
+    /// Writes the values of the voxels from `first` on, counted from `zero`.
+    pub(super) fn write(&self, first: usize, zero: f64, out: &mut [f32]) {
+        self.each(first, out.len(), |k, value| out[k] = (value - zero) as f32);
+    }
+
+    /// The value of a voxel.
+    pub(super) fn at(&self, index: usize) -> f64 {
+        let mut found = 0.0;
+        self.each(index, 1, |_, value| found = value);
+        found
+    }
+
+    /// Calls `take` with the values of all voxels.
+    pub(super) fn for_each(&self, mut take: impl FnMut(f64)) {
+        self.each(0, self.len, |_, value| take(value));
+    }
+
+    /// Smallest and largest value. If some are not finite, their number and the first of them.
+    pub(super) fn range(&self) -> Result<[f64; 2], (usize, usize)> {
+        let (mut min, mut max) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut count, mut first) = (0, 0);
+        self.each(0, self.len, |k, value| {
+            if value.is_finite() {
+                (min, max) = (min.min(value), max.max(value));
+            } else {
+                first = if count == 0 { k } else { first };
+                count += 1;
+            }
+        });
+        if count == 0 { Ok([min, max]) } else { Err((count, first)) }
+    }
+}
