@@ -1,5 +1,5 @@
-//! What must hold of any formula, file, image and request. Each function takes any bytes and panics where
-//! something does not hold.
+//! What must hold of any formula, file, image and request. Each function takes any bytes and panics
+//! where something does not hold.
 //!
 //! libFuzzer calls them (`targets/`), and so does `tests/it/fuzz.rs`, with mutations of the files
 //! in `seeds/`.
@@ -319,8 +319,8 @@ pub fn run(
     Some(Outcome { digest: session.run.particles().digest(), search })
 }
 
-/// A file of an image: it is refused with a message, or it is an image whose voxels are finite, with
-/// a surface between its darkest and its brightest voxel whose field has finite values there.
+/// A file of an image: it is refused with a message, or it is an image whose voxels are finite,
+/// with a surface between its darkest and its brightest voxel whose field has finite values there.
 pub fn image(bytes: &[u8]) {
     let beside = |name: &str| Err(format!("{name} is not read here"));
     let image = match Image::read("scan.hdr", bytes.to_vec(), beside) {

@@ -8,9 +8,9 @@ use glam::{DVec3, Vec3};
 
 /// Cells along a side of a grid: as many as those of the survey.
 pub(crate) const CELLS: usize = 32;
-/// Where |f| at the ends of the last part of an edge is less than this share of |f| at the ends of a
-/// [wider](NEAR) part, f comes to zero there: at a jump it stays as large, and at a pole it grows.
-/// Smaller: roots of f like the fourth root of the distance are missed.
+/// Where |f| at the ends of the last part of an edge is less than this share of |f| at the ends of
+/// a [wider](NEAR) part, f comes to zero there: at a jump it stays as large, and at a pole it
+/// grows. Smaller: roots of f like the fourth root of the distance are missed.
 const ZERO_SHARE: f64 = 0.5;
 /// Divisions of an edge that lead to that wider part, 1/64 of the edge. Fewer: f may halve on the
 /// way to a jump, as it does where the surface is smaller than a cell and next to the jump. More:

@@ -40,8 +40,8 @@ async fn find_by(field: &mut dyn Evaluator, counted: Counted) -> Option<Extent> 
         let extent = settle(field, cube, found, counted).await;
         for half in halves {
             let cube = Bounds::cube(half);
-            // What a grid finds is less than two cells away, of which one is room, or a jump of f next
-            // to the surface that passes for a zero on this grid.
+            // What a grid finds is less than two cells away, of which one is room, or a jump of f
+            // next to the surface that passes for a zero on this grid.
             let near = extent.bounds.enlarged(NEAR * cube.size().x / CELLS as f64);
             let all = changes(field, &cube, counted).await;
             if all.is_some_and(|all| near.joined(&all.hull) != near) {

@@ -206,8 +206,8 @@ pub struct Facts {
     pub unused: Vec<String>,
     /// A sentence for the user on why f is the same everywhere, if it is known.
     pub why_constant: Option<String>,
-    /// A box that holds the whole surface, if the field knows one. The box of a run is fitted to it,
-    /// and the surface is not searched elsewhere.
+    /// A box that holds the whole surface, if the field knows one. The box of a run is fitted to
+    /// it, and the surface is not searched elsewhere.
     pub within: Option<Within>,
     /// The box in which f is known, as that of an image, if it is not known everywhere.
     pub domain: Option<Bounds>,

@@ -71,11 +71,11 @@ use sizes::WantedRadii;
 use std::sync::Arc;
 use triangles::TriangleAngles;
 
-/// Smallest number of random samples for `quantization_error`, of which there is at least one for each particle:
-/// stratified, so many give it to about 0.1 %.
+/// Smallest number of random samples for `quantization_error`, of which there is at least one for
+/// each particle: stratified, so many give it to about 0.1 %.
 const LEAST_SAMPLES: usize = 65_536;
-/// Largest number of random samples for `quantization_error`. Over a disc the squared distance scatters by 0.58
-/// of its mean, so that the error of so many samples is 0.1 %.
+/// Largest number of random samples for `quantization_error`. Over a disc the squared distance
+/// scatters by 0.58 of its mean, so that the error of so many samples is 0.1 %.
 const MOST_SAMPLES: usize = 262_144;
 /// Mean squared distance to the nearest point of a hexagonal lattice, over its area per point: 5 /
 /// (18 √3).
@@ -149,9 +149,9 @@ pub(crate) struct Opening {
 /// `bounds` is the box that was sampled. Particles within 4 d_hex of the border, where the surface
 /// continues beyond the box, are left out of every figure but the residual, the normals, the area
 /// and the topology. Random lines through the box find what the particles have missed, for `cover`
-/// and `quantization_error`. Without `bounds` only the triangles are sampled. The given normals are used where
-/// the gradient is undefined, and are themselves measured against it; the slice may be shorter than
-/// `position`.
+/// and `quantization_error`. Without `bounds` only the triangles are sampled. The given normals are
+/// used where the gradient is undefined, and are themselves measured against it; the slice may be
+/// shorter than `position`.
 ///
 /// The cost is linear, about 2 µs for each particle natively on a formula. No input causes a panic:
 /// what is undefined (the spacing of one particle, angles without triangles) is NaN, and non-finite

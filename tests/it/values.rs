@@ -1,5 +1,5 @@
-//! Values at the particles: curvatures of surfaces whose curvatures are known, areas that add up, and
-//! what files hold.
+//! Values at the particles: curvatures of surfaces whose curvatures are known, areas that add up,
+//! and what files hold.
 
 use marching_particles::glam::DVec3;
 use marching_particles::{
@@ -43,7 +43,8 @@ fn curvatures_of_a_torus_are_those_of_the_textbook() {
         let axis = p.x.hypot(p.y);
         assert!((product - 2.5 * (axis - 1.0) / 0.4 / axis).abs() < 5e-3, "K = {product} at {p}");
     }
-    // The larger curvature is that around the tube, in planes through the axis: d, n and z are in one.
+    // The larger curvature is that around the tube, in planes through the axis: d, n and z are in
+    // one.
     for (p, off) in at_places(&sample, "around") {
         assert!(off.abs() < 1e-3, "{off} at {p}");
     }

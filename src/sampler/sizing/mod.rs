@@ -1,12 +1,12 @@
-//! The radius field of adaptive sampling: a law gives the radius from the curvature, from a function
-//! of place or from both, and its slope is limited.
+//! The radius field of adaptive sampling: a law gives the radius from the curvature, from a
+//! function of place or from both, and its slope is limited.
 //!
-//! r(x) = min(law(x, κ(x)), envelope(x)). The envelope is the minimum over the points y of the survey
-//! and of the creases of law(y, κ(y)) + L |x − y|: the largest function of slope L that is not above
-//! the law at these points. So the radius grows no faster than this away from a bend, also away
-//! from a crease beside a patch so small that no point of the survey lies on it. The envelope is
-//! stored on the nodes of a grid near the surface and interpolated between them. Beside jumps of a
-//! function of place it is too coarse: points are added there, and asked one by one.
+//! r(x) = min(law(x, κ(x)), envelope(x)). The envelope is the minimum over the points y of the
+//! survey and of the creases of law(y, κ(y)) + L |x − y|: the largest function of slope L that is
+//! not above the law at these points. So the radius grows no faster than this away from a bend,
+//! also away from a crease beside a patch so small that no point of the survey lies on it. The
+//! envelope is stored on the nodes of a grid near the surface and interpolated between them. Beside
+//! jumps of a function of place it is too coarse: points are added there, and asked one by one.
 
 mod envelope;
 mod laws;
@@ -35,8 +35,8 @@ const PREDICTION_TOLERANCE: f64 = 2e-3;
 /// Share by which the slope may lower a wanted radius before that counts as smoothing.
 const SMOOTHED: f32 = 0.05;
 
-/// The distance from the step of a function to which the envelope is too coarse, in cells: nodes are
-/// up to a diagonal away, and the survey has a point within another cell.
+/// The distance from the step of a function to which the envelope is too coarse, in cells: nodes
+/// are up to a diagonal away, and the survey has a point within another cell.
 const STEP_REACH: f32 = 3.0;
 
 /// A spacing by a function that is asked for.
@@ -89,8 +89,8 @@ struct SurfaceSample {
 }
 
 impl Sizing {
-    /// Makes the radius field that `settings` ask for, or a `wish`. This evaluates a Hessian at every point of
-    /// the survey, and on every patch at each of the `creases`.
+    /// Makes the radius field that `settings` ask for, or a `wish`. This evaluates a Hessian at
+    /// every point of the survey, and on every patch at each of the `creases`.
     pub(crate) fn new(
         probe: &mut Probe,
         bounds: &Bounds,

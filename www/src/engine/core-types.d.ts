@@ -1304,7 +1304,7 @@ export type SolvedModel = {
 /** A spacing by a formula, as it is written: see [`Spacing`]. A record has it beside the settings. */
 export type SpacingText = {
   /** Distance between neighbours, in x, y, z and the parameters of the formula whose surface is
-* sampled, such as `0.02 + 0.1 hypot(x, y)`. */
+  * sampled, such as `0.02 + 0.1 hypot(x, y)`. */
   formula: string,
   /** Smallest distance, which is taken where the formula is below it. */
   smallest?: number,
