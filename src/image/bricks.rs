@@ -21,7 +21,7 @@ const VOLUME: usize = WIDE * WIDE * WIDE;
 const FAR: u32 = u32::MAX;
 /// Share of the image's range by which truncated and rounded coefficients may put a voxel on the
 /// other side of the iso value.
-const SLACK: f32 = 2e-6;
+const SLACK: f32 = 1e-5;
 
 /// The smallest and the largest of some numbers.
 pub(super) type Range = [f32; 2];

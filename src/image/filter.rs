@@ -278,7 +278,9 @@ mod tests {
                     }
                 }
             }
-            assert!(worst < 3e-6, "{size:?}: {worst}");
+            // Coefficients of noise are up to 27 times as large as it, rounded and cut off along
+            // three axes.
+            assert!(worst < 1e-5, "{size:?}: {worst}");
         }
     }
 
