@@ -8,11 +8,13 @@ use glam::{DVec3, Vec3};
 
 /// Cells along a side of a grid: as many as those of the survey.
 pub(crate) const CELLS: usize = 32;
-/// Where |f| at the ends of the last part of an edge is less than this share of |f| at the ends of
-/// a [wider](NEAR) part, f comes to zero there: at a jump it stays as large, and at a pole it
-/// grows. Smaller: roots of f like the fourth root of the distance are missed.
-const ZERO_SHARE: f64 = 0.5;
-/// Divisions of an edge that lead to that wider part, 1/64 of the edge. Fewer: f may halve on the
+/// Where |f| is less than this share of its values at the ends of an edge, f comes to zero there;
+/// at a jump it stays as large, and at a pole it grows. Smaller: roots of a high order are missed.
+const ZERO_SHARE: f64 = 1.0 / 16.0;
+/// The same share of |f| at the ends of a [part](NEAR) of the edge around the zero. Without it a
+/// jump passes for one where f is much smaller than at the ends, beside a surface that is small.
+const NEAR_SHARE: f64 = 0.5;
+/// Divisions of an edge that lead to that part, 1/64 of the edge. Fewer: f may halve on the
 /// way to a jump, as it does where the surface is smaller than a cell and next to the jump. More:
 /// rounding errors of terms that nearly cancel may be as large as f in a part that small.
 const NEAR: u32 = 2;
@@ -166,8 +168,12 @@ fn has_zero(field: &mut dyn Evaluator, changes: &[Change]) -> bool {
     }
     // The values are arsinh f. At a pole they may be infinite, at a jump f may be 0 by itself.
     let size = |value: f32| libm::sinh(value.abs().into());
-    near.iter().zip(&ends).any(|(near, [a, b])| {
-        let before = near.map(|(_, value)| size(value)).into_iter().filter(|size| size.is_finite());
-        size(a.1).max(size(b.1)) <= ZERO_SHARE * before.fold(0.0, f64::max)
+    let largest = |ends: &[(Vec3, f32); 2]| {
+        let sizes = ends.map(|(_, value)| size(value)).into_iter().filter(|size| size.is_finite());
+        sizes.fold(0.0, f64::max)
+    };
+    changes.iter().zip(&near).zip(&ends).any(|((change, near), [a, b])| {
+        let last = size(a.1).max(size(b.1));
+        last <= ZERO_SHARE * largest(&change.ends) && last <= NEAR_SHARE * largest(near)
     })
 }

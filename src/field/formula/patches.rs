@@ -56,8 +56,9 @@ impl Branches {
     /// in these cells. Says whether the surface has no edge there at all.
     pub(super) async fn join_tangent(&mut self, values: &[f64], bounds: &Bounds, cells: &[Bounds]) -> bool {
         let Meetings { seen, tangent, sharp, is_open } = self.meetings(values, bounds, cells).await;
-        let mut patches: Vec<u32> =
-            seen.iter().copied().max().map_or(Vec::new(), |last| (0..=last).collect());
+        // Of a pair that meets in the box one may give f nowhere on its surface.
+        let all = seen.iter().chain(tangent.iter().flatten()).chain(sharp.iter().flatten());
+        let mut patches: Vec<u32> = all.copied().max().map_or(Vec::new(), |last| (0..=last).collect());
         for &pair in tangent.iter().filter(|pair| !sharp.contains(pair)) {
             let of = |pair: [u32; 2]| ascending(pair.map(|branch| patches[branch as usize]));
             let [to, from] = of(pair);

@@ -165,7 +165,7 @@ test('on a phone the message that there is no surface leaves the tools free, and
 }, async ({ page }) => {
   const { clean } = await open(page, { width: 390, height: 844 });
   await typeFormula(page, 'hello world');
-  await expect(page.locator('.empty')).toContainText('constant');
+  await expect(page.locator('.empty')).toContainText('There is no x, y or z in it');
   const last = page.getByRole('button', { name: 'Help' });
   const { x, y, width, height } = (await last.boundingBox()) ?? { x: 0, y: 0, width: 0, height: 0 };
   const at = { x: x + width / 2, y: y + height / 2 };
