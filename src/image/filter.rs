@@ -216,9 +216,7 @@ mod tests {
         let n = s.len();
         let mut c = s.to_vec();
         let mut pivot = vec![4.0; n];
-        for k in 1..n - 1 {
-            c[k] *= 6.0;
-        }
+        c[1..n - 1].iter_mut().for_each(|c| *c *= 6.0);
         // The ends are known: c[0] = s[0] and c[n−1] = s[n−1].
         for k in 1..n - 1 {
             let factor = if k == 1 { 1.0 } else { 1.0 / pivot[k - 1] };
