@@ -49,7 +49,7 @@ pub(crate) fn sample(
     settings = if refined { settings.refined() } else { settings };
     settings.bounds = bounds.map(|(min, max)| Bounds { min, max }).or(field.bounds);
     let settings = match spacing {
-        None => settings.into(),
+        None => (&settings).into(),
         Some(Function::Formula(text)) => {
             settings.spaced(Spacing::parse(&text).map_err(|error| errors::of_formula(&error, &text))?)
         }

@@ -30,7 +30,7 @@ pub struct Value(Source);
 
 #[derive(Clone)]
 enum Source {
-    Formula(Formula),
+    Formula(Box<Formula>),
     Function(Arc<dyn Field>),
 }
 
@@ -130,7 +130,7 @@ impl Value {
         let is_own = |parameter: &&Parameter| QUANTITIES.iter().all(|(name, _)| *name != parameter.name);
         let mut known: Vec<Parameter> = parameters.iter().filter(is_own).cloned().collect();
         known.extend(QUANTITIES.iter().map(|(name, _)| Parameter::automatic(name)));
-        Ok(Self(Source::Formula(Formula::expression(text, &known, &NOUN)?)))
+        Ok(Self(Source::Formula(Formula::expression(text, &known, &NOUN)?.into())))
     }
 
     /// The value of a function of place: anything that can be [sampled](IntoField), as a function

@@ -179,8 +179,7 @@ impl Spacing {
         if let Some(error) = self.failure() {
             return Err(SettingsError::SpacingFunction(error));
         }
-        // NaN is not above 0.
-        let bad = places.iter().zip(radii).find(|(_, radius)| !(**radius > 0.0));
+        let bad = places.iter().zip(radii).find(|(_, radius)| radius.is_nan() || **radius <= 0.0);
         bad.map_or(Ok(()), |(place, radius)| {
             let position = (origin + place.as_dvec3()).to_array();
             Err(SettingsError::Spacing { value: 2.0 * f64::from(*radius), position })
@@ -197,21 +196,9 @@ pub struct SpacedSettings {
     pub spacing: Option<Spacing>,
 }
 
-impl From<Settings> for SpacedSettings {
-    fn from(settings: Settings) -> Self {
-        Self { settings, spacing: None }
-    }
-}
-
 impl From<&Settings> for SpacedSettings {
     fn from(settings: &Settings) -> Self {
-        (*settings).into()
-    }
-}
-
-impl From<&Self> for SpacedSettings {
-    fn from(settings: &Self) -> Self {
-        settings.clone()
+        Self { settings: *settings, spacing: None }
     }
 }
 

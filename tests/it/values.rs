@@ -34,13 +34,13 @@ fn at_places(sample: &Sample, name: &str) -> Vec<(DVec3, f64)> {
 fn curvatures_of_a_torus_are_those_of_the_textbook() {
     let sample = with(&[("H", "(k_1 + k_2)/2"), ("K", "k_1 k_2"), ("around", "d_x n_y - d_y n_x")]);
     for (p, mean) in at_places(&sample, "H") {
-        let axis = p.x.hypot(p.y);
+        let axis = libm::hypot(p.x, p.y);
         // κ is 1/r around the tube and cos θ/(R + r cos θ) around the axis.
         let other = (axis - 1.0) / 0.4 / axis;
         assert!((mean - 0.5 * (2.5 + other)).abs() < 2e-3, "H = {mean} at {p}");
     }
     for (p, product) in at_places(&sample, "K") {
-        let axis = p.x.hypot(p.y);
+        let axis = libm::hypot(p.x, p.y);
         assert!((product - 2.5 * (axis - 1.0) / 0.4 / axis).abs() < 5e-3, "K = {product} at {p}");
     }
     // The larger curvature is that around the tube, in planes through the axis: d, n and z are in one.
