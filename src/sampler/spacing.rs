@@ -196,21 +196,9 @@ pub struct SpacedSettings {
     pub spacing: Option<Spacing>,
 }
 
-impl From<Settings> for SpacedSettings {
-    fn from(settings: Settings) -> Self {
-        Self { settings, spacing: None }
-    }
-}
-
 impl From<&Settings> for SpacedSettings {
     fn from(settings: &Settings) -> Self {
-        (*settings).into()
-    }
-}
-
-impl From<&Self> for SpacedSettings {
-    fn from(settings: &Self) -> Self {
-        settings.clone()
+        Self { settings: *settings, spacing: None }
     }
 }
 
