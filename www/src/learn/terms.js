@@ -1,7 +1,6 @@
 /**
  * Terms of the text that a figure of their chapter can mark: while one is hovered, focused or
- * pressed, the figure shows
- * what it means.
+ * pressed, the figure shows what it means.
  */
 import { signal } from '@preact/signals-core';
 import { queryAll } from '../ui/dom.js';
@@ -17,6 +16,8 @@ export function mountTerms() {
     const { term: name = '' } = term.dataset;
     const stages = queryAll(term.closest('.chapter') ?? document, '.stage');
     const mark = (/** @type {boolean} */ isOn) => {
+      // The pointer may leave a term once another one has the focus.
+      if (!isOn && shown.peek() !== name) return;
       shown.value = isOn ? name : '';
       for (const stage of stages) stage.dataset.marks = shown.peek();
     };

@@ -488,8 +488,11 @@ test('five runs from other seeds become dots, and a term marks what it means', {
   const cell = measures.locator('.cell').first();
   const width = () => cell.evaluate((one) => getComputedStyle(one).strokeWidth);
   const plain = await width();
-  await page.locator('[data-term="cell"]').hover();
-  await expect.poll(width).not.toBe(plain);
+  // Figures above that come to life may move the term from under the pointer.
+  await expect(async () => {
+    await page.locator('[data-term="cell"]').hover();
+    expect(await width()).not.toBe(plain);
+  }).toPass();
   await page.locator('[data-term="pair"]').focus();
   await expect(measures).toHaveAttribute('data-marks', 'pair');
   clean();
