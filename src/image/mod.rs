@@ -58,7 +58,7 @@ pub enum ImageError {
     },
     /// A voxel is NaN or infinite.
     #[error(
-        "{count} voxels are not finite numbers, the first one at ({}, {}, {}); give them a value, such as that of \
+        "{count} voxels are not numbers up to 1e30, the first one at ({}, {}, {}); give them a value, such as that of \
          the background",
         first[0], first[1], first[2]
     )]

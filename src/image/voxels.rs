@@ -29,6 +29,9 @@ pub enum VoxelType {
     F64,
 }
 
+/// Largest size of a value: coefficients in single precision are at most some ten times as large.
+const LARGEST: f64 = 1e30;
+
 impl VoxelType {
     /// Bytes of a voxel.
     #[must_use]
@@ -189,12 +192,13 @@ impl Voxels {
         self.each(0, self.len, |_, value| take(value));
     }
 
-    /// Smallest and largest value. If some are not finite, their number and the first of them.
+    /// Smallest and largest value. If some are not finite, or so large that single precision
+    /// overflows, their number and the first of them.
     pub(super) fn range(&self) -> Result<[f64; 2], (usize, usize)> {
         let (mut min, mut max) = (f64::INFINITY, f64::NEG_INFINITY);
         let (mut count, mut first) = (0, 0);
         self.each(0, self.len, |k, value| {
-            if value.is_finite() {
+            if value.abs() <= LARGEST {
                 (min, max) = (min.min(value), max.max(value));
             } else {
                 first = if count == 0 { k } else { first };

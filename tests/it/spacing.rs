@@ -198,10 +198,10 @@ fn formula_and_functions_give_the_same_particles_in_any_steps() {
 
 #[test]
 fn a_surface_far_from_the_origin_has_the_same_sizes() {
-    let far = formula("(x - 3e3)^2 + y^2 + (z + 2e3)^2 = 1");
-    let bounds = Bounds { min: [3e3 - 1.2, -1.2, -2e3 - 1.2], max: [3e3 + 1.2, 1.2, -2e3 + 1.2] };
-    let spacing = Spacing::parse("0.1 + 0.08 (x - 3e3)").expect("a formula");
-    let wish = |p: DVec3| 0.1 + 0.08 * (p.x - 3e3);
+    let far = formula("(x - 1e3)^2 + y^2 + (z + 700)^2 = 1");
+    let bounds = Bounds { min: [1e3 - 1.2, -1.2, -701.2], max: [1e3 + 1.2, 1.2, -698.8] };
+    let spacing = Spacing::parse("0.1 + 0.08 (x - 1e3)").expect("a formula");
+    let wish = |p: DVec3| 0.1 + 0.08 * (p.x - 1e3);
     let settings = Settings::default().in_box(bounds);
     let sample = sample(&far, settings.spaced(spacing)).expect("a sample");
     let fit = fit(&sample, &far, &wish, 0.2);

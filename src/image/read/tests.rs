@@ -89,10 +89,13 @@ fn a_file_that_is_cut_off_is_refused() {
         ["nifti-1-big", "nifti-2", "nifti-gzip", "nrrd-raw", "nrrd-gzip", "npy-c", "mha", "mha-zlib", "cube"]
     {
         let bytes = seed(name);
-        // The last line feed of a text is not missed, nor are the end mark and the check sum of
-        // compressed data.
+        // The last line feed of a text is not missed, nor are the digits of its last number, and
+        // the end mark and the check sum of compressed data.
         let spared = match name {
-            "cube" => 1,
+            // The last number may have lost digits.
+            "cube" => {
+                1 + bytes.trim_ascii_end().rsplit(u8::is_ascii_whitespace).next().map_or(0, <[u8]>::len)
+            }
             "nifti-gzip" | "nrrd-gzip" | "mha-zlib" => 12,
             _ => 0,
         };

@@ -36,7 +36,7 @@ fn an_image_is_sampled_at_the_value_that_is_said() {
     let mesh = file("ball.stl").display().to_string();
     let run = sample(&["--image", &path, "--iso", "0", "--smooth", "0", "--count", "800", "--mesh", &mesh]);
     assert_eq!((&run["image"]["iso"], &run["image"]["is_otsu"]), (&0.0.into(), &false.into()));
-    assert_eq!(run["proof"]["search"], "proven");
+    assert_eq!(run["search"], "proven");
     assert_eq!((&run["mesh"]["euler"], &run["mesh"]["borders"]), (&2.into(), &0.into()));
     let volume = run["mesh"]["volume"].as_f64().expect("a closed mesh");
     let exact = 4.0 / 3.0 * std::f64::consts::PI * 512.0;

@@ -44,7 +44,7 @@ fn a_spacing_that_is_a_number_is_twice_the_radius() {
         sample(&["--surface", "ellipsoid", "--adaptive", "--chord-error", "0.05%", "--spacing", "0.1"]);
     let alone = sample(&["--surface", "ellipsoid", "--adaptive", "--chord-error", "0.05%"]);
     assert!(
-        sizes(&alone)[1] > 0.11 && sizes(&both)[1] <= 0.100_001,
+        sizes(&alone)[1] > 0.102 && sizes(&both)[1] <= 0.100_001,
         "{:?} {:?}",
         sizes(&alone),
         sizes(&both)
@@ -69,7 +69,7 @@ fn programs_have_the_spacing() {
     assert!(rust.contains(r#"let spacing = Spacing::parse("b = 2; 0.1 b + 0.05 z")?;"#), "{rust}");
     assert!(rust.contains("sample(surface, settings.spaced(spacing))?"), "{rust}");
     for (language, words) in
-        [("shell", "--spacing '0.1 b + 0.05 z'"), ("python", "spacing=\"b = 2; 0.1 b + 0.05 z\"")]
+        [("shell", "--spacing '0.1 b + 0.05 z'"), ("python", "spacing=\"0.1 b + 0.05 z\"")]
     {
         assert!(printed(language).contains(words), "{}", printed(language));
     }
