@@ -109,8 +109,8 @@ fn particles_are_as_far_apart_as_a_formula_asks() {
     for surface in [SPHERE, TORUS, CYCLIDE] {
         let field = formula(surface);
         for (text, wish) in WISHES {
-            // The mesh of a refined run has a few stretched triangles where sizes change most. Beside a
-            // jump sizes change as fast as they may over a band of many particles.
+            // The mesh of a refined run has a few stretched triangles where sizes change most.
+            // Beside a jump sizes change as fast as they may over a band of many particles.
             let is_jump = text.starts_with("if");
             let [front, refined] = if is_jump { [0.96, 0.94] } else { [0.98, 0.97] };
             for (method, least) in [(Method::Front, front), (Method::Refined, refined)] {
