@@ -71,7 +71,8 @@ pub(crate) fn space(session: &mut Session, text: Option<SpacingText>) -> Result<
     let formula = text.as_ref().map_or_else(String::new, |text| text.formula.clone());
     session.space(text).map_err(|fault| match fault.kind {
         FaultKind::Spacing => Failure::Formula { text: formula, fault: Box::new(fault) },
-        _ => Failure::Usage(fault.message),
+        // By the names of the options.
+        _ => Failure::Usage(fault.message.replace("spacing_", "--spacing-")),
     })
 }
 

@@ -44,7 +44,7 @@ fn a_spacing_that_is_a_number_is_twice_the_radius() {
         sample(&["--surface", "ellipsoid", "--adaptive", "--chord-error", "0.05%", "--spacing", "0.1"]);
     let alone = sample(&["--surface", "ellipsoid", "--adaptive", "--chord-error", "0.05%"]);
     assert!(
-        sizes(&alone)[1] > 0.11 && sizes(&both)[1] <= 0.100_001,
+        sizes(&alone)[1] > 0.103 && sizes(&both)[1] <= 0.100_001,
         "{:?} {:?}",
         sizes(&alone),
         sizes(&both)
