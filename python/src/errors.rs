@@ -1,7 +1,7 @@
 //! Errors of the core as exceptions of Python.
 
 use marching_particles::field::formula::Thickness;
-use marching_particles::session::{Condition, Fault, FaultKind, Setting, SolidSettings};
+use marching_particles::session::{Condition, Fault, FaultKind, SolidSettings};
 use marching_particles::{
     Error, FieldError, FormulaError, FormulaErrorKind, JobError, SettingsError, ValueError,
 };
@@ -68,7 +68,7 @@ fn of_text(fault: &Fault, text: &str) -> PyErr {
 }
 
 /// The exception of an argument that has no effect beside the others.
-pub(crate) fn without_effect(setting: &Setting, condition: Condition) -> PyErr {
+pub(crate) fn without_effect(argument: &str, condition: Condition) -> PyErr {
     let needed = match (condition.name, condition.value, condition.equal) {
         ("sampling", "adaptive", _) => "without adaptive=True",
         ("sampling", ..) => "with adaptive=True",
@@ -77,7 +77,7 @@ pub(crate) fn without_effect(setting: &Setting, condition: Condition) -> PyErr {
         (_, _, true) => "without law=\"chord_error\"",
         (_, _, false) => "without law=\"max_curvature\" or \"sum_of_curvatures\"",
     };
-    PyValueError::new_err(format!("{} has no effect {needed}", setting.argument()))
+    PyValueError::new_err(format!("{argument} has no effect {needed}"))
 }
 
 /// The exception of a run.

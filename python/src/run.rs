@@ -12,6 +12,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -27,8 +28,8 @@ struct Options {
     settings: Settings,
     lengths: Lengths,
     solid: SolidSettings,
-    /// The settings that were given, by their names in the table.
-    given: Vec<String>,
+    /// The argument by which each setting of the table was given.
+    given: BTreeMap<String, String>,
 }
 
 /// Samples a field. The GIL is released but for calls of functions of Python.
@@ -47,11 +48,11 @@ pub(crate) fn sample(
 ) -> PyResult<Sample> {
     let options: Options =
         serde_json::from_str(options).map_err(|error| PyValueError::new_err(error.to_string()))?;
-    let given: Vec<&str> = options.given.iter().map(String::as_str).collect();
+    let given: Vec<&str> = options.given.keys().map(String::as_str).collect();
     if let Some((setting, condition)) =
         without_effect(&given, &options.settings, &options.solid, spacing.is_some())
     {
-        return Err(errors::without_effect(&setting, condition));
+        return Err(errors::without_effect(&options.given[setting.name], condition));
     }
     let bounds = bounds.map(|(min, max)| Bounds { min, max });
     let measured = if measure { Measured::Particles } else { Measured::Nothing };

@@ -66,7 +66,7 @@ def test_an_unknown_parameter_is_named():
         ({"radius": "wide"}, ValueError, "a share of the diagonal of the box such as"),
         ({"radius": "nan%"}, ValueError, "and not 'nan%'"),
         ({"radius": "50%"}, ValueError, "radius_share is 0.5, but must lie between"),
-        ({"spacing": 0.1, "adaptive": True}, ValueError, "radius has no effect with adaptive=True"),
+        ({"spacing": 0.1, "adaptive": True}, ValueError, "spacing has no effect with adaptive=True"),
         ({"method": "fast"}, ValueError, "method is 'fast', but must be one of 'front', 'refined'"),
         ({"seed": -1}, ValueError, "seed is -1"),
         ({"bounds": ((0, 0, 0), (1, np.nan, 1))}, ValueError, r"bounds\[1\]\[1\] is nan"),

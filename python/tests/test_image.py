@@ -54,8 +54,14 @@ def test_labels_and_iso_are_chosen():
     assert image.smooth == 1
     sample = mp.sample(image, count=500)
     assert np.abs(distances(sample, (14.2, 13.1, 12.4)) - 9).max() < 0.7
-    grey = mp.Image(1000 / (1 + np.exp(-ball())))
-    assert 450 < grey.iso < 550
+    values = 1000 / (1 + np.exp(-ball()))
+    # Otsu's value by every cut between two values; that of the image lies in a bin, of 256.
+    ordered = np.sort(values, axis=None)
+    below = np.arange(1, ordered.size)
+    sums = np.cumsum(ordered)
+    apart = sums[:-1] / below - (sums[-1] - sums[:-1]) / (ordered.size - below)
+    cut = np.argmax(below * (ordered.size - below) * apart**2)
+    assert abs(mp.Image(values).iso - ordered[cut : cut + 2].mean()) < 1000 / 256
     with pytest.raises(ValueError, match="those of the image are 0, 3"):
         mp.Image(labels, label=2)
 

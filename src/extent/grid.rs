@@ -11,12 +11,13 @@ pub(crate) const CELLS: usize = 32;
 /// Where |f| is less than this share of its values at the ends of an edge, f comes to zero there;
 /// at a jump it stays as large, and at a pole it grows. Smaller: roots of a high order are missed.
 const ZERO_SHARE: f64 = 1.0 / 16.0;
-/// The same share of |f| at the ends of a [part](NEAR) of the edge around the zero. Without it a
-/// jump passes for one where f is much smaller than at the ends, beside a surface that is small.
+/// At a zero |f| is also less than this share of its values at the ends of a [short part](NEAR) of
+/// the edge. A jump next to a surface that is smaller than a cell fails this: f is far smaller there
+/// than at the ends of the edge, but no smaller than beside the jump.
 const NEAR_SHARE: f64 = 0.5;
-/// Divisions of an edge that lead to that part, 1/64 of the edge. Fewer: f may halve on the
-/// way to a jump, as it does where the surface is smaller than a cell and next to the jump. More:
-/// rounding errors of terms that nearly cancel may be as large as f in a part that small.
+/// Number of divisions of an edge that lead to the short part, 1/64 of the edge. Fewer: f may halve
+/// on the way to a jump. More: rounding errors of terms that nearly cancel may be as large as f in a
+/// part that small.
 const NEAR: u32 = 2;
 
 /// Parts into which an edge is divided at a time.

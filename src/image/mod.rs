@@ -56,9 +56,9 @@ pub enum ImageError {
         /// Number of values that were given.
         found: u64,
     },
-    /// A voxel is NaN or infinite.
+    /// A voxel is NaN, infinite, or so large that single precision overflows.
     #[error(
-        "{count} voxels are not numbers up to 1e30, the first one at ({}, {}, {}); give them a value, such as that of \
+        "{count} voxels are not finite, or beyond ±1e30, the first one at ({}, {}, {}); give them a value, such as that of \
          the background",
         first[0], first[1], first[2]
     )]

@@ -5,10 +5,13 @@ use super::Image;
 /// Bins of a histogram: Otsu's threshold is one of their edges.
 const BINS: usize = 256;
 
-/// How many voxels have a value in each of the bins between the smallest and the largest one.
+/// The histogram of an image counts the voxels whose values lie in each of [`BINS`] bins of equal
+/// width, from the smallest value to the largest.
 pub(super) struct Histogram {
     counts: Vec<u64>,
+    /// The smallest value.
     min: f64,
+    /// Width of a bin.
     width: f64,
 }
 

@@ -131,14 +131,7 @@ impl Placement {
         let columns = [self.inverse.x_axis, self.inverse.y_axis, self.inverse.z_axis];
         let turned = columns.map(|column| h.apply(column));
         let entry = |a: usize, b: usize| columns[a].dot(turned[b]);
-        Sym3 {
-            xx: entry(0, 0),
-            xy: entry(0, 1),
-            xz: entry(0, 2),
-            yy: entry(1, 1),
-            yz: entry(1, 2),
-            zz: entry(2, 2),
-        }
+        Sym3::by(entry)
     }
 
     /// Bounds of [`Placement::gradient`].
@@ -159,14 +152,7 @@ impl Placement {
                 .filter(|(w, _)| *w != 0.0)
                 .map(|(w, x)| x * w))
         };
-        Sym3 {
-            xx: entry(0, 0),
-            xy: entry(0, 1),
-            xz: entry(0, 2),
-            yy: entry(1, 1),
-            yz: entry(1, 2),
-            zz: entry(2, 2),
-        }
+        Sym3::by(entry)
     }
 }
 

@@ -353,6 +353,18 @@ pub struct Sym3<T> {
 }
 
 impl<T: Copy> Sym3<T> {
+    /// The matrix with the entry of row i and column j that `entry` gives for j ≥ i.
+    pub(crate) fn by(entry: impl Fn(usize, usize) -> T) -> Self {
+        Self {
+            xx: entry(0, 0),
+            xy: entry(0, 1),
+            xz: entry(0, 2),
+            yy: entry(1, 1),
+            yz: entry(1, 2),
+            zz: entry(2, 2),
+        }
+    }
+
     /// The matrix with the same value for every entry.
     #[must_use]
     pub const fn splat(entry: T) -> Self {

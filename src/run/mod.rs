@@ -144,7 +144,7 @@ struct RunState {
     known: Known,
     /// The creases of the surface in the box, if they were found before the start.
     creases: Option<FoundCreases>,
-    /// The spacing by a function of the next start, if one is asked for.
+    /// The spacing that the next run takes from a function; none if the settings give the sizes.
     spacing: Option<Spacing>,
     /// Why the particles of a run that has ended do not have it.
     spacing_error: Option<SettingsError>,

@@ -37,8 +37,8 @@ const CLOSE_COUNT: usize = 8;
 /// lines holds. It is a choice of length; the report has all of them.
 const NAMED: usize = 4;
 
-/// Distance of particles, as a share of that of the voxels of an image, below which they are said
-/// to be finer than it: with half of it each voxel has four.
+/// Spacing of the particles over that of the voxels of an image, below which the particles are said
+/// to be finer than the image. A larger one warns where the image still decides their places.
 const FINEST: f64 = 0.5;
 
 /// Largest difference of the areas of a mesh and of the surface fitted to it that is not told, as a

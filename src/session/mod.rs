@@ -161,9 +161,9 @@ pub struct Session {
     /// Whether the surface, closed by no box, is bounded, if the clip box was fitted to it.
     reach: Option<Reach>,
     fitting: Fitting,
-    /// The spacing of the next runs, if it is by a formula.
+    /// The spacing of the next runs, where a formula gives it.
     spacing: Option<SpacingText>,
-    /// That spacing, if it is by a function of the program.
+    /// The spacing of the next runs, where a function of the program gives it.
     spacing_function: Option<Spacing>,
     /// The record of the present run.
     made: Option<FileRecord>,

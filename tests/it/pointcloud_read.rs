@@ -499,7 +499,10 @@ fn files_of_other_formats_and_sizes_are_refused_with_advice() {
             b"\x1f\x8b\x08",
             "this is a gzip archive, and what is read is PLY, OBJ, STL, OFF, PCD and text with a point a line (XYZ, PTS, CSV); unpack it",
         ),
-        (b"\x93NUMPY\x01\x00", "save one of points as text, a row a line, as XYZ; a volume cannot be read"),
+        (
+            b"\x93NUMPY\x01\x00",
+            "save one of points as text, a row a line, as XYZ; the command line reads a volume (--image)",
+        ),
         (b"glTF\x02\x00", "this is a binary glTF file"),
         (b"\xff\xfe1\x00 \x00", "this is text in UTF-16"),
         (b"\x00\x01\x02\x03", "this is a binary file of no known kind"),

@@ -69,10 +69,10 @@ function shareOf(name, text) {
 }
 
 /**
- * The options that are settings of the core: its name there, the kind of its values, and the values
- * of a choice or that of a flag that is set.
- * @type {Record<string, {setting: string, kind: 'count' | 'whole' | 'number' | 'spacing' | 'size' | 'text' | 'choice' | 'flag',
- *   values?: string[]}>}
+ * The options that are settings of the core: the name of the setting, the kind of the values, and
+ * the values of a choice or the one of a flag that is set.
+ * @typedef {'count' | 'whole' | 'number' | 'spacing' | 'size' | 'text' | 'choice' | 'flag'} Kind
+ * @type {Record<string, {setting: string, kind: Kind, values?: string[]}>}
  */
 const SETTINGS = {
   count: { setting: 'count', kind: 'count' },
@@ -105,7 +105,7 @@ export const optionOf = (setting) =>
   Object.keys(SETTINGS).find((name) => name !== 'spacing' && SETTINGS[name].setting === setting) ?? setting;
 
 /**
- * The settings of the core that options ask for, and the names of those settings.
+ * The settings of the core that options ask for, and by which option each of them was given.
  * @param {Record<string, unknown>} options
  */
 function settingsOf(options) {
@@ -113,11 +113,12 @@ function settingsOf(options) {
   const settings = { max_particles: 1.1 * MOST };
   /** @type {Record<string, number>} */
   const lengths = {};
-  const given = [];
+  /** @type {Record<string, string>} */
+  const given = {};
   for (const [name, { setting, kind, values = [] }] of Object.entries(SETTINGS)) {
     const value = options[name];
     if (value === undefined || (kind === 'flag' && flag(name, value) === false)) continue;
-    given.push(setting);
+    given[setting] = name;
     if (kind === 'flag') settings[setting] = values[0];
     else if (kind === 'choice') settings[setting] = choice(name, value, values);
     else if (kind === 'number') settings[setting] = number(name, value, () => true, 'a number');

@@ -6,7 +6,14 @@ import type { Batch, Progress } from './index.js';
 export type Settings = Record<string, number | string | Record<string, number>>;
 /** What is asked; `of`: the request that has made the sample. */
 export type Asked =
-  | { type: 'sample'; id: number; field: SentField; settings: Settings; given: string[]; measure: boolean }
+  | {
+      type: 'sample';
+      id: number;
+      field: SentField;
+      settings: Settings;
+      given: Record<string, string>;
+      measure: boolean;
+    }
   | { type: 'moved'; id: number; of: number; field: SentField; settings: Settings; measure: boolean }
   | { type: 'mesh'; id: number; of: number; weld: boolean }
   | { type: 'file'; id: number; of: number; format: string; mesh: boolean };

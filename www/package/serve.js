@@ -52,16 +52,16 @@ function refusalOf({ kind, message, start, end, suggestion, choices }) {
  * @param {Core} core @param {Extract<Asked, {type: 'sample'}>} message
  */
 function checkEffects(core, { given, settings }) {
-  if (given.length === 0) return;
+  if (Object.keys(given).length === 0) return;
   /** @type {import('../src/engine/core-types.js').Description} */
   const { settings: table } = core.describe();
   const chosen = (/** @type {string} */ name) => settings[name] ?? table.find((row) => row.name === name)?.default;
   for (const { name, when } of table) {
     // Steps of relaxation count where a front cannot be refined.
-    const conditions = given.includes(name) ? when.filter((condition) => condition.name !== 'method') : [];
+    const conditions = name in given ? when.filter((condition) => condition.name !== 'method') : [];
     const failed = conditions.find((condition) => (chosen(condition.name) === condition.value) !== condition.equal);
     if (failed)
-      throw new Refusal('InputError', `The option ${optionOf(name)} has no effect ${NEEDED[failed.name](failed)}.`);
+      throw new Refusal('InputError', `The option ${given[name]} has no effect ${NEEDED[failed.name](failed)}.`);
   }
 }
 /** What a setting without effect needs. @type {Record<string, (failed: {value: string, equal: boolean}) => string>} */

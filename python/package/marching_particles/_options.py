@@ -28,10 +28,12 @@ def settings_of(options):
     if len(sizes) > 1:
         raise ValueError(f"{' and '.join(sizes)} exclude each other: give one of them")
     # The package has room for whatever is asked for.
-    settings, lengths, solid, given = {"max_particles": 4_400_000}, {}, {}, []
+    settings, lengths, solid = {"max_particles": 4_400_000}, {}, {}
+    # The argument by which each setting was given.
+    given = {}
     if "spacing" in options:
         settings["radius"] = _length("spacing", options.pop("spacing")) / 2
-        given.append("radius_share")
+        given["radius_share"] = "spacing"
     for setting in SETTINGS:
         name, argument = setting["name"], setting["argument"]
         if argument not in options or name in ("size_mode", "box_mode"):
@@ -41,9 +43,9 @@ def settings_of(options):
             if value:
                 kept = solid if name.startswith("box_") else settings
                 kept[name] = _FLAGS[name]
-                given.append(name)
+                given[name] = argument
             continue
-        given.append(name)
+        given[name] = argument
         if name == "thickness":
             solid[name] = value if isinstance(value, str) else _number(argument, value, setting)
         elif setting["kind"] == "choice":

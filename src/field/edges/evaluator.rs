@@ -74,8 +74,8 @@ impl Wall {
 /// is sure to go on, unless that is steep to the first wall. A wall nearly parallel to those before
 /// is ignored, and so is one more than there are dimensions.
 fn step_within(normal: DVec3, walls: impl Iterator<Item = (f64, DVec3)>) -> DVec3 {
-    /// Cosine of the largest angle between the surface and the shortest way from the first wall:
-    /// the way along the surface is twice as long there.
+    /// Cosine of the largest angle between the surface and the shortest way from the first wall. A
+    /// smaller one makes steps along the surface longer, and with them the error of extrapolation.
     const STEEP: f64 = 0.5;
     let (mut across, mut step): (Vec<DVec3>, DVec3) = (Vec::new(), DVec3::ZERO);
     let mut walls = walls.peekable();

@@ -43,8 +43,8 @@ use table::Seams;
 /// grow with the square.
 const SIDES: [u32; 2] = [32, 64];
 
-/// Maximum number of closer looks, each of which takes some 2,000 calls of f: as many as 120 boxes
-/// have corners. A surface with more is not looked at more closely at all.
+/// Maximum number of places that are searched again on a finer grid, at some 2,000 calls of f each.
+/// It is the number of corners of 120 boxes. Of a surface with more places none is searched again.
 const MOST_CLOSE: usize = 1_000;
 
 /// Finds the pieces of a field in a box, in the coordinates of the field. Returns cells from which

@@ -67,14 +67,7 @@ impl Pull {
                 + twice * slope[i] * slope[j]
                 + bend * (own - 4.0 * offset[i] * offset[j])
         };
-        jet.hessian = Sym3 {
-            xx: entry(0, 0),
-            xy: entry(0, 1),
-            xz: entry(0, 2),
-            yy: entry(1, 1),
-            yz: entry(1, 2),
-            zz: entry(2, 2),
-        };
+        jet.hessian = Sym3::by(entry);
         jet.gradient -= slope * along;
     }
 }

@@ -68,7 +68,7 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
     })
 }
 
-/// What follows the name of an entry of the dictionary.
+/// Returns the text behind `'name':` in the dictionary of the header; none if it has no such entry.
 fn entry<'a>(text: &'a str, name: &str) -> Option<&'a str> {
     let (_, rest) =
         [format!("'{name}'"), format!("\"{name}\"")].iter().find_map(|key| text.split_once(key.as_str()))?;

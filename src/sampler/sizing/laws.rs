@@ -68,8 +68,8 @@ impl SizingLaw {
         Self { bend: Some(bend), least, greatest, factor: 1.0 }
     }
 
-    /// Returns the law of radii that are asked for, from the smallest to the largest one, alone or
-    /// as far as a law of the curvature lets them.
+    /// Returns the law of a spacing by a function, whose radii lie between `least` and `greatest`.
+    /// Where a law of the curvature is given, too, a particle has the smaller radius of both.
     pub(crate) fn asked(bend: Option<Self>, [least, greatest]: [f32; 2]) -> Self {
         Self { bend: bend.and_then(|law| law.bend), least, greatest, factor: 1.0 }
     }

@@ -417,6 +417,7 @@ describe('what is wrong has a name and says what to do', () => {
     ['InputError', 'formula: for points', SPHERE, { formula: 'max(model, z)' }],
     ['InputError', 'formula: a text', { points: [1, 2, 3] }, { formula: 3 }],
     ['InputError', 'The option radius has no effect with adaptive: true', SPHERE, { radius: 0.01, adaptive: true }],
+    ['InputError', 'The option spacing has no effect with adaptive: true', SPHERE, { spacing: 0.1, adaptive: true }],
     ['InputError', 'option grading has no effect without adaptive: true', SPHERE, { grading: 0.3 }],
     ['InputError', 'option periodic has no effect without closed: true', SPHERE, { periodic: true }],
     ['InputError', 'closed: for a formula by itself', () => 1, { closed: true }],
