@@ -12,8 +12,8 @@ pub(crate) const CELLS: usize = 32;
 /// at a jump it stays as large, and at a pole it grows. Smaller: roots of a high order are missed.
 const ZERO_SHARE: f64 = 1.0 / 16.0;
 /// At a zero |f| is also less than this share of its values at the ends of a [short part](NEAR) of
-/// the edge. A jump next to a surface that is smaller than a cell fails this: f is far smaller there
-/// than at the ends of the edge, but no smaller than beside the jump.
+/// the edge. A jump next to a surface that is smaller than a cell fails this: f is far smaller
+/// there than at the ends of the edge, but no smaller than beside the jump.
 const NEAR_SHARE: f64 = 0.5;
 /// Number of divisions of an edge that lead to the short part, 1/64 of the edge. Fewer: f may halve
 /// on the way to a jump. More: rounding errors of terms that nearly cancel may be as large as f in a

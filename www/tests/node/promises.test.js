@@ -41,8 +41,10 @@ async function attack(p, { state, worker, death }) {
     const isLoading = () => engine.loading.value && worker !== 'points';
     for (let ms = 0; pending.size > 0 && ms < LONG_MS; ms = isBusy() || isLoading() ? 0 : ms + 20) {
       // The engine cannot know yet that its worker is gone, and waits for a word of it. The sampler
-      // is let work meanwhile, which would be silent for as long by the same clock.
-      const isSilent = workers[worker].at(-1)?.isEnded && (worker === 'sampler' || !engine.busy.value);
+      // is let work meanwhile, which would be silent for as long by the same clock. A worker that
+      // fits points ends with each file, so its end says nothing once the file before is settled.
+      const isWaiting = worker === 'sampler' || (pending.has('open before') && !engine.busy.value);
+      const isSilent = workers[worker].at(-1)?.isEnded && isWaiting;
       await (isSilent ? turn(SILENCE_MS + GRACE_MS) : pause(20));
     }
   };
