@@ -6,7 +6,7 @@ use marching_particles::glam::DVec3;
 use marching_particles::pointcloud::job::Job;
 use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{
-    BatchField, Bounds, Combined, DEFAULT_LABEL_WIDTH, Formula, Image, ImageError, VoxelType,
+    BatchField, BatchPiecewise, Bounds, Combined, DEFAULT_LABEL_WIDTH, Formula, Image, ImageError, VoxelType,
 };
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::exceptions::PyValueError;
@@ -69,6 +69,23 @@ impl Field {
             })),
         };
         Self::new(field, None)
+    }
+
+    /// The field put together of pieces, functions as [`Self::function`] takes them, by one that
+    /// returns an int64 array of the index of the piece at each point.
+    #[staticmethod]
+    fn piecewise(labels: Py<PyAny>, pieces: Vec<Py<PyAny>>) -> Self {
+        let labels = move |points: &[DVec3], out: &mut [u32]| -> PyResult<()> {
+            Python::attach(|py| {
+                let found: PyReadonlyArray1<'_, i64> = on_points(py, &labels, points)?.extract()?;
+                let found = found.as_slice()?.iter();
+                out.iter_mut().zip(found).for_each(|(out, &label)| *out = u32::try_from(label).unwrap_or(0));
+                Ok(())
+            })
+        };
+        let piece =
+            move |label: u32, points: &[DVec3], f: &mut [f64]| call(&pieces[label as usize], points, f);
+        Self::new(Arc::new(BatchPiecewise::new(labels, piece)), None)
     }
 
     /// The field of a surface through points, with the report on it as JSON.
@@ -242,13 +259,17 @@ impl Field {
     }
 }
 
-/// Calls a function of Python, which may keep the array of points: it is a copy.
+/// What a function of Python returns for points. It may keep their array, which is a copy.
+fn on_points<'py>(py: Python<'py>, function: &Py<PyAny>, points: &[DVec3]) -> PyResult<Bound<'py, PyAny>> {
+    let flat: &[f64] = bytemuck::cast_slice(points);
+    let array = PyArray1::from_slice(py, flat).reshape([points.len(), 3])?;
+    function.bind(py).call1((array,))
+}
+
+/// Calls a function of Python that returns a float64 array.
 fn call(function: &Py<PyAny>, points: &[DVec3], out: &mut [f64]) -> PyResult<()> {
     Python::attach(|py| {
-        let flat: &[f64] = bytemuck::cast_slice(points);
-        let array = PyArray1::from_slice(py, flat).reshape([points.len(), 3])?;
-        let result = function.bind(py).call1((array,))?;
-        let result: PyReadonlyArrayDyn<'_, f64> = result.extract()?;
+        let result: PyReadonlyArrayDyn<'_, f64> = on_points(py, function, points)?.extract()?;
         out.copy_from_slice(result.as_slice()?);
         Ok(())
     })

@@ -48,6 +48,33 @@ def test_the_edges_of_a_function_are_found():
     assert (part.report["creases"], part.report["corners"], euler(part)) == (24, 8, -8)
 
 
+def test_a_function_says_which_piece_gives_it_where():
+    sides = [lambda p, a=a, s=s: s * p[:, a] - 0.8 for a in range(3) for s in (1, -1)]
+    pieces = [*sides, lambda p: 0.7 - np.linalg.norm(p - 0.8, axis=1)]
+
+    def label(p):
+        return np.argmax([piece(p) for piece in pieces], axis=0)
+
+    part = mp.sample(mp.piecewise(label, pieces), count=4_000)
+    assert (part.report["creases"], part.report["corners"], euler(part)) == (15, 10, 2)
+    values = np.array([piece(part.points) for piece in pieces])
+    assert np.abs(values.max(axis=0)).max() < 1e-5
+    # Particles on an edge are zeros of both of its pieces.
+    edges = len(part.points) - len(part.mesh().points)
+    assert (np.sort(np.abs(values), axis=0)[1] < 1e-5).sum() >= edges > 100
+
+
+def test_labels_that_are_no_index_of_a_piece_are_refused():
+    for wrong, shown in [(2, "2"), (0.5, "0.5"), (np.nan, "nan")]:
+        field = mp.piecewise(lambda p, wrong=wrong: np.full(len(p), wrong), [ball, rod])
+        with pytest.raises(mp.FieldError, match=f"label returned {shown} at .* from 0 to 1"):
+            mp.sample(field, count=500, bounds=BOX)
+    with pytest.raises(TypeError, match=r"pieces\[1\] must be a function"):
+        mp.piecewise(ball, [ball, "z"])
+    with pytest.raises(ValueError, match="pieces is empty"):
+        mp.piecewise(ball, [])
+
+
 def test_a_function_is_taken_from_a_formula():
     drilled = mp.sample(mp.difference(BLOCK, rod), count=3000, bounds=BOX)
     assert euler(drilled) == 0

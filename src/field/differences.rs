@@ -1,8 +1,10 @@
 //! Functions of the program at work in a frame: batches of them, derivatives by differences where
 //! they are not given, and the count of their calls.
 
-use super::{BATCH, Evaluator, FieldError, Frame, Jet, MaybeSend, MaybeSync, jet_of_slopes};
-use crate::math::Sym3;
+use super::{
+    BATCH, Evaluator, Field, FieldError, Frame, Jet, MaybeSend, MaybeSync, Pieces, edges, jet_of_slopes,
+};
+use crate::math::{Bounds, Sym3};
 use core::fmt::{self, Debug, Display, Formatter};
 use core::sync::atomic::{AtomicU64, Ordering};
 use glam::{DVec3, Vec3};
@@ -19,28 +21,87 @@ pub(super) trait Functions: MaybeSend + MaybeSync {
     fn calls(&self) -> &Calls;
 
     /// Whether there is a function of the gradient.
-    fn has_gradient(&self) -> bool;
-
-    /// The label of the piece that gives f at a point.
-    fn label(&self, p: DVec3) -> u32 {
-        let _ = p;
-        0
+    fn has_gradient(&self) -> bool {
+        false
     }
 
-    /// Writes f, or a piece of it, at each point. Functions that know of no pieces write f.
+    /// The field of these functions, if they name its pieces.
+    fn piecewise(&self) -> Option<&dyn Field> {
+        None
+    }
+
+    /// Writes the label of the piece that gives f at each point.
     ///
     /// # Errors
     ///
     /// If the function fails.
-    fn write_values(&self, piece: Option<u32>, points: &[DVec3], f: &mut [f64]) -> Result<(), FieldError>;
+    fn write_labels(&self, points: &[DVec3], labels: &mut [u32]) -> Result<(), FieldError> {
+        let _ = points;
+        labels.fill(0);
+        Ok(())
+    }
+
+    /// Writes the value of the piece with the label at each point. Functions that name no pieces
+    /// write f.
+    ///
+    /// # Errors
+    ///
+    /// If the function fails.
+    fn write_values(&self, labels: &[u32], points: &[DVec3], f: &mut [f64]) -> Result<(), FieldError>;
 
     /// Writes ∇f at each point, if it is given.
     ///
     /// # Errors
     ///
     /// If the function fails.
-    fn write_gradients(&self, points: &[DVec3], out: &mut [DVec3]) -> Result<(), FieldError>;
+    fn write_gradients(&self, points: &[DVec3], out: &mut [DVec3]) -> Result<(), FieldError> {
+        let _ = (points, out);
+        Ok(())
+    }
 }
+
+/// Makes a field of functions of the program.
+macro_rules! field_of_functions {
+    ([$($parameters:tt)*] $functions:ty, $($bounds:tt)*) => {
+        impl<$($parameters)*> Field for $functions
+        where
+            $($bounds)*
+        {
+            fn value(&self, p: DVec3) -> f64 {
+                let mut value = [0.0];
+                self.values(&[p], &mut value);
+                value[0]
+            }
+
+            fn values(&self, points: &[DVec3], f: &mut [f64]) {
+                Differences::new(self, Frame::default()).write(points, f);
+            }
+
+            fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
+                let Jet { value, gradient, .. } = self.jet(p);
+                (value, gradient)
+            }
+
+            fn jet(&self, p: DVec3) -> Jet {
+                Differences::new(self, Frame::default()).jet(p)
+            }
+
+            fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
+                Box::new(Differences::new(self, frame))
+            }
+
+            fn calls(&self) -> Option<u64> {
+                Some(self.calls.made())
+            }
+
+            fn failure(&self) -> Option<FieldError> {
+                self.calls.failure()
+            }
+        }
+    };
+}
+
+pub(super) use field_of_functions;
 
 /// The points for which functions of the program were asked, and the failure after which they are
 /// asked no more.
@@ -121,56 +182,96 @@ impl Display for TooManyCalls {
 
 impl std::error::Error for TooManyCalls {}
 
-/// The evaluator of functions of the program.
+/// The evaluator of functions of the program, or of one of the pieces that they name.
 pub(super) struct Differences<'a> {
     functions: &'a dyn Functions,
     /// The piece that is evaluated; none for f.
-    pub(super) piece: Option<u32>,
+    label: Option<u32>,
+    /// The evaluator of a piece.
+    piece: Option<Box<Self>>,
     frame: Frame,
     /// The points of a batch, in the coordinates of the field.
     points: Vec<DVec3>,
-    /// The places around them whose values or gradients make differences.
+    /// The labels of their pieces; empty where the functions name none.
+    labels: Vec<u32>,
+    /// The places around the points whose values or gradients make differences. Those around a
+    /// point are values of its piece, so that no difference reaches over an edge.
     places: Vec<DVec3>,
+    labels_of_places: Vec<u32>,
     value: Vec<f64>,
     gradient: Vec<DVec3>,
 }
 
 impl<'a> Differences<'a> {
     pub(super) fn new(functions: &'a dyn Functions, frame: Frame) -> Self {
-        let (points, places, value, gradient) = Default::default();
-        Self { functions, piece: None, frame, points, places, value, gradient }
+        Self {
+            functions,
+            label: None,
+            piece: None,
+            frame,
+            points: Vec::new(),
+            labels: Vec::new(),
+            places: Vec::new(),
+            labels_of_places: Vec::new(),
+            value: Vec::new(),
+            gradient: Vec::new(),
+        }
     }
 
-    /// f at a point in the coordinates of the field.
-    pub(super) fn value(&mut self, p: DVec3) -> f64 {
+    /// Writes f at points in the coordinates of the field; NaN once a function has failed.
+    pub(super) fn write(&mut self, points: &[DVec3], f: &mut [f64]) {
+        for (points, f) in points.chunks(AT_ONCE).zip(f.chunks_mut(AT_ONCE)) {
+            self.take(points.iter().copied());
+            write_values(self.functions, &self.labels, points, f);
+        }
+    }
+
+    /// Takes the points of a batch, in the coordinates of the field.
+    fn take(&mut self, points: impl Iterator<Item = DVec3>) {
         self.points.clear();
-        self.points.push(p);
+        self.points.extend(points);
+        self.labels.clear();
+        if self.functions.piecewise().is_some() {
+            self.labels.resize(self.points.len(), self.label.unwrap_or_default());
+            if self.label.is_none() {
+                write_labels(self.functions, &self.points, &mut self.labels);
+            }
+        }
+    }
+
+    /// Takes places around the points of the batch, so many around each.
+    fn take_places(&mut self, around: usize, at: impl Fn(DVec3, usize) -> DVec3) {
+        self.places.clear();
+        self.places.extend(
+            self.points.iter().flat_map(|&p| (0..around).map(move |k| (p, k))).map(|(p, k)| at(p, k)),
+        );
+        self.labels_of_places.clear();
+        self.labels_of_places
+            .extend(self.labels.iter().flat_map(|&label| core::iter::repeat_n(label, around)));
+    }
+
+    fn write_values_at_points(&mut self) {
         self.value.resize(self.points.len(), 0.0);
-        write_values(self.functions, self.piece, &self.points, &mut self.value);
-        self.value[0]
+        write_values(self.functions, &self.labels, &self.points, &mut self.value);
     }
 
-    /// Takes points of the frame as those of the batch.
-    fn take(&mut self, points: &[Vec3]) {
-        let frame = self.frame;
-        self.points.clear();
-        self.points.extend(points.iter().map(|p| frame.place(p.as_dvec3())));
+    fn write_values_at_places(&mut self) {
+        self.value.resize(self.places.len(), 0.0);
+        write_values(self.functions, &self.labels_of_places, &self.places, &mut self.value);
     }
 
     /// f and ∇f at the points of the batch.
     fn slopes(&mut self) -> impl Iterator<Item = (f64, DVec3)> + '_ {
-        let Self { functions, piece, frame, points, places, value, gradient } = self;
-        let is_given = functions.has_gradient();
+        let frame = self.frame;
+        let is_given = self.functions.has_gradient();
         if is_given {
-            value.resize(points.len(), 0.0);
-            write_values(*functions, *piece, points, value);
-            write_gradients(*functions, points, gradient);
+            self.write_values_at_points();
+            write_gradients(self.functions, &self.points, &mut self.gradient);
         } else {
-            places.clear();
-            places.extend(points.iter().flat_map(|&p| [0, 1, 2, 3].map(|k| at_slope(p, k, frame.step(p)))));
-            value.resize(places.len(), 0.0);
-            write_values(*functions, *piece, places, value);
+            self.take_places(SLOPE, |p, k| at_slope(p, k, frame.step(p)));
+            self.write_values_at_places();
         }
+        let Self { points, value, gradient, .. } = self;
         points.iter().enumerate().map(move |(k, &p)| {
             if is_given {
                 return (value[k], gradient[k]);
@@ -182,26 +283,17 @@ impl<'a> Differences<'a> {
 
     /// f, ∇f and ∇∇f at the points of the batch.
     fn jets(&mut self) -> impl Iterator<Item = Jet> + '_ {
-        let Self { functions, piece, frame, points, places, value, gradient } = self;
-        let is_given = functions.has_gradient();
-        places.clear();
+        let frame = self.frame;
+        let is_given = self.functions.has_gradient();
         if is_given {
-            places.extend(
-                points
-                    .iter()
-                    .flat_map(|&p| (0..AROUND).map(move |k| (p, k)))
-                    .map(|(p, k)| at_jet(p, k, frame.step(p))),
-            );
-            value.resize(points.len(), 0.0);
-            write_values(*functions, *piece, points, value);
-            write_gradients(*functions, places, gradient);
+            self.take_places(AROUND, |p, k| at_jet(p, k, frame.step(p)));
+            self.write_values_at_points();
+            write_gradients(self.functions, &self.places, &mut self.gradient);
         } else {
-            let places_of = |&p: &DVec3| (0..JET).map(move |k| (p, k));
-            places
-                .extend(points.iter().flat_map(places_of).map(|(p, k)| at_jet(p, k, SECOND * frame.step(p))));
-            value.resize(places.len(), 0.0);
-            write_values(*functions, *piece, places, value);
+            self.take_places(JET, |p, k| at_jet(p, k, SECOND * frame.step(p)));
+            self.write_values_at_places();
         }
+        let Self { points, value, gradient, .. } = self;
         points.iter().enumerate().map(move |(k, &p)| {
             let h = frame.step(p);
             if is_given {
@@ -217,10 +309,21 @@ impl<'a> Differences<'a> {
 /// Number of points for which a function is asked at a time, at most.
 const AT_ONCE: usize = SLOPE * BATCH;
 
-/// f, or a piece of it, at each point; NaN once a function has failed.
-pub(super) fn write_values(functions: &dyn Functions, piece: Option<u32>, points: &[DVec3], f: &mut [f64]) {
-    for (points, f) in points.chunks(AT_ONCE).zip(f.chunks_mut(AT_ONCE)) {
-        if !functions.calls().call(points.len(), || functions.write_values(piece, points, f)) {
+/// The label of the piece at each point; 0 once a function has failed. That is no call for a value,
+/// and does not count as one.
+fn write_labels(functions: &dyn Functions, points: &[DVec3], labels: &mut [u32]) {
+    for (points, labels) in points.chunks(AT_ONCE).zip(labels.chunks_mut(AT_ONCE)) {
+        if !functions.calls().call(0, || functions.write_labels(points, labels)) {
+            labels.fill(0);
+        }
+    }
+}
+
+/// The piece with the label at each point, or f without labels; NaN once a function has failed.
+fn write_values(functions: &dyn Functions, labels: &[u32], points: &[DVec3], f: &mut [f64]) {
+    for (k, (points, f)) in points.chunks(AT_ONCE).zip(f.chunks_mut(AT_ONCE)).enumerate() {
+        let labels = if labels.is_empty() { labels } else { &labels[AT_ONCE * k..][..points.len()] };
+        if !functions.calls().call(points.len(), || functions.write_values(labels, points, f)) {
             f.fill(f64::NAN);
         }
     }
@@ -242,19 +345,19 @@ impl Evaluator for Differences<'_> {
     }
 
     fn another(&self) -> Box<dyn Evaluator + '_> {
-        Box::new(Differences { piece: self.piece, ..Differences::new(self.functions, self.frame) })
+        Box::new(Differences { label: self.label, ..Differences::new(self.functions, self.frame) })
     }
 
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
-        self.take(points);
-        self.value.resize(self.points.len(), 0.0);
-        write_values(self.functions, self.piece, &self.points, &mut self.value);
-        value.iter_mut().zip(&self.value).for_each(|(value, &f)| *value = self.frame.value(f));
+        let frame = self.frame;
+        self.take(points.iter().map(|p| frame.place(p.as_dvec3())));
+        self.write_values_at_points();
+        value.iter_mut().zip(&self.value).for_each(|(value, &f)| *value = frame.value(f));
     }
 
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
         let frame = self.frame;
-        self.take(points);
+        self.take(points.iter().map(|p| frame.place(p.as_dvec3())));
         for (k, slope) in self.slopes().enumerate() {
             (value[k], gradient[k]) = frame.gradient(slope);
         }
@@ -268,7 +371,7 @@ impl Evaluator for Differences<'_> {
         hessian: &mut [Sym3<f32>],
     ) {
         let frame = self.frame;
-        self.take(points);
+        self.take(points.iter().map(|p| frame.place(p.as_dvec3())));
         for (k, jet) in self.jets().enumerate() {
             (value[k], gradient[k], hessian[k]) = frame.hessian(&jet);
         }
@@ -276,26 +379,70 @@ impl Evaluator for Differences<'_> {
 
     fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
         let frame = self.frame;
-        self.points.clear();
-        self.points.push(frame.place(p));
+        self.take(core::iter::once(frame.place(p)));
         let slope = self.slopes().next();
         frame.exact(slope.unwrap_or((f64::NAN, DVec3::NAN)))
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {
         let frame = self.frame;
-        self.points.clear();
-        self.points.push(frame.place(p));
+        self.take(core::iter::once(frame.place(p)));
         let jet = self.jets().next();
         frame.jet(jet.unwrap_or_default())
     }
 
     fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
         let frame = self.frame;
-        self.take(points);
+        self.take(points.iter().map(|p| frame.place(p.as_dvec3())));
         for (k, slope) in self.slopes().enumerate() {
             (value[k], gradient[k]) = frame.exact(slope);
         }
+    }
+
+    fn pieces(&mut self) -> Option<&mut dyn Pieces> {
+        self.functions.piecewise().is_some().then_some(self)
+    }
+}
+
+impl Pieces for Differences<'_> {
+    fn label(&mut self, p: DVec3) -> u32 {
+        let mut label = [0];
+        write_labels(self.functions, &[self.frame.place(p)], &mut label);
+        label[0]
+    }
+
+    fn labels_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
+        /// Largest box in which the labels at some points stand for all, as a share of the diagonal
+        /// of the box of the run.
+        const SMALL: f64 = 0.125;
+        /// Points along each of its sides.
+        const SIDE: usize = 3;
+        if bounds.diagonal() > SMALL * self.frame.length {
+            return None;
+        }
+        let around = bounds.enlarged(0.25 * bounds.diagonal());
+        let places = around.spread(SIDE).chain(around.corners());
+        let places: Vec<DVec3> = places.map(|p| self.frame.place(p)).collect();
+        let mut found = vec![0; places.len()];
+        write_labels(self.functions, &places, &mut found);
+        found.sort_unstable();
+        found.dedup();
+        Some(found)
+    }
+
+    fn piece(&mut self, label: u32) -> &mut dyn Evaluator {
+        let piece = self.piece.get_or_insert_with(|| Box::new(Self::new(self.functions, self.frame)));
+        piece.label = Some(label);
+        &mut **piece
+    }
+
+    fn seams_in(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+        let Some(field) = self.functions.piecewise() else {
+            return Vec::new();
+        };
+        let labels = |points: &[DVec3], labels: &mut [u32]| write_labels(self.functions, points, labels);
+        let cells = edges::seams_between(field, &labels, &self.frame.outward(bounds), width);
+        cells.iter().map(|cell| cell.relative_to(self.frame.origin)).collect()
     }
 }
 

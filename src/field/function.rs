@@ -1,6 +1,6 @@
 //! Fields given by functions of the program: of a point, or of a batch of points.
 
-use super::differences::{self, Calls, Differences, Functions};
+use super::differences::{Calls, Differences, Functions, field_of_functions};
 use super::{Evaluator, Field, FieldError, Frame, Jet, MaybeSend, MaybeSync};
 use core::fmt::{self, Debug, Formatter};
 use core::marker::PhantomData;
@@ -83,7 +83,7 @@ where
         self.gradient.is_some()
     }
 
-    fn write_values(&self, _: Option<u32>, points: &[DVec3], f: &mut [f64]) -> Result<(), FieldError> {
+    fn write_values(&self, _: &[u32], points: &[DVec3], f: &mut [f64]) -> Result<(), FieldError> {
         f.iter_mut().zip(points).for_each(|(f, &p)| *f = (self.value)(p));
         Ok(())
     }
@@ -95,39 +95,10 @@ where
     }
 }
 
-impl<F, G> Field for FnField<F, G>
-where
+field_of_functions! {
+    [F, G] FnField<F, G>,
     F: Fn(DVec3) -> f64 + MaybeSend + MaybeSync,
     G: Fn(DVec3) -> DVec3 + MaybeSend + MaybeSync,
-{
-    fn value(&self, p: DVec3) -> f64 {
-        Differences::new(self, Frame::default()).value(p)
-    }
-
-    fn values(&self, points: &[DVec3], f: &mut [f64]) {
-        differences::write_values(self, None, points, f);
-    }
-
-    fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
-        let Jet { value, gradient, .. } = self.jet(p);
-        (value, gradient)
-    }
-
-    fn jet(&self, p: DVec3) -> Jet {
-        Differences::new(self, Frame::default()).jet(p)
-    }
-
-    fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
-        Box::new(Differences::new(self, frame))
-    }
-
-    fn calls(&self) -> Option<u64> {
-        Some(self.calls.made())
-    }
-
-    fn failure(&self) -> Option<FieldError> {
-        self.calls.failure()
-    }
 }
 
 /// A field given by a function of a batch of points, with its gradients or without.
@@ -188,7 +159,7 @@ where
         self.gradients.is_some()
     }
 
-    fn write_values(&self, _: Option<u32>, points: &[DVec3], f: &mut [f64]) -> Result<(), FieldError> {
+    fn write_values(&self, _: &[u32], points: &[DVec3], f: &mut [f64]) -> Result<(), FieldError> {
         (self.values)(points, f).map_err(Into::into)
     }
 
@@ -197,38 +168,9 @@ where
     }
 }
 
-impl<F, E, G> Field for BatchField<F, E, G>
-where
+field_of_functions! {
+    [F, E, G] BatchField<F, E, G>,
     F: Fn(&[DVec3], &mut [f64]) -> Result<(), E> + MaybeSend + MaybeSync,
     G: Fn(&[DVec3], &mut [DVec3]) -> Result<(), E> + MaybeSend + MaybeSync,
     E: Into<FieldError>,
-{
-    fn value(&self, p: DVec3) -> f64 {
-        Differences::new(self, Frame::default()).value(p)
-    }
-
-    fn values(&self, points: &[DVec3], f: &mut [f64]) {
-        differences::write_values(self, None, points, f);
-    }
-
-    fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
-        let Jet { value, gradient, .. } = self.jet(p);
-        (value, gradient)
-    }
-
-    fn jet(&self, p: DVec3) -> Jet {
-        Differences::new(self, Frame::default()).jet(p)
-    }
-
-    fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
-        Box::new(Differences::new(self, frame))
-    }
-
-    fn calls(&self) -> Option<u64> {
-        Some(self.calls.made())
-    }
-
-    fn failure(&self) -> Option<FieldError> {
-        self.calls.failure()
-    }
 }

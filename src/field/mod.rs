@@ -23,7 +23,7 @@ pub use combined::{Combined, difference, intersection, offset, smooth_union, uni
 pub use evaluator::{Bounded, Evaluator, Frame, Pieces};
 pub use function::{BatchField, FnField};
 pub use given::{FieldError, IntoField, SharedError, kind};
-pub use piecewise::PiecewiseFn;
+pub use piecewise::{BatchPiecewise, PiecewiseFn};
 
 use evaluator::Pointwise;
 

@@ -16,6 +16,7 @@ from ._fields import (
     fit_points,
     intersection,
     offset,
+    piecewise,
     smooth_union,
     union,
 )
@@ -40,6 +41,7 @@ __all__ = [
     "fit_points",
     "intersection",
     "offset",
+    "piecewise",
     "sample",
     "smooth_union",
     "union",

@@ -221,6 +221,63 @@ def field(field, *, params=None, gradient=None):
     return Field(field_of(field, params, gradient))
 
 
+def piecewise(label, pieces):
+    """A field put together of smooth functions, its pieces, by one that tells which of them gives
+    f where.
+
+    The surface has an edge where it passes from one piece to another: particles lie on it, and the
+    mesh is closed along it, to the digits of the numbers. A piece is called also a few particles
+    beyond its part, and should be smooth there, too. Where the values of two pieces differ at their
+    border, the surface ends. Of a function by itself the edges are found in its values, which takes
+    more calls and misses what is small.
+
+    Args:
+        label: A function that takes an array of points (n, 3), and returns an array (n,) of whole
+            numbers: the index of the piece at each point.
+        pieces: A list of functions that take an array of points, and return an array (n,) of
+            values.
+
+    Returns:
+        A :class:`Field`.
+
+    Raises:
+        TypeError: If an argument is of a wrong type.
+        FieldError: While sampling, if a label is not the index of a piece.
+
+    Example:
+        >>> import numpy as np, marching_particles as mp
+        >>> pieces = [lambda p: np.linalg.norm(p, axis=1) - 1, lambda p: p[:, 2] - 0.5]
+        >>> cut_ball = mp.piecewise(lambda p: pieces[1](p) > pieces[0](p), pieces)
+        >>> mp.sample(cut_ball, count=2_000).report["creases"]
+        1
+    """
+    if not callable(label):
+        raise TypeError(f"label must be a function, and not {type(label).__name__}")
+    _check_parameters(label, "label")
+    pieces = list(pieces)
+    if not pieces:
+        raise ValueError("pieces is empty: give a list of functions")
+    for k, piece in enumerate(pieces):
+        if not callable(piece):
+            raise TypeError(f"pieces[{k}] must be a function, and not {type(piece).__name__}")
+        _check_parameters(piece, f"pieces[{k}]")
+    values = _checked(label, "label", ())
+
+    def labels(points):
+        found = values(points)
+        bad = np.flatnonzero(~np.isin(found, np.arange(len(pieces))))
+        if len(bad):
+            place, value = ", ".join(f"{x:.6g}" for x in points[bad[0]]), found[bad[0]]
+            raise FieldError(
+                f"label returned {value:g} at ({place}): it must return the index of a piece, from "
+                f"0 to {len(pieces) - 1}"
+            )
+        return found.astype(np.int64)
+
+    functions = [_checked(piece, f"pieces[{k}]", ()) for k, piece in enumerate(pieces)]
+    return Field(_core.Field.piecewise(labels, functions))
+
+
 def union(*solids):
     """The union of solids: min(a, b, ...), which is negative where one of them is.
 

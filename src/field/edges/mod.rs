@@ -87,10 +87,11 @@ async fn find(field: &dyn Field, bounds: &Bounds) -> Option<EdgeTable> {
 }
 
 /// Cells of a box in which the label changes on the surface of a field, from which its edges can be
-/// traced. Each pair of labels has one cell within some widths.
+/// traced. Each pair of labels has one cell within some widths. `labels` writes the labels at
+/// points.
 pub(crate) fn seams_between(
     field: &dyn Field,
-    label: &dyn Fn(DVec3) -> u32,
+    labels: &dyn Fn(&[DVec3], &mut [u32]),
     bounds: &Bounds,
     width: f64,
 ) -> Vec<Bounds> {
@@ -99,25 +100,24 @@ pub(crate) fn seams_between(
     let sampled = Sampled::in_box(field, bounds);
     let grid = slices::complete(Grid::sample(&sampled, bounds, sampled.size / f64::from(SIDES[1])));
     let (points, of_edge) = slices::complete(grid.points(&sampled));
-    let labels: Vec<u32> = points.iter().map(|&p| label(p)).collect();
+    let mut of_point = vec![0; points.len()];
+    labels(&points, &mut of_point);
+    let links = grid.links(&sampled).into_iter().map(|link| link.map(|edge| of_edge[edge] as usize));
+    let links: Vec<[usize; 2]> = links.filter(|&[a, b]| of_point[a] != of_point[b]).collect();
+    let mut ways: Vec<[DVec3; 2]> = links.iter().map(|link| link.map(|point| points[point])).collect();
+    let mut at_middle = vec![0; ways.len()];
+    for _ in 0..HALVINGS {
+        let middles: Vec<DVec3> = ways.iter().map(|[from, to]| from.midpoint(*to)).collect();
+        labels(&middles, &mut at_middle);
+        for (k, way) in ways.iter_mut().enumerate() {
+            way[usize::from(at_middle[k] != of_point[links[k][0]])] = middles[k];
+        }
+    }
     let mut seams = Seams::new(width);
-    for link in grid.links(&sampled) {
-        let [a, b] = link.map(|edge| of_edge[edge] as usize);
-        if labels[a] == labels[b] {
-            continue;
-        }
-        let (mut from, mut to) = (points[a], points[b]);
-        for _ in 0..HALVINGS {
-            let middle = from.midpoint(to);
-            if label(middle) == labels[a] {
-                from = middle;
-            } else {
-                to = middle;
-            }
-        }
+    for ([a, b], [from, to]) in links.into_iter().zip(ways) {
         let place = from.midpoint(to);
         if bounds.holds(place) {
-            seams.add([labels[a].min(labels[b]), labels[a].max(labels[b])], place);
+            seams.add([of_point[a].min(of_point[b]), of_point[a].max(of_point[b])], place);
         }
     }
     seams.cells
