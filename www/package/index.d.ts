@@ -141,6 +141,15 @@ export interface Batch {
   /** writes f at each point to `out`; `xyz` has three numbers for each of its values */
   batch(xyz: Float64Array, out: Float64Array): void;
 }
+/**
+ * A function put together of smooth ones, the pieces, by one that gives the index of the piece at a
+ * point. The surface has an edge where it passes from one piece to another. A piece is called also
+ * a few particles beyond its part.
+ */
+export interface Pieces {
+  label(x: number, y: number, z: number): number | boolean;
+  pieces: ((x: number, y: number, z: number) => number)[];
+}
 /** Points of a surface, three numbers each, and their outward normals if they are known. */
 export interface Points {
   points: Numbers;
@@ -150,9 +159,10 @@ export interface Points {
 export type Numbers = Float32Array | Float64Array | Int32Array | number[] | [number, number, number][];
 /**
  * What is sampled: a formula such as `x^2 + y^2 + z^2 = a`; a function f(x, y, z), negative inside
- * and NaN where it has no value, of a point or of many at once; or points.
+ * and NaN where it has no value, of a point or of many at once; the pieces of such a function; or
+ * points.
  */
-export type Field = string | ((x: number, y: number, z: number) => number) | Batch | Points;
+export type Field = string | ((x: number, y: number, z: number) => number) | Batch | Pieces | Points;
 
 /**
  * Covers the surface f = 0 with evenly spaced particles. Formulas and points are sampled in a

@@ -6,7 +6,7 @@
 import { InputError } from './errors.js';
 
 /**
- * @import { Batch, Options } from './index.js'
+ * @import { Batch, Options, Pieces } from './index.js'
  * @import { SentField, Settings } from './protocol.js'
  */
 
@@ -181,15 +181,27 @@ function cloudOf({ points, normals }) {
 }
 
 const FIELD =
-  "a formula such as 'x^2 + y^2 + z^2 = 1', a function (x, y, z) => number, {batch(xyz, out)} or {points, normals}";
+  "a formula such as 'x^2 + y^2 + z^2 = 1', a function (x, y, z) => number, {batch(xyz, out)}, {label, pieces} or {points, normals}";
+
+/** @param {{label?: unknown, pieces?: unknown}} given @returns {Pieces} */
+function piecesOf({ label, pieces }) {
+  if (typeof label !== 'function')
+    throw new InputError(`label: a function (x, y, z) => the index of a piece, not ${shown(label)}.`);
+  if (!Array.isArray(pieces) || pieces.length === 0)
+    throw new InputError(`pieces: an array of functions (x, y, z) => number, not ${shown(pieces)}.`);
+  const k = pieces.findIndex((piece) => typeof piece !== 'function');
+  if (k >= 0) throw new InputError(`pieces[${k}]: a function (x, y, z) => number, not ${shown(pieces[k])}.`);
+  return { label: /** @type {Pieces['label']} */ (label), pieces };
+}
 
 /** @param {unknown} field @returns {Pick<SentField, 'formula' | 'cloud' | 'program'>} */
 function fieldOf(field) {
   if (typeof field === 'string') return { formula: field };
   if (typeof field === 'function')
     return { program: /** @type {(x: number, y: number, z: number) => number} */ (field) };
-  const given = /** @type {Partial<Batch> & {points?: unknown, normals?: unknown}} */ (field ?? {});
+  const given = /** @type {Partial<Batch & Pieces> & {points?: unknown, normals?: unknown}} */ (field ?? {});
   if (typeof given.batch === 'function') return { program: /** @type {Batch} */ (given) };
+  if (given.pieces !== undefined || given.label !== undefined) return { program: piecesOf(given) };
   if (given.points !== undefined) return { cloud: cloudOf({ ...given, points: given.points }) };
   throw new InputError(`field: ${FIELD}, not ${shown(typeof field)}.`);
 }

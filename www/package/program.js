@@ -4,7 +4,9 @@
  * @module
  */
 
-/** @import { Batch } from './index.js' */
+/** @import { Batch, Pieces } from './index.js' */
+
+/** @typedef {(x: number, y: number, z: number) => number} OfPoint */
 
 /** What no function gives: a value that it has not written is still this one. */
 const UNWRITTEN = -Number.MAX_VALUE;
@@ -23,36 +25,64 @@ function refusePromise(value) {
 }
 
 /**
- * A function of a point, or of a batch of points. The error of a call is kept: the core says only
- * that there was one.
+ * A function of a point, one of a batch of points, or pieces with their labels. The error of a call
+ * is kept: the core says only that there was one.
  */
 export class Program {
   #write;
+  /** Writes the labels of pieces at points; none of a single function. */
+  labels;
   /**
    * What went wrong: a sentence, and the error that the function threw.
    * @type {{message: string, cause: unknown} | null}
    */
   failure = null;
 
-  /** @param {((x: number, y: number, z: number) => number) | Batch} field */
+  /** @param {OfPoint | Batch | Pieces} field */
   constructor(field) {
-    this.#write = typeof field === 'function' ? ofPoint(field) : ofBatch(field);
+    if (typeof field === 'function') this.#write = ofPoint(field);
+    else if ('batch' in field) this.#write = ofBatch(field);
+    else {
+      const pieces = field.pieces.map(ofPoint);
+      this.#write = (/** @type {Float64Array} */ xyz, /** @type {Float64Array} */ out, piece = 0) =>
+        pieces[piece](xyz, out);
+      const write = labelsOf(field);
+      this.labels = (/** @type {Float64Array} */ xyz, /** @type {Uint32Array} */ out) =>
+        this.#called(() => write(xyz, out));
+    }
   }
 
-  /** Writes f at each point. @param {Float64Array} xyz @param {Float64Array} out */
-  call = (xyz, out) => {
+  /** Writes f, or the piece, at each point. @param {Float64Array} xyz @param {Float64Array} out @param {number} [piece] */
+  call = (xyz, out, piece) => this.#called(() => this.#write(xyz, out, piece));
+
+  /** @param {() => void} call */
+  #called(call) {
     try {
-      this.#write(xyz, out);
+      call();
     } catch (error) {
       const words = error instanceof Error ? error.message : String(error);
       const said = error instanceof Misuse ? '' : 'it threw: ';
       this.failure ??= { message: `The function that is sampled has failed: ${said}${words}`, cause: error };
       throw error;
     }
+  }
+}
+
+/** @param {Pieces} field */
+function labelsOf({ label, pieces }) {
+  return (/** @type {Float64Array} */ xyz, /** @type {Uint32Array} */ out) => {
+    for (let i = 0, at = 0; i < out.length; i += 1, at += 3) {
+      const piece = Number(label(xyz[at], xyz[at + 1], xyz[at + 2]));
+      if (!(piece in pieces))
+        throw new Misuse(
+          `label(${xyz[at]}, ${xyz[at + 1]}, ${xyz[at + 2]}) returned ${piece}: it is the index of a piece, from 0 to ${pieces.length - 1}`,
+        );
+      out[i] = piece;
+    }
   };
 }
 
-/** @param {(x: number, y: number, z: number) => number} f */
+/** @param {OfPoint} f */
 function ofPoint(f) {
   return (/** @type {Float64Array} */ xyz, /** @type {Float64Array} */ out) => {
     for (let i = 0, at = 0; i < out.length; i += 1, at += 3) {

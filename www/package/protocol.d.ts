@@ -1,6 +1,6 @@
 // Messages between the program and the sampler, which is in a worker or in the thread of the program.
 import type { Bounds, FieldRequest, Parameter, Report } from '../src/engine/core-types.js';
-import type { Batch, Progress } from './index.js';
+import type { Batch, Pieces, Progress } from './index.js';
 
 /** Settings of the core by their names there; `lengths` take the places of shares. */
 export type Settings = Record<string, number | string | Record<string, number>>;
@@ -26,7 +26,7 @@ export type Said = { type: 'stop'; id: number } | { type: 'free'; id: number };
 export type SentField = Pick<Partial<FieldRequest>, 'formula' | 'bounds'> & {
   parameters: Record<string, number>;
   cloud?: Cloud;
-  program?: ((x: number, y: number, z: number) => number) | Batch;
+  program?: ((x: number, y: number, z: number) => number) | Batch | Pieces;
 };
 /** Points, and their normals if they are known, three numbers each. */
 export interface Cloud {

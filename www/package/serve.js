@@ -206,7 +206,7 @@ export function serve({ post, load }) {
     if (program) {
       const called = new Program(program);
       programs.set(core, called);
-      return core.set_function(called.call, request);
+      return core.set_function(called.call, request, called.labels);
     }
     if (!cloud) return core.set_field(request);
     await loaded('points', loadPoints);

@@ -2,11 +2,11 @@
 #![cfg(target_arch = "wasm32")]
 
 use glam::{DVec3, Vec3};
-use js_sys::{Float64Array, Function};
-use marching_particles::field::BatchField;
+use js_sys::{Float64Array, Function, Uint32Array};
 use marching_particles::field::formula::number;
 use marching_particles::field::model::SolvedModel;
 use marching_particles::field::rbf::RbfData;
+use marching_particles::field::{BatchField, BatchPiecewise, Field};
 use marching_particles::particles::Particles;
 use marching_particles::sampler::Sampling;
 use marching_particles::session::{
@@ -20,6 +20,9 @@ use wasm_bindgen::{JsCast, JsValue};
 
 /// The member of the settings that holds lengths in the places of shares.
 const LENGTHS: &str = "lengths";
+
+/// That a function of JavaScript has failed; who called the core knows why.
+const THROWN: &str = "the function has thrown";
 
 /// Where the declarations of the bundle find the types of the values.
 #[wasm_bindgen(typescript_custom_section)]
@@ -116,24 +119,44 @@ impl Core {
     }
 
     /// Changes the field to a function that takes the coordinates of up to 512 points and an array
-    /// for f at each of them, to an `Answer` with `FieldAnswer`. Of the `FieldRequest` the box
-    /// counts. Once the function has thrown it is not called again, and the run ends.
+    /// for f at each of them, to an `Answer` with `FieldAnswer`. With `labels` it takes the label of
+    /// a piece besides, and gives its values; `labels` writes the labels at points. Of the
+    /// `FieldRequest` the box counts. Once a function has thrown none is called again, and the run
+    /// ends.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
     pub fn set_function(
         &mut self,
-        #[wasm_bindgen(unchecked_param_type = "(points: Float64Array, out: Float64Array) => void")]
+        #[wasm_bindgen(
+            unchecked_param_type = "(points: Float64Array, out: Float64Array, piece?: number) => void"
+        )]
         function: Function,
         #[wasm_bindgen(unchecked_param_type = "Partial<FieldRequest>")] request: JsValue,
+        #[wasm_bindgen(unchecked_optional_param_type = "(points: Float64Array, out: Uint32Array) => void")]
+        labels: Option<Function>,
     ) -> JsValue {
-        let values = move |points: &[DVec3], f: &mut [f64]| {
-            let coordinates = Float64Array::from(bytemuck::cast_slice::<_, f64>(points));
+        let values = move |piece: &JsValue, points: &[DVec3], f: &mut [f64]| {
             let out = Float64Array::new_with_length(f.len() as u32);
-            function.call2(&JsValue::NULL, &coordinates, &out).map_err(|_| "the function has thrown")?;
+            function.call3(&JsValue::NULL, &coordinates(points), &out, piece).map_err(|_| THROWN)?;
             out.copy_to(f);
             Ok(())
         };
         #[expect(clippy::arc_with_non_send_sync, reason = "a function of JavaScript is sent nowhere")]
-        let field = Arc::new(BatchField::<_, &str>::new(values));
+        let field: Arc<dyn Field> = match labels {
+            None => Arc::new(BatchField::<_, &str>::new(move |points: &[DVec3], f: &mut [f64]| {
+                values(&JsValue::UNDEFINED, points, f)
+            })),
+            Some(labels) => {
+                let labels = move |points: &[DVec3], out: &mut [u32]| {
+                    let found = Uint32Array::new_with_length(out.len() as u32);
+                    labels.call2(&JsValue::NULL, &coordinates(points), &found).map_err(|_| THROWN)?;
+                    found.copy_to(out);
+                    Ok(())
+                };
+                let piece =
+                    move |piece: u32, points: &[DVec3], f: &mut [f64]| values(&piece.into(), points, f);
+                Arc::new(BatchPiecewise::<_, _, &str>::new(labels, piece))
+            }
+        };
         answer(
             read::<FieldRequest>(request, FaultKind::Request)
                 .and_then(|request| self.session.set_function(field, request.bounds)),
@@ -450,4 +473,9 @@ impl Core {
         let count = self.session.run.rows().min(column.len());
         bytemuck::cast_slice(&column[from.min(count)..count]).to_vec()
     }
+}
+
+/// The coordinates of points, three numbers each.
+fn coordinates(points: &[DVec3]) -> Float64Array {
+    Float64Array::from(bytemuck::cast_slice::<_, f64>(points))
 }

@@ -285,6 +285,21 @@ describe('a function of the program', () => {
     expect(one.digest).toBe(two.digest);
   });
 
+  test('that says which piece counts has exact edges', async () => {
+    /** @type {((x: number, y: number, z: number) => number)[]} */
+    const pieces = [(x, y, z) => Math.hypot(x, y, z) - 1, (_x, _y, z) => z - 0.5];
+    const sample = await made.sample(
+      { label: (x, y, z) => pieces[1](x, y, z) > pieces[0](x, y, z), pieces },
+      { count: 1000 },
+    );
+    expect(sample.report).toMatchObject({ creases: 1 });
+    const { volume, components } = await sample.mesh();
+    expect(components).toMatchObject([{ euler: 2, open_edges: 0 }]);
+    // A ball of radius 1 without its cap of height 0.5.
+    expect(volume).toBeCloseTo((4 * Math.PI) / 3 - (Math.PI * 0.25 * 2.5) / 3, 1);
+    sample.dispose();
+  });
+
   const mistake = new Error('no such place');
   /** @type {[string, unknown][]} */
   const wrong = [
@@ -299,6 +314,7 @@ describe('a function of the program', () => {
     ['returned a promise', async () => 1],
     ['returned a promise', { batch: async () => {} }],
     ['it returned string', () => '1'],
+    ['returned 2: it is the index of a piece, from 0 to 1', { label: () => 2, pieces: [() => 1, () => 2] }],
     ['it returned undefined', () => {}],
     ['wrote 1 of', { batch: (/** @type {unknown} */ _, /** @type {Float64Array} */ out) => void out.fill(1, 0, 1) }],
   ];

@@ -186,10 +186,12 @@ export class Core {
     set_field(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
      * Changes the field to a function that takes the coordinates of up to 512 points and an array
-     * for f at each of them, to an `Answer` with `FieldAnswer`. Of the `FieldRequest` the box
-     * counts. Once the function has thrown it is not called again, and the run ends.
+     * for f at each of them, to an `Answer` with `FieldAnswer`. With `labels` it takes the label of
+     * a piece besides, and gives its values; `labels` writes the labels at points. Of the
+     * `FieldRequest` the box counts. Once a function has thrown none is called again, and the run
+     * ends.
      */
-    set_function(_function: (points: Float64Array, out: Float64Array) => void, request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
+    set_function(_function: (points: Float64Array, out: Float64Array, piece?: number) => void, request: Partial<FieldRequest>, labels?: (points: Float64Array, out: Uint32Array) => void): Answer<FieldAnswer, Fault>;
     /**
      * Changes the field to a model from points: the solved system as `Points.field` gives it, what
      * `Points.info` says of it, `SolvedModel`, and a `FieldRequest`, of which the box, the pulls
