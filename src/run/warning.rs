@@ -200,7 +200,8 @@ pub enum Warning {
         /// Whether sheets are too near to be told apart, so that a smaller radius is no remedy.
         is_unresolved: bool,
     },
-    /// The triangles between the particles do not close the surface.
+    /// The triangles between the particles do not close the surface, or close it without some of
+    /// them.
     Open {
         /// Number of edges of one triangle alone.
         edges: usize,
@@ -646,6 +647,12 @@ impl fmt::Display for Warning {
             Self::WithoutParticle { components, length, is_unresolved } => {
                 without_particle(f, components, *length, *is_unresolved)
             }
+            Self::Open { edges: 0, points, position, length } => write!(
+                f,
+                "{} in no triangle: the others close the surface all the same. The first is near {}.",
+                counted(*points, "particle is", "particles are"),
+                place_text(*position, *length)
+            ),
             Self::Open { edges, points, position, length } => {
                 let found = those_that_are([
                     (*edges, counted(*edges, "open edge", "open edges")),

@@ -68,8 +68,8 @@ impl Setting {
         self.argument().replace('_', "-")
     }
 
-    /// Name of its argument in Python; JavaScript has the same words in camel case. Those of the
-    /// kind of sampling, of the count and of the box choose by being there.
+    /// Name of its argument in Python; JavaScript has the same words in camel case. Passing the
+    /// argument of an adaptive size, of a count or of a box also chooses that mode.
     #[must_use]
     pub fn argument(&self) -> &'static str {
         match self.name {

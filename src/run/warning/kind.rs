@@ -42,6 +42,7 @@ impl Warning {
             Self::EndedEarly { .. } => ("ended_early", Fault),
             Self::SmallFeatures { .. } => ("small_features", Caution),
             Self::WithoutParticle { .. } => ("without_particle", Fault),
+            Self::Open { edges: 0, .. } => ("left_out", Caution),
             Self::Open { .. } => ("open", Fault),
             Self::Jumps { .. } => ("jumps", Note),
             Self::MeshDiffers { .. } => ("mesh_differs", Fault),

@@ -39,6 +39,7 @@ fn the_first_sentence_is_short_and_names_no_part_of_the_method() {
         without(true),
         without(false),
         Warning::Open { edges: 12, points: 34, position, length },
+        Warning::Open { edges: 0, points: 34, position, length },
         Warning::Jumps { position, length },
         Warning::MeshDiffers { components: [1, 2], euler: [2, 4] },
         Warning::MeshHoles { count: 12 },

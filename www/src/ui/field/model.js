@@ -94,7 +94,7 @@ function createCentres(engine, { limits }, model) {
   const row = h('div', { class: 'row centres' }, caption, slider.range, slider.box);
   explain(caption, () => ({
     title: 'Centres',
-    text: 'Points from which f is built, as far from each other as can be. All points count, each for the nearest of these. More follow finer details; the time to solve for them grows with the cube of their number.',
+    text: 'How many points the surface is built around. The other points correct the nearest of these. More of them follow finer details; the time to solve for them grows with the cube of their number.',
   }));
   live(row, () => {
     const info = model.value;
