@@ -468,6 +468,10 @@ impl<F: Field> Run<F> {
         &self.state.measuring.measured
     }
 
+    fn measured_mut(&mut self) -> &mut quality::Measurements {
+        &mut self.state.measuring.measured
+    }
+
     /// The sampler, for what the report leaves out.
     #[doc(hidden)]
     #[must_use]

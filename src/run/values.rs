@@ -1,10 +1,11 @@
 //! Values at the particles, by formulas and functions: more columns for files and programs.
 
-use super::Sample;
+use super::{Run, Sample};
 use crate::differential::{Curvature, curvatures};
 use crate::export::COLUMNS;
 use crate::field::formula::{Formula, FormulaError, Noun, Parameter};
 use crate::field::{BATCH, Field, FieldError, Frame, IntoField};
+use crate::mesh::triangulation::Triangulation;
 use crate::particles::Particles;
 use crate::quality::NamedValues;
 use core::fmt::{self, Debug, Formatter};
@@ -140,6 +141,13 @@ impl Value {
         Self(Source::Function(Arc::new(function.into_field())))
     }
 
+    /// Whether the value takes the mesh, for the area.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn needs_mesh(&self) -> bool {
+        self.takes(&[AREA])
+    }
+
     /// Whether the formula takes one of these quantities.
     fn takes(&self, names: &[&str]) -> bool {
         match &self.0 {
@@ -164,14 +172,9 @@ impl Sample {
         name: &str,
         value: &Value,
     ) -> Result<(), ValueError> {
-        let is_taken = COLUMNS.iter().map(|column| column.name).chain(self.values().iter().map(|v| &*v.name));
-        let is_word = name.starts_with(|c: char| c.is_ascii_alphabetic())
-            && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-        // GLB has the names in capitals.
-        if !is_word || is_taken.into_iter().any(|known| known.eq_ignore_ascii_case(name)) {
-            return Err(ValueError::Name { name: name.to_owned() });
-        }
-        let values = self.column(&field.into_field(), value)?;
+        check_name(name, self.values())?;
+        let mesh = value.needs_mesh().then(|| self.mesh());
+        let values = column(value, self.particles(), &field.into_field(), self.bounds().diagonal(), mesh)?;
         self.measured_mut().values.push(NamedValues { name: name.to_owned(), values });
         Ok(())
     }
@@ -181,54 +184,83 @@ impl Sample {
     pub fn values(&self) -> &[NamedValues] {
         &self.measured().values
     }
+}
 
-    fn column(&self, field: &dyn Field, value: &Value) -> Result<Vec<f32>, ValueError> {
-        let particles = self.particles();
-        let count = particles.len();
-        let places: Vec<DVec3> = (0..count).map(|row| particles.place(row)).collect();
-        let formula = match &value.0 {
-            Source::Formula(formula) => formula,
-            Source::Function(function) => {
-                let mut values = vec![0.0; count];
-                for (places, values) in places.chunks(BATCH).zip(values.chunks_mut(BATCH)) {
-                    function.values(places, values);
-                }
-                let failure = function.failure().map(ValueError::Function);
-                return failure.map_or_else(|| Ok(values.into_iter().map(|v| v as f32).collect()), Err);
+impl<F: Field> Run<F> {
+    /// [`Sample::add_value`] at the particles of a run that is complete, with the mesh joined if
+    /// the value [needs](Value::needs_mesh) it. A report that is taken later drops the columns.
+    #[doc(hidden)]
+    pub fn add_value(&mut self, name: &str, value: &Value) -> Result<(), ValueError> {
+        check_name(name, &self.measured().values)?;
+        let values = column(value, self.particles(), self.field(), self.bounds().diagonal(), self.mesh())?;
+        self.measured_mut().values.push(NamedValues { name: name.to_owned(), values });
+        Ok(())
+    }
+}
+
+/// Checks that no other column has the name, and that every file can.
+fn check_name(name: &str, others: &[NamedValues]) -> Result<(), ValueError> {
+    let is_taken = COLUMNS.iter().map(|column| column.name).chain(others.iter().map(|v| &*v.name));
+    let is_word = name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    // GLB has the names in capitals.
+    if !is_word || is_taken.into_iter().any(|known| known.eq_ignore_ascii_case(name)) {
+        return Err(ValueError::Name { name: name.to_owned() });
+    }
+    Ok(())
+}
+
+/// The value at each row of particles on the surface of a field, in a box of this diagonal. The
+/// area is 0 without a mesh.
+fn column(
+    value: &Value,
+    particles: &Particles,
+    field: &dyn Field,
+    diagonal: f64,
+    mesh: Option<&Triangulation>,
+) -> Result<Vec<f32>, ValueError> {
+    let count = particles.len();
+    let places: Vec<DVec3> = (0..count).map(|row| particles.place(row)).collect();
+    let formula = match &value.0 {
+        Source::Formula(formula) => formula,
+        Source::Function(function) => {
+            let mut values = vec![0.0; count];
+            for (places, values) in places.chunks(BATCH).zip(values.chunks_mut(BATCH)) {
+                function.values(places, values);
             }
-        };
-        let mut curvature = vec![Curvature::default(); if value.takes(&CURVED) { count } else { 0 }];
-        if !curvature.is_empty() {
-            let frame = Frame { length: self.bounds().diagonal(), ..Frame::around(particles.origin) };
-            curvatures(&mut *field.evaluator(frame), &particles.local, &mut curvature);
+            let failure = function.failure().map(ValueError::Function);
+            return failure.map_or_else(|| Ok(values.into_iter().map(|v| v as f32).collect()), Err);
         }
-        if let Some(error) = field.failure() {
-            return Err(ValueError::Function(error));
-        }
-        let area = if value.takes(&[AREA]) { self.areas() } else { Vec::new() };
-        let is_taken = |(name, _): &&Quantity| value.takes(&[name]);
-        let taken: Vec<&Quantity> = QUANTITIES.iter().filter(is_taken).collect();
-        let mut formula = formula.clone();
-        let value_at = |(row, place): (usize, DVec3)| {
-            let curvature = curvature.get(row).copied().unwrap_or_default();
-            let at = At { particles, row, curvature, area: area.get(row).copied().unwrap_or(0.0) };
-            let is_set =
-                taken.iter().all(|(name, read)| formula.set_parameter(name, read(&at).into()).is_ok());
-            if is_set { formula.value(place) as f32 } else { f32::NAN }
-        };
-        Ok(places.into_iter().enumerate().map(value_at).collect())
+    };
+    let mut curvature = vec![Curvature::default(); if value.takes(&CURVED) { count } else { 0 }];
+    if !curvature.is_empty() {
+        let frame = Frame { length: diagonal, ..Frame::around(particles.origin) };
+        curvatures(&mut *field.evaluator(frame), &particles.local, &mut curvature);
     }
+    if let Some(error) = field.failure() {
+        return Err(ValueError::Function(error));
+    }
+    let area = mesh.filter(|_| value.needs_mesh()).map_or_else(Vec::new, |mesh| areas(mesh, particles));
+    let is_taken = |(name, _): &&Quantity| value.takes(&[name]);
+    let taken: Vec<&Quantity> = QUANTITIES.iter().filter(is_taken).collect();
+    let mut formula = formula.clone();
+    let value_at = |(row, place): (usize, DVec3)| {
+        let curvature = curvature.get(row).copied().unwrap_or_default();
+        let at = At { particles, row, curvature, area: area.get(row).copied().unwrap_or(0.0) };
+        let is_set = taken.iter().all(|(name, read)| formula.set_parameter(name, read(&at).into()).is_ok());
+        if is_set { formula.value(place) as f32 } else { f32::NAN }
+    };
+    Ok(places.into_iter().enumerate().map(value_at).collect())
+}
 
-    /// The share of each row in the area of the mesh.
-    fn areas(&self) -> Vec<f32> {
-        let (mesh, particles) = (self.mesh(), self.particles());
-        let mut areas = vec![0.0_f64; particles.len()];
-        for k in 0..mesh.triangles.len() {
-            let corners = mesh.outward_corners(k);
-            let [a, b, c] = corners.map(|row| particles.local[row as usize].as_dvec3());
-            let third = (b - a).cross(c - a).length() / 6.0;
-            corners.iter().for_each(|&row| areas[row as usize] += third);
-        }
-        areas.into_iter().map(|area| area as f32).collect()
+/// The share of each row in the area of the mesh.
+fn areas(mesh: &Triangulation, particles: &Particles) -> Vec<f32> {
+    let mut areas = vec![0.0_f64; particles.len()];
+    for k in 0..mesh.triangles.len() {
+        let corners = mesh.outward_corners(k);
+        let [a, b, c] = corners.map(|row| particles.local[row as usize].as_dvec3());
+        let third = (b - a).cross(c - a).length() / 6.0;
+        corners.iter().for_each(|&row| areas[row as usize] += third);
     }
+    areas.into_iter().map(|area| area as f32).collect()
 }

@@ -17,6 +17,8 @@ pub enum FaultKind {
     Thickness,
     /// The formula of the spacing has a mistake; the span is in it.
     Spacing,
+    /// The formula of a value at the particles has a mistake; the span is in it.
+    Value,
     /// A run would have more particles than the limit allows, see [`Fault::excess`].
     TooMany,
     /// There is no surface of that name.

@@ -1,8 +1,9 @@
-//! The spacing of a session's runs, as it is written.
+//! The spacing of a session's runs, and values at their particles, as they are written.
 
 use super::{Fault, FaultKind, Session, Source};
-use crate::field::formula::Parameter;
+use crate::field::formula::{FormulaError, Parameter};
 use crate::math::shortest_text;
+use crate::run::{Value, ValueError};
 use crate::sampler::Spacing;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -78,6 +79,28 @@ impl Session {
             return Some(spacing.clone());
         }
         self.spacing.as_ref()?.spacing(self.own_parameters()).ok()
+    }
+
+    /// Adds the column of a value at the particles of the last run, which is complete, up to
+    /// `budget` slices of joining the mesh if the value takes areas; nothing before it is there.
+    pub fn add_value(&mut self, name: &str, value: &Value, budget: u32) -> Option<Result<(), ValueError>> {
+        if value.needs_mesh() && self.run.mesh().is_none() {
+            self.run.join(budget)?;
+        }
+        Some(self.run.add_value(name, value))
+    }
+
+    /// The value of a formula, in which the parameters of the present formula have their values.
+    ///
+    /// # Errors
+    ///
+    /// If the formula has a mistake.
+    pub fn value(&self, text: &str) -> Result<Value, Fault> {
+        let fault = |error: FormulaError| {
+            let message = format!("Value: {}", error.message);
+            Fault { kind: FaultKind::Value, message, ..Fault::in_formula(error, text) }
+        };
+        Value::of_formula(text, self.own_parameters()).map_err(fault)
     }
 
     /// The parameters of the present formula.

@@ -148,7 +148,7 @@ class Sample {
     this.#line = client.line;
     this.#id = id;
     this.#how = how;
-    const { count, points, normals, radii, levels, parents, report, bounds, parameters, digest } = value;
+    const { count, points, normals, radii, levels, parents, report, bounds, parameters, values, digest } = value;
     /** Number of particles. */
     this.count = count;
     this.points = points;
@@ -160,6 +160,7 @@ class Sample {
     this.warnings = report?.warnings ?? [];
     this.bounds = bounds;
     this.params = Object.fromEntries(parameters.map((p) => [p.name, p.value]));
+    this.values = values;
     this.digest = digest;
   }
 
@@ -200,10 +201,10 @@ class Sample {
     const how = { ...this.#how, ...checkedCalls(options) };
     if (how.signal?.aborted) throw how.signal.reason;
     this.#isThere = false;
-    const { settings, measure } = this.#how;
+    const { functions, settings, measure } = this.#how;
     const of = this.#id;
     const question = (/** @type {number} */ id) =>
-      /** @type {const} */ ({ type: 'moved', id, of, field: { parameters }, settings, measure });
+      /** @type {const} */ ({ type: 'moved', id, of, field: { parameters }, functions, settings, measure });
     return new Sample(this.#client, await this.#client.ask(question, how), this.#how);
   }
 
@@ -235,10 +236,11 @@ export function createSampler(open, openHere) {
   const [there, here] = [new Client(open), new Client(openHere)];
   return async (/** @type {unknown} */ field, /** @type {Options} */ options = {}) => {
     const how = checked(field, options);
-    const { settings, given, measure, request } = how;
-    const client = request.program ? here : there;
+    const { settings, given, measure, request, functions } = how;
+    const all = [request.program, functions.spacing, ...Object.values(functions.values)];
+    const client = all.some((own) => typeof own === 'function' || typeof own === 'object') ? here : there;
     const question = (/** @type {number} */ id) =>
-      /** @type {const} */ ({ type: 'sample', id, field: request, settings, given, measure });
+      /** @type {const} */ ({ type: 'sample', id, field: request, functions, settings, given, measure });
     return new Sample(client, await client.ask(question, how), how);
   };
 }

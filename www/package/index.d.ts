@@ -24,8 +24,11 @@ export type Size = number | `${number}%`;
 export interface Options {
   /** number of particles, met within 3 %: 1 to 4,000,000 */
   count?: number;
-  /** distance between neighbours: two radii */
-  spacing?: number;
+  /**
+   * distance between neighbours, two radii; by a formula of x, y, z or a function it depends on the
+   * place. Beside a count it gives the proportions
+   */
+  spacing?: number | string | OfPlace;
   /** half of the distance between neighbours */
   radius?: Size;
   /** the box that is sampled; without it one that fits the surface */
@@ -71,6 +74,12 @@ export interface Options {
   seed?: number;
   /** number of particles at which the run stops */
   maxParticles?: number;
+  /**
+   * numbers at the particles, by name: formulas of x, y, z and of the normal (n_x, n_y, n_z), the
+   * principal curvatures (k_1, k_2), a direction of k_1 (d_x, d_y, d_z), radius, level and area; or
+   * functions of place. Files have them as well
+   */
+  values?: Record<string, string | OfPlace>;
   /** whether a report is made, which takes about as long as the sampling; true without it */
   measure?: boolean;
   /** ends the sampling, whose promise is rejected with the signal's reason */
@@ -112,6 +121,8 @@ export interface Sample {
   readonly warnings: Warning[];
   readonly bounds: Bounds;
   readonly params: Record<string, number>;
+  /** numbers at the rows of the columns, by the names of the option `values` */
+  readonly values: Record<string, Float32Array>;
   readonly digest: string;
   /**
    * joins the particles to triangles; with `weld` those at a crease or a seam share a row, and have
@@ -136,6 +147,8 @@ export interface Sample {
   [Symbol.dispose](): void;
 }
 
+/** A function of a point. */
+export type OfPlace = (x: number, y: number, z: number) => number;
 /** A function of many points at once. */
 export interface Batch {
   /** writes f at each point to `out`; `xyz` has three numbers for each of its values */
@@ -148,7 +161,7 @@ export interface Batch {
  */
 export interface Pieces {
   label(x: number, y: number, z: number): number | boolean;
-  pieces: ((x: number, y: number, z: number) => number)[];
+  pieces: OfPlace[];
 }
 /** Points of a surface, three numbers each, and their outward normals if they are known. */
 export interface Points {
@@ -162,7 +175,7 @@ export type Numbers = Float32Array | Float64Array | Int32Array | number[] | [num
  * and NaN where it has no value, of a point or of many at once; the pieces of such a function; or
  * points.
  */
-export type Field = string | ((x: number, y: number, z: number) => number) | Batch | Pieces | Points;
+export type Field = string | OfPlace | Batch | Pieces | Points;
 
 /**
  * Covers the surface f = 0 with evenly spaced particles. Formulas and points are sampled in a

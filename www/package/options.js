@@ -6,8 +6,8 @@
 import { InputError } from './errors.js';
 
 /**
- * @import { Batch, Options, Pieces } from './index.js'
- * @import { SentField, Settings } from './protocol.js'
+ * @import { Batch, OfPlace, Options, Pieces } from './index.js'
+ * @import { SentField, SentFunctions, Settings } from './protocol.js'
  */
 
 /** A value as an error names it. @param {unknown} value */
@@ -59,6 +59,25 @@ const isPositive = (/** @type {number} */ v) => v > 0;
 const isWhole = (/** @type {number} */ n) => Number.isSafeInteger(n) && n >= 0;
 const A_SIZE = "a length above 0, or a share of the box diagonal such as '1%'";
 
+const A_SPACING = "a length above 0, a formula such as '0.02 + 0.1 hypot(x, y)' or a function (x, y, z) => number";
+
+/**
+ * Whether a value is a function of place, by a formula or of the program.
+ * @param {unknown} value @returns {value is string | OfPlace}
+ */
+const isFunction = (value) => typeof value === 'string' || typeof value === 'function';
+
+/** @param {unknown} values @returns {SentFunctions['values']} */
+function valuesOf(values) {
+  if (typeof values !== 'object' || values === null)
+    throw new InputError(`values: an object such as {height: 'z'}, not ${shown(values)}.`);
+  const entries = Object.entries(values);
+  const [name, value] = entries.find(([, own]) => !isFunction(own)) ?? [];
+  if (name !== undefined)
+    throw new InputError(`values.${name}: a formula or a function (x, y, z) => number, not ${shown(value)}.`);
+  return Object.fromEntries(entries);
+}
+
 /**
  * The share that a text such as `0.6%` says, rounded once.
  * @param {string} name @param {string} text
@@ -98,7 +117,7 @@ const SETTINGS = {
 };
 /** The options for a formula by itself. */
 const OF_FORMULAS = ['closed', 'periodic', 'thickness'];
-const KNOWN = [...Object.keys(SETTINGS), 'bounds', 'formula', 'params', 'measure', 'signal', 'onProgress'];
+const KNOWN = [...Object.keys(SETTINGS), 'bounds', 'formula', 'params', 'values', 'measure', 'signal', 'onProgress'];
 
 /** The option that is a setting of the core. @param {string} setting */
 export const optionOf = (setting) =>
@@ -118,6 +137,8 @@ function settingsOf(options) {
   for (const [name, { setting, kind, values = [] }] of Object.entries(SETTINGS)) {
     const value = options[name];
     if (value === undefined || (kind === 'flag' && flag(name, value) === false)) continue;
+    // A function of place is no setting.
+    if (kind === 'spacing' && isFunction(value)) continue;
     given[setting] = name;
     if (kind === 'flag') settings[setting] = values[0];
     else if (kind === 'choice') settings[setting] = choice(name, value, values);
@@ -130,7 +151,7 @@ function settingsOf(options) {
     } else if (kind === 'text')
       settings[setting] = typeof value === 'string' ? value : number(name, value, () => true, 'a number or a formula');
     // The core has radii, half of the distance between neighbours.
-    else if (kind === 'spacing') settings.radius = 0.5 * number(name, value, isPositive, 'a length above 0');
+    else if (kind === 'spacing') settings.radius = 0.5 * number(name, value, isPositive, A_SPACING);
     else if (typeof value === 'string') settings[setting] = shareOf(name, value);
     else if (name === 'radius') settings.radius = number(name, value, isPositive, A_SIZE);
     else lengths[setting] = number(name, value, isPositive, A_SIZE);
@@ -228,9 +249,11 @@ export function checked(field, options) {
   const unknown = Object.keys(options).find((name) => !KNOWN.includes(name));
   if (unknown !== undefined)
     throw new InputError(`${unknown}: there is no such option. There are ${KNOWN.join(', ')}.`);
-  const [first, second] = SIZES.filter((name) => options[/** @type {keyof Options} */ (name)] !== undefined);
+  // Of a spacing that depends on the place a count gives the scale.
+  const sizes = isFunction(options.spacing) ? SIZES.filter((name) => name !== 'count') : SIZES;
+  const [first, second] = sizes.filter((name) => options[/** @type {keyof Options} */ (name)] !== undefined);
   if (second) throw new InputError(`${first}, ${second}: one of the two, not both.`);
-  const { beyondPoints, bounds, formula, params, measure = true } = options;
+  const { beyondPoints, bounds, formula, params, spacing, values = {}, measure = true } = options;
   const { settings, given } = settingsOf(/** @type {Record<string, unknown>} */ (options));
   if (beyondPoints !== undefined && what.cloud === undefined)
     throw new InputError('beyondPoints: for points, beyond which their surface may go on.');
@@ -246,5 +269,6 @@ export function checked(field, options) {
     parameters: params === undefined ? {} : paramsOf(params),
     ...(bounds === undefined ? {} : { bounds: boundsOf(bounds) }),
   };
-  return { request, settings, given, measure: flag('measure', measure), ...checkedCalls(options) };
+  const functions = { ...(isFunction(spacing) ? { spacing } : {}), values: valuesOf(values) };
+  return { request, functions, settings, given, measure: flag('measure', measure), ...checkedCalls(options) };
 }

@@ -4,9 +4,7 @@
  * @module
  */
 
-/** @import { Batch, Pieces } from './index.js' */
-
-/** @typedef {(x: number, y: number, z: number) => number} OfPoint */
+/** @import { Batch, OfPlace, Pieces } from './index.js' */
 
 /** What no function gives: a value that it has not written is still this one. */
 const UNWRITTEN = -Number.MAX_VALUE;
@@ -29,6 +27,7 @@ function refusePromise(value) {
  * is kept: the core says only that there was one.
  */
 export class Program {
+  #what;
   #write;
   /** Writes the labels of pieces at points; none of a single function. */
   labels;
@@ -38,8 +37,9 @@ export class Program {
    */
   failure = null;
 
-  /** @param {OfPoint | Batch | Pieces} field */
-  constructor(field) {
+  /** @param {OfPlace | Batch | Pieces} field @param {string} [what]  its name in errors */
+  constructor(field, what = 'The function that is sampled') {
+    this.#what = what;
     if (typeof field === 'function') this.#write = ofPoint(field);
     else if ('batch' in field) this.#write = ofBatch(field);
     else {
@@ -62,7 +62,7 @@ export class Program {
     } catch (error) {
       const words = error instanceof Error ? error.message : String(error);
       const said = error instanceof Misuse ? '' : 'it threw: ';
-      this.failure ??= { message: `The function that is sampled has failed: ${said}${words}`, cause: error };
+      this.failure ??= { message: `${this.#what} has failed: ${said}${words}`, cause: error };
       throw error;
     }
   }
@@ -82,7 +82,7 @@ function labelsOf({ label, pieces }) {
   };
 }
 
-/** @param {OfPoint} f */
+/** @param {OfPlace} f */
 function ofPoint(f) {
   return (/** @type {Float64Array} */ xyz, /** @type {Float64Array} */ out) => {
     for (let i = 0, at = 0; i < out.length; i += 1, at += 3) {

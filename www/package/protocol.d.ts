@@ -1,6 +1,6 @@
 // Messages between the program and the sampler, which is in a worker or in the thread of the program.
 import type { Bounds, FieldRequest, Parameter, Report } from '../src/engine/core-types.js';
-import type { Batch, Pieces, Progress } from './index.js';
+import type { Batch, OfPlace, Pieces, Progress } from './index.js';
 
 /** Settings of the core by their names there; `lengths` take the places of shares. */
 export type Settings = Record<string, number | string | Record<string, number>>;
@@ -10,11 +10,20 @@ export type Asked =
       type: 'sample';
       id: number;
       field: SentField;
+      functions: SentFunctions;
       settings: Settings;
       given: Record<string, string>;
       measure: boolean;
     }
-  | { type: 'moved'; id: number; of: number; field: SentField; settings: Settings; measure: boolean }
+  | {
+      type: 'moved';
+      id: number;
+      of: number;
+      field: SentField;
+      functions: SentFunctions;
+      settings: Settings;
+      measure: boolean;
+    }
   | { type: 'mesh'; id: number; of: number; weld: boolean }
   | { type: 'file'; id: number; of: number; format: string; mesh: boolean };
 /** What is said besides: `stop` ends a request, `free` gives a sample up. */
@@ -26,8 +35,13 @@ export type Said = { type: 'stop'; id: number } | { type: 'free'; id: number };
 export type SentField = Pick<Partial<FieldRequest>, 'formula' | 'bounds'> & {
   parameters: Record<string, number>;
   cloud?: Cloud;
-  program?: ((x: number, y: number, z: number) => number) | Batch | Pieces;
+  program?: OfPlace | Batch | Pieces;
 };
+/** Functions of place; those of the program are sent in its own thread alone. */
+export interface SentFunctions {
+  spacing?: string | OfPlace;
+  values: Record<string, string | OfPlace>;
+}
 /** Points, and their normals if they are known, three numbers each. */
 export interface Cloud {
   points: Float64Array;
@@ -45,6 +59,7 @@ export interface Made {
   report: Report | null;
   bounds: Bounds;
   parameters: Parameter[];
+  values: Record<string, Float32Array>;
   digest: string;
 }
 export interface Answered {

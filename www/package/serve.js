@@ -43,7 +43,8 @@ class Refusal extends Error {
 function refusalOf({ kind, message, start, end, suggestion, choices }) {
   // A setting that is out of its range begins its sentence.
   const named = message.replace(/^([a-z_]+) is /, (_, setting) => `The option ${optionOf(setting)} is `);
-  if (['request', 'settings', 'too_many', 'box', 'points'].includes(kind)) return new Refusal('InputError', named);
+  if (['request', 'settings', 'too_many', 'box', 'points'].includes(kind) || (kind === 'value' && start === end))
+    return new Refusal('InputError', named);
   return new Refusal('FormulaError', message, { start, end, suggestion, choices });
 }
 
@@ -80,6 +81,7 @@ async function particlesFile(core, format) {
   const [valence, nearest, residual] = [core.valence(), core.nearest(), core.residual()];
   const [patch, particle, periodic] = [core.patch(), core.particle(), core.periodic()];
   const some = (/** @type {{length: number}} */ column) => (column.length > 0 ? column : undefined);
+  const names = core.value_names();
   const columns = /** @type {any} */ ({
     count: core.radii(0).length,
     exact: core.exact_positions(0),
@@ -95,8 +97,10 @@ async function particlesFile(core, format) {
     patch: some(patch),
     particle: some(particle),
     periodic: some(periodic),
+    values: Object.fromEntries(names.map((name) => [name, core.added_value(name)])),
   });
-  const { columns: all } = core.describe();
+  const { columns: known } = core.describe();
+  const all = [...known, ...names.map((name) => ({ name, kind: /** @type {const} */ ('float') }))];
   const file = format === 'csv' ? csv(columns, all) : ply(columns, all, core.record());
   return new Uint8Array(await file.arrayBuffer());
 }
@@ -111,7 +115,7 @@ export function serve({ post, load }) {
   const modules = new Map();
   /** @type {Map<number, Core>} */
   const cores = new Map();
-  /** The functions of the program that cores sample. @type {Map<Core, Program>} */
+  /** The functions of the program that cores call. @type {Map<Core, Program[]>} */
   const programs = new Map();
   /** The end of what each core was asked last. @type {WeakMap<Core, Promise<void>>} */
   const turns = new WeakMap();
@@ -129,6 +133,16 @@ export function serve({ post, load }) {
     await loading.catch((error) => {
       throw new Refusal('WorkerError', `${name}_bg.wasm did not load from beside the script: ${error.message}`);
     });
+  }
+
+  /**
+   * A function of the program, as a core calls it.
+   * @param {NonNullable<SentField['program']>} program @param {Core} core @param {string} [what]
+   */
+  function held(program, core, what) {
+    const called = new Program(program, what);
+    programs.set(core, [...(programs.get(core) ?? []), called]);
+    return called;
   }
 
   /** @param {Core} core */
@@ -162,7 +176,7 @@ export function serve({ post, load }) {
     for (let budget = FIRST_BUDGET; ; ) {
       const before = performance.now();
       const made = slice(budget);
-      const failure = programs.get(core)?.failure;
+      const failure = programs.get(core)?.find((program) => program.failure)?.failure;
       if (failure) throw new Refusal('FieldError', failure.message, { cause: failure.cause });
       if (made !== undefined) return made;
       const after = performance.now();
@@ -204,8 +218,7 @@ export function serve({ post, load }) {
   async function taken({ program, cloud, ...request }, of) {
     const { core } = of;
     if (program) {
-      const called = new Program(program);
-      programs.set(core, called);
+      const called = held(program, core);
       return core.set_function(called.call, request, called.labels);
     }
     if (!cloud) return core.set_field(request);
@@ -226,6 +239,13 @@ export function serve({ post, load }) {
     const of = { id, core };
     const answer = await taken(field, of);
     if (!answer.ok) throw refusalOf(answer.error);
+    const { spacing, values } = message.functions;
+    if (spacing !== undefined) {
+      const fault = core.space(
+        typeof spacing === 'string' ? spacing : held(spacing, core, 'The function of the spacing').call,
+      );
+      if (fault) throw refusalOf(fault);
+    }
     const unknown = Object.keys(field.parameters).find((name) => !answer.parameters.some((p) => p.name === name));
     if (unknown !== undefined) throw new Refusal('InputError', `The formula has no parameter “${unknown}” (params).`);
     if (message.type === 'sample') checkEffects(core, message);
@@ -239,7 +259,14 @@ export function serve({ post, load }) {
     const particles = await run(of);
     const measuring = () => ({ phase: 'measuring', particles, fraction: core.fraction() });
     const report = measure ? await inSlices(of, (budget) => core.measure('particles', budget), measuring) : null;
-    return columnsOf(core, { count: particles, report, bounds: box.bounds, parameters: box.parameters });
+    for (const [name, value] of Object.entries(values)) {
+      const taken = typeof value === 'string' ? value : held(value, core, `The function of the value ${name}`).call;
+      const fault = await inSlices(of, (budget) => core.add_value(name, taken, budget));
+      if (fault) throw refusalOf(fault);
+    }
+    const columns = Object.keys(values).map((name) => [name, core.added_value(name)]);
+    const about = { report, bounds: box.bounds, parameters: box.parameters, values: Object.fromEntries(columns) };
+    return columnsOf(core, { count: particles, ...about });
   }
 
   /**
@@ -336,7 +363,7 @@ function weld(indices, firstRows) {
 
 /**
  * The columns of the particles, whose buffers are given away, so that there is no second copy.
- * @param {Core} core @param {Pick<Made, 'count' | 'report' | 'bounds' | 'parameters'>} about
+ * @param {Core} core @param {Pick<Made, 'count' | 'report' | 'bounds' | 'parameters' | 'values'>} about
  * @returns {[Made, ArrayBufferLike[]]}
  */
 function columnsOf(core, about) {
@@ -349,7 +376,7 @@ function columnsOf(core, about) {
     parents: core.parents(0),
   };
   const made = { ...columns, ...about, digest: core.digest() };
-  return [made, Object.values(columns).map(({ buffer }) => buffer)];
+  return [made, [...Object.values(columns), ...Object.values(about.values)].map(({ buffer }) => buffer)];
 }
 
 /** @param {unknown} error @returns {Answered['error']} */

@@ -3,15 +3,16 @@
 
 use glam::{DVec3, Vec3};
 use js_sys::{Float64Array, Function, Uint32Array};
+use marching_particles::Value;
 use marching_particles::field::formula::number;
 use marching_particles::field::model::SolvedModel;
 use marching_particles::field::rbf::RbfData;
 use marching_particles::field::{BatchField, BatchPiecewise, Field};
 use marching_particles::particles::Particles;
-use marching_particles::sampler::Sampling;
+use marching_particles::sampler::{Sampling, Spacing};
 use marching_particles::session::{
     Asked, Fault, FaultKind, FieldRequest, FileRecord, FileRequest, Language, Lengths, Session,
-    SolidSettings, describe,
+    SolidSettings, SpacingText, describe,
 };
 use marching_particles_values::{answer, read, to_js};
 use std::sync::Arc;
@@ -134,17 +135,9 @@ impl Core {
         #[wasm_bindgen(unchecked_optional_param_type = "(points: Float64Array, out: Uint32Array) => void")]
         labels: Option<Function>,
     ) -> JsValue {
-        let values = move |piece: &JsValue, points: &[DVec3], f: &mut [f64]| {
-            let out = Float64Array::new_with_length(f.len() as u32);
-            function.call3(&JsValue::NULL, &coordinates(points), &out, piece).map_err(|_| THROWN)?;
-            out.copy_to(f);
-            Ok(())
-        };
         #[expect(clippy::arc_with_non_send_sync, reason = "a function of JavaScript is sent nowhere")]
         let field: Arc<dyn Field> = match labels {
-            None => Arc::new(BatchField::<_, &str>::new(move |points: &[DVec3], f: &mut [f64]| {
-                values(&JsValue::UNDEFINED, points, f)
-            })),
+            None => Arc::new(function_of(function)),
             Some(labels) => {
                 let labels = move |points: &[DVec3], out: &mut [u32]| {
                     let found = Uint32Array::new_with_length(out.len() as u32);
@@ -152,8 +145,13 @@ impl Core {
                     found.copy_to(out);
                     Ok(())
                 };
-                let piece =
-                    move |piece: u32, points: &[DVec3], f: &mut [f64]| values(&piece.into(), points, f);
+                let piece = move |piece: u32, points: &[DVec3], f: &mut [f64]| {
+                    let out = Float64Array::new_with_length(f.len() as u32);
+                    let (points, piece) = (coordinates(points), piece.into());
+                    function.call3(&JsValue::NULL, &points, &out, &piece).map_err(|_| THROWN)?;
+                    out.copy_to(f);
+                    Ok(())
+                };
                 Arc::new(BatchPiecewise::<_, _, &str>::new(labels, piece))
             }
         };
@@ -161,6 +159,64 @@ impl Core {
             read::<FieldRequest>(request, FaultKind::Request)
                 .and_then(|request| self.session.set_function(field, request.bounds)),
         )
+    }
+
+    /// Chooses the distance between neighbours for the next runs: a formula, or a function as
+    /// [`Core::set_function`] takes it. Returns what is wrong with the formula, else null.
+    #[wasm_bindgen(unchecked_return_type = "Fault | null")]
+    pub fn space(
+        &mut self,
+        #[wasm_bindgen(
+            unchecked_param_type = "string | ((points: Float64Array, out: Float64Array) => void)"
+        )]
+        spacing: JsValue,
+    ) -> JsValue {
+        let spaced = match spacing.dyn_into::<Function>() {
+            Ok(function) => {
+                self.session.space_by(Spacing::by(function_of(function)));
+                Ok(())
+            }
+            Err(text) => {
+                let formula = text.as_string().unwrap_or_default();
+                self.session.space(Some(SpacingText { formula, ..SpacingText::default() }))
+            }
+        };
+        to_js(&spaced.err())
+    }
+
+    /// Adds a column of values at the particles, a formula or a function as [`Core::set_function`]
+    /// takes it, up to `budget` slices of the work. Returns undefined before it is there; then what
+    /// is wrong with the value, else null.
+    #[wasm_bindgen(unchecked_return_type = "Fault | null | undefined")]
+    pub fn add_value(
+        &mut self,
+        name: &str,
+        #[wasm_bindgen(
+            unchecked_param_type = "string | ((points: Float64Array, out: Float64Array) => void)"
+        )]
+        value: JsValue,
+        budget: u32,
+    ) -> JsValue {
+        let value = match value.dyn_into::<Function>() {
+            Ok(function) => Ok(Value::by(function_of(function))),
+            Err(text) => self.session.value(&text.as_string().unwrap_or_default()),
+        };
+        match value.map(|value| self.session.add_value(name, &value, budget)) {
+            Ok(None) => JsValue::UNDEFINED,
+            Ok(Some(added)) => to_js(&added.err().map(|error| Fault::new(FaultKind::Value, &error))),
+            Err(fault) => to_js(&Some(fault)),
+        }
+    }
+
+    /// The names of the columns that were added.
+    pub fn value_names(&self) -> Vec<String> {
+        self.session.run.measured().values.iter().map(|own| own.name.clone()).collect()
+    }
+
+    /// The column of this name that was added; empty if there is none.
+    pub fn added_value(&self, name: &str) -> Vec<f32> {
+        let all = &self.session.run.measured().values;
+        all.iter().find(|own| own.name == name).map_or_else(Vec::new, |own| own.values.clone())
     }
 
     /// Finds the box of the next run with these `Settings` and the creases in it, up to `budget`
@@ -473,6 +529,16 @@ impl Core {
         let count = self.session.run.rows().min(column.len());
         bytemuck::cast_slice(&column[from.min(count)..count]).to_vec()
     }
+}
+
+/// A function of place that writes f at points.
+fn function_of(function: Function) -> impl Field + 'static {
+    BatchField::<_, &str>::new(move |points: &[DVec3], f: &mut [f64]| {
+        let out = Float64Array::new_with_length(f.len() as u32);
+        function.call2(&JsValue::NULL, &coordinates(points), &out).map_err(|_| THROWN)?;
+        out.copy_to(f);
+        Ok(())
+    })
 }
 
 /// The coordinates of points, three numbers each.

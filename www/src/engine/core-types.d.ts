@@ -170,7 +170,7 @@ export type Fault = {
 };
 
 /** Kind of the error with which a command is refused. */
-export type FaultKind = "request" | "settings" | "thickness" | "spacing" | "too_many" | "unknown_surface" | "box" | "points" | FormulaErrorKind;
+export type FaultKind = "request" | "settings" | "thickness" | "spacing" | "value" | "too_many" | "unknown_surface" | "box" | "points" | FormulaErrorKind;
 
 /** The field as it now is. */
 export type FieldAnswer = {

@@ -300,6 +300,31 @@ describe('a function of the program', () => {
     sample.dispose();
   });
 
+  test('gives the spacing, and values at the particles', async () => {
+    const spacing = (/** @type {number} */ _x, /** @type {number} */ _y, /** @type {number} */ z) => 0.1 + 0.05 * z;
+    const values = { height: (/** @type {number} */ _x, /** @type {number} */ _y, /** @type {number} */ z) => 10 * z };
+    const sample = await made.sample('x^2 + y^2 + z^2 = 1', { spacing, values: { ...values, bend: 'k_1 k_2' } });
+    const { points, radii } = sample;
+    const { height, bend } = sample.values;
+    expect(height).toHaveLength(radii.length);
+    for (let i = 0; i < radii.length; i += 1) {
+      expect(2 * radii[i]).toBeCloseTo(0.1 + 0.05 * points[3 * i + 2], 3);
+      expect(height[i]).toBeCloseTo(10 * points[3 * i + 2], 3);
+      expect(bend[i]).toBeCloseTo(1, 2);
+    }
+    const header = new TextDecoder().decode((await sample.toFile('csv')).slice(0, 200)).split('\n')[0];
+    expect(header.endsWith(',height,bend')).toBe(true);
+    sample.dispose();
+    const broken = () => {
+      throw mistake;
+    };
+    for (const [options, words] of [
+      [{ spacing: broken }, 'The function of the spacing has failed: it threw: no such place'],
+      [{ values: { q: broken } }, 'The function of the value q has failed: it threw: no such place'],
+    ])
+      await expect(made.sample('x^2 + y^2 + z^2 = 1', /** @type {any} */ (options))).rejects.toThrow(String(words));
+  });
+
   const mistake = new Error('no such place');
   /** @type {[string, unknown][]} */
   const wrong = [

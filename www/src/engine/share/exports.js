@@ -16,7 +16,10 @@ const LONGEST_LINE = 200;
 /** Number of CSV rows that are joined at a time. */
 const ROWS = 8192;
 
-/** @typedef {Description['columns'][number]} Column */
+/**
+ * @typedef {Description['columns'][number]} Column
+ * @typedef {Columns & {values?: Record<string, Float32Array>}} Exported  with columns that a program has added
+ */
 
 /** Returns the positions as exactly as they are known. @param {Columns} columns */
 const placesOf = ({ exact, positions }) => (exact.length > 0 ? exact : positions);
@@ -47,6 +50,9 @@ const READ = {
   periodic: ({ periodic }, i) => periodic?.[i],
 };
 
+/** Returns what reads a column. @param {{name: string}} column @returns {(columns: Exported, i: number) => number | undefined} */
+const readerOf = ({ name }) => READ[name] ?? (({ values }, i) => values?.[name][i]);
+
 /**
  * Columns whose values are known; some are known only after the particles were measured, and some only where there are
  * creases or opposite faces are the same.
@@ -67,7 +73,7 @@ const BINARY = {
 
 /**
  * Returns a binary PLY file with one vertex per particle.
- * @param {Columns} columns
+ * @param {Exported} columns
  * @param {readonly Column[]} all  all columns, as the core describes them
  * @param {FileRecord | null} record
  */
@@ -90,7 +96,7 @@ export function ply(columns, all, record) {
   for (const column of some) {
     const { bytes, write } = BINARY[typeOf(columns, column)];
     for (let i = 0, at = offset; i < count; i += 1, at += stride)
-      write.call(body, at, READ[column.name](columns, i) ?? 0, true);
+      write.call(body, at, readerOf(column)(columns, i) ?? 0, true);
     offset += bytes;
   }
   return new Blob([new TextEncoder().encode(header), body.buffer], { type: 'application/octet-stream' });
@@ -99,14 +105,14 @@ export function ply(columns, all, record) {
 /**
  * Returns the same data as CSV text, one line per particle after the names of the columns, which spreadsheets and data
  * frames expect in the first line. Reading a number back gives the same value.
- * @param {Columns} columns
+ * @param {Exported} columns
  * @param {readonly Column[]} all  all columns, as the core describes them
  */
 export function csv(columns, all) {
   const some = known(columns, all);
   const parts = [`${some.map(({ name }) => name).join(',')}\n`];
   const readers = some.map((column) => {
-    const read = READ[column.name];
+    const read = readerOf(column);
     return typeOf(columns, column) === 'float'
       ? (/** @type {number} */ i) => single(read(columns, i) ?? 0)
       : (/** @type {number} */ i) => read(columns, i);

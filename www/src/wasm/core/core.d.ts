@@ -26,6 +26,16 @@ import type {
 export class Core {
     [Symbol.dispose](): void;
     /**
+     * Adds a column of values at the particles, a formula or a function as [`Core::set_function`]
+     * takes it, up to `budget` slices of the work. Returns undefined before it is there; then what
+     * is wrong with the value, else null.
+     */
+    add_value(name: string, value: string | ((points: Float64Array, out: Float64Array) => void), budget: number): Fault | null | undefined;
+    /**
+     * The column of this name that was added; empty if there is none.
+     */
+    added_value(name: string): Float32Array<ArrayBuffer>;
+    /**
      * Ends the run and keeps the particles: `Progress`.
      */
     cancel(): Progress;
@@ -205,6 +215,11 @@ export class Core {
      */
     slots(from: number): Uint32Array<ArrayBuffer>;
     /**
+     * Chooses the distance between neighbours for the next runs: a formula, or a function as
+     * [`Core::set_function`] takes it. Returns what is wrong with the formula, else null.
+     */
+    space(spacing: string | ((points: Float64Array, out: Float64Array) => void)): Fault | null;
+    /**
      * Starts a run: `Settings`, of which what is missing has its default; to an `Answer` with
      * `Start`.
      */
@@ -231,6 +246,10 @@ export class Core {
      * Natural neighbours per particle, as of the last report.
      */
     valence(): Uint8Array<ArrayBuffer>;
+    /**
+     * The names of the columns that were added.
+     */
+    value_names(): string[];
     /**
      * A session whose first formula is that of no surface of the gallery, whatever its text.
      */

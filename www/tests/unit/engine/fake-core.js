@@ -222,6 +222,10 @@ export function fakeCore({
     set_function: () => {
       throw new Error('not here');
     },
+    space: () => null,
+    add_value: () => null,
+    value_names: () => [],
+    added_value: () => new Float32Array(),
     plan() {},
     fraction: () => measured / slices,
     /** @param {string} _measured @param {number} budget */
