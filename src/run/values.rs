@@ -5,11 +5,14 @@ use crate::differential::{Curvature, curvatures};
 use crate::export::COLUMNS;
 use crate::field::formula::{Formula, FormulaError, Noun, Parameter};
 use crate::field::{BATCH, Field, FieldError, Frame, IntoField};
+use crate::math::unkey;
 use crate::mesh::triangulation::Triangulation;
 use crate::particles::Particles;
 use crate::quality::NamedValues;
+use crate::spatial::tree::Tree;
+
 use core::fmt::{self, Debug, Formatter};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
 /// A number at each particle, by a formula or a function of place.
@@ -72,7 +75,7 @@ const NOUN: Noun = Noun {
 /// A quantity of a particle: its name in formulas, and how it is read.
 type Quantity = (&'static str, fn(&At) -> f32);
 
-const QUANTITIES: [Quantity; 11] = [
+const QUANTITIES: [Quantity; 12] = [
     ("n_x", |at| at.particles.normal[at.row].x),
     ("n_y", |at| at.particles.normal[at.row].y),
     ("n_z", |at| at.particles.normal[at.row].z),
@@ -84,11 +87,13 @@ const QUANTITIES: [Quantity; 11] = [
     ("radius", |at| at.particles.radius[at.row]),
     ("level", |at| at.particles.level[at.row] as f32),
     ("area", |at| at.area),
+    ("edge", |at| at.edge),
 ];
 
-/// Quantities that follow from the second derivatives, and from the mesh.
+/// Quantities that follow from the second derivatives, from the mesh and from the sharp edges.
 const CURVED: [&str; 5] = ["k_1", "k_2", "d_x", "d_y", "d_z"];
 const AREA: &str = "area";
+const EDGE: &str = "edge";
 
 /// What is known of a row of the particles.
 struct At<'a> {
@@ -96,6 +101,7 @@ struct At<'a> {
     row: usize,
     curvature: Curvature,
     area: f32,
+    edge: f32,
 }
 
 impl Value {
@@ -108,6 +114,7 @@ impl Value {
     /// | `d_x`, `d_y`, `d_z` | unit principal direction of `k_1`, of either sign |
     /// | `radius` | repulsion radius |
     /// | `level` | generation level |
+    /// | `edge` | distance to the nearest sharp edge or rim; NaN if there is none |
     /// | `area` | share of the surface: a third of the triangles of the mesh around it, which adds up to the area of the mesh |
     ///
     /// So `0.5 (k_1 + k_2)` is the mean curvature and `k_1 k_2` the Gaussian one. On an edge, where
@@ -241,12 +248,14 @@ fn column(
         return Err(ValueError::Function(error));
     }
     let area = mesh.filter(|_| value.needs_mesh()).map_or_else(Vec::new, |mesh| areas(mesh, particles));
+    let edge = if value.takes(&[EDGE]) { distances_to_edges(particles) } else { Vec::new() };
     let is_taken = |(name, _): &&Quantity| value.takes(&[name]);
     let taken: Vec<&Quantity> = QUANTITIES.iter().filter(is_taken).collect();
     let mut formula = formula.clone();
     let value_at = |(row, place): (usize, DVec3)| {
         let curvature = curvature.get(row).copied().unwrap_or_default();
-        let at = At { particles, row, curvature, area: area.get(row).copied().unwrap_or(0.0) };
+        let [area, edge] = [&area, &edge].map(|column| column.get(row).copied().unwrap_or(0.0));
+        let at = At { particles, row, curvature, area, edge };
         let is_set = taken.iter().all(|(name, read)| formula.set_parameter(name, read(&at).into()).is_ok());
         if is_set { formula.value(place) as f32 } else { f32::NAN }
     };
@@ -263,4 +272,29 @@ fn areas(mesh: &Triangulation, particles: &Particles) -> Vec<f32> {
         corners.iter().for_each(|&row| areas[row as usize] += third);
     }
     areas.into_iter().map(|area| area as f32).collect()
+}
+
+/// The distance of each row from the nearest sharp edge or rim, along the segments between the
+/// particles there.
+fn distances_to_edges(particles: &Particles) -> Vec<f32> {
+    /// Ends of segments whose segments are looked at: of a longer segment that passes nearer, an
+    /// end is among them.
+    const ENDS: usize = 8;
+    let edges = particles.segments.iter().zip(particles.edges()).filter(|(_, is_edge)| *is_edge);
+    let segments: Vec<[Vec3; 2]> =
+        edges.map(|(rows, _)| rows.map(|row| particles.local[row as usize])).collect();
+    let ends = segments.as_flattened().iter().zip(0..).map(|(&end, k)| (end, k)).collect();
+    let tree = Tree::of(ends);
+    let mut nearest = Vec::new();
+    let distance = |&p: &Vec3| {
+        tree.nearest_many(p, ENDS, |_| true, &mut nearest);
+        let to = nearest.iter().map(|&key| {
+            let [a, b] = segments[tree.origin[unkey(key).1 as usize] as usize / 2];
+            let along = b - a;
+            let share = (p - a).dot(along) / along.length_squared().max(f32::MIN_POSITIVE);
+            p.distance(a + along * share.clamp(0.0, 1.0))
+        });
+        to.fold(f32::NAN, f32::min)
+    };
+    particles.local.iter().map(distance).collect()
 }

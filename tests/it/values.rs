@@ -69,6 +69,22 @@ fn areas_add_up_and_columns_of_the_particles_have_names() {
 }
 
 #[test]
+fn distances_to_edges_are_those_of_the_solid() {
+    let cube = Formula::parse("max(abs(x), abs(y), abs(z)) = 1").expect("a formula");
+    let mut solid = sample(&cube, &Settings::with_count(3_000)).expect("a cube");
+    solid.add_value(&cube, "d", &Value::parse("edge").expect("a formula")).expect("values");
+    for (p, distance) in at_places(&solid, "d") {
+        // On a face the edges are where the second of the coordinates reaches 1.
+        let mut own = p.abs().to_array();
+        own.sort_by(f64::total_cmp);
+        assert!((distance - (1.0 - own[1])).abs() < 1e-5, "{distance} at {p}");
+    }
+    let (field, mut torus) = torus();
+    torus.add_value(&field, "d", &Value::parse("edge").expect("a formula")).expect("values");
+    assert!(at_places(&torus, "d").iter().all(|(_, distance)| distance.is_nan()));
+}
+
+#[test]
 fn a_formula_and_a_function_of_place_agree() {
     let (field, mut sample) = torus();
     let value = Value::parse("if(z > 0, x^2, -1)").expect("a formula");

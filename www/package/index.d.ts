@@ -76,7 +76,8 @@ export interface Options {
   maxParticles?: number;
   /**
    * numbers at the particles, by name: formulas of x, y, z and of the normal (n_x, n_y, n_z), the
-   * principal curvatures (k_1, k_2), a direction of k_1 (d_x, d_y, d_z), radius, level and area; or
+   * principal curvatures (k_1, k_2), a direction of k_1 (d_x, d_y, d_z), radius, level, area and edge,
+   * the distance to the nearest sharp edge; or
    * functions of place. Files have them as well
    */
   values?: Record<string, string | OfPlace>;
