@@ -3,7 +3,7 @@
 use crate::arguments::SurfaceArguments;
 use crate::failure::Failure;
 use marching_particles::math::{grouped, significant};
-use marching_particles::{DEFAULT_LABEL_WIDTH, Image, ImageError, ImageField};
+use marching_particles::{Image, ImageChoice, ImageField, ImageSurface};
 use serde::Serialize;
 use std::path::Path;
 
@@ -48,43 +48,35 @@ pub(crate) fn of_arguments(arguments: &SurfaceArguments) -> Result<Option<(Image
     let bytes = std::fs::read(path).map_err(unreadable)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let image = Image::read(&name, bytes, |name| read_beside(path, name)).map_err(|error| wrong(&error))?;
-    let (surface, iso, smooth) = prepared(&image, arguments).map_err(|error| wrong(&error))?;
-    let field = surface.at(iso).map_err(|error| wrong(&error))?;
-    let field = if arguments.dark_inside { field.inverted() } else { field };
+    let choice = ImageChoice {
+        iso: arguments.iso,
+        label: arguments.label,
+        smooth: arguments.smooth,
+        is_dark_inside: arguments.dark_inside,
+    };
+    let surface = image.surface(&choice, None).map_err(|error| wrong(&error))?;
+    let field = surface.field();
     let info = ImageInfo {
         name,
         size: image.size(),
         spacing: image.placement().spacing(),
         voxel_type: image.voxel_type().to_string(),
         range: image.range(),
-        iso,
+        iso: field.iso(),
         is_otsu: arguments.iso.is_none() && arguments.label.is_none(),
         label: arguments.label,
-        smooth,
+        smooth: surface.smooth(),
         is_smooth_chosen: arguments.smooth.is_none(),
         noise: image.noise(),
         is_dark_inside: arguments.dark_inside,
         notes: notes(&image, &surface, arguments),
-        bytes: [surface.bytes(), field.bytes()],
+        bytes: [field.image().bytes(), field.bytes()],
     };
-    Ok(Some((field, info)))
-}
-
-/// The image that is sampled, filtered as it was asked for, with its iso value and the width of the
-/// Gaussian.
-fn prepared(image: &Image, arguments: &SurfaceArguments) -> Result<(Image, f64, f64), ImageError> {
-    if let Some(label) = arguments.label {
-        let width = arguments.smooth.unwrap_or(DEFAULT_LABEL_WIDTH);
-        return Ok((image.label(label, width)?, 0.0, width));
-    }
-    let width = arguments.smooth.unwrap_or_else(|| image.width_against_noise());
-    let smoothed = if width == 0.0 { image.clone() } else { image.smoothed(width)? };
-    let iso = arguments.iso.unwrap_or_else(|| smoothed.otsu());
-    Ok((smoothed, iso, width))
+    Ok(Some((field.clone(), info)))
 }
 
 /// What the reader has decided, and what else the user should know.
-fn notes(image: &Image, surface: &Image, arguments: &SurfaceArguments) -> Vec<String> {
+fn notes(image: &Image, surface: &ImageSurface, arguments: &SurfaceArguments) -> Vec<String> {
     /// Different values of an image that look like labels.
     const FEW: usize = 32;
     let mut notes = surface.notes().to_vec();

@@ -33,6 +33,26 @@ pub enum VoxelType {
 const LARGEST: f64 = 1e30;
 
 impl VoxelType {
+    /// All of them.
+    pub const ALL: [Self; 10] = [
+        Self::U8,
+        Self::I8,
+        Self::U16,
+        Self::I16,
+        Self::U32,
+        Self::I32,
+        Self::U64,
+        Self::I64,
+        Self::F32,
+        Self::F64,
+    ];
+
+    /// The type of this name, as NumPy has it: `int16`.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|known| known.to_string() == name)
+    }
+
     /// Bytes of a voxel.
     #[must_use]
     pub fn bytes(self) -> usize {
@@ -109,7 +129,7 @@ impl Layout {
 /// Voxels in a row, which copies share.
 #[derive(Clone)]
 pub(super) struct Voxels {
-    data: Arc<[u8]>,
+    data: Arc<Vec<u8>>,
     layout: Layout,
     len: usize,
 }
@@ -118,16 +138,16 @@ impl Voxels {
     /// The numbers of an array.
     pub(super) fn new<T: Voxel>(numbers: &[T]) -> Self {
         let layout = Layout::plain(T::TYPE, cfg!(target_endian = "big"));
-        Self { data: bytemuck::cast_slice(numbers).into(), layout, len: numbers.len() }
+        let data = Arc::new(bytemuck::cast_slice(numbers).to_vec());
+        Self { data, layout, len: numbers.len() }
     }
 
     /// The first `len` voxels of a file; none if it has fewer.
-    pub(super) fn of_file(data: impl Into<Arc<[u8]>>, layout: Layout, len: usize) -> Option<Self> {
-        let data = data.into();
+    pub(super) fn of_file(data: Vec<u8>, layout: Layout, len: usize) -> Option<Self> {
         let size = layout.voxel_type.bytes();
         let last = len.checked_sub(1)?.checked_mul(layout.step)?.checked_mul(size)?;
         let end = layout.first.checked_add(last)?.checked_add(size)?;
-        (end <= data.len()).then_some(Self { data, layout, len })
+        (end <= data.len()).then(|| Self { data: Arc::new(data), layout, len })
     }
 
     pub(super) fn len(&self) -> usize {
@@ -136,6 +156,16 @@ impl Voxels {
 
     pub(super) fn bytes(&self) -> usize {
         self.data.len()
+    }
+
+    /// Whether these are the same bytes in the same place of the memory.
+    pub(super) fn are_shared_with(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.data, &other.data) && self.layout == other.layout
+    }
+
+    /// Distance between two values that voxels of whole numbers can have; 0 for others.
+    pub(super) fn step(&self) -> f64 {
+        if self.layout.voxel_type.is_whole() { self.layout.slope.abs() } else { 0.0 }
     }
 
     pub(super) fn voxel_type(&self) -> VoxelType {

@@ -3,27 +3,14 @@
  *
  * @module
  */
+import { choice, flag, number, shown } from './checks.js';
 import { InputError } from './errors.js';
+import { imageOf, isImage, valuesOf } from './image.js';
 
 /**
  * @import { Batch, Options } from './index.js'
  * @import { SentField, Settings } from './protocol.js'
  */
-
-/** A value as an error names it. @param {unknown} value */
-export const shown = (value) => (typeof value === 'string' ? `“${value.slice(0, 40)}”` : String(value));
-
-/** @type {(name: string, value: unknown, is: (v: number) => boolean, what: string) => number} */
-function number(name, value, is, what) {
-  if (typeof value === 'number' && Number.isFinite(value) && is(value)) return value;
-  throw new InputError(`${name}: ${what}, not ${shown(value)}.`);
-}
-
-/** @param {string} name @param {unknown} value @param {readonly string[]} choices */
-function choice(name, value, choices) {
-  if (choices.includes(/** @type {string} */ (value))) return /** @type {string} */ (value);
-  throw new InputError(`${name}: one of ${choices.join(', ')}, not ${shown(value)}.`);
-}
 
 /**
  * Values of parameters by name.
@@ -98,7 +85,7 @@ const SETTINGS = {
 };
 /** The options for a formula by itself. */
 const OF_FORMULAS = ['closed', 'periodic', 'thickness'];
-const KNOWN = [...Object.keys(SETTINGS), 'bounds', 'formula', 'params', 'measure', 'signal', 'onProgress'];
+const KNOWN = [...Object.keys(SETTINGS), 'bounds', 'formula', 'params', 'iso', 'label', 'smooth', 'darkInside', 'measure', 'signal', 'onProgress'];
 
 /** The option that is a setting of the core. @param {string} setting */
 export const optionOf = (setting) =>
@@ -146,12 +133,6 @@ export function checkedCalls({ signal, onProgress }) {
   return { signal, onProgress };
 }
 
-/** @param {string} name @param {unknown} value */
-function flag(name, value) {
-  if (typeof value !== 'boolean') throw new InputError(`${name}: true or false, not ${shown(value)}.`);
-  return value;
-}
-
 /**
  * Three numbers for each of some points, in double precision.
  * @param {string} name @param {unknown} value
@@ -181,9 +162,10 @@ function cloudOf({ points, normals }) {
 }
 
 const FIELD =
-  "a formula such as 'x^2 + y^2 + z^2 = 1', a function (x, y, z) => number, {batch(xyz, out)} or {points, normals}";
+  "a formula such as 'x^2 + y^2 + z^2 = 1', a function (x, y, z) => number, {batch(xyz, out)}, {points, normals} or " +
+  '{image}, a file or an array of voxels';
 
-/** @param {unknown} field @returns {Pick<SentField, 'formula' | 'cloud' | 'program'>} */
+/** @param {unknown} field @returns {Pick<SentField, 'formula' | 'cloud' | 'program' | 'image'>} */
 function fieldOf(field) {
   if (typeof field === 'string') return { formula: field };
   if (typeof field === 'function')
@@ -191,16 +173,17 @@ function fieldOf(field) {
   const given = /** @type {Partial<Batch> & {points?: unknown, normals?: unknown}} */ (field ?? {});
   if (typeof given.batch === 'function') return { program: /** @type {Batch} */ (given) };
   if (given.points !== undefined) return { cloud: cloudOf({ ...given, points: given.points }) };
+  if (isImage(given)) return { image: imageOf(given) };
   throw new InputError(`field: ${FIELD}, not ${shown(typeof field)}.`);
 }
 
 /**
- * The formula in which the surface of points is an operand.
- * @param {unknown} formula @param {{cloud?: unknown}} what
+ * The formula in which the surface of points or of an image is an operand.
+ * @param {unknown} formula @param {{cloud?: unknown, image?: unknown}} what
  */
-function modelFormula(formula, { cloud }) {
-  if (cloud === undefined)
-    throw new InputError('formula: for points, whose surface it names model. Else the formula is the field.');
+function modelFormula(formula, { cloud, image }) {
+  if (cloud === undefined && image === undefined)
+    throw new InputError('formula: for points or an image, whose surface it names model. Else the formula is the field.');
   if (typeof formula === 'string') return { formula };
   throw new InputError(`formula: a text such as 'max(model, z)', not ${shown(formula)}.`);
 }
@@ -227,11 +210,11 @@ export function checked(field, options) {
     throw new InputError(`${ofFormula}: for a formula by itself.`);
   if (formula !== undefined) Object.assign(what, modelFormula(formula, what));
   if (params !== undefined && what.formula === undefined)
-    throw new InputError('params: a formula has parameters, a function or points have none.');
+    throw new InputError('params: a formula has parameters, a function, points or an image have none.');
   /** @type {SentField} */
   const request = {
     ...what,
-    parameters: params === undefined ? {} : paramsOf(params),
+    parameters: { ...(params === undefined ? {} : paramsOf(params)), ...valuesOf(options, what.image !== undefined) },
     ...(bounds === undefined ? {} : { bounds: boundsOf(bounds) }),
   };
   return { request, settings, given, measure: flag('measure', measure), ...checkedCalls(options) };

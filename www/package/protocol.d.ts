@@ -1,5 +1,6 @@
 // Messages between the program and the sampler, which is in a worker or in the thread of the program.
-import type { Bounds, FieldRequest, Parameter, Report } from '../src/engine/core-types.js';
+import type { Bounds, FieldRequest, ImageInfo, Parameter, Report } from '../src/engine/core-types.js';
+import type { ImageFile } from '../src/engine/images/types.js';
 import type { Batch, Progress } from './index.js';
 
 /** Settings of the core by their names there; `lengths` take the places of shares. */
@@ -20,14 +21,17 @@ export type Asked =
 /** What is said besides: `stop` ends a request, `free` gives a sample up. */
 export type Said = { type: 'stop'; id: number } | { type: 'free'; id: number };
 /**
- * A formula; points, with or without a formula whose operand their surface is; or a function of the
- * program, which is sent in its own thread alone.
+ * A formula; points or an image, with or without a formula whose operand their surface is; or a
+ * function of the program, which is sent in its own thread alone.
  */
 export type SentField = Pick<Partial<FieldRequest>, 'formula' | 'bounds'> & {
   parameters: Record<string, number>;
   cloud?: Cloud;
+  image?: ImageFile | SentVoxels;
   program?: ((x: number, y: number, z: number) => number) | Batch;
 };
+/** The bytes of an array of voxels of a type of the core, and their affine map, row by row. */
+export type SentVoxels = { name: string; type: string; size: number[]; rows: number[]; voxels: Uint8Array };
 /** Points, and their normals if they are known, three numbers each. */
 export interface Cloud {
   points: Float64Array;
@@ -45,6 +49,7 @@ export interface Made {
   report: Report | null;
   bounds: Bounds;
   parameters: Parameter[];
+  image: ImageInfo | null;
   digest: string;
 }
 export interface Answered {

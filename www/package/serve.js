@@ -6,6 +6,7 @@
  */
 import { nextBudget } from '../src/engine/bundle/budget.js';
 import { hasSimd } from '../src/engine/bundle/load.js';
+import { openImage } from '../src/engine/images/open.js';
 import { csv, ply } from '../src/engine/share/exports.js';
 import loadCore, { Core } from '../src/wasm/core/core.js';
 import loadPoints from '../src/wasm/points/points.js';
@@ -23,6 +24,8 @@ import { Program } from './program.js';
 /** First budget of a loop, in units or slices of the core. */
 const FIRST_BUDGET = 64;
 const PROGRESS_MS = 50;
+/** What is chosen of an image, by the names of the core. */
+const OF_IMAGES = ['iso', 'label', 'smooth', 'dark'];
 /** Largest memory of a run and its report: half of what a browser gives a module. */
 const MEMORY_MB = 2048;
 const WITHOUT_SIMD =
@@ -43,7 +46,7 @@ class Refusal extends Error {
 function refusalOf({ kind, message, start, end, suggestion, choices }) {
   // A setting that is out of its range begins its sentence.
   const named = message.replace(/^([a-z_]+) is /, (_, setting) => `The option ${optionOf(setting)} is `);
-  if (['request', 'settings', 'too_many', 'box', 'points'].includes(kind)) return new Refusal('InputError', named);
+  if (['request', 'settings', 'too_many', 'box', 'points', 'image'].includes(kind)) return new Refusal('InputError', named);
   return new Refusal('FormulaError', message, { start, end, suggestion, choices });
 }
 
@@ -201,18 +204,45 @@ export function serve({ post, load }) {
    * Gives a core its field.
    * @param {SentField} field @param {{id: number, core: Core}} of
    */
-  async function taken({ program, cloud, ...request }, of) {
+  async function taken({ program, cloud, image, ...request }, of) {
     const { core } = of;
     if (program) {
       const called = new Program(program);
       programs.set(core, called);
       return core.set_function(called.call, request);
     }
+    if (image) return takenImage(image, request, of);
     if (!cloud) return core.set_field(request);
     await loaded('points', loadPoints);
     const fit = await fitted(cloud, (slice) => inSlices(of, slice));
     if ('error' in fit) throw new Refusal('InputError', fit.error);
     return core.set_points(fit.system, fit.about, request);
+  }
+
+  /**
+   * Gives a core the surface of an image.
+   * @param {NonNullable<SentField['image']>} image @param {Omit<SentField, 'image'>} request
+   * @param {{id: number, core: Core}} of
+   */
+  async function takenImage(image, request, { id, core }) {
+    if ('voxels' in image) {
+      const { name, type, size, rows, voxels } = image;
+      const opened = core.open_voxels(name, type, new Uint32Array(size), new Float64Array(rows), voxels);
+      if (!opened.ok) throw refusalOf(opened.error);
+    } else {
+      const fraction = (/** @type {number} */ share) => ({ phase: 'reading', particles: 0, fraction: 0.1 * share });
+      const opened = await openImage(core, image, {
+        tell: (_, share) => post({ id, progress: fraction(share) }),
+        isOver: () => asked.get(id) === true,
+        mostBytes: MEMORY_MB * 1e6,
+      });
+      if (opened && !opened.ok) throw new Refusal('InputError', opened.message);
+    }
+    if (asked.get(id)) throw new Refusal('AbortError', 'The sampling was aborted.');
+    const answer = core.set_image(request);
+    // The field has a copy of its own, which shares the voxels.
+    core.close_image();
+    return answer;
   }
 
   /**
@@ -226,7 +256,9 @@ export function serve({ post, load }) {
     const of = { id, core };
     const answer = await taken(field, of);
     if (!answer.ok) throw refusalOf(answer.error);
-    const unknown = Object.keys(field.parameters).find((name) => !answer.parameters.some((p) => p.name === name));
+    const isKnown = (/** @type {string} */ name) =>
+      answer.parameters.some((p) => p.name === name) || (answer.image !== null && OF_IMAGES.includes(name));
+    const unknown = Object.keys(field.parameters).find((name) => !isKnown(name));
     if (unknown !== undefined) throw new Refusal('InputError', `The formula has no parameter “${unknown}” (params).`);
     if (message.type === 'sample') checkEffects(core, message);
     const box = await inSlices(of, (budget) => core.fit(settings, type === 'moved', budget));
@@ -239,7 +271,13 @@ export function serve({ post, load }) {
     const particles = await run(of);
     const measuring = () => ({ phase: 'measuring', particles, fraction: core.fraction() });
     const report = measure ? await inSlices(of, (budget) => core.measure('particles', budget), measuring) : null;
-    return columnsOf(core, { count: particles, report, bounds: box.bounds, parameters: box.parameters });
+    return columnsOf(core, {
+      count: particles,
+      report,
+      bounds: box.bounds,
+      parameters: box.parameters,
+      image: box.image,
+    });
   }
 
   /**
@@ -336,7 +374,7 @@ function weld(indices, firstRows) {
 
 /**
  * The columns of the particles, whose buffers are given away, so that there is no second copy.
- * @param {Core} core @param {Pick<Made, 'count' | 'report' | 'bounds' | 'parameters'>} about
+ * @param {Core} core @param {Pick<Made, 'count' | 'report' | 'bounds' | 'parameters' | 'image'>} about
  * @returns {[Made, ArrayBufferLike[]]}
  */
 function columnsOf(core, about) {

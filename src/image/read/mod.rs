@@ -13,11 +13,10 @@ mod npy;
 mod nrrd;
 mod zip;
 
-use super::voxels::{Layout, Voxels};
+use super::voxels::{Layout, VoxelType, Voxels};
 use super::{Image, ImageError, Placement};
 use core::fmt::{self, Display, Formatter};
 use glam::{DMat3, DVec3};
-use std::sync::Arc;
 use zip::Unpacked;
 
 /// Largest size of the voxels of a file, in bytes: 1024³ voxels of 16 bits.
@@ -182,14 +181,58 @@ fn read(name: &str, bytes: Vec<u8>, beside: Beside) -> Result<Image, ImageReadEr
     // Of compressed files the header is unpacked first, which says how much is to follow.
     let mut file = Unpacked::new(bytes);
     let start = file.start(header::LONGEST)?;
-    let header = match sniff(&start)? {
-        ImageFormat::Nifti => nifti::header(name, &start),
-        ImageFormat::Nrrd => nrrd::header(&start),
-        ImageFormat::Npy => npy::header(&start),
-        ImageFormat::MetaImage => metaimage::header(&start),
-        ImageFormat::Cube => return cube::read(file),
+    match header(name, &start)? {
+        Some(header) => image(header, file, beside),
+        None => cube::read(file),
+    }
+}
+
+/// The header of a file that begins like this; none of a cube file, which is read as a whole.
+fn header(name: &str, start: &[u8]) -> Result<Option<Header>, ImageReadError> {
+    let header = match sniff(start)? {
+        ImageFormat::Nifti => nifti::header(name, start),
+        ImageFormat::Nrrd => nrrd::header(start),
+        ImageFormat::Npy => npy::header(start),
+        ImageFormat::MetaImage => metaimage::header(start),
+        ImageFormat::Cube => return Ok(None),
     }?;
-    image(header, file, beside)
+    Ok(Some(header))
+}
+
+/// What the header of a file promises.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ImageOutline {
+    /// Voxels along each axis.
+    pub size: [usize; 3],
+    /// Their type.
+    pub voxel_type: VoxelType,
+}
+
+impl ImageOutline {
+    /// Bytes of memory that the voxels take while they are read and a Gaussian filters them: as
+    /// they are, and twice in single precision.
+    #[must_use]
+    pub fn memory(&self) -> u64 {
+        let voxel = self.voxel_type.bytes() as u64 + 2 * VoxelType::F32.bytes() as u64;
+        self.size.iter().fold(voxel, |product, &n| product.saturating_mul(n as u64))
+    }
+}
+
+impl Image {
+    /// What a file promises that begins with these bytes, a megabyte of it or all. None for a cube
+    /// file, which has no more than its text.
+    ///
+    /// # Errors
+    ///
+    /// If it is no file of an image, or its header is wrong.
+    pub fn outline(name: &str, start: &[u8]) -> Result<Option<ImageOutline>, ImageReadError> {
+        if start.is_empty() {
+            return Err(ImageReadError::Empty);
+        }
+        let start = Unpacked::new(start.to_vec()).start(header::LONGEST)?;
+        let header = header(name, &start)?;
+        Ok(header.map(|Header { size, layout, .. }| ImageOutline { size, voxel_type: layout.voxel_type }))
+    }
 }
 
 /// The image of a header.
@@ -219,7 +262,7 @@ fn image(header: Header, file: Unpacked, beside: Beside) -> Result<Image, ImageR
         inner.drain(..first.min(inner.len()));
         (file, first) = (Unpacked::packed(inner), 0);
     }
-    let data: Arc<[u8]> = file.all(needed.saturating_add(first as u64))?.into();
+    let data = file.all(needed.saturating_add(first as u64))?;
     layout.first = first;
     let found = (data.len() as u64).saturating_sub(layout.first as u64);
     let len = (needed / voxel) as usize;

@@ -31,7 +31,7 @@ import { change, changeView, description, showAll } from '../store.js';
  *   'restore'>} SurfaceCommands
  */
 /**
- * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'pull' | 'setPulls' | 'declareParameter' |
+ * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'chooseOfImage' | 'pull' | 'setPulls' | 'declareParameter' |
  *   'readNumber' | 'thicknessFault' | 'setBounds' | 'enlargement' | 'setPlane' | 'fitBox' | 'setSetting' |
  *   'resetSetting'>} InputCommands
  */
@@ -102,7 +102,8 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
       const surface = surfaceOf(about, id);
       if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && scheduler.loader.hasFile)) return;
       showAll(store);
-      change(store, freshShape(description(store), state.value.settings, id));
+      const fresh = freshShape(description(store), state.value.settings, id);
+      change(store, { ...fresh, parameters: scheduler.loader.beginning(id) });
       // Another surface is framed, wherever the hand or a link has left the camera.
       viewer.linked = null;
       const { camera } = viewer;
@@ -112,10 +113,10 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
       }
       scheduler.choose('new');
     },
-    openFile(file) {
+    openFile(file, beside) {
       // A formula still waiting for its pause would replace the file.
       scheduler.forgetLater();
-      return scheduler.loader.openFile(file);
+      return scheduler.loader.openFile(file, beside);
     },
     setCentres(count) {
       const centres = validCentres(count, description(store), state.value.surface);
@@ -175,6 +176,10 @@ export function inputCommands({ store, scheduler, framing }) {
       const about = store.description.value;
       if (!about || !isName(about, name) || !Number.isFinite(value)) return;
       resample(live, { parameters: { ...state.value.parameters, [name]: value } });
+    },
+    chooseOfImage(parameters) {
+      change(store, { parameters });
+      scheduler.resample({ kind: 'new' });
     },
     resetParameter(name) {
       const { [name]: _, ...parameters } = state.value.parameters;

@@ -136,7 +136,11 @@ export function fieldRequest(state, description, points) {
     request.points = points;
     if (state.pulls.length) request.pulls = state.pulls;
     // A model by itself needs no formula.
-    if (state.formula.trim() === MODEL) return request;
+    if (state.formula.trim() === MODEL) {
+      // What is chosen of an image are parameters.
+      if (Object.keys(state.parameters).length > 0) request.parameters = { ...state.parameters };
+      return request;
+    }
   }
   request.parameters = { ...state.parameters };
   if (state.formula !== ownFormula(description, state.surface)) request.formula = state.formula;
@@ -250,7 +254,7 @@ export function sanitize(raw, description, hasFile = false) {
     // surface.
     const { camera: _, ...view } = isRecord(raw.view) ? raw.view : {};
     const rest = sanitize({ settings: raw.settings, view }, description);
-    return { state: rest.state, reset: ['the surface, whose points are in a file', ...rest.reset] };
+    return { state: rest.state, reset: ['the surface, whose points or voxels are in a file', ...rest.reset] };
   }
 
   const id = typeof raw.surface === 'string' ? raw.surface : '';
