@@ -48,9 +48,7 @@ function rowsOf({ spacing, origin, affine }) {
     const rows = all.slice(0, 3);
     if (rows.length !== 3 || all.length > 4 || rows.some((row) => row?.length !== 4))
       throw new InputError('affine: three or four rows of four numbers.');
-    return rows.flatMap((row, r) =>
-      [...row].map((v, c) => number(`affine[${r}][${c}]`, v, () => true, 'a number')),
-    );
+    return rows.flatMap((row, r) => [...row].map((v, c) => number(`affine[${r}][${c}]`, v, () => true, 'a number')));
   }
   const lengths = typeof spacing === 'number' ? [spacing, spacing, spacing] : (spacing ?? [1, 1, 1]);
   const steps = triple('spacing', lengths, (v) => v > 0, 'a length above 0');
@@ -85,7 +83,9 @@ export function imageOf(given) {
   const ownName = image instanceof Blob && 'name' in image ? String(image.name) : 'image';
   const called = name === undefined ? ownName : String(name);
   if (size === undefined) {
-    const misplaced = ['spacing', 'origin', 'affine'].find((key) => given[/** @type {keyof Given} */ (key)] !== undefined);
+    const misplaced = ['spacing', 'origin', 'affine'].find(
+      (key) => given[/** @type {keyof Given} */ (key)] !== undefined,
+    );
     if (misplaced) throw new InputError(`${misplaced}: for an array of voxels with its size. A file has its own.`);
     const file = blobOf(image);
     if (!file) throw new InputError(`image: a File, a Blob, or the bytes of a file, not ${shown(image)}.`);

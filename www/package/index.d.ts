@@ -201,13 +201,7 @@ export interface ImageArray {
  * and NaN where it has no value, of a point or of many at once; points; or a three-dimensional
  * image.
  */
-export type Field =
-  | string
-  | ((x: number, y: number, z: number) => number)
-  | Batch
-  | Points
-  | ImageFile
-  | ImageArray;
+export type Field = string | ((x: number, y: number, z: number) => number) | Batch | Points | ImageFile | ImageArray;
 
 /**
  * Covers the surface f = 0 with evenly spaced particles. Formulas, points and images are sampled in

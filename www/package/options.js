@@ -85,7 +85,19 @@ const SETTINGS = {
 };
 /** The options for a formula by itself. */
 const OF_FORMULAS = ['closed', 'periodic', 'thickness'];
-const KNOWN = [...Object.keys(SETTINGS), 'bounds', 'formula', 'params', 'iso', 'label', 'smooth', 'darkInside', 'measure', 'signal', 'onProgress'];
+const KNOWN = [
+  ...Object.keys(SETTINGS),
+  'bounds',
+  'formula',
+  'params',
+  'iso',
+  'label',
+  'smooth',
+  'darkInside',
+  'measure',
+  'signal',
+  'onProgress',
+];
 
 /** The option that is a setting of the core. @param {string} setting */
 export const optionOf = (setting) =>
@@ -183,7 +195,9 @@ function fieldOf(field) {
  */
 function modelFormula(formula, { cloud, image }) {
   if (cloud === undefined && image === undefined)
-    throw new InputError('formula: for points or an image, whose surface it names model. Else the formula is the field.');
+    throw new InputError(
+      'formula: for points or an image, whose surface it names model. Else the formula is the field.',
+    );
   if (typeof formula === 'string') return { formula };
   throw new InputError(`formula: a text such as 'max(model, z)', not ${shown(formula)}.`);
 }

@@ -46,7 +46,8 @@ class Refusal extends Error {
 function refusalOf({ kind, message, start, end, suggestion, choices }) {
   // A setting that is out of its range begins its sentence.
   const named = message.replace(/^([a-z_]+) is /, (_, setting) => `The option ${optionOf(setting)} is `);
-  if (['request', 'settings', 'too_many', 'box', 'points', 'image'].includes(kind)) return new Refusal('InputError', named);
+  if (['request', 'settings', 'too_many', 'box', 'points', 'image'].includes(kind))
+    return new Refusal('InputError', named);
   return new Refusal('FormulaError', message, { start, end, suggestion, choices });
 }
 
