@@ -59,7 +59,16 @@ const MAY_USE = {
   'engine/bundle': [],
   // The lesson runs beside the sampler and knows nothing of it.
   'engine/lesson': ['engine/core-types', 'engine/bundle'],
-  'engine/points': ['engine/types', 'engine/constants', 'engine/store', 'engine/share', 'engine/bundle'],
+  // Files of images, opened in the core: in the worker, and in that of the package.
+  'engine/images': ['engine/types', 'engine/core-types', 'engine/bundle'],
+  'engine/points': [
+    'engine/types',
+    'engine/constants',
+    'engine/store',
+    'engine/share',
+    'engine/bundle',
+    'engine/images/types',
+  ],
   'engine/sampling': [
     'engine/types',
     'engine/constants',
@@ -67,6 +76,7 @@ const MAY_USE = {
     'engine/store',
     'engine/share',
     'engine/bundle',
+    'engine/images',
     'engine/points/types',
   ],
   'engine/commands': [

@@ -31,9 +31,9 @@ import { change, changeView, description, showAll } from '../store.js';
  *   'restore'>} SurfaceCommands
  */
 /**
- * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'chooseOfImage' | 'pull' | 'setPulls' | 'declareParameter' |
- *   'readNumber' | 'thicknessFault' | 'setBounds' | 'enlargement' | 'setPlane' | 'fitBox' | 'setSetting' |
- *   'resetSetting'>} InputCommands
+ * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'chooseOfImage' | 'pull' | 'setPulls' |
+ *   'declareParameter' | 'readNumber' | 'thicknessFault' | 'setBounds' | 'enlargement' | 'setPlane' | 'fitBox' |
+ *   'setSetting' | 'resetSetting'>} InputCommands
  */
 
 /**
@@ -103,7 +103,7 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
       if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && scheduler.loader.hasFile)) return;
       showAll(store);
       const fresh = freshShape(description(store), state.value.settings, id);
-      change(store, { ...fresh, parameters: scheduler.loader.beginning(id) });
+      change(store, { ...fresh, ...(id === FILE_SURFACE ? { parameters: scheduler.loader.beginning() } : {}) });
       // Another surface is framed, wherever the hand or a link has left the camera.
       viewer.linked = null;
       const { camera } = viewer;

@@ -1,7 +1,7 @@
 /**
- * Loads models and files and samples them once they are solved, or opened if they are images. The state may name a built-in model before it is
- * solved; if solving fails, the state returns to the previous surface. A file enters the state only after it has been
- * solved.
+ * Loads models and files and samples them once they are solved, or opened if they are images. The state may name a
+ * built-in model before it is solved; if solving fails, the state returns to the previous surface. A file enters the
+ * state only after that.
  *
  * @module
  */
@@ -97,10 +97,10 @@ export class ModelLoader {
     return image?.key === key ? { image } : this.client.get(key);
   }
 
-  /** The parameters with which a surface begins. @param {string} surface @returns {Shape['parameters']} */
-  beginning(surface) {
+  /** The parameters with which the file opened last begins. @returns {Shape['parameters']} */
+  beginning() {
     const { value: facts } = this.#store.image;
-    return surface === FILE_SURFACE && this.#opened?.image && facts ? beginningOf(facts) : {};
+    return this.#opened?.image && facts ? beginningOf(facts) : {};
   }
 
   /** Records the state's surface, which is being sampled, as the one to return to. */

@@ -130,12 +130,11 @@ function createRow(engine, { name, label, value, min, max, step }, { values, mot
     title,
     text: `From ${formatStep(min, step)} to ${formatStep(max, step)}. Shift drags ten times finer, a double click resets.`,
   }));
-  if (name !== 'iso' || !engine.field.peek()?.image) return row;
-  const now = () => values.value.iso ?? answered.value?.value ?? value;
-  return [
-    h('div', { class: 'row', 'aria-hidden': 'true' }, h('span', { class: 'name' }), createHistogram(engine, now)),
-    row,
-  ];
+  if (name === 'iso' && engine.field.peek()?.image) {
+    row.classList.add('has-histogram');
+    row.append(createHistogram(engine, () => values.value.iso ?? answered.value?.value ?? value));
+  }
+  return row;
 }
 
 /** Creates the choice of how a parameter is played, which is shown while one is. @param {Motion} motion */
