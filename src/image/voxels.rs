@@ -32,6 +32,9 @@ pub enum VoxelType {
 /// Largest size of a value: coefficients in single precision are at most some ten times as large.
 const LARGEST: f64 = 1e30;
 
+/// Voxels that are read at once.
+const AT_ONCE: usize = 256;
+
 impl VoxelType {
     /// All of them.
     pub const ALL: [Self; 10] = [
@@ -172,22 +175,22 @@ impl Voxels {
         self.layout.voxel_type
     }
 
-    /// Calls `take` with the values of `count` voxels from `first` on.
+    /// Writes the values of the voxels from `first` on. It alone knows the types.
     #[allow(trivial_numeric_casts, reason = "one of the types is already double precision")]
-    fn each(&self, first: usize, count: usize, mut take: impl FnMut(usize, f64)) {
+    fn read(&self, first: usize, out: &mut [f64]) {
         let Layout { voxel_type, is_big_endian, step, slope, intercept, .. } = self.layout;
         let size = voxel_type.bytes();
         let from = &self.data[self.layout.first + first * step * size..];
         macro_rules! read {
             ($number:ty) => {
-                for (k, bytes) in from.chunks(step * size).take(count).enumerate() {
+                for (out, bytes) in out.iter_mut().zip(from.chunks(step * size)) {
                     let bytes = bytes[..size].try_into().unwrap_or_default();
                     let number = if is_big_endian {
                         <$number>::from_be_bytes(bytes)
                     } else {
                         <$number>::from_le_bytes(bytes)
                     };
-                    take(k, number as f64 * slope + intercept);
+                    *out = number as f64 * slope + intercept;
                 }
             };
         }
@@ -205,6 +208,18 @@ impl Voxels {
         }
     }
 
+    /// Calls `take` with the values of `count` voxels from `first` on.
+    fn each(&self, first: usize, count: usize, mut take: impl FnMut(usize, f64)) {
+        let mut values = [0.0; AT_ONCE];
+        for begin in (0..count).step_by(AT_ONCE) {
+            let values = &mut values[..AT_ONCE.min(count - begin)];
+            self.read(first + begin, values);
+            for (k, &value) in values.iter().enumerate() {
+                take(begin + k, value);
+            }
+        }
+    }
+
     /// Writes the values of the voxels from `first` on, counted from `zero`.
     pub(super) fn write(&self, first: usize, zero: f64, out: &mut [f32]) {
         self.each(first, out.len(), |k, value| out[k] = (value - zero) as f32);
@@ -212,9 +227,9 @@ impl Voxels {
 
     /// The value of a voxel.
     pub(super) fn at(&self, index: usize) -> f64 {
-        let mut found = 0.0;
-        self.each(index, 1, |_, value| found = value);
-        found
+        let mut found = [0.0];
+        self.read(index, &mut found);
+        found[0]
     }
 
     /// Calls `take` with the values of all voxels.

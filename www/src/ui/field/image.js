@@ -27,9 +27,9 @@ export function createImage(engine, description) {
     { class: 'section image', hidden: () => !info.value },
     head,
     h('p', { class: 'quiet' }, () => facts.value && voxelsOf(facts.value)),
-    h('div', { class: 'image-of', hidden: () => labels.value.length === 0 }, createKind(engine, labels, info)),
+    h('div', { class: 'image-of', hidden: () => labels.value.length === 0 }, createKind(engine, labels)),
     createLabels(engine, labels, info),
-    h('div', { class: 'image-of', hidden: () => info.value?.label !== null }, createSide(engine, info)),
+    h('div', { class: 'image-of', hidden: () => info.value?.label !== null }, createSide(engine)),
     h('p', { class: 'quiet' }, () => info.value && filteredOf(info.value)),
     h('ul', { class: 'warnings', hidden: () => notes.value.length === 0 }, () => notes.value.map(createWarning)),
   );
@@ -40,9 +40,9 @@ export function createImage(engine, description) {
 /**
  * Creates the choice between grey values and labels.
  * @param {Engine} engine
- * @param {ReadonlySignal<ImageFacts['labels']>} labels @param {ReadonlySignal<ImageInfo | null>} info
+ * @param {ReadonlySignal<ImageFacts['labels']>} labels
  */
-function createKind(engine, labels, info) {
+function createKind(engine, labels) {
   const largest = () => {
     const bodies = labels.peek().filter(({ value }) => value !== 0);
     return bodies.reduce((a, b) => (b.voxels > a.voxels ? b : a)).value;
@@ -53,7 +53,7 @@ function createKind(engine, labels, info) {
       { value: 'label', label: 'Label' },
       { value: 'iso', label: 'Iso value' },
     ],
-    value: () => (info.value?.label === null ? 'iso' : 'label'),
+    value: () => (engine.state.value.parameters.label === undefined ? 'iso' : 'label'),
     change: (value) => engine.chooseOfImage(value === 'label' ? { label: largest() } : {}),
   });
 }
@@ -76,7 +76,7 @@ function createLabels(engine, labels, info) {
           h('input', {
             type: 'radio',
             name: group,
-            prop: { checked: () => info.value?.label === value },
+            prop: { checked: () => engine.state.value.parameters.label === value },
             on: { change: () => engine.chooseOfImage({ ...kept(engine), label: value }) },
           }),
           h('span', null, formatSignificant(value, 6)),
@@ -92,15 +92,15 @@ function kept(engine) {
   return smooth === undefined ? {} : { smooth };
 }
 
-/** Creates the choice of the side. @param {Engine} engine @param {ReadonlySignal<ImageInfo | null>} info */
-function createSide(engine, info) {
+/** Creates the choice of the side. @param {Engine} engine */
+function createSide(engine) {
   return createSegmented({
     name: 'Inside',
     choices: [
       { value: 'bright', label: 'Bright inside' },
       { value: 'dark', label: 'Dark inside' },
     ],
-    value: () => (info.value?.is_dark_inside ? 'dark' : 'bright'),
+    value: () => (engine.state.value.parameters.dark ? 'dark' : 'bright'),
     change: (value) => {
       const { dark: _, ...others } = engine.state.peek().parameters;
       engine.chooseOfImage(value === 'dark' ? { ...others, dark: 1 } : others);
