@@ -5,9 +5,7 @@ use marching_particles::extent;
 use marching_particles::glam::DVec3;
 use marching_particles::pointcloud::job::Job;
 use marching_particles::session::{FieldRequest, Session};
-use marching_particles::{
-    BatchField, Bounds, Combined, ImageChoice, Formula, Image, ImageError, VoxelType,
-};
+use marching_particles::{BatchField, Bounds, Combined, Formula, Image, ImageChoice, ImageError, VoxelType};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

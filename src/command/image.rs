@@ -2,8 +2,9 @@
 
 use crate::arguments::SurfaceArguments;
 use crate::failure::Failure;
+use crate::options::number;
 use marching_particles::math::{grouped, significant};
-use marching_particles::{Image, ImageChoice, ImageField, ImageSurface};
+use marching_particles::{Image, ImageChoice, ImageField, ImageSurface, RawVoxels, VoxelType};
 use serde::Serialize;
 use std::path::Path;
 
@@ -47,7 +48,14 @@ pub(crate) fn of_arguments(arguments: &SurfaceArguments) -> Result<Option<(Image
     let wrong = |error: &dyn std::fmt::Display| Failure::Usage(format!("{}: {error}", path.display()));
     let bytes = std::fs::read(path).map_err(unreadable)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let image = Image::read(&name, bytes, |name| read_beside(path, name)).map_err(|error| wrong(&error))?;
+    let image = match &arguments.raw {
+        Some(raw) => Image::read_raw(bytes, raw),
+        None => Image::read(&name, bytes, |name| read_beside(path, name)),
+    };
+    let mut image = image.map_err(|error| wrong(&error))?;
+    if let Some(VoxelSize(spacing)) = arguments.voxel_size {
+        image = image.with_spacing(spacing).map_err(|error| wrong(&error))?;
+    }
     let choice = ImageChoice {
         iso: arguments.iso,
         label: arguments.label,
@@ -96,6 +104,47 @@ fn notes(image: &Image, surface: &ImageSurface, arguments: &SurfaceArguments) ->
         }
     }
     notes
+}
+
+/// Distances between voxels along each axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct VoxelSize(pub(crate) [f64; 3]);
+
+/// Three values with an `x` between them.
+fn triple<T>(text: &str, value: impl Fn(&str) -> Option<T>) -> Option<[T; 3]> {
+    let values: Option<Vec<T>> = text.split(['x', '×']).map(|word| value(word.trim())).collect();
+    values?.try_into().ok()
+}
+
+/// [`VoxelSize`] from an argument.
+pub(crate) fn voxel_size(text: &str) -> Result<VoxelSize, String> {
+    let length = |word: &str| number(word).ok().filter(|length| *length > 0.0);
+    let wrong = || format!("`{text}` is no three lengths above 0, such as 0.7x0.7x1.5");
+    triple(text, length).map(VoxelSize).ok_or_else(wrong)
+}
+
+/// [`RawVoxels`] from an argument.
+pub(crate) fn raw(text: &str) -> Result<RawVoxels, String> {
+    let wrong = |what: &str| format!("{what}; an example is 256x256x128,uint16,big,skip=512");
+    let mut words = text.split(',').map(str::trim);
+    let size = triple(words.next().unwrap_or_default(), |word| word.parse().ok());
+    let size = size.ok_or_else(|| wrong("the numbers of voxels along x, y and z come first"))?;
+    let name = words.next().unwrap_or_default();
+    let voxel_type = VoxelType::named(name).ok_or_else(|| {
+        let names: Vec<String> = VoxelType::ALL.iter().map(VoxelType::to_string).collect();
+        wrong(&format!("the type of the voxels is one of {}, not `{name}`", names.join(", ")))
+    })?;
+    let mut raw = RawVoxels { size, voxel_type, is_big_endian: false, skip: 0 };
+    for word in words {
+        match word.split_once('=') {
+            None if word == "big" || word == "little" => raw.is_big_endian = word == "big",
+            Some(("skip", bytes)) => {
+                raw.skip = bytes.parse().map_err(|_| wrong("skip is a number of bytes"))?;
+            }
+            _ => return Err(wrong(&format!("`{word}` is neither big, little nor skip=BYTES"))),
+        }
+    }
+    Ok(raw)
 }
 
 /// The file of this name in the folder of another one. A header must not name files elsewhere.

@@ -21,7 +21,7 @@ pub use choice::{ImageChoice, ImageSurface};
 pub use field::ImageField;
 pub use labels::{DEFAULT_LABEL_WIDTH, Label};
 pub use placement::Placement;
-pub use read::{ImageFormat, ImageOutline, ImageReadError, MAX_IMAGE_BYTES};
+pub use read::{ImageFormat, ImageOutline, ImageReadError, MAX_IMAGE_BYTES, RawVoxels};
 pub use voxels::{Voxel, VoxelType};
 
 use core::fmt::{self, Debug, Formatter};

@@ -383,9 +383,8 @@ fn a_mask_is_smoothed_no_more_than_a_label() {
     assert_eq!(mask.width_against_noise(0.5), 1.0);
     // An edge that is steep for the step between two values needs none.
     let steep = image_of([32; 3], |p| (blurred((p - 15.3).length() - 10.0) / 9.0).round());
-    let voxels: Vec<u8> = (0..32_768)
-        .map(|at| steep.voxel([at % 32, at / 32 % 32, at / 1024]) as u8)
-        .collect();
+    let voxels: Vec<u8> =
+        (0..32_768).map(|at| steep.voxel([at % 32, at / 32 % 32, at / 1024]) as u8).collect();
     let steep = Image::new([32; 3], voxels).expect("an image");
     assert_eq!(steep.width_against_noise(50.0), 0.0);
 }

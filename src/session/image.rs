@@ -264,8 +264,7 @@ mod with_images {
                 _ => None,
             };
             let refused = |error| Fault::new(FaultKind::Image, &error);
-            let surface =
-                image.surface(&choice, before.map(|before| &before.surface)).map_err(refused)?;
+            let surface = image.surface(&choice, before.map(|before| &before.surface)).map_err(refused)?;
             let within = match &request.formula {
                 Some(text) => {
                     let field: Arc<dyn Field> = Arc::new(surface.field().clone());

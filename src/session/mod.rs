@@ -469,7 +469,11 @@ impl Session {
     }
 
     /// The formula of a request, in which the model is an operand.
-    fn model_formula(text: &str, model: &Arc<dyn Field>, request: &FieldRequest) -> Result<ModelFormula, Fault> {
+    fn model_formula(
+        text: &str,
+        model: &Arc<dyn Field>,
+        request: &FieldRequest,
+    ) -> Result<ModelFormula, Fault> {
         let mut declared = request.declare.clone();
         declared.retain(|parameter| parameter.name != MODEL);
         declared.push(Parameter::automatic(MODEL));

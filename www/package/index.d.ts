@@ -165,7 +165,7 @@ export interface Points {
 }
 /** x, y and z of each point, one after the other or in rows of three. */
 export type Numbers = Float32Array | Float64Array | Int32Array | number[] | [number, number, number][];
-/** A file of an image: NIfTI, NRRD, NPY, MetaImage or Gaussian cube, whichever its content says. */
+/** A file of an image: NIfTI, NRRD, NPY, MetaImage, Gaussian cube or TIFF, whichever its content says. */
 export interface ImageFile {
   image: Blob | ArrayBuffer | Uint8Array;
   /** name of the file, by which a `.img` beside a NIfTI header is found */
