@@ -14,6 +14,7 @@ const ENGINE_FACE = [
   'engine/pulls',
   'engine/columns',
   'engine/core-numbers',
+  'engine/scans',
   'engine/share/base64url',
 ];
 
@@ -29,6 +30,7 @@ const MAY_USE = {
   'engine/core-types': [],
   'engine/core-numbers': [],
   'engine/constants': [],
+  'engine/scans': [],
   'engine/vector': ['engine/types'],
   'engine/pulls': ['engine/types', 'engine/vector'],
   'engine/types': ['engine/columns', 'engine/core-types', 'engine/lesson', 'engine/share/view'],
@@ -53,6 +55,7 @@ const MAY_USE = {
     'engine/core-numbers',
     'engine/vector',
     'engine/pulls',
+    'engine/scans',
     'engine/view',
   ],
   // How a bundle is brought in, and how a worker keeps its pace.
@@ -67,7 +70,8 @@ const MAY_USE = {
     'engine/store',
     'engine/share',
     'engine/bundle',
-    'engine/images/types',
+    'engine/images',
+    'engine/scans',
   ],
   'engine/sampling': [
     'engine/types',
@@ -86,6 +90,7 @@ const MAY_USE = {
     'engine/share',
     'engine/points',
     'engine/parts',
+    'engine/scans',
   ],
   // The files beside these rooms put them together.
   engine: ['engine'],

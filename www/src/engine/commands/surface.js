@@ -6,6 +6,7 @@
 
 import { batch } from '@preact/signals-core';
 import { FILE_SURFACE } from '../constants.js';
+import { scanOf } from '../scans.js';
 import {
   freshShape,
   fromPoints,
@@ -100,7 +101,8 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
     setSurface(id) {
       const about = store.description.value;
       const surface = surfaceOf(about, id);
-      if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && scheduler.loader.hasFile)) return;
+      const isKnown = surface || scanOf(id) || modelOf(about, id);
+      if (!isKnown && !(id === FILE_SURFACE && scheduler.loader.hasFile)) return;
       showAll(store);
       const fresh = freshShape(description(store), state.value.settings, id);
       change(store, { ...fresh, ...(id === FILE_SURFACE ? { parameters: scheduler.loader.beginning() } : {}) });

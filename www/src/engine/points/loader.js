@@ -7,6 +7,8 @@
  */
 import { batch } from '@preact/signals-core';
 import { FILE_SURFACE, IMAGE_TYPES } from '../constants.js';
+import { scanFile } from '../images/scans.js';
+import { scanOf } from '../scans.js';
 import { defaultState, emptyState, freshShape, fromPoints, modelOf } from '../share/state.js';
 import { PointsClient } from './client.js';
 
@@ -31,9 +33,9 @@ const isImageName = (name) => IMAGE_TYPES.split(',').some((type) => name.toLower
  * @param {ImageFacts} facts @returns {Shape['parameters']}
  */
 function beginningOf({ labels }) {
+  if (labels.length === 0 || labels.length > MOST_BODIES) return {};
   const bodies = labels.filter(({ value }) => value !== 0);
-  const [largest] = bodies.toSorted((a, b) => b.voxels - a.voxels);
-  return largest && labels.length <= MOST_BODIES ? { label: largest.value } : {};
+  return { label: bodies.reduce((largest, other) => (other.voxels > largest.voxels ? other : largest)).value };
 }
 
 export class ModelLoader {
@@ -42,11 +44,10 @@ export class ModelLoader {
   #openImage;
   #stopImage;
 
-  /**
-   * The file opened last, and the beginning of the keys of its models; `image`: what makes it one.
-   * @type {{file: File, key: string, image?: KeyedImage} | null}
-   */
+  /** The file opened last, and the beginning of the keys of its models. @type {{file: File, key: string} | null} */
   #opened;
+  /** The images that were opened, by their keys. @type {Map<string, {image: KeyedImage, facts: ImageFacts}>} */
+  #images = new Map();
   #files;
 
   /** The surface that was sampled last. @type {Shape | null} */
@@ -82,7 +83,7 @@ export class ModelLoader {
     const { surface, centres } = this.#store.state.value;
     if (!fromPoints(this.#store.description.value, surface)) return undefined;
     const own = surface === FILE_SURFACE ? (this.#opened?.key ?? '') : surface;
-    return this.#opened?.image?.key === own ? own : keyOf(own, centres);
+    return this.#images.has(own) || scanOf(own) ? own : keyOf(own, centres);
   }
 
   /** Returns whether the state's surface can be sampled now. */
@@ -93,20 +94,20 @@ export class ModelLoader {
 
   /** Returns the solved model under this key, or the opened image. @param {string} key */
   solved(key) {
-    const { image } = this.#opened ?? {};
-    return image?.key === key ? { image } : this.client.get(key);
+    return this.#images.get(key) ?? this.client.get(key);
   }
 
   /** The parameters with which the file opened last begins. @returns {Shape['parameters']} */
   beginning() {
-    const { value: facts } = this.#store.image;
-    return this.#opened?.image && facts ? beginningOf(facts) : {};
+    const known = this.#images.get(this.#opened?.key ?? '');
+    return known ? beginningOf(known.facts) : {};
   }
 
   /** Records the state's surface, which is being sampled, as the one to return to. */
   settled() {
     const { v: _, view: __, ...shape } = this.#store.state.value;
     this.#last = shape;
+    this.#store.image.value = this.#images.get(this.key() ?? '')?.facts ?? null;
   }
 
   /** Returns the state; while its model is loading, the state with the previous surface. */
@@ -128,7 +129,8 @@ export class ModelLoader {
     const key = this.key();
     const wanted = this.#wanted();
     if (key === undefined || !wanted || this.orderKey === key) return;
-    const load = () => this.client.load(key, wanted.order);
+    const { order } = wanted;
+    const load = () => (order ? this.client.load(key, order) : this.#computed(key, wanted));
     const done = await this.#order(wanted, key, load, () => {
       if (this.key() === key) this.#sample(kind);
     });
@@ -145,8 +147,10 @@ export class ModelLoader {
   #wanted() {
     const { surface, centres } = this.#store.state.value;
     const model = modelOf(this.#store.description.value, surface);
+    const scan = scanOf(surface);
+    if (scan) return { id: surface, name: scan.name, order: null };
     if (model) return { id: surface, name: model.name, order: { model: surface, centres } };
-    if (surface !== FILE_SURFACE || !this.#opened || this.#opened.image) return null;
+    if (surface !== FILE_SURFACE || !this.#opened || this.#images.has(this.#opened.key)) return null;
     const { file } = this.#opened;
     return { id: surface, name: file.name, order: { file, centres } };
   }
@@ -182,34 +186,39 @@ export class ModelLoader {
     this.#files += 1;
     const others = beside.map((other) => ({ name: other.name, file: other }));
     const image = { key: `file ${this.#files}`, name: file.name, file, beside: others };
-    /** @type {ImageFacts | null} */
-    let facts = null;
-    const open = async () => {
-      const opened = await this.#openImage(image, (label, fraction) => this.#tell(label, fraction));
-      if (opened?.ok) facts = opened.facts;
-      if (!opened) return { givenUp: /** @type {const} */ (true) };
-      return opened.ok ? { opened } : { refusal: { kind: 'image', message: opened.message } };
-    };
-    await this.#order({ id: FILE_SURFACE, name: file.name }, image.key, open, () => {
-      if (facts) this.#takeImage(file, image, facts);
-    });
+    await this.#order(
+      { id: FILE_SURFACE, name: file.name },
+      image.key,
+      () => this.#open(image),
+      () => {
+        this.#opened = { file, key: image.key };
+        const { state, description } = this.#store;
+        const { value: now } = state;
+        const fresh = freshShape(description.value, now.settings, FILE_SURFACE);
+        state.value = { ...now, ...fresh, parameters: this.beginning() };
+        this.#sample('new');
+      },
+    );
+  }
+
+  /** Computes an image of the gallery and opens it. @param {string} key @param {Pick<Wanted, 'id' | 'name'>} scan */
+  #computed(key, { id, name }) {
+    return this.#open({ key, name, file: scanFile(id), beside: [] });
+  }
+
+  /** @param {KeyedImage} image @returns {Promise<Ending | { opened: Opened }>} */
+  async #open(image) {
+    const opened = await this.#openImage(image, (label, fraction) => this.#tell(label, fraction));
+    if (!opened) return { givenUp: true };
+    if (!opened.ok) return { refusal: { kind: 'image', message: opened.message } };
+    this.#images.set(image.key, { image, facts: opened.facts });
+    return { opened };
   }
 
   /** @param {string} label @param {number} fraction */
   #tell(label, fraction) {
     const { loading } = this.#store;
     if (loading.value) loading.value = { ...loading.value, label, fraction };
-  }
-
-  /** @param {File} file @param {KeyedImage} image @param {ImageFacts} facts */
-  #takeImage(file, image, facts) {
-    const { state, description } = this.#store;
-    this.#opened = { file, key: image.key, image };
-    this.#store.image.value = facts;
-    const { value: now } = state;
-    const fresh = freshShape(description.value, now.settings, FILE_SURFACE);
-    state.value = { ...now, ...fresh, parameters: beginningOf(facts) };
-    this.#sample('new');
   }
 
   /**

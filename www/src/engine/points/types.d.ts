@@ -13,8 +13,8 @@ export type Refusal = { kind: string; message: string; details?: string };
  * default number.
  */
 export type Order = ({ model: string } | { file: File }) & { centres: number | null };
-/** An order with the surface's id and its name on the page. */
-export type Wanted = { id: string; name: string; order: Order };
+/** An order with the surface's id and its name on the page; none for an image that is computed. */
+export type Wanted = { id: string; name: string; order: Order | null };
 /** A solved model. The core reads `field` together with `info`; `centres` has three coordinates per centre. */
 export type Solved = { field: Uint8Array; info: { info: ModelInfo; bounds: Bounds }; centres: Float32Array };
 /** `failed`: the bundle did not load */

@@ -145,8 +145,11 @@ export class SamplingClient {
     return this.#images.make((request) => this.post({ type: 'image', request, image })).catch(() => null);
   }
 
+  /** Gives up the image that is being opened: at once here, and in the worker as soon as it listens. */
   stopImage() {
-    if (this.#images.count > 0) this.post({ type: 'image_stop' });
+    if (this.#images.count === 0) return;
+    this.post({ type: 'image_stop' });
+    this.#images.refuseAll(lost());
   }
 
   /** Gives up all files and texts, because the worker is gone. */

@@ -4,6 +4,7 @@
  */
 import { batch, computed, signal } from '@preact/signals-core';
 import { FILE_SURFACE, FILE_TYPES, IMAGE_TYPES } from '../../engine/constants.js';
+import { SCANS } from '../../engine/scans.js';
 import { button } from '../button.js';
 import { h, live } from '../dom.js';
 import { explain } from '../explain.js';
@@ -146,13 +147,14 @@ function createFileTile(engine, finding) {
 }
 
 /**
- * Returns the groups of the gallery in their order, the models last.
+ * Returns the groups of the gallery in their order, the computed images and the models last.
  * @param {Description} description
  */
 function groupsOf({ surfaces, models }) {
   /** @type {Map<string, Entry[]>} */
   const groups = new Map();
   for (const entry of surfaces) groups.set(entry.group, [...(groups.get(entry.group) ?? []), entry]);
+  groups.set('Scans', [...SCANS]);
   groups.set(POINTS, models);
   return [...groups].map(([name, entries]) => ({ name, entries }));
 }

@@ -1,5 +1,6 @@
 /** Returns the description of the present surface. */
 import { FILE_SURFACE } from '../../engine/constants.js';
+import { scanOf } from '../../engine/scans.js';
 import { plural } from '../format.js';
 
 /** @import { Description, ImageInfo, ModelInfo } from '../../engine/types.js' */
@@ -12,6 +13,8 @@ import { plural } from '../format.js';
 export function storyOf(description, id, info) {
   const model = description.models.find((entry) => entry.id === id);
   if (model) return { name: model.name, facts: plural(model.points, 'point'), text: model.story, credit: model.credit };
+  const scan = id === null ? undefined : scanOf(id);
+  if (scan) return { name: scan.name, facts: '', text: scan.story, credit: '' };
   if (info && 'size' in info) {
     const what = info.label === null ? 'on which the image has one value' : 'around one label of the image';
     return { name: info.name, facts: '', text: `The surface ${what}.`, credit: '' };

@@ -124,3 +124,30 @@ test('labels are listed with their sizes, and a link asks for the file', async (
   await settled(page);
   await clean();
 });
+
+test('the computed images of the gallery are sampled, and a link holds what is chosen of them', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900, hash: COARSE });
+  await page.getByRole('button', { name: 'Scans', exact: true }).click();
+  for (const [id, name] of [
+    ['scan-bodies', 'Two bodies'],
+    ['scan-benzene', 'Benzene density'],
+  ]) {
+    await page.locator(`.tile[data-surface="${id}"]`).click();
+    await expect(page.getByRole('heading', { name })).toBeVisible();
+    await settled(page);
+    expect((await report(page)).search).toBe('proven');
+  }
+  await sliderOf(page).fill('700');
+  await sliderOf(page).press('Enter');
+  await settled(page);
+  // Below 900, the density of a carbon, and above that between two of them, the ring falls into its atoms.
+  expect((await report(page)).components).toBe(6);
+  const { digest } = await report(page);
+  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.link());
+  await page.goto('about:blank');
+  await page.goto(`./?backend=canvas2d${new URL(link).hash}`);
+  await settled(page);
+  expect(await state(page)).toMatchObject({ surface: 'scan-benzene', parameters: { iso: 700 } });
+  expect((await report(page)).digest).toBe(digest);
+  await clean();
+});

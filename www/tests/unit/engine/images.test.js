@@ -1,8 +1,11 @@
 /** Files of images on their way into the core, and the jobs that are of them. */
+import { createHash } from 'node:crypto';
 import { describe, expect, test } from 'vitest';
 import { ImageKeeper } from '../../../src/engine/images/keeper.js';
 import { openImage } from '../../../src/engine/images/open.js';
+import { scanFile } from '../../../src/engine/images/scans.js';
 import { Jobs } from '../../../src/engine/sampling/jobs.js';
+import { SCANS } from '../../../src/engine/scans.js';
 import { ofFiles } from '../../../src/ui/field/files.js';
 import { barsOf, filteredOf, voxelsOf } from '../../../src/ui/field/image-words.js';
 import { fakeCore } from './fake-core.js';
@@ -110,6 +113,16 @@ describe('a job of an image', () => {
       error: { kind: 'image', message: 'no image' },
     });
   });
+});
+
+test('the computed images are the same every time', async () => {
+  const sums = await Promise.all(
+    SCANS.map(async ({ id }) => {
+      const bytes = Buffer.from(await scanFile(id).arrayBuffer());
+      return createHash('sha256').update(bytes).digest('hex').slice(0, 16);
+    }),
+  );
+  expect(sums).toEqual(['beb58918ec473f19', '40841137e17ab6c3', '8e077dfbe0296c64']);
 });
 
 describe('an image is described', () => {
