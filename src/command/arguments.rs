@@ -359,7 +359,7 @@ pub(crate) struct SurfaceArguments {
     pub(crate) label: Option<f64>,
 
     /// Width of a Gaussian in voxels, in the plane of the slices: over the voxels of --image,
-    /// against noise [default: by the noise that is measured, 0 or from 0.7 to 2], or over the
+    /// against noise and rounding [default: by what is measured, 0 or from 0.7 to 2], or over the
     /// distances from --label, against steps [default: 1]
     #[arg(long, value_name = "VOXELS", value_parser = number, requires = "image", help_heading = "Surface")]
     pub(crate) smooth: Option<f64>,

@@ -176,6 +176,9 @@ impl ImageInfo {
             let width = significant(self.smooth);
             let (what, why) = match self.label {
                 Some(_) => ("the distance from the label", "against the steps between voxels".to_owned()),
+                None if self.noise == 0.0 => {
+                    ("the voxels", "against the steps between whole numbers".to_owned())
+                }
                 None => ("the voxels", format!("against noise of {}", significant(self.noise))),
             };
             let chosen = if self.is_smooth_chosen { "; --smooth sets another width" } else { "" };

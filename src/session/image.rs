@@ -314,3 +314,71 @@ mod with_images {
         }
     }
 }
+
+#[cfg(all(test, feature = "images"))]
+mod tests {
+    use crate::image::Image;
+    use crate::sampler::{Phase, Settings};
+    use crate::session::{FaultKind, FieldAnswer, FieldRequest, Session};
+    use std::collections::BTreeMap;
+
+    /// A ball of the radius 8 voxels: 0 lies on it, and 100 a voxel within.
+    fn ball() -> Image {
+        let off = |at: usize| (at % 24) as f64 - 11.4;
+        let distance = |at: usize| (off(at).powi(2) + off(at / 24).powi(2) + off(at / 576).powi(2)).sqrt();
+        let voxels: Vec<i16> =
+            (0..24 * 24 * 24).map(|at| (100.0 * (8.0 - distance(at))).round() as i16).collect();
+        Image::new([24; 3], voxels).expect("an image")
+    }
+
+    fn request(values: &[(&str, f64)]) -> FieldRequest {
+        let parameters: BTreeMap<String, f64> =
+            values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
+        FieldRequest { parameters, ..FieldRequest::default() }
+    }
+
+    /// The digest of a run on the present field.
+    fn digest(session: &mut Session) -> u64 {
+        session.start(&Settings::with_count(400)).expect("a run");
+        while session.run.step(10_000).phase != Phase::Done {}
+        session.run.particles().digest()
+    }
+
+    fn iso(answer: &FieldAnswer) -> f64 {
+        answer.image.as_ref().expect("an image").iso
+    }
+
+    #[test]
+    fn another_iso_value_gives_what_opening_at_it_gives() {
+        let (mut moved, mut fresh) = (Session::new(), Session::new());
+        let image = ball();
+        moved.set_image(&image, "ball", &request(&[("iso", 0.0)])).expect("a field");
+        let first = digest(&mut moved);
+        for value in [150.0, 300.0, 100.0] {
+            let answer = moved.set_field(&request(&[("iso", value)])).expect("a field");
+            assert_eq!(iso(&answer), value);
+        }
+        fresh.set_image(&ball(), "ball", &request(&[("iso", 100.0)])).expect("a field");
+        let last = digest(&mut moved);
+        assert_ne!(first, last);
+        assert_eq!(last, digest(&mut fresh));
+        // What is not named stays.
+        let answer = moved.set_field(&request(&[("dark", 1.0)])).expect("a field");
+        assert_eq!(iso(&answer), 100.0);
+        assert!(answer.image.is_some_and(|image| image.is_dark_inside));
+    }
+
+    #[test]
+    fn a_surface_that_is_not_there_leaves_the_one_before_it() {
+        let mut session = Session::new();
+        let image = ball();
+        session.set_image(&image, "ball", &request(&[("iso", 0.0)])).expect("a field");
+        for values in [[("iso", 1e6)], [("label", 12_345.0)], [("smooth", -1.0)]] {
+            let fault = session.set_image(&image, "ball", &request(&values)).expect_err("refused");
+            assert_eq!(fault.kind, FaultKind::Image, "{fault}");
+            assert_eq!(iso(&session.answer()), 0.0);
+        }
+        let formula = FieldRequest { formula: Some("x^2 + y^2 = 1".to_owned()), ..FieldRequest::default() };
+        assert!(session.set_field(&formula).expect("a field").image.is_none());
+    }
+}

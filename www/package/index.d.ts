@@ -48,7 +48,7 @@ export interface Options {
   label?: number;
   /**
    * of an image: width of a Gaussian in voxels, 0 for none. Without it from 0.7 to 2 or 0, by the
-   * noise that is measured; over the distances from a label 1
+   * noise that is measured and the rounding of whole numbers; over the distances from a label 1
    */
   smooth?: number;
   /** of an image: whether the darker voxels are inside */
