@@ -497,7 +497,7 @@ describe('what is wrong has a name and says what to do', () => {
     ['InputError', 'points[4]: a number, not NaN', { points: [1, 2, 3, 4, NaN, 6] }, {}],
     ['InputError', 'normals: one for each point, not 1 for 2', { points: [1, 2, 3, 4, 5, 6], normals: [0, 0, 1] }, {}],
     ['InputError', 'points lie on a straight', { points: [0, 0, 0, 1, 0, 0] }, {}],
-    ['InputError', 'a function or points have none', () => 1, { params: { a: 1 } }],
+    ['InputError', 'a function, points or an image have none', () => 1, { params: { a: 1 } }],
     ['InputError', 'formula: for points', SPHERE, { formula: 'max(model, z)' }],
     ['InputError', 'formula: a text', { points: [1, 2, 3] }, { formula: 3 }],
     ['InputError', 'The option radius has no effect with adaptive: true', SPHERE, { radius: 0.01, adaptive: true }],

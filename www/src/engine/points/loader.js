@@ -7,7 +7,6 @@
  */
 import { batch } from '@preact/signals-core';
 import { FILE_SURFACE, IMAGE_TYPES } from '../constants.js';
-import { scanFile } from '../images/scans.js';
 import { scanOf } from '../scans.js';
 import { defaultState, emptyState, freshShape, fromPoints, modelOf } from '../share/state.js';
 import { PointsClient } from './client.js';
@@ -202,7 +201,8 @@ export class ModelLoader {
   }
 
   /** Computes an image of the gallery and opens it. @param {string} key @param {Pick<Wanted, 'id' | 'name'>} scan */
-  #computed(key, { id, name }) {
+  async #computed(key, { id, name }) {
+    const { scanFile } = await import('../images/scans.js');
     return this.#open({ key, name, file: scanFile(id), beside: [] });
   }
 
