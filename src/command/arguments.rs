@@ -340,8 +340,9 @@ pub(crate) struct SurfaceArguments {
     pub(crate) points: Option<PathBuf>,
 
     /// File of a three-dimensional image: NIfTI (.nii, .nii.gz, .hdr), NRRD, NumPy (.npy),
-    /// MetaImage (.mha, .mhd), Gaussian cube or a stack of TIFF pictures. The surface is that on which its voxels have the
-    /// value --iso. Coordinates are those of the file: millimetres in medical images
+    /// MetaImage (.mha, .mhd), Gaussian cube or a stack of TIFF pictures. The surface is that on
+    /// which its voxels have the value --iso. Coordinates are those of the file: millimetres in
+    /// medical images
     #[arg(
         long, value_name = "FILE", help_heading = "Surface",
         conflicts_with_all = ["surface", "formula", "points", "parameters", "closed", "thickness"]

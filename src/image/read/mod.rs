@@ -163,9 +163,9 @@ enum Source {
 impl Image {
     /// Reads a file: NIfTI-1 or -2 (`.nii`, `.nii.gz`, or `.hdr` with `.img`), NRRD (`.nrrd`,
     /// `.nhdr`), NumPy (`.npy`), MetaImage (`.mha`, `.mhd`), Gaussian cube (`.cube`) or a stack of
-    /// TIFF pictures (`.tif`). The content decides, not the name. Of a file with several volumes or values for each voxel the first is
-    /// read, which a [note](Image::notes) says. Lengths are in the unit of the file: millimetres in
-    /// medical images, bohr in cubes.
+    /// TIFF pictures (`.tif`). The content decides, not the name. Of a file with several volumes or
+    /// values for each voxel the first is read, which a [note](Image::notes) says. Lengths are in
+    /// the unit of the file: millimetres in medical images, bohr in cubes.
     ///
     /// `name` is the name of the file without its folder. A header whose voxels are in another file
     /// asks `beside` for it, by its name.
