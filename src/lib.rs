@@ -99,7 +99,7 @@
 //! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`PiecewiseFn`], [`BatchPiecewise`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Pieces`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [`Within`], [glam] |
 //! | solids of two fields | [`union`], [`intersection`], [`difference`], [`smooth_union`], [`offset`], [`Combined`] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
-//! | three-dimensional images | [`Image`], [`ImageField`], [`ImagePlacement`], [`Voxel`], [`VoxelType`], [`Label`], [`DEFAULT_LABEL_WIDTH`], [`ImageFormat`], [`ImageError`], [`ImageReadError`] |
+//! | three-dimensional images | [`Image`], [`ImageField`], [`ImageChoice`], [`ImageSurface`], [`ImageOutline`], [`ImagePlacement`], [`Voxel`], [`VoxelType`], [`Label`], [`DEFAULT_LABEL_WIDTH`], [`ImageFormat`], [`RawVoxels`], [`ImageError`], [`ImageReadError`] |
 //! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Body`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
 //! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measured`], [`Measures`], [`Cut`] |
 //! | its figures | [`Figures`] with the groups in [figures], [`Histogram`], [`Places`], [`Pair`], [`Hole`], [`Measurements`]; [`Value`], [`NamedValues`] |
@@ -179,8 +179,8 @@ pub use field::{
 pub use glam;
 #[cfg(feature = "images")]
 pub use image::{
-    DEFAULT_LABEL_WIDTH, Image, ImageError, ImageField, ImageFormat, ImageReadError, Label,
-    Placement as ImagePlacement, Voxel, VoxelType,
+    DEFAULT_LABEL_WIDTH, Image, ImageChoice, ImageError, ImageField, ImageFormat, ImageOutline,
+    ImageReadError, ImageSurface, Label, Placement as ImagePlacement, RawVoxels, Voxel, VoxelType,
 };
 pub use math::{Bounds, BoxError, Interval, Sym3};
 pub use mesh::bodies::{Bodies, Body};

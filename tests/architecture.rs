@@ -58,7 +58,7 @@ const ROOMS: [Room; 5] = [
                     "export",
                 ],
             ),
-            ("session", &["math", "slices", "field", "extent", "sampler", "run", "export"]),
+            ("session", &["math", "slices", "field", "extent", "image", "sampler", "run", "export"]),
             // The paper written for reading, and the oracle of the fast fronts: it knows nothing of
             // them.
             ("paper", &["math", "field", "differential", "particles"]),
@@ -128,9 +128,10 @@ const ROOMS: [Room; 5] = [
             ("bricks", &["filter"]),
             ("bounds", &["bricks", "kernel"]),
             ("field", &["bricks", "kernel", "placement"]),
-            ("smooth", &["otsu", "voxels"]),
+            ("smooth", &["voxels"]),
             ("labels", &["smooth", "voxels"]),
             ("read", &["placement", "voxels"]),
+            ("choice", &["field", "smooth", "labels", "otsu"]),
         ],
     ),
     (

@@ -6,7 +6,7 @@ use marching_particles::glam::DVec3;
 use marching_particles::pointcloud::job::Job;
 use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{
-    BatchField, BatchPiecewise, Bounds, Combined, DEFAULT_LABEL_WIDTH, Formula, Image, ImageError, VoxelType,
+    BatchField, BatchPiecewise, Bounds, Combined, Formula, Image, ImageChoice, ImageError, VoxelType,
 };
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::exceptions::PyValueError;
@@ -15,20 +15,6 @@ use std::sync::Arc;
 
 /// Slices of a fit between two looks for Ctrl-C, of about a millisecond each.
 const FIT_SLICES: u32 = 50;
-
-/// The types of voxels, whose names are those of NumPy.
-const TYPES: [VoxelType; 10] = [
-    VoxelType::U8,
-    VoxelType::I8,
-    VoxelType::U16,
-    VoxelType::I16,
-    VoxelType::U32,
-    VoxelType::I32,
-    VoxelType::U64,
-    VoxelType::I64,
-    VoxelType::F32,
-    VoxelType::F64,
-];
 
 /// A field that is shared.
 type Shared = Arc<dyn marching_particles::Field>;
@@ -132,35 +118,25 @@ impl Field {
         is_dark_inside: bool,
     ) -> PyResult<(Self, String)> {
         let raised = |error: ImageError| PyValueError::new_err(error.to_string());
-        let voxel_type = TYPES.into_iter().find(|known| known.to_string() == voxel_type);
+        let voxel_type = VoxelType::named(voxel_type);
         let voxel_type = voxel_type.expect("the package converts what has no type here");
         let voxels = voxels.as_slice()?.to_vec();
         py.detach(|| {
             let image = Image::from_bytes(size, voxel_type, voxels)
                 .and_then(|image| image.with_affine(rows))
                 .map_err(raised)?;
-            let width = match label {
-                Some(_) => smooth.unwrap_or(DEFAULT_LABEL_WIDTH),
-                None => smooth.unwrap_or_else(|| image.width_against_noise()),
-            };
-            let surface = match label {
-                Some(label) => image.label(label, width),
-                None if width == 0.0 => Ok(image.clone()),
-                None => image.smoothed(width),
-            }
-            .map_err(raised)?;
-            let iso = if label.is_some() { 0.0 } else { iso.unwrap_or_else(|| surface.otsu()) };
-            let field = surface.at(iso).map_err(raised)?;
-            let field = if is_dark_inside { field.inverted() } else { field };
+            let choice = ImageChoice { iso, label, smooth, is_dark_inside };
+            let surface = image.surface(&choice, None).map_err(raised)?;
             let known = serde_json::json!({
-                "iso": iso,
-                "smooth": width,
+                "iso": surface.field().iso(),
+                "smooth": surface.smooth(),
                 "noise": image.noise(),
                 "range": image.range(),
                 "notes": surface.notes(),
             });
-            let bounds = extent::find(&field).with_room(|_| 0.0);
-            Ok((Self::new(Arc::new(field), Some(bounds)), known.to_string()))
+            let field = surface.field();
+            let bounds = extent::find(field).with_room(|_| 0.0);
+            Ok((Self::new(Arc::new(field.clone()), Some(bounds)), known.to_string()))
         })
     }
 

@@ -1,10 +1,12 @@
 //! The command line's arguments, as clap reads and explains them.
 
+use crate::image::{VoxelSize, raw, voxel_size};
 use crate::options::{SamplingOptions, list, number, whole};
 use crate::spacing::{SpacingOption, spacing, units};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use marching_particles::RawVoxels;
 use marching_particles::export::VERTICES;
 use marching_particles::field::{model, rbf::Pull};
 use marching_particles::math::{Bounds, BoxError, shortest_text};
@@ -338,8 +340,9 @@ pub(crate) struct SurfaceArguments {
     pub(crate) points: Option<PathBuf>,
 
     /// File of a three-dimensional image: NIfTI (.nii, .nii.gz, .hdr), NRRD, NumPy (.npy),
-    /// MetaImage (.mha, .mhd) or Gaussian cube. The surface is that on which its voxels have the
-    /// value --iso. Coordinates are those of the file: millimetres in medical images
+    /// MetaImage (.mha, .mhd), Gaussian cube or a stack of TIFF pictures. The surface is that on
+    /// which its voxels have the value --iso. Coordinates are those of the file: millimetres in
+    /// medical images
     #[arg(
         long, value_name = "FILE", help_heading = "Surface",
         conflicts_with_all = ["surface", "formula", "points", "parameters", "closed", "thickness"]
@@ -357,7 +360,7 @@ pub(crate) struct SurfaceArguments {
     pub(crate) label: Option<f64>,
 
     /// Width of a Gaussian in voxels, in the plane of the slices: over the voxels of --image,
-    /// against noise [default: by the noise that is measured, 0 or from 0.7 to 2], or over the
+    /// against noise and rounding [default: by what is measured, 0 or from 0.7 to 2], or over the
     /// distances from --label, against steps [default: 1]
     #[arg(long, value_name = "VOXELS", value_parser = number, requires = "image", help_heading = "Surface")]
     pub(crate) smooth: Option<f64>,
@@ -365,6 +368,16 @@ pub(crate) struct SurfaceArguments {
     /// Take the darker voxels of --image as inside, instead of the brighter ones
     #[arg(long, requires = "image", help_heading = "Surface")]
     pub(crate) dark_inside: bool,
+
+    /// What --image is if it has no header that is known: the numbers of voxels along x, y and z,
+    /// their type, and, where need be, `big` for the other byte order and how many bytes come
+    /// before the voxels: 256x256x128,uint16,big,skip=512
+    #[arg(long, value_name = "FORM", value_parser = raw, requires = "image", help_heading = "Surface")]
+    pub(crate) raw: Option<RawVoxels>,
+
+    /// Distances between the voxels of --image along its axes, in place of those in the file
+    #[arg(long, value_name = "XxYxZ", value_parser = voxel_size, requires = "image", help_heading = "Surface")]
+    pub(crate) voxel_size: Option<VoxelSize>,
 
     /// Centres of the surface among the points of --points or of a model, 100 to 800: more follow
     /// finer details and take longer [default: 200]

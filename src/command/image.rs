@@ -2,8 +2,9 @@
 
 use crate::arguments::SurfaceArguments;
 use crate::failure::Failure;
+use crate::options::number;
 use marching_particles::math::{grouped, significant};
-use marching_particles::{DEFAULT_LABEL_WIDTH, Image, ImageError, ImageField};
+use marching_particles::{Image, ImageChoice, ImageField, ImageSurface, RawVoxels, VoxelType};
 use serde::Serialize;
 use std::path::Path;
 
@@ -47,44 +48,43 @@ pub(crate) fn of_arguments(arguments: &SurfaceArguments) -> Result<Option<(Image
     let wrong = |error: &dyn std::fmt::Display| Failure::Usage(format!("{}: {error}", path.display()));
     let bytes = std::fs::read(path).map_err(unreadable)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let image = Image::read(&name, bytes, |name| read_beside(path, name)).map_err(|error| wrong(&error))?;
-    let (surface, iso, smooth) = prepared(&image, arguments).map_err(|error| wrong(&error))?;
-    let field = surface.at(iso).map_err(|error| wrong(&error))?;
-    let field = if arguments.dark_inside { field.inverted() } else { field };
+    let image = match &arguments.raw {
+        Some(raw) => Image::read_raw(bytes, raw),
+        None => Image::read(&name, bytes, |name| read_beside(path, name)),
+    };
+    let mut image = image.map_err(|error| wrong(&error))?;
+    if let Some(VoxelSize(spacing)) = arguments.voxel_size {
+        image = image.with_spacing(spacing).map_err(|error| wrong(&error))?;
+    }
+    let choice = ImageChoice {
+        iso: arguments.iso,
+        label: arguments.label,
+        smooth: arguments.smooth,
+        is_dark_inside: arguments.dark_inside,
+    };
+    let surface = image.surface(&choice, None).map_err(|error| wrong(&error))?;
+    let field = surface.field();
     let info = ImageInfo {
         name,
         size: image.size(),
         spacing: image.placement().spacing(),
         voxel_type: image.voxel_type().to_string(),
         range: image.range(),
-        iso,
+        iso: field.iso(),
         is_otsu: arguments.iso.is_none() && arguments.label.is_none(),
         label: arguments.label,
-        smooth,
+        smooth: surface.smooth(),
         is_smooth_chosen: arguments.smooth.is_none(),
         noise: image.noise(),
         is_dark_inside: arguments.dark_inside,
         notes: notes(&image, &surface, arguments),
-        bytes: [surface.bytes(), field.bytes()],
+        bytes: [field.image().bytes(), field.bytes()],
     };
-    Ok(Some((field, info)))
-}
-
-/// The image that is sampled, filtered as it was asked for, with its iso value and the width of the
-/// Gaussian.
-fn prepared(image: &Image, arguments: &SurfaceArguments) -> Result<(Image, f64, f64), ImageError> {
-    if let Some(label) = arguments.label {
-        let width = arguments.smooth.unwrap_or(DEFAULT_LABEL_WIDTH);
-        return Ok((image.label(label, width)?, 0.0, width));
-    }
-    let width = arguments.smooth.unwrap_or_else(|| image.width_against_noise());
-    let smoothed = if width == 0.0 { image.clone() } else { image.smoothed(width)? };
-    let iso = arguments.iso.unwrap_or_else(|| smoothed.otsu());
-    Ok((smoothed, iso, width))
+    Ok(Some((field.clone(), info)))
 }
 
 /// What the reader has decided, and what else the user should know.
-fn notes(image: &Image, surface: &Image, arguments: &SurfaceArguments) -> Vec<String> {
+fn notes(image: &Image, surface: &ImageSurface, arguments: &SurfaceArguments) -> Vec<String> {
     /// Different values of an image that look like labels.
     const FEW: usize = 32;
     let mut notes = surface.notes().to_vec();
@@ -104,6 +104,47 @@ fn notes(image: &Image, surface: &Image, arguments: &SurfaceArguments) -> Vec<St
         }
     }
     notes
+}
+
+/// Distances between voxels along each axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct VoxelSize(pub(crate) [f64; 3]);
+
+/// Three values with an `x` between them.
+fn triple<T>(text: &str, value: impl Fn(&str) -> Option<T>) -> Option<[T; 3]> {
+    let values: Option<Vec<T>> = text.split(['x', '×']).map(|word| value(word.trim())).collect();
+    values?.try_into().ok()
+}
+
+/// [`VoxelSize`] from an argument.
+pub(crate) fn voxel_size(text: &str) -> Result<VoxelSize, String> {
+    let length = |word: &str| number(word).ok().filter(|length| *length > 0.0);
+    let wrong = || format!("`{text}` is no three lengths above 0, such as 0.7x0.7x1.5");
+    triple(text, length).map(VoxelSize).ok_or_else(wrong)
+}
+
+/// [`RawVoxels`] from an argument.
+pub(crate) fn raw(text: &str) -> Result<RawVoxels, String> {
+    let wrong = |what: &str| format!("{what}; an example is 256x256x128,uint16,big,skip=512");
+    let mut words = text.split(',').map(str::trim);
+    let size = triple(words.next().unwrap_or_default(), |word| word.parse().ok());
+    let size = size.ok_or_else(|| wrong("the numbers of voxels along x, y and z come first"))?;
+    let name = words.next().unwrap_or_default();
+    let voxel_type = VoxelType::named(name).ok_or_else(|| {
+        let names: Vec<String> = VoxelType::ALL.iter().map(VoxelType::to_string).collect();
+        wrong(&format!("the type of the voxels is one of {}, not `{name}`", names.join(", ")))
+    })?;
+    let mut raw = RawVoxels { size, voxel_type, is_big_endian: false, skip: 0 };
+    for word in words {
+        match word.split_once('=') {
+            None if word == "big" || word == "little" => raw.is_big_endian = word == "big",
+            Some(("skip", bytes)) => {
+                raw.skip = bytes.parse().map_err(|_| wrong("skip is a number of bytes"))?;
+            }
+            _ => return Err(wrong(&format!("`{word}` is neither big, little nor skip=BYTES"))),
+        }
+    }
+    Ok(raw)
 }
 
 /// The file of this name in the folder of another one. A header must not name files elsewhere.
@@ -135,6 +176,9 @@ impl ImageInfo {
             let width = significant(self.smooth);
             let (what, why) = match self.label {
                 Some(_) => ("the distance from the label", "against the steps between voxels".to_owned()),
+                None if self.noise == 0.0 => {
+                    ("the voxels", "against the steps between whole numbers".to_owned())
+                }
                 None => ("the voxels", format!("against noise of {}", significant(self.noise))),
             };
             let chosen = if self.is_smooth_chosen { "; --smooth sets another width" } else { "" };

@@ -6,6 +6,7 @@
 
 mod bounds;
 mod bricks;
+mod choice;
 mod field;
 mod filter;
 mod kernel;
@@ -16,10 +17,11 @@ mod read;
 mod smooth;
 mod voxels;
 
+pub use choice::{ImageChoice, ImageSurface};
 pub use field::ImageField;
 pub use labels::{DEFAULT_LABEL_WIDTH, Label};
 pub use placement::Placement;
-pub use read::{ImageFormat, ImageReadError, MAX_IMAGE_BYTES};
+pub use read::{ImageFormat, ImageOutline, ImageReadError, MAX_IMAGE_BYTES, RawVoxels};
 pub use voxels::{Voxel, VoxelType};
 
 use core::fmt::{self, Debug, Formatter};
@@ -204,7 +206,7 @@ impl Image {
     pub fn from_bytes(
         size: [usize; 3],
         voxel_type: VoxelType,
-        bytes: impl Into<Arc<[u8]>>,
+        bytes: impl Into<Vec<u8>>,
     ) -> Result<Self, ImageError> {
         let bytes = bytes.into();
         let len = bytes.len() / voxel_type.bytes();
@@ -320,6 +322,13 @@ impl Image {
     #[must_use]
     pub fn otsu(&self) -> f64 {
         Histogram::of(self).otsu()
+    }
+
+    /// The number of voxels in each of 256 bins of equal width, from the smallest value to the
+    /// largest.
+    #[must_use]
+    pub fn histogram(&self) -> Vec<u64> {
+        Histogram::of(self).counts()
     }
 
     /// Bytes of memory that the voxels take.

@@ -24,23 +24,17 @@ impl Histogram {
         Self { counts, min, width }
     }
 
+    /// Number of voxels in each bin.
+    pub(super) fn counts(self) -> Vec<u64> {
+        self.counts
+    }
+
     /// The edge between two bins for which the variance between the classes, w₀ w₁ (μ₁ − μ₀)², is
     /// largest (Otsu's equation 14). Where many are as good, as between two peaks, it is the one in
     /// their middle.
     pub(super) fn otsu(&self) -> f64 {
         let [first, last] = self.best();
         self.min + self.width * (0.5 * (first + last) as f64 + 1.0)
-    }
-
-    /// The mean values of the two classes.
-    pub(super) fn means(&self) -> [f64; 2] {
-        let cut = self.best()[0] + 1;
-        let mean = |first: usize, counts: &[u64]| {
-            let count: u64 = counts.iter().sum();
-            let sum: f64 = (first..).zip(counts).map(|(bin, count)| (bin as f64 + 0.5) * *count as f64).sum();
-            self.min + self.width * sum / count as f64
-        };
-        [mean(0, &self.counts[..cut]), mean(cut, &self.counts[cut..])]
     }
 
     /// The first and the last of the bins behind which the classes part best.

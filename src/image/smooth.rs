@@ -1,6 +1,5 @@
 //! Gaussians against noise, and the noise of an image.
 
-use super::otsu::Histogram;
 use super::voxels::Voxels;
 use super::{Image, ImageError};
 use crate::math::median;
@@ -10,13 +9,22 @@ const REACH: f64 = 4.0;
 /// Voxels along each axis at which the noise is measured at most; their median hardly changes with
 /// more.
 const SAMPLED: usize = 32;
-/// Noise that is left on purpose, as a share of the contrast: it moves the surface of an edge that
-/// is blurred by a voxel by some fiftieth of a voxel. More leaves specks, less rounds what is
-/// small.
-const LEFT: f64 = 0.01;
+/// How far noise may move the surface, in voxels: its standard deviation over the slope of the
+/// values there. Of an edge that a scanner has blurred by 0.8 voxels it is a hundredth of the
+/// contrast. More leaves specks and dents, less rounds what is small.
+const LEFT: f64 = 0.02;
 /// Widths of the Gaussian against noise, in voxels: narrower ones hardly lower it, and wider ones
 /// remove what is a few voxels wide.
 const WIDTHS: [f64; 2] = [0.7, 2.0];
+/// Widest Gaussian against the rounding of voxels alone, in voxels, as over the distances from a
+/// label: in a mask of 0 and 1 nothing is left that a wider one could find.
+const WIDEST_AGAINST_ROUNDING: f64 = 1.0;
+/// A width is a multiple of a tenth of a voxel, so that it seldom changes with the iso value.
+const WIDTHS_IN_A_VOXEL: f64 = 10.0;
+/// Standard deviation of what is rounded to a whole number, 1/√12.
+const ROUNDING: f64 = 0.288_675_134_594_812_9;
+/// Voxels along each axis at which the slope is measured at most, if the surface passes there.
+const SCANNED: usize = 64;
 
 /// The standard deviations along the axes, in voxels, of a Gaussian that is `width` voxels of the
 /// coarser in-plane axis wide in space. The slices of a scan lie across the axis with the largest
@@ -128,18 +136,98 @@ impl Image {
         median(sizes).unwrap_or(0.0) / (MEDIAN * GAIN)
     }
 
-    /// The width of the Gaussian, for [`Image::smoothed`], that lowers the [noise](Image::noise) to
-    /// a hundredth of the difference between the mean values of dark and bright voxels, the two
-    /// classes of [Otsu's](Image::otsu) method: from 0.7 to 2 voxels, or 0 where there is less
-    /// noise. A Gaussian of σ voxels lowers independent noise by the factor (4πσ²)^(3/4).
+    /// The width of the Gaussian, for [`Image::smoothed`], with which noise moves the surface at
+    /// the value `iso` by a fiftieth of a voxel, to first order: from 0.7 to 2 voxels in steps of a
+    /// tenth, or 0 where it moves it by less as it is. The [noise](Image::noise) is compared with
+    /// the slope of the values at the surface. To whole numbers belongs, too, that they are
+    /// rounded, by 0.29 of the step between two values on average: where the slope is shallow, the
+    /// surface of the spline through them is rough, however little noise there is. Against rounding
+    /// alone the width is at most 1.
+    ///
+    /// A Gaussian of σ voxels lowers independent noise by the factor (4πσ²)^(3/4).
     #[must_use]
-    pub fn width_against_noise(&self) -> f64 {
-        let [dark, bright] = Histogram::of(self).means();
-        let excess = self.noise() / (LEFT * (bright - dark));
-        if excess.is_nan() || excess <= 1.0 {
-            return 0.0;
+    pub fn width_against_noise(&self, iso: f64) -> f64 {
+        let noise = self.noise();
+        let rounding = ROUNDING * self.voxels.step();
+        let slope = self.slope(iso, noise.max(rounding));
+        let width_for = |deviation: f64, widest: f64| {
+            // Without a slope there is no surface; then it does not matter.
+            let excess = deviation / (LEFT * slope);
+            if excess.is_nan() || excess <= 1.0 {
+                return 0.0;
+            }
+            let width = libm::cbrt(excess * excess) / libm::sqrt(4.0 * core::f64::consts::PI);
+            (libm::ceil(width * WIDTHS_IN_A_VOXEL) / WIDTHS_IN_A_VOXEL).clamp(WIDTHS[0], widest)
+        };
+        // What is rounded is measured as noise, too, but for where many voxels are the same.
+        let beside = libm::sqrt((noise * noise - rounding * rounding).max(0.0));
+        let against_noise = width_for(beside, WIDTHS[1]);
+        against_noise.max(width_for(noise.max(rounding), WIDEST_AGAINST_ROUNDING))
+    }
+
+    /// The median size of the gradient at places where the values pass `iso` between two
+    /// neighbours, for the coarser of the two smaller spacings, without what noise of this standard
+    /// deviation adds to it; infinite if there is no such place.
+    fn slope(&self, iso: f64, noise: f64) -> f64 {
+        let mut squares = self.squared_slopes(iso, self.size.map(|n| n.div_ceil(SCANNED)));
+        if squares.is_empty() {
+            // What is small may lie between the voxels of the grid.
+            squares = self.squared_slopes(iso, [1; 3]);
         }
-        let width = libm::cbrt(excess * excess) / libm::sqrt(4.0 * core::f64::consts::PI);
-        width.clamp(WIDTHS[0], WIDTHS[1])
+        let Some(median) = median(squares) else { return f64::INFINITY };
+        // The variance of one difference, and of the means of two in [`Image::squared_slope`].
+        let inflated: f64 = 2.0 + 2.0 * 0.25;
+        libm::sqrt((median - inflated * noise * noise).max(0.0))
+    }
+
+    /// The squares of the gradients at voxels with these steps between them.
+    fn squared_slopes(&self, iso: f64, steps: [usize; 3]) -> Vec<f64> {
+        let [width, height, depth] = self.size;
+        let zero = self.middle();
+        let level = (iso - zero) as f32;
+        let mut sorted = self.placement.spacing();
+        let spacing = sorted;
+        sorted.sort_by(f64::total_cmp);
+        let scale = spacing.map(|own| sorted[1] / own);
+        let mut squares = Vec::new();
+        let mut rows = [vec![0.0_f32; width], vec![0.0; width], vec![0.0; width]];
+        for k in (0..depth).step_by(steps[2]) {
+            for j in (0..height).step_by(steps[1]) {
+                let [row, above, behind] = &mut rows;
+                self.row(j, k, zero, row);
+                self.row((j + 1).min(height - 1), k, zero, above);
+                self.row(j, (k + 1).min(depth - 1), zero, behind);
+                for (i, &value) in row.iter().enumerate().step_by(steps[0]) {
+                    let ahead = row.get(i + 1).copied().unwrap_or(value);
+                    for (axis, other) in [ahead, above[i], behind[i]].into_iter().enumerate() {
+                        if (value < level) != (other < level) {
+                            squares.push(self.squared_slope(i + width * (j + height * k), axis, scale));
+                        }
+                    }
+                }
+            }
+        }
+        squares
+    }
+
+    /// The square of the gradient halfway between a voxel and the next one along an axis: the
+    /// difference of the two along it, and the means of central differences along the others.
+    fn squared_slope(&self, first: usize, axis: usize, scale: [f64; 3]) -> f64 {
+        let strides = [1, self.size[0], self.size[0] * self.size[1]];
+        let second = first + strides[axis];
+        let across = |other: usize| {
+            let (n, stride) = (self.size[other], strides[other]);
+            let index = first / stride % n;
+            let (down, up) = (usize::from(index > 0), usize::from(index + 1 < n));
+            let difference = |at: usize| {
+                (self.voxels.at(at + up * stride) - self.voxels.at(at - down * stride)) / (down + up) as f64
+            };
+            0.5 * (difference(first) + difference(second))
+        };
+        let along = self.voxels.at(second) - self.voxels.at(first);
+        (0..3)
+            .map(|other| scale[other] * if other == axis { along } else { across(other) })
+            .map(|slope| slope * slope)
+            .sum()
     }
 }

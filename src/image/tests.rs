@@ -1,6 +1,6 @@
 //! Fields of images, held to the functions that the images were made from.
 
-use super::{Image, ImageError, ImageField};
+use super::{Image, ImageChoice, ImageError, ImageField};
 use crate::extent::{self, Reach};
 use crate::field::{Enclosure, Field, Frame};
 use crate::math::{Bounds, Interval, Sym3};
@@ -321,7 +321,7 @@ fn noise_is_measured_and_its_gaussian_chosen() {
     let ball = |p: DVec3| blurred((p - 23.5).length() - 15.0);
     let clean = image_of([48, 48, 48], ball);
     assert!(clean.noise() < 1.0, "{}", clean.noise());
-    assert_eq!(clean.width_against_noise(), 0.0);
+    assert_eq!(clean.width_against_noise(450.0), 0.0);
     let count = 48 * 48 * 48;
     let noise: Vec<f64> = (0..count).map(|_| 54.0 * normal()).collect();
     let noisy = image_of([48, 48, 48], |p| {
@@ -329,10 +329,84 @@ fn noise_is_measured_and_its_gaussian_chosen() {
         ball(p) + noise[at]
     });
     assert!((noisy.noise() / 54.0 - 1.0).abs() < 0.05, "{}", noisy.noise());
-    let width = noisy.width_against_noise();
-    assert!((0.8..1.1).contains(&width), "{width}");
+    let width = noisy.width_against_noise(450.0);
+    assert!((0.8..1.2).contains(&width), "{width}");
     let smoothed = noisy.smoothed(width).expect("an image");
     proven(smoothed.at(450.0).expect("a surface"), 2_000, 1);
+}
+
+#[test]
+fn whole_numbers_of_shallow_slope_make_smooth_surfaces() {
+    let mut random = Pcg32::seed_from_u64(30);
+    for step in [0.5, 1.0, 3.0, 10.0, 14.0, 20.0, 60.0] {
+        let balls: Vec<(DVec3, f64)> = (0..4)
+            .map(|_| {
+                let mut at = || between(&mut random, 16.0, 31.0);
+                (dvec3(at(), at(), at()), between(&mut random, 7.0, 12.0))
+            })
+            .collect();
+        // A smooth union, whose slope is 1 for each voxel nearly everywhere.
+        let distance = |p: DVec3| {
+            let sum: f64 = balls.iter().map(|(c, r)| libm::exp(-((p - *c).length() - r) / 2.0)).sum();
+            -2.0 * libm::log(sum)
+        };
+        let exact = image_of([48; 3], |p| -step * distance(p));
+        let voxels: Vec<i16> = (0..48 * 48 * 48)
+            .map(|at| exact.voxel([at % 48, at / 48 % 48, at / 48 / 48]).round() as i16)
+            .collect();
+        let image = Image::new([48; 3], voxels).expect("an image");
+        let width = image.width_against_noise(0.25 * step);
+        assert!((0.29 / step > 0.02) == (width > 0.0) && width <= 1.0, "{step}: {width}");
+        // A surface within the smoothest of them, so that the border of the image cuts none.
+        let choice = ImageChoice { iso: Some(0.25 * step), ..ImageChoice::default() };
+        let surface = image.surface(&choice, None).expect("a surface");
+        let settings = Settings::with_count(3_000);
+        let sample = sample(surface.field().clone(), &settings).expect("a sample");
+        let report = sample.report();
+        let lost = report.growth.fates.not_converged;
+        assert!(lost < 20, "{step}, {width}: {lost}");
+        assert!(sample.mesh().topology.is_closed(), "{step}");
+        let off = |k: usize| (distance(sample.particles().place(k)) + 0.25).abs();
+        let worst = (0..sample.particles().len()).map(off).fold(0.0, f64::max);
+        // Half a step is a distance of 0.5 / step.
+        assert!(worst < (0.05 + 0.5 / step).min(0.6), "{step}: {worst}");
+    }
+}
+
+#[test]
+fn a_mask_is_smoothed_no_more_than_a_label() {
+    let mask: Vec<u8> = (0..32_768)
+        .map(|at| dvec3((at % 32) as f64, (at / 32 % 32) as f64, (at / 1024) as f64))
+        .map(|p| u8::from((p - 15.3).length() < 10.0))
+        .collect();
+    let mask = Image::new([32; 3], mask).expect("an image");
+    assert_eq!(mask.width_against_noise(0.5), 1.0);
+    // An edge that is steep for the step between two values needs none.
+    let steep = image_of([32; 3], |p| (blurred((p - 15.3).length() - 10.0) / 9.0).round());
+    let voxels: Vec<u8> =
+        (0..32_768).map(|at| steep.voxel([at % 32, at / 32 % 32, at / 1024]) as u8).collect();
+    let steep = Image::new([32; 3], voxels).expect("an image");
+    assert_eq!(steep.width_against_noise(50.0), 0.0);
+}
+
+#[test]
+fn a_surface_does_not_depend_on_the_one_before_it() {
+    let ball = image_of([24; 3], |p| blurred((p - 11.4).length() - 7.0));
+    let choice = |iso: f64, smooth: f64| ImageChoice {
+        iso: Some(iso),
+        smooth: Some(smooth),
+        ..ImageChoice::default()
+    };
+    let mut before = None;
+    for (iso, smooth) in [(200.0, 1.0), (450.0, 1.0), (450.0, 0.0), (700.0, 0.0), (300.0, 1.0)] {
+        let surface = ball.surface(&choice(iso, smooth), before.as_ref()).expect("a surface");
+        let alone = ball.clone().surface(&choice(iso, smooth), None).expect("a surface");
+        for k in 0..200 {
+            let p = dvec3(4.0 + 0.08 * f64::from(k), 11.0, 12.3);
+            assert_eq!(surface.field().value(p).to_bits(), alone.field().value(p).to_bits(), "{iso} {p}");
+        }
+        before = Some(surface);
+    }
 }
 
 #[test]

@@ -32,7 +32,30 @@ pub enum VoxelType {
 /// Largest size of a value: coefficients in single precision are at most some ten times as large.
 const LARGEST: f64 = 1e30;
 
+/// Voxels that are read at once.
+const AT_ONCE: usize = 256;
+
 impl VoxelType {
+    /// All of them.
+    pub const ALL: [Self; 10] = [
+        Self::U8,
+        Self::I8,
+        Self::U16,
+        Self::I16,
+        Self::U32,
+        Self::I32,
+        Self::U64,
+        Self::I64,
+        Self::F32,
+        Self::F64,
+    ];
+
+    /// The type of this name, as NumPy has it: `int16`.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|known| known.to_string() == name)
+    }
+
     /// Bytes of a voxel.
     #[must_use]
     pub fn bytes(self) -> usize {
@@ -109,7 +132,7 @@ impl Layout {
 /// Voxels in a row, which copies share.
 #[derive(Clone)]
 pub(super) struct Voxels {
-    data: Arc<[u8]>,
+    data: Arc<Vec<u8>>,
     layout: Layout,
     len: usize,
 }
@@ -118,16 +141,16 @@ impl Voxels {
     /// The numbers of an array.
     pub(super) fn new<T: Voxel>(numbers: &[T]) -> Self {
         let layout = Layout::plain(T::TYPE, cfg!(target_endian = "big"));
-        Self { data: bytemuck::cast_slice(numbers).into(), layout, len: numbers.len() }
+        let data = Arc::new(bytemuck::cast_slice(numbers).to_vec());
+        Self { data, layout, len: numbers.len() }
     }
 
     /// The first `len` voxels of a file; none if it has fewer.
-    pub(super) fn of_file(data: impl Into<Arc<[u8]>>, layout: Layout, len: usize) -> Option<Self> {
-        let data = data.into();
+    pub(super) fn of_file(data: Vec<u8>, layout: Layout, len: usize) -> Option<Self> {
         let size = layout.voxel_type.bytes();
         let last = len.checked_sub(1)?.checked_mul(layout.step)?.checked_mul(size)?;
         let end = layout.first.checked_add(last)?.checked_add(size)?;
-        (end <= data.len()).then_some(Self { data, layout, len })
+        (end <= data.len()).then(|| Self { data: Arc::new(data), layout, len })
     }
 
     pub(super) fn len(&self) -> usize {
@@ -138,26 +161,36 @@ impl Voxels {
         self.data.len()
     }
 
+    /// Whether these are the same bytes in the same place of the memory.
+    pub(super) fn are_shared_with(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.data, &other.data) && self.layout == other.layout
+    }
+
+    /// Distance between two values that voxels of whole numbers can have; 0 for others.
+    pub(super) fn step(&self) -> f64 {
+        if self.layout.voxel_type.is_whole() { self.layout.slope.abs() } else { 0.0 }
+    }
+
     pub(super) fn voxel_type(&self) -> VoxelType {
         self.layout.voxel_type
     }
 
-    /// Calls `take` with the values of `count` voxels from `first` on.
+    /// Writes the values of the voxels from `first` on. It alone knows the types.
     #[allow(trivial_numeric_casts, reason = "one of the types is already double precision")]
-    fn each(&self, first: usize, count: usize, mut take: impl FnMut(usize, f64)) {
+    fn read(&self, first: usize, out: &mut [f64]) {
         let Layout { voxel_type, is_big_endian, step, slope, intercept, .. } = self.layout;
         let size = voxel_type.bytes();
         let from = &self.data[self.layout.first + first * step * size..];
         macro_rules! read {
             ($number:ty) => {
-                for (k, bytes) in from.chunks(step * size).take(count).enumerate() {
+                for (out, bytes) in out.iter_mut().zip(from.chunks(step * size)) {
                     let bytes = bytes[..size].try_into().unwrap_or_default();
                     let number = if is_big_endian {
                         <$number>::from_be_bytes(bytes)
                     } else {
                         <$number>::from_le_bytes(bytes)
                     };
-                    take(k, number as f64 * slope + intercept);
+                    *out = number as f64 * slope + intercept;
                 }
             };
         }
@@ -175,6 +208,18 @@ impl Voxels {
         }
     }
 
+    /// Calls `take` with the values of `count` voxels from `first` on.
+    fn each(&self, first: usize, count: usize, mut take: impl FnMut(usize, f64)) {
+        let mut values = [0.0; AT_ONCE];
+        for begin in (0..count).step_by(AT_ONCE) {
+            let values = &mut values[..AT_ONCE.min(count - begin)];
+            self.read(first + begin, values);
+            for (k, &value) in values.iter().enumerate() {
+                take(begin + k, value);
+            }
+        }
+    }
+
     /// Writes the values of the voxels from `first` on, counted from `zero`.
     pub(super) fn write(&self, first: usize, zero: f64, out: &mut [f32]) {
         self.each(first, out.len(), |k, value| out[k] = (value - zero) as f32);
@@ -182,9 +227,9 @@ impl Voxels {
 
     /// The value of a voxel.
     pub(super) fn at(&self, index: usize) -> f64 {
-        let mut found = 0.0;
-        self.each(index, 1, |_, value| found = value);
-        found
+        let mut found = [0.0];
+        self.read(index, &mut found);
+        found[0]
     }
 
     /// Calls `take` with the values of all voxels.

@@ -8,7 +8,9 @@ use crate::pointcloud::job;
 use crate::quality::Measurements;
 use crate::run::{Measured, Measures, MeshAnswer, Report, Start};
 use crate::sampler::Progress;
-use crate::session::{Code, Description, Fault, FieldAnswer, FieldRequest, FileRecord, FileRequest};
+use crate::session::{
+    Code, Description, Fault, FieldAnswer, FieldRequest, FileRecord, FileRequest, ImageFacts, ImagePromise,
+};
 use std::collections::BTreeMap;
 use std::path::Path;
 use ts_rs::{Config, TS, TypeVisitor};
@@ -75,6 +77,8 @@ fn types_of_the_page_are_those_of_the_core() {
     declarations.add::<Description>();
     declarations.add::<FieldRequest>();
     declarations.add::<FieldAnswer>();
+    declarations.add::<ImageFacts>();
+    declarations.add::<ImagePromise>();
     declarations.add::<FileRequest>();
     declarations.add::<FileRecord>();
     declarations.add::<Code>();

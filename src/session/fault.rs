@@ -27,6 +27,8 @@ pub enum FaultKind {
     Box,
     /// The centres and coefficients do not describe a field.
     Points,
+    /// The file is no image, or the image has no such surface.
+    Image,
     /// The formula has this mistake.
     #[serde(untagged)]
     Formula(FormulaErrorKind),

@@ -287,6 +287,8 @@ impl Session {
         let found = match self.run.field() {
             Source::Formula(field) => search.step(|| choice.made_of(field.clone(), None), budget),
             Source::Function(field) => search.step(|| Arc::clone(field), budget),
+            #[cfg(feature = "images")]
+            Source::Image(image) => search.step(|| image.shared(), budget),
             Source::Points { .. } => None,
         }?;
         let spacing = self.next_spacing();
@@ -350,7 +352,13 @@ impl Session {
 
     /// Whether a box can be fitted to the surface: a model from points brings its own.
     fn has_extent(&self) -> bool {
-        self.own_formula().is_some() || matches!(self.run.field(), Source::Function(_))
+        match self.run.field() {
+            Source::Formula(_) => self.own_formula().is_some(),
+            Source::Points { .. } => false,
+            #[cfg(feature = "images")]
+            Source::Image(_) => true,
+            Source::Function(_) => true,
+        }
     }
 
     /// The formula of the field, unless f is the same everywhere.

@@ -6,6 +6,7 @@ mod code;
 mod describe;
 mod fault;
 mod fitting;
+mod image;
 mod record;
 mod setting;
 mod spacing;
@@ -15,6 +16,9 @@ pub use code::{Code, Language};
 pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, describe};
 pub use fault::{Excess, Fault, FaultKind};
 pub use fitting::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
+#[cfg(feature = "images")]
+pub use image::ImageSource;
+pub use image::{ImageFacts, ImageInfo, ImagePromise, LabelFacts};
 pub use record::{FileRecord, FileRequest};
 pub use setting::{
     Choice, Condition, Setting, SettingGroup, SettingKind, SettingScale, SettingValue, settings,
@@ -66,6 +70,8 @@ pub struct FieldRequest {
 pub struct FieldAnswer {
     /// The model, if the field is made of points; else it is a formula.
     pub model: Option<ModelInfo>,
+    /// The image, if the field is a surface of one.
+    pub image: Option<ImageInfo>,
     /// Gallery surface, if the formula is still its own.
     pub surface: Option<&'static str>,
     /// Text of the formula; empty if there is none.
@@ -104,6 +110,9 @@ pub enum Source {
         /// The formula whose operand the model is, if one is sampled in its place.
         within: Option<ModelFormula>,
     },
+    /// The surface of an image.
+    #[cfg(feature = "images")]
+    Image(Box<ImageSource>),
     /// The field of a function of the program.
     Function(Arc<dyn Field>),
 }
@@ -130,7 +139,7 @@ impl Source {
     fn formula(&self) -> Option<&Formula> {
         match self {
             Self::Formula(field) => Some(field),
-            Self::Points { .. } | Self::Function(_) => None,
+            _ => None,
         }
     }
 }
@@ -143,6 +152,8 @@ impl Deref for Source {
             Self::Formula(field) => field,
             Self::Points { within: Some(formula), .. } => &*formula.field,
             Self::Points { field, .. } => field,
+            #[cfg(feature = "images")]
+            Self::Image(image) => image.field(),
             Self::Function(field) => &**field,
         }
     }
@@ -215,6 +226,7 @@ impl Session {
     pub fn answer(&self) -> FieldAnswer {
         let answer = FieldAnswer {
             model: None,
+            image: None,
             surface: self.surface.map(|surface| surface.id),
             formula: String::new(),
             parameters: Vec::new(),
@@ -247,6 +259,8 @@ impl Session {
                     None => answer,
                 }
             }
+            #[cfg(feature = "images")]
+            Source::Image(image) => image.answer(answer),
             Source::Function(_) => answer,
         }
     }
@@ -260,6 +274,13 @@ impl Session {
     /// If the surface is unknown, the formula has a mistake, a value is not finite or the box is
     /// not one; nothing is changed then.
     pub fn set_field(&mut self, request: &FieldRequest) -> Result<FieldAnswer, Fault> {
+        #[cfg(feature = "images")]
+        if request.surface.is_none()
+            && request.formula.is_none()
+            && let Some(answer) = self.change_image(request)
+        {
+            return answer;
+        }
         let surface = match &request.surface {
             Some(id) => Some(gallery::find(id).ok_or_else(|| {
                 let message = format!("there is no surface `{id}` in the gallery");
@@ -428,7 +449,10 @@ impl Session {
         let mut field = known.map_or_else(|| RbfField::new(data), Ok).map_err(refused)?.untrimmed();
         field.pull(pulls).map_err(refused)?;
         let within = match &request.formula {
-            Some(text) => Some(Self::model_formula(text, &field, request)?),
+            Some(text) => {
+                let model: Arc<dyn Field> = Arc::new(field.clone());
+                Some(Self::model_formula(text, &model, request)?)
+            }
             None => None,
         };
         let is_same = has_same_pulls && within == before;
@@ -445,15 +469,18 @@ impl Session {
     }
 
     /// The formula of a request, in which the model is an operand.
-    fn model_formula(text: &str, model: &RbfField, request: &FieldRequest) -> Result<ModelFormula, Fault> {
+    fn model_formula(
+        text: &str,
+        model: &Arc<dyn Field>,
+        request: &FieldRequest,
+    ) -> Result<ModelFormula, Fault> {
         let mut declared = request.declare.clone();
         declared.retain(|parameter| parameter.name != MODEL);
         declared.push(Parameter::automatic(MODEL));
         let combined = || {
             let mut formula = Formula::as_written(text, &declared)?;
             set_known(&mut formula, &request.parameters)?;
-            let model: Arc<dyn Field> = Arc::new(model.clone());
-            let field = formula.with_model(&model)?;
+            let field = formula.with_model(model)?;
             let mut parameters = formula.parameters().to_vec();
             parameters.retain(|parameter| parameter.name != MODEL);
             let (auto, mathml) = (formula.auto().to_vec(), formula.mathml());
@@ -537,6 +564,8 @@ impl Session {
         let has_no_cause = match self.source() {
             Source::Formula(field) => field.is_constant(),
             Source::Points { .. } => true,
+            #[cfg(feature = "images")]
+            Source::Image(_) => false,
             Source::Function(_) => false,
         };
         if has_own_box || has_no_cause {

@@ -108,6 +108,8 @@ impl Session {
         match self.source() {
             Source::Formula(field) => field.parameters(),
             Source::Points { within: Some(formula), .. } => &formula.parameters,
+            #[cfg(feature = "images")]
+            Source::Image(image) => image.formula_parameters(),
             Source::Points { .. } | Source::Function(_) => &[],
         }
     }

@@ -4,8 +4,9 @@
  *
  * @module
  */
+import { shown } from './checks.js';
 import { DisposedError, errorOf, InputError, WorkerError } from './errors.js';
-import { checked, checkedCalls, paramsOf, shown } from './options.js';
+import { checked, checkedCalls, paramsOf } from './options.js';
 
 /**
  * @import { Answered, Asked, Heard, Line, Made } from './protocol.js'
@@ -148,7 +149,7 @@ class Sample {
     this.#line = client.line;
     this.#id = id;
     this.#how = how;
-    const { count, points, normals, radii, levels, parents, report, bounds, parameters, values, digest } = value;
+    const { count, points, normals, radii, levels, parents, report, bounds, parameters, values, image, digest } = value;
     /** Number of particles. */
     this.count = count;
     this.points = points;
@@ -161,6 +162,7 @@ class Sample {
     this.bounds = bounds;
     this.params = Object.fromEntries(parameters.map((p) => [p.name, p.value]));
     this.values = values;
+    this.image = image;
     this.digest = digest;
   }
 
@@ -194,9 +196,11 @@ class Sample {
    */
   async moved(params, options = {}) {
     this.#check('moved');
-    const { formula, cloud } = this.#how.request;
-    if (formula === undefined || cloud)
-      throw new InputError('moved(): it is for a formula by itself, not for a function or points. Sample again.');
+    const { formula, cloud, image } = this.#how.request;
+    if (image ? formula !== undefined : formula === undefined || cloud)
+      throw new InputError(
+        'moved(): it is for a formula or an image by itself, not for a function or points. Sample again.',
+      );
     const parameters = { ...this.params, ...paramsOf(params, Object.keys(this.params)) };
     const how = { ...this.#how, ...checkedCalls(options) };
     if (how.signal?.aborted) throw how.signal.reason;

@@ -1,6 +1,6 @@
 // What the package `marching-particles` gives a program.
 /// <reference lib="esnext.disposable" />
-import type { Report } from '../src/engine/core-types.js';
+import type { ImageInfo, Report } from '../src/engine/core-types.js';
 
 export interface Bounds {
   min: [number, number, number];
@@ -8,7 +8,7 @@ export interface Bounds {
 }
 export interface Progress {
   /**
-   * `seeding`, `generation`, `search`, `relaxation`, `refinement`, and `measuring` for the report
+   * `reading` of a file, `seeding`, `generation`, `search`, `relaxation`, `refinement`, and `measuring` for the report
    */
   phase: string;
   particles: number;
@@ -36,12 +36,26 @@ export interface Options {
   /** of points: whether their surface ends at their border, as it does without it, or goes on */
   beyondPoints?: 'cut' | 'kept';
   /**
-   * of points: a formula that names their surface `model`, as an operand of max, min, smin, smax or
-   * abs, or with a number that is added: `max(model, z)` cuts it
+   * of points or an image: a formula that names their surface `model`, as an operand of max, min,
+   * smin, smax or abs, or with a number that is added: `max(model, z)` cuts it
    */
   formula?: string;
   /** values of the names in the formula */
   params?: Record<string, number>;
+  /**
+   * of an image: the value of the voxels on the surface; without it Otsu's, which separates dark
+   * from bright ones best
+   */
+  iso?: number;
+  /** of an image: a whole number whose voxels are inside, in place of `iso` */
+  label?: number;
+  /**
+   * of an image: width of a Gaussian in voxels, 0 for none. Without it from 0.7 to 2 or 0, by the
+   * noise that is measured and the rounding of whole numbers; over the distances from a label 1
+   */
+  smooth?: number;
+  /** of an image: whether the darker voxels are inside */
+  darkInside?: boolean;
   /** whether particles are small where the surface bends and large where it is flat */
   adaptive?: boolean;
   /** how the radius follows from the curvature; `chord_error` without it */
@@ -87,7 +101,7 @@ export interface Options {
   signal?: AbortSignal;
   onProgress?: (progress: Progress) => void;
 }
-export type { Report };
+export type { ImageInfo, Report };
 export type Warning = Report['warnings'][number];
 export interface Mesh {
   /**
@@ -121,9 +135,12 @@ export interface Sample {
   readonly report: Report | null;
   readonly warnings: Warning[];
   readonly bounds: Bounds;
+  /** values of the names in the formula; of an image `iso` and `smooth`, as they were chosen */
   readonly params: Record<string, number>;
   /** numbers at the rows of the columns, by the names of the option `values` */
   readonly values: Record<string, Float32Array>;
+  /** of an image: what is known of it, and what was chosen */
+  readonly image: ImageInfo | null;
   readonly digest: string;
   /**
    * joins the particles to triangles; with `weld` those at a crease or a seam share a row, and have
@@ -136,7 +153,7 @@ export interface Sample {
    */
   toFile(format: Format, how?: { mesh?: boolean }): Promise<Uint8Array<ArrayBuffer>>;
   /**
-   * the particles on the surface of other parameters; they leave this sample, whose columns stay,
+   * the particles on the surface of other parameters, or of another `iso` of an image; they leave this sample, whose columns stay,
    * and are gone where there is no such surface or the signal ends it
    */
   moved(params: Record<string, number>, options?: Pick<Options, 'signal' | 'onProgress'>): Promise<Sample>;
@@ -171,16 +188,47 @@ export interface Points {
 }
 /** x, y and z of each point, one after the other or in rows of three. */
 export type Numbers = Float32Array | Float64Array | Int32Array | number[] | [number, number, number][];
+/** A file of an image: NIfTI, NRRD, NPY, MetaImage, Gaussian cube or TIFF, whichever its content says. */
+export interface ImageFile {
+  image: Blob | ArrayBuffer | Uint8Array;
+  /** name of the file, by which a `.img` beside a NIfTI header is found */
+  name?: string;
+  /** files beside it, one of which holds the voxels of a header */
+  beside?: File | File[];
+}
+/** Voxels of an array: voxel (i, j, k) is `image[i + size[0] * (j + size[1] * k)]`. */
+export interface ImageArray {
+  image:
+    | Uint8Array
+    | Uint8ClampedArray
+    | Int8Array
+    | Uint16Array
+    | Int16Array
+    | Uint32Array
+    | Int32Array
+    | BigUint64Array
+    | BigInt64Array
+    | Float32Array
+    | Float64Array;
+  size: [number, number, number];
+  /** distances between neighbours along each axis, or one for all; 1 without it */
+  spacing?: number | [number, number, number];
+  /** the point of voxel (0, 0, 0); the origin without it */
+  origin?: [number, number, number];
+  /** the rows of a matrix that maps (i, j, k, 1) to a point, in place of spacing and origin */
+  affine?: number[][];
+  name?: string;
+}
 /**
  * What is sampled: a formula such as `x^2 + y^2 + z^2 = a`; a function f(x, y, z), negative inside
- * and NaN where it has no value, of a point or of many at once; the pieces of such a function; or
- * points.
+ * and NaN where it has no value, of a point or of many at once; the pieces of such a function;
+ * points; or a three-dimensional image.
  */
-export type Field = string | OfPlace | Batch | Pieces | Points;
+export type Field = string | OfPlace | Batch | Pieces | Points | ImageFile | ImageArray;
 
 /**
- * Covers the surface f = 0 with evenly spaced particles. Formulas and points are sampled in a
- * worker; a function is called in the thread that it belongs to, in slices of some milliseconds
+ * Covers the surface f = 0 with evenly spaced particles. Formulas, points and images are sampled in
+ * a worker; a function is called in the thread that it belongs to, in slices of some milliseconds
  * between which the page draws.
  */
 export function sample(field: Field, options?: Options): Promise<Sample>;

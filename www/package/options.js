@@ -3,27 +3,14 @@
  *
  * @module
  */
+import { choice, flag, number, shown } from './checks.js';
 import { InputError } from './errors.js';
+import { imageOf, isImage, valuesOf } from './image.js';
 
 /**
  * @import { Batch, OfPlace, Options, Pieces } from './index.js'
  * @import { SentField, SentFunctions, Settings } from './protocol.js'
  */
-
-/** A value as an error names it. @param {unknown} value */
-export const shown = (value) => (typeof value === 'string' ? `“${value.slice(0, 40)}”` : String(value));
-
-/** @type {(name: string, value: unknown, is: (v: number) => boolean, what: string) => number} */
-function number(name, value, is, what) {
-  if (typeof value === 'number' && Number.isFinite(value) && is(value)) return value;
-  throw new InputError(`${name}: ${what}, not ${shown(value)}.`);
-}
-
-/** @param {string} name @param {unknown} value @param {readonly string[]} choices */
-function choice(name, value, choices) {
-  if (choices.includes(/** @type {string} */ (value))) return /** @type {string} */ (value);
-  throw new InputError(`${name}: one of ${choices.join(', ')}, not ${shown(value)}.`);
-}
 
 /**
  * Values of parameters by name.
@@ -68,7 +55,7 @@ const A_SPACING = "a length above 0, a formula such as '0.02 + 0.1 hypot(x, y)' 
 const isFunction = (value) => typeof value === 'string' || typeof value === 'function';
 
 /** @param {unknown} values @returns {SentFunctions['values']} */
-function valuesOf(values) {
+function functionsOf(values) {
   if (typeof values !== 'object' || values === null)
     throw new InputError(`values: an object such as {height: 'z'}, not ${shown(values)}.`);
   const entries = Object.entries(values);
@@ -117,7 +104,20 @@ const SETTINGS = {
 };
 /** The options for a formula by itself. */
 const OF_FORMULAS = ['closed', 'periodic', 'thickness'];
-const KNOWN = [...Object.keys(SETTINGS), 'bounds', 'formula', 'params', 'values', 'measure', 'signal', 'onProgress'];
+const KNOWN = [
+  ...Object.keys(SETTINGS),
+  'bounds',
+  'formula',
+  'params',
+  'values',
+  'iso',
+  'label',
+  'smooth',
+  'darkInside',
+  'measure',
+  'signal',
+  'onProgress',
+];
 
 /** The option that is a setting of the core. @param {string} setting */
 export const optionOf = (setting) =>
@@ -167,12 +167,6 @@ export function checkedCalls({ signal, onProgress }) {
   return { signal, onProgress };
 }
 
-/** @param {string} name @param {unknown} value */
-function flag(name, value) {
-  if (typeof value !== 'boolean') throw new InputError(`${name}: true or false, not ${shown(value)}.`);
-  return value;
-}
-
 /**
  * Three numbers for each of some points, in double precision.
  * @param {string} name @param {unknown} value
@@ -202,7 +196,8 @@ function cloudOf({ points, normals }) {
 }
 
 const FIELD =
-  "a formula such as 'x^2 + y^2 + z^2 = 1', a function (x, y, z) => number, {batch(xyz, out)}, {label, pieces} or {points, normals}";
+  "a formula such as 'x^2 + y^2 + z^2 = 1', a function (x, y, z) => number, {batch(xyz, out)}, {label, pieces}, " +
+  '{points, normals} or {image}, a file or an array of voxels';
 
 /** @param {{label?: unknown, pieces?: unknown}} given @returns {Pieces} */
 function piecesOf({ label, pieces }) {
@@ -215,7 +210,7 @@ function piecesOf({ label, pieces }) {
   return { label: /** @type {Pieces['label']} */ (label), pieces };
 }
 
-/** @param {unknown} field @returns {Pick<SentField, 'formula' | 'cloud' | 'program'>} */
+/** @param {unknown} field @returns {Pick<SentField, 'formula' | 'cloud' | 'program' | 'image'>} */
 function fieldOf(field) {
   if (typeof field === 'string') return { formula: field };
   if (typeof field === 'function')
@@ -224,16 +219,19 @@ function fieldOf(field) {
   if (typeof given.batch === 'function') return { program: /** @type {Batch} */ (given) };
   if (given.pieces !== undefined || given.label !== undefined) return { program: piecesOf(given) };
   if (given.points !== undefined) return { cloud: cloudOf({ ...given, points: given.points }) };
+  if (isImage(given)) return { image: imageOf(given) };
   throw new InputError(`field: ${FIELD}, not ${shown(typeof field)}.`);
 }
 
 /**
- * The formula in which the surface of points is an operand.
- * @param {unknown} formula @param {{cloud?: unknown}} what
+ * The formula in which the surface of points or of an image is an operand.
+ * @param {unknown} formula @param {{cloud?: unknown, image?: unknown}} what
  */
-function modelFormula(formula, { cloud }) {
-  if (cloud === undefined)
-    throw new InputError('formula: for points, whose surface it names model. Else the formula is the field.');
+function modelFormula(formula, { cloud, image }) {
+  if (cloud === undefined && image === undefined)
+    throw new InputError(
+      'formula: for points or an image, whose surface it names model. Else the formula is the field.',
+    );
   if (typeof formula === 'string') return { formula };
   throw new InputError(`formula: a text such as 'max(model, z)', not ${shown(formula)}.`);
 }
@@ -262,13 +260,13 @@ export function checked(field, options) {
     throw new InputError(`${ofFormula}: for a formula by itself.`);
   if (formula !== undefined) Object.assign(what, modelFormula(formula, what));
   if (params !== undefined && what.formula === undefined)
-    throw new InputError('params: a formula has parameters, a function or points have none.');
+    throw new InputError('params: a formula has parameters, a function, points or an image have none.');
   /** @type {SentField} */
   const request = {
     ...what,
-    parameters: params === undefined ? {} : paramsOf(params),
+    parameters: { ...(params === undefined ? {} : paramsOf(params)), ...valuesOf(options, what.image !== undefined) },
     ...(bounds === undefined ? {} : { bounds: boundsOf(bounds) }),
   };
-  const functions = { ...(isFunction(spacing) ? { spacing } : {}), values: valuesOf(values) };
+  const functions = { ...(isFunction(spacing) ? { spacing } : {}), values: functionsOf(values) };
   return { request, functions, settings, given, measure: flag('measure', measure), ...checkedCalls(options) };
 }

@@ -1,5 +1,6 @@
 // Messages between the program and the sampler, which is in a worker or in the thread of the program.
-import type { Bounds, FieldRequest, Parameter, Report } from '../src/engine/core-types.js';
+import type { Bounds, FieldRequest, ImageInfo, Parameter, Report } from '../src/engine/core-types.js';
+import type { ImageFile } from '../src/engine/images/types.js';
 import type { Batch, OfPlace, Pieces, Progress } from './index.js';
 
 /** Settings of the core by their names there; `lengths` take the places of shares. */
@@ -29,12 +30,13 @@ export type Asked =
 /** What is said besides: `stop` ends a request, `free` gives a sample up. */
 export type Said = { type: 'stop'; id: number } | { type: 'free'; id: number };
 /**
- * A formula; points, with or without a formula whose operand their surface is; or a function of the
- * program, which is sent in its own thread alone.
+ * A formula; points or an image, with or without a formula whose operand their surface is; or a
+ * function of the program, which is sent in its own thread alone.
  */
 export type SentField = Pick<Partial<FieldRequest>, 'formula' | 'bounds'> & {
   parameters: Record<string, number>;
   cloud?: Cloud;
+  image?: ImageFile | SentVoxels;
   program?: OfPlace | Batch | Pieces;
 };
 /** Functions of place; those of the program are sent in its own thread alone. */
@@ -42,6 +44,8 @@ export interface SentFunctions {
   spacing?: string | OfPlace;
   values: Record<string, string | OfPlace>;
 }
+/** The bytes of an array of voxels of a type of the core, and their affine map, row by row. */
+export type SentVoxels = { name: string; type: string; size: number[]; rows: number[]; voxels: Uint8Array };
 /** Points, and their normals if they are known, three numbers each. */
 export interface Cloud {
   points: Float64Array;
@@ -60,6 +64,7 @@ export interface Made {
   bounds: Bounds;
   parameters: Parameter[];
   values: Record<string, Float32Array>;
+  image: ImageInfo | null;
   digest: string;
 }
 export interface Answered {

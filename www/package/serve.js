@@ -6,6 +6,7 @@
  */
 import { nextBudget } from '../src/engine/bundle/budget.js';
 import { hasSimd } from '../src/engine/bundle/load.js';
+import { openImage } from '../src/engine/images/open.js';
 import { csv, ply } from '../src/engine/share/exports.js';
 import loadCore, { Core } from '../src/wasm/core/core.js';
 import loadPoints from '../src/wasm/points/points.js';
@@ -23,6 +24,8 @@ import { Program } from './program.js';
 /** First budget of a loop, in units or slices of the core. */
 const FIRST_BUDGET = 64;
 const PROGRESS_MS = 50;
+/** What is chosen of an image, by the names of the core. */
+const OF_IMAGES = ['iso', 'label', 'smooth', 'dark'];
 /** Largest memory of a run and its report: half of what a browser gives a module. */
 const MEMORY_MB = 2048;
 const WITHOUT_SIMD =
@@ -43,7 +46,10 @@ class Refusal extends Error {
 function refusalOf({ kind, message, start, end, suggestion, choices }) {
   // A setting that is out of its range begins its sentence.
   const named = message.replace(/^([a-z_]+) is /, (_, setting) => `The option ${optionOf(setting)} is `);
-  if (['request', 'settings', 'too_many', 'box', 'points'].includes(kind) || (kind === 'value' && start === end))
+  if (
+    ['request', 'settings', 'too_many', 'box', 'points', 'image'].includes(kind) ||
+    (kind === 'value' && start === end)
+  )
     return new Refusal('InputError', named);
   return new Refusal('FormulaError', message, { start, end, suggestion, choices });
 }
@@ -215,17 +221,44 @@ export function serve({ post, load }) {
    * Gives a core its field.
    * @param {SentField} field @param {{id: number, core: Core}} of
    */
-  async function taken({ program, cloud, ...request }, of) {
+  async function taken({ program, cloud, image, ...request }, of) {
     const { core } = of;
     if (program) {
       const called = held(program, core);
       return core.set_function(called.call, request, called.labels);
     }
+    if (image) return takenImage(image, request, of);
     if (!cloud) return core.set_field(request);
     await loaded('points', loadPoints);
     const fit = await fitted(cloud, (slice) => inSlices(of, slice));
     if ('error' in fit) throw new Refusal('InputError', fit.error);
     return core.set_points(fit.system, fit.about, request);
+  }
+
+  /**
+   * Gives a core the surface of an image.
+   * @param {NonNullable<SentField['image']>} image @param {Omit<SentField, 'image'>} request
+   * @param {{id: number, core: Core}} of
+   */
+  async function takenImage(image, request, { id, core }) {
+    if ('voxels' in image) {
+      const { name, type, size, rows, voxels } = image;
+      const opened = core.open_voxels(name, type, new Uint32Array(size), new Float64Array(rows), voxels);
+      if (!opened.ok) throw refusalOf(opened.error);
+    } else {
+      const fraction = (/** @type {number} */ share) => ({ phase: 'reading', particles: 0, fraction: 0.1 * share });
+      const opened = await openImage(core, image, {
+        tell: (_, share) => post({ id, progress: fraction(share) }),
+        isOver: () => asked.get(id) === true,
+        mostBytes: MEMORY_MB * 1e6,
+      });
+      if (opened && !opened.ok) throw new Refusal('InputError', opened.message);
+    }
+    if (asked.get(id)) throw new Refusal('AbortError', 'The sampling was aborted.');
+    const answer = core.set_image(request);
+    // The field has a copy of its own, which shares the voxels.
+    core.close_image();
+    return answer;
   }
 
   /**
@@ -246,7 +279,9 @@ export function serve({ post, load }) {
       );
       if (fault) throw refusalOf(fault);
     }
-    const unknown = Object.keys(field.parameters).find((name) => !answer.parameters.some((p) => p.name === name));
+    const isKnown = (/** @type {string} */ name) =>
+      answer.parameters.some((p) => p.name === name) || (answer.image !== null && OF_IMAGES.includes(name));
+    const unknown = Object.keys(field.parameters).find((name) => !isKnown(name));
     if (unknown !== undefined) throw new Refusal('InputError', `The formula has no parameter “${unknown}” (params).`);
     if (message.type === 'sample') checkEffects(core, message);
     const box = await inSlices(of, (budget) => core.fit(settings, type === 'moved', budget));
@@ -265,8 +300,14 @@ export function serve({ post, load }) {
       if (fault) throw refusalOf(fault);
     }
     const columns = Object.keys(values).map((name) => [name, core.added_value(name)]);
-    const about = { report, bounds: box.bounds, parameters: box.parameters, values: Object.fromEntries(columns) };
-    return columnsOf(core, { count: particles, ...about });
+    return columnsOf(core, {
+      count: particles,
+      report,
+      bounds: box.bounds,
+      parameters: box.parameters,
+      image: box.image,
+      values: Object.fromEntries(columns),
+    });
   }
 
   /**
@@ -363,7 +404,7 @@ function weld(indices, firstRows) {
 
 /**
  * The columns of the particles, whose buffers are given away, so that there is no second copy.
- * @param {Core} core @param {Pick<Made, 'count' | 'report' | 'bounds' | 'parameters' | 'values'>} about
+ * @param {Core} core @param {Pick<Made, 'count' | 'report' | 'bounds' | 'parameters' | 'image' | 'values'>} about
  * @returns {[Made, ArrayBufferLike[]]}
  */
 function columnsOf(core, about) {

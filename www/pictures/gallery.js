@@ -2,10 +2,11 @@
  * Draws the pictures of the gallery with the program itself, from the built site:
  * `npm run pictures [-- address [surface …]]`; with surfaces only theirs.
  *
- * Writes public/gallery/*.webp, one per surface and model, transparent.
+ * Writes public/gallery/*.webp, one per surface, model and computed image, transparent.
  */
 import { mkdir, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
+import { SCANS } from '../src/engine/scans.js';
 import { FIELD_OF_VIEW_RAD } from '../src/engine/view/camera.js';
 import { launch } from './browser.js';
 
@@ -30,6 +31,7 @@ const ids = await page.evaluate(() => {
   const { surfaces, models } = /** @type {any} */ (window).marchingParticles.engine.description.value;
   return [...surfaces, ...models].map((/** @type {{ id: string }} */ { id }) => id);
 });
+ids.push(...SCANS.map(({ id }) => id));
 for (const id of ids) {
   if (wanted.length > 0 && !wanted.includes(id)) continue;
   const bytes = await page.evaluate(

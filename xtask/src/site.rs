@@ -19,7 +19,7 @@ use crate::project::Project;
 ///
 /// A budget is an alarm against accidents, not a goal. A change that needs more raises it in a
 /// commit of its own, which says why; no code is contorted to stay under one.
-const FIRST_PAINT_BUDGET_KB: f64 = 92.0;
+const FIRST_PAINT_BUDGET_KB: f64 = 96.0;
 
 /// The largest gzip size, in kB, of what the lesson's page shows before any WebAssembly; its
 /// figures come to life after that.
@@ -29,7 +29,9 @@ const LESSON_PAGE_BUDGET_KB: f64 = 51.0;
 /// [`FIRST_PAINT_BUDGET_KB`] says of budgets holds here too.
 fn budget_kb(bundle: Bundle) -> f64 {
     match bundle {
-        Bundle::Core => 1010.0,
+        // A tenth of it are images: their readers, the spline and the unpacking of gzip. The core
+        // samples them, and no other module could hold their voxels without a second copy.
+        Bundle::Core => 1118.0,
         Bundle::Points => 200.0,
         Bundle::Lesson => 252.0,
         Bundle::Webgpu => 90.0,

@@ -36,7 +36,8 @@ class Image(Field):
             ones best.
         label: Whole number whose voxels are inside, in place of ``iso``.
         smooth: Width of a Gaussian in voxels: against noise, by default from 0.7 to 2 or 0, by the
-            noise that is measured; over the distances from a label by default 1.
+            noise that is measured and the rounding of whole numbers; over the distances from a
+            label by default 1.
         inside: ``"bright"`` or ``"dark"``: which voxels are inside.
 
     Attributes:

@@ -1,5 +1,5 @@
-//! Readers of files of images: NIfTI, NRRD, NumPy, MetaImage and Gaussian cube files, detected by
-//! content.
+//! Readers of files of images: NIfTI, NRRD, NumPy, MetaImage, Gaussian cube and TIFF files, detected
+//! by content, and of voxels without a header.
 //!
 //! A file is not trusted: the sizes that its header promises are compared with what follows before
 //! memory is allocated, and compressed data is unpacked up to the promised size alone. The voxels
@@ -11,13 +11,13 @@ mod metaimage;
 mod nifti;
 mod npy;
 mod nrrd;
+mod tiff;
 mod zip;
 
-use super::voxels::{Layout, Voxels};
+use super::voxels::{Layout, VoxelType, Voxels};
 use super::{Image, ImageError, Placement};
 use core::fmt::{self, Display, Formatter};
 use glam::{DMat3, DVec3};
-use std::sync::Arc;
 use zip::Unpacked;
 
 /// Largest size of the voxels of a file, in bytes: 1024³ voxels of 16 bits.
@@ -37,6 +37,10 @@ pub enum ImageFormat {
     MetaImage,
     /// Cube file of Gaussian.
     Cube,
+    /// Stack of TIFF pictures.
+    Tiff,
+    /// Voxels without a header.
+    Raw,
 }
 
 impl Display for ImageFormat {
@@ -47,6 +51,8 @@ impl Display for ImageFormat {
             Self::Npy => "NumPy",
             Self::MetaImage => "MetaImage",
             Self::Cube => "cube",
+            Self::Tiff => "TIFF",
+            Self::Raw => "raw",
         })
     }
 }
@@ -59,7 +65,9 @@ pub enum ImageReadError {
     #[error("the file is empty; choose one that holds an image")]
     Empty,
     /// The file has none of the known formats.
-    #[error("this is {found}, and what is read is NIfTI, NRRD, NumPy, MetaImage and Gaussian cube; {advice}")]
+    #[error(
+        "this is {found}, and what is read is NIfTI, NRRD, NumPy, MetaImage, Gaussian cube and TIFF; {advice}"
+    )]
     Unknown {
         /// Name of the format that the content seems to have.
         found: &'static str,
@@ -154,10 +162,10 @@ enum Source {
 
 impl Image {
     /// Reads a file: NIfTI-1 or -2 (`.nii`, `.nii.gz`, or `.hdr` with `.img`), NRRD (`.nrrd`,
-    /// `.nhdr`), NumPy (`.npy`), MetaImage (`.mha`, `.mhd`) or Gaussian cube (`.cube`). The content
-    /// decides, not the name. Of a file with several volumes or values for each voxel the first is
-    /// read, which a [note](Image::notes) says. Lengths are in the unit of the file: millimetres in
-    /// medical images, bohr in cubes.
+    /// `.nhdr`), NumPy (`.npy`), MetaImage (`.mha`, `.mhd`), Gaussian cube (`.cube`) or a stack of
+    /// TIFF pictures (`.tif`). The content decides, not the name. Of a file with several volumes or
+    /// values for each voxel the first is read, which a [note](Image::notes) says. Lengths are in
+    /// the unit of the file: millimetres in medical images, bohr in cubes.
     ///
     /// `name` is the name of the file without its folder. A header whose voxels are in another file
     /// asks `beside` for it, by its name.
@@ -182,14 +190,101 @@ fn read(name: &str, bytes: Vec<u8>, beside: Beside) -> Result<Image, ImageReadEr
     // Of compressed files the header is unpacked first, which says how much is to follow.
     let mut file = Unpacked::new(bytes);
     let start = file.start(header::LONGEST)?;
-    let header = match sniff(&start)? {
-        ImageFormat::Nifti => nifti::header(name, &start),
-        ImageFormat::Nrrd => nrrd::header(&start),
-        ImageFormat::Npy => npy::header(&start),
-        ImageFormat::MetaImage => metaimage::header(&start),
-        ImageFormat::Cube => return cube::read(file),
-    }?;
-    image(header, file, beside)
+    match sniff(&start)? {
+        ImageFormat::Cube => cube::read(file),
+        ImageFormat::Tiff => tiff::read(file),
+        format => image(header(format, name, &start)?, file, beside),
+    }
+}
+
+/// The header of a file of a format that has one.
+fn header(format: ImageFormat, name: &str, start: &[u8]) -> Result<Header, ImageReadError> {
+    match format {
+        ImageFormat::Nifti => nifti::header(name, start),
+        ImageFormat::Nrrd => nrrd::header(start),
+        ImageFormat::Npy => npy::header(start),
+        ImageFormat::MetaImage => metaimage::header(start),
+        ImageFormat::Cube | ImageFormat::Tiff | ImageFormat::Raw => {
+            unreachable!("these are read as a whole")
+        }
+    }
+}
+
+/// How the bytes of a file without a header stand for voxels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RawVoxels {
+    /// Voxels along each axis, the one that changes fastest first.
+    pub size: [usize; 3],
+    /// Their type.
+    pub voxel_type: VoxelType,
+    /// Whether the first byte of a number is its largest.
+    pub is_big_endian: bool,
+    /// Bytes before the first voxel.
+    pub skip: u64,
+}
+
+impl Image {
+    /// Reads a file that has no header, or one that is not known: its voxels, one unit apart, from
+    /// a byte on. A file that is compressed by gzip is unpacked.
+    ///
+    /// # Errors
+    ///
+    /// If the file is shorter than that, or its voxels make no image.
+    pub fn read_raw(bytes: Vec<u8>, raw: &RawVoxels) -> Result<Self, ImageReadError> {
+        let RawVoxels { size, voxel_type, is_big_endian, skip } = *raw;
+        let first = usize::try_from(skip).unwrap_or(usize::MAX);
+        let header = Header {
+            format: ImageFormat::Raw,
+            size,
+            axes: DVec3::AXES,
+            origin: DVec3::ZERO,
+            layout: Layout::plain(voxel_type, is_big_endian),
+            is_packed: false,
+            source: Source::Here(first),
+            notes: Vec::new(),
+        };
+        image(header, Unpacked::new(bytes), &|_| Err(String::new()))
+    }
+}
+
+/// What the header of a file promises.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ImageOutline {
+    /// Voxels along each axis.
+    pub size: [usize; 3],
+    /// Their type.
+    pub voxel_type: VoxelType,
+}
+
+impl ImageOutline {
+    /// Bytes of memory that the voxels take while they are read and a Gaussian filters them: as
+    /// they are, and twice in single precision.
+    #[must_use]
+    pub fn memory(&self) -> u64 {
+        let voxel = self.voxel_type.bytes() as u64 + 2 * VoxelType::F32.bytes() as u64;
+        self.size.iter().fold(voxel, |product, &n| product.saturating_mul(n as u64))
+    }
+}
+
+impl Image {
+    /// What a file promises that begins with these bytes, a megabyte of it or all. None for a cube
+    /// file and a TIFF stack, which only the whole file tells.
+    ///
+    /// # Errors
+    ///
+    /// If it is no file of an image, or its header is wrong.
+    pub fn outline(name: &str, start: &[u8]) -> Result<Option<ImageOutline>, ImageReadError> {
+        if start.is_empty() {
+            return Err(ImageReadError::Empty);
+        }
+        let start = Unpacked::new(start.to_vec()).start(header::LONGEST)?;
+        let format = sniff(&start)?;
+        if matches!(format, ImageFormat::Cube | ImageFormat::Tiff) {
+            return Ok(None);
+        }
+        let Header { size, layout, .. } = header(format, name, &start)?;
+        Ok(Some(ImageOutline { size, voxel_type: layout.voxel_type }))
+    }
 }
 
 /// The image of a header.
@@ -219,7 +314,7 @@ fn image(header: Header, file: Unpacked, beside: Beside) -> Result<Image, ImageR
         inner.drain(..first.min(inner.len()));
         (file, first) = (Unpacked::packed(inner), 0);
     }
-    let data: Arc<[u8]> = file.all(needed.saturating_add(first as u64))?.into();
+    let data = file.all(needed.saturating_add(first as u64))?;
     layout.first = first;
     let found = (data.len() as u64).saturating_sub(layout.first as u64);
     let len = (needed / voxel) as usize;
@@ -231,9 +326,7 @@ fn image(header: Header, file: Unpacked, beside: Beside) -> Result<Image, ImageR
 }
 
 /// First bytes of other formats, with their name and an advice for the user.
-const KNOWN: [(&[u8], &str, &str); 8] = [
-    (b"II*\0", "a TIFF picture", "save the stack as NRRD, as ImageJ does"),
-    (b"MM\0*", "a TIFF picture", "save the stack as NRRD, as ImageJ does"),
+const KNOWN: [(&[u8], &str, &str); 6] = [
     (b"PK\x03\x04", "a ZIP archive (npz is such)", "unpack it first"),
     (b"\x89HDF", "an HDF5 file (MINC is such)", "convert it to NIfTI"),
     (b"ply", "a file of points", "give it as points"),
@@ -259,6 +352,9 @@ fn sniff(start: &[u8]) -> Result<ImageFormat, ImageReadError> {
     }
     if start.starts_with(npy::MAGIC) {
         return Ok(ImageFormat::Npy);
+    }
+    if [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"].iter().any(|magic| start.starts_with(*magic)) {
+        return Ok(ImageFormat::Tiff);
     }
     if metaimage::begins_with(start) {
         return Ok(ImageFormat::MetaImage);

@@ -1,9 +1,9 @@
 //! Readers, on the small files of `fuzz/seeds/image`, which numpy and the formats' own rules made.
 
-use super::{ImageFormat, ImageReadError, MAX_IMAGE_BYTES};
+use super::{ImageFormat, ImageReadError, MAX_IMAGE_BYTES, RawVoxels};
 use crate::image::{Image, ImageError, VoxelType};
 use flate2::Compression;
-use flate2::write::GzEncoder;
+use flate2::write::{GzEncoder, ZlibEncoder};
 use glam::{DVec3, dvec3};
 use std::fs;
 use std::io::Write;
@@ -119,7 +119,7 @@ fn what_is_wrong_is_named() {
     for (bytes, words) in [
         (Vec::new(), "empty"),
         (b"hello, world".to_vec(), "no known kind"),
-        (b"II*\0 and so on".to_vec(), "TIFF"),
+        (b"II*\0 and so on".to_vec(), "cut off"),
         (changed("nrrd-raw", "int16", "int99"), "type"),
         (changed("nrrd-raw", "encoding: raw", "encoding: hex"), "`hex`"),
         (changed("nrrd-raw", "sizes: 4 3 3", "sizes: 4 3 300"), "cut off"),
@@ -174,4 +174,181 @@ fn what_is_too_large_is_refused_before_memory_is_taken() {
     }
     let error = read(bytes).expect_err("refused");
     assert!(matches!(error, ImageReadError::TooLarge { bytes } if bytes > MAX_IMAGE_BYTES), "{error}");
+}
+
+/// A stack of TIFF pages with one strip each, whose bytes are given as they are in the file.
+fn tiff(is_big: bool, entries: &[(u16, u16, u32)], description: &str, strips: &[Vec<u8>]) -> Vec<u8> {
+    let mut out = if is_big { b"MM\0*".to_vec() } else { b"II*\0".to_vec() };
+    let short = |n: u16| if is_big { n.to_be_bytes() } else { n.to_le_bytes() };
+    let long = |n: u32| if is_big { n.to_be_bytes() } else { n.to_le_bytes() };
+    let text_at = 16;
+    let mut at = text_at + description.len() as u32 + 1;
+    out.extend(long(at));
+    // A half, as the resolution.
+    out.extend([long(1), long(2)].concat());
+    out.extend(description.bytes().chain([0]));
+    for (k, strip) in strips.iter().enumerate() {
+        let mut all = entries.to_vec();
+        all.extend([(270, 2, 0), (273, 4, 0), (279, 4, strip.len() as u32), (282, 5, 0), (283, 5, 0)]);
+        all.sort_unstable();
+        let data_at = at + 2 + 12 * all.len() as u32 + 4;
+        out.extend(short(all.len() as u16));
+        for (tag, kind, value) in all {
+            let (count, value) = match tag {
+                270 => (description.len() as u32 + 1, text_at),
+                273 => (1, data_at),
+                282 | 283 => (1, 8),
+                _ => (1, value),
+            };
+            out.extend([short(tag), short(kind)].concat());
+            out.extend(long(count));
+            match kind {
+                3 => out.extend([short(value as u16), [0; 2]].concat()),
+                _ => out.extend(long(value)),
+            }
+        }
+        at = data_at + strip.len() as u32;
+        out.extend(long(if k + 1 < strips.len() { at } else { 0 }));
+        out.extend(strip);
+    }
+    out
+}
+
+/// A byte as a code of LZW each, with a clear code before more codes than nine bits have.
+fn literal_lzw(bytes: &[u8]) -> Vec<u8> {
+    let codes =
+        bytes.chunks(200).flat_map(|chunk| [256].into_iter().chain(chunk.iter().map(|&b| u32::from(b))));
+    packed_codes(&codes.chain([257]).map(|code| (code, 9)).collect::<Vec<_>>())
+}
+
+/// Codes of so many bits, the highest first.
+fn packed_codes(codes: &[(u32, u32)]) -> Vec<u8> {
+    let bits: Vec<u32> =
+        codes.iter().flat_map(|&(code, n)| (0..n).rev().map(move |k| code >> k & 1)).collect();
+    let byte = |bits: &[u32]| bits.iter().enumerate().fold(0, |sum, (k, bit)| sum | (*bit as u8) << (7 - k));
+    bits.chunks(8).map(byte).collect()
+}
+
+#[test]
+fn stacks_of_tiff_pictures_are_read_however_they_are_packed() {
+    let (width, height) = (5_u32, 4_u32);
+    let value = |i: u32, j: u32, k: u32| (1000 * k + 37 * j + 3 * i + 7) as u16;
+    for (is_big, compression, predictor) in [
+        (false, 1, 1),
+        (true, 1, 1),
+        (false, 5, 1),
+        (true, 5, 2),
+        (false, 8, 2),
+        (false, 32773, 1),
+        (true, 32773, 2),
+    ] {
+        let strips: Vec<Vec<u8>> = (0..3)
+            .map(|k| {
+                let rows = (0..height).map(|j| {
+                    let row: Vec<u16> = (0..width).map(|i| value(i, j, k)).collect();
+                    let before = |i: usize| if predictor == 2 && i > 0 { row[i - 1] } else { 0 };
+                    (0..row.len()).map(|i| row[i].wrapping_sub(before(i))).collect::<Vec<u16>>()
+                });
+                let write = |n: u16| if is_big { n.to_be_bytes() } else { n.to_le_bytes() };
+                let bytes: Vec<u8> = rows.flatten().flat_map(write).collect();
+                match compression {
+                    1 => bytes,
+                    5 => literal_lzw(&bytes),
+                    8 => {
+                        let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
+                        packed.write_all(&bytes).expect("written");
+                        packed.finish().expect("packed")
+                    }
+                    // Two bytes as they are, two as one that is repeated, and a byte of no meaning.
+                    _ => bytes
+                        .chunks(2)
+                        .flat_map(|pair| match *pair {
+                            [a, b] if a == b => vec![255, a, 128],
+                            [a, b] => vec![1, a, b],
+                            _ => vec![0, pair[0]],
+                        })
+                        .collect(),
+                }
+            })
+            .collect();
+        let entries =
+            [(256, 3, width), (257, 3, height), (258, 3, 16), (259, 3, compression), (317, 3, predictor)];
+        let text = "ImageJ=1.53t\nimages=3\nslices=3\nspacing=0.75\n";
+        let image = read(tiff(is_big, &entries, text, &strips)).expect("an image");
+        assert_eq!((image.size(), image.voxel_type()), ([5, 4, 3], VoxelType::U16));
+        assert_eq!(image.placement().spacing(), [2.0, 2.0, 0.75]);
+        for (i, j, k) in (0..60).map(|at| (at % 5, at / 5 % 4, at / 20)) {
+            let found = image.voxel([i, j, k].map(|n| n as usize));
+            assert_eq!(found, f64::from(value(i, j, k)), "{is_big} {compression} {predictor}: {i} {j} {k}");
+        }
+    }
+}
+
+#[test]
+fn codes_of_lzw_that_stand_for_texts_are_unpacked() {
+    // The example of section 13 of TIFF 6.0: 7 7 7 8 8 7 7 6 6.
+    let codes = [256, 7, 258, 8, 8, 258, 6, 6, 257].map(|code| (code, 9));
+    let pixels = [7, 7, 7, 8, 8, 7, 7, 6, 6];
+    let entries = [(256, 3, 3), (257, 3, 3), (258, 3, 8), (259, 3, 5)];
+    let strips = vec![packed_codes(&codes); 2];
+    let image = read(tiff(false, &entries, "", &strips)).expect("an image");
+    for (at, wanted) in pixels.into_iter().enumerate() {
+        assert_eq!(image.voxel([at % 3, at / 3, 1]), f64::from(wanted), "{at}");
+    }
+    // Codes become longer: two bytes by turns, each pair of which makes a code that is not used.
+    let count = 1200;
+    let mut codes = vec![(256, 9)];
+    for k in 0..count {
+        // After the code k the table has 258 + k − 1 texts.
+        let made: u32 = 258 + k;
+        codes.push((k % 2, (32 - made.leading_zeros()).max(9)));
+    }
+    let entries = [(256, 3, count), (257, 3, 1), (258, 3, 8), (259, 3, 5)];
+    let strips = vec![packed_codes(&codes); 2];
+    let error = read(tiff(false, &entries, "", &strips)).expect_err("one row");
+    assert!(matches!(error, ImageReadError::Image(ImageError::Flat { size: [1200, 1, 2] })), "{error}");
+}
+
+#[test]
+fn a_tiff_file_that_cannot_be_read_says_why() {
+    let strip = vec![vec![3; 16]; 2];
+    let with = |tag: u16, value: u32| {
+        let usual = [(256, 4), (257, 4), (258, 8), (259, 1), (277, 1)];
+        let entries = usual.into_iter().filter(|(own, _)| *own != tag).chain([(tag, value)]);
+        entries.map(|(tag, value)| (tag, 3, value)).collect::<Vec<_>>()
+    };
+    for (tag, value, words) in [
+        (258, 12, "12 bits"),
+        (259, 7, "compression 7"),
+        (257, 5, "20 bytes of voxels, and 16 follow"),
+        (257, 0, "ImageLength"),
+        (317, 3, "predictor 3"),
+        (322, 16, "tiles"),
+    ] {
+        let error = read(tiff(false, &with(tag, value), "", &strip)).expect_err("refused").to_string();
+        assert!(error.contains(words), "{error} does not name {words}");
+    }
+    let whole = tiff(false, &with(259, 1), "", &[vec![1; 16], vec![2; 16]]);
+    assert!(read(whole.clone()).is_ok());
+    for length in 5..whole.len() {
+        assert!(!read(whole[..length].to_vec()).expect_err("cut off").to_string().is_empty());
+    }
+    // Pages in a circle.
+    let mut circle = whole;
+    let end = circle.len() - 16 - 4;
+    circle.copy_within(4..8, end);
+    assert!(read(circle).is_ok_and(|image| image.size()[2] == 1 << 16));
+}
+
+#[test]
+fn voxels_without_a_header_are_read_as_they_are_said_to_be() {
+    let numbers: Vec<u16> = (0..60).map(|k| 1000 + 7 * k).collect();
+    let bytes: Vec<u8> = [9; 3].into_iter().chain(numbers.iter().flat_map(|n| n.to_be_bytes())).collect();
+    let raw = RawVoxels { size: [5, 4, 3], voxel_type: VoxelType::U16, is_big_endian: true, skip: 3 };
+    let image = Image::read_raw(bytes.clone(), &raw).expect("an image");
+    for (at, wanted) in numbers.into_iter().enumerate() {
+        assert_eq!(image.voxel([at % 5, at / 5 % 4, at / 20]), f64::from(wanted));
+    }
+    let error = Image::read_raw(bytes, &RawVoxels { skip: 4, ..raw }).expect_err("refused");
+    assert!(matches!(error, ImageReadError::CutOff { needed: 120, found: 119, .. }), "{error}");
 }

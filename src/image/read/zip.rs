@@ -5,33 +5,40 @@ use flate2::bufread::{MultiGzDecoder, ZlibDecoder};
 use std::io::{Cursor, Read};
 
 const GZIP: &[u8] = b"\x1f\x8b";
+/// A byte of deflate stands for so many at most: 258 by two bits, P. Deutsch, RFC 1951, 1996.
+const MOST_FROM_A_BYTE: u64 = 1032;
 
 /// A file, of which what has been unpacked so far is kept.
 pub(super) struct Unpacked {
     bytes: Vec<u8>,
     /// What follows them, in compressed form.
     rest: Option<Box<dyn Read>>,
+    /// The most bytes that the compressed ones can become.
+    most: u64,
 }
 
 impl Unpacked {
     /// A file that is compressed if it begins like a gzip file.
     pub(super) fn new(bytes: Vec<u8>) -> Self {
-        if bytes.starts_with(GZIP) { Self::packed(bytes) } else { Self { bytes, rest: None } }
+        if bytes.starts_with(GZIP) { Self::packed(bytes) } else { Self { bytes, rest: None, most: 0 } }
     }
 
     /// Data in the form of gzip, or of zlib.
     pub(super) fn packed(bytes: Vec<u8>) -> Self {
         let is_gzip = bytes.starts_with(GZIP);
+        let most = MOST_FROM_A_BYTE.saturating_mul(bytes.len() as u64);
         let bytes = Cursor::new(bytes);
         let rest: Box<dyn Read> =
             if is_gzip { Box::new(MultiGzDecoder::new(bytes)) } else { Box::new(ZlibDecoder::new(bytes)) };
-        Self { bytes: Vec::new(), rest: Some(rest) }
+        Self { bytes: Vec::new(), rest: Some(rest), most }
     }
 
     /// Unpacks until there are so many bytes, or all.
     fn unpack(&mut self, count: u64) -> Result<(), ImageReadError> {
         let Some(rest) = &mut self.rest else { return Ok(()) };
         let wanted = count.saturating_sub(self.bytes.len() as u64);
+        // A vector that grows as it fills takes up to twice the memory.
+        let _ = self.bytes.try_reserve_exact(wanted.min(self.most) as usize);
         let read = rest.take(wanted).read_to_end(&mut self.bytes);
         let damaged = |error: std::io::Error| ImageReadError::Damaged {
             unpacked: self.bytes.len() as u64,

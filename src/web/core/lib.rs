@@ -2,8 +2,7 @@
 #![cfg(target_arch = "wasm32")]
 
 use glam::{DVec3, Vec3};
-use js_sys::{Float64Array, Function, Uint32Array};
-use marching_particles::Value;
+use js_sys::{Float64Array, Function, Uint8Array, Uint32Array};
 use marching_particles::field::formula::number;
 use marching_particles::field::model::SolvedModel;
 use marching_particles::field::rbf::RbfData;
@@ -11,9 +10,10 @@ use marching_particles::field::{BatchField, BatchPiecewise, Field};
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{Sampling, Spacing};
 use marching_particles::session::{
-    Asked, Fault, FaultKind, FieldRequest, FileRecord, FileRequest, Language, Lengths, Session,
-    SolidSettings, SpacingText, describe,
+    Asked, Fault, FaultKind, FieldRequest, FileRecord, FileRequest, ImageFacts, ImagePromise, Language,
+    Lengths, Session, SolidSettings, SpacingText, describe,
 };
+use marching_particles::{Image, Value, VoxelType};
 use marching_particles_values::{answer, read, to_js};
 use std::sync::Arc;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -35,6 +35,8 @@ const TYPES: &str = r"import type {
   FieldAnswer,
   FieldRequest,
   FileRequest,
+  ImageFacts,
+  ImagePromise,
   MeshAnswer,
   Progress,
   FileRecord,
@@ -50,6 +52,9 @@ const TYPES: &str = r"import type {
 #[wasm_bindgen]
 pub struct Core {
     session: Session,
+    /// The image that was opened last, with its name. The field keeps its own copy, which shares
+    /// the voxels.
+    image: Option<(String, Image)>,
 }
 
 #[wasm_bindgen]
@@ -59,13 +64,13 @@ impl Core {
     #[expect(clippy::new_without_default, reason = "a constructor for JavaScript")]
     pub fn new() -> Self {
         console_error_panic_hook::set_once();
-        Self { session: Session::new() }
+        Self { session: Session::new(), image: None }
     }
 
     /// A session whose first formula is that of no surface of the gallery, whatever its text.
     pub fn without_surface() -> Self {
         console_error_panic_hook::set_once();
-        Self { session: Session::without_surface() }
+        Self { session: Session::without_surface(), image: None }
     }
 
     /// The description of all settings, surfaces and figures: `Description`.
@@ -116,6 +121,76 @@ impl Core {
             let request = read::<FieldRequest>(request, FaultKind::Request)?;
             let data = RbfData::from_bytes(system).map_err(|error| Fault::new(FaultKind::Points, &error))?;
             self.session.set_points(data, info, bounds, &request)
+        }))
+    }
+
+    /// What a file of an image promises that begins with these bytes, a megabyte of it or all: an
+    /// `Answer` with `ImagePromise`.
+    #[wasm_bindgen(unchecked_return_type = "Answer<ImagePromise, Fault>")]
+    pub fn image_promise(&self, name: &str, start: &[u8]) -> JsValue {
+        let outline = Image::outline(name, start).map_err(|error| Fault::new(FaultKind::Image, &error));
+        answer(outline.map(|outline| ImagePromise::of(outline.as_ref())))
+    }
+
+    /// Opens a file of an image, for [`Core::set_image`]: an `Answer` with `ImageFacts`. `beside`
+    /// gives the bytes of a file beside it by its name. After an error the last good image stays.
+    #[wasm_bindgen(unchecked_return_type = "Answer<ImageFacts, Fault>")]
+    pub fn open_image(
+        &mut self,
+        name: String,
+        bytes: Vec<u8>,
+        #[wasm_bindgen(unchecked_param_type = "(name: string) => Uint8Array | undefined")] beside: Function,
+    ) -> JsValue {
+        let beside = |name: &str| {
+            let found = beside.call1(&JsValue::NULL, &JsValue::from_str(name));
+            let bytes = found.ok().and_then(|bytes| bytes.dyn_into::<Uint8Array>().ok());
+            bytes.map(|bytes| bytes.to_vec()).ok_or_else(|| "choose both files together".to_owned())
+        };
+        let image = Image::read(&name, bytes, beside).map_err(|error| Fault::new(FaultKind::Image, &error));
+        answer(image.map(|image| self.opened(name, image)))
+    }
+
+    /// Opens an image of an array: the bytes of voxels of a type such as `int16`, of which the
+    /// index along the first axis changes fastest, and the affine map from indices to points, row
+    /// by row; an `Answer` with `ImageFacts`.
+    #[wasm_bindgen(unchecked_return_type = "Answer<ImageFacts, Fault>")]
+    pub fn open_voxels(
+        &mut self,
+        name: String,
+        voxel_type: &str,
+        size: &[u32],
+        rows: &[f64],
+        bytes: Vec<u8>,
+    ) -> JsValue {
+        let image = image_of(voxel_type, size, rows, bytes);
+        answer(image.map(|image| self.opened(name, image)))
+    }
+
+    fn opened(&mut self, name: String, image: Image) -> ImageFacts {
+        let facts = ImageFacts::of(&image);
+        self.image = Some((name, image));
+        facts
+    }
+
+    /// Forgets the image that was opened last. The present field keeps its own.
+    pub fn close_image(&mut self) {
+        self.image = None;
+    }
+
+    /// Changes the field to a surface of the image that was opened last: of a `FieldRequest` the
+    /// parameters `iso`, `label`, `smooth` and `dark`, the box, and a formula with the surface as
+    /// an operand count; to an `Answer` with `FieldAnswer`. After an error the last good field
+    /// stays.
+    #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
+    pub fn set_image(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Partial<FieldRequest>")] request: JsValue,
+    ) -> JsValue {
+        answer(read::<FieldRequest>(request, FaultKind::Request).and_then(|request| {
+            let opened = self.image.as_ref();
+            let (name, image) =
+                opened.ok_or_else(|| Fault::new(FaultKind::Image, &"no image has been opened"))?;
+            self.session.set_image(image, name, &request)
         }))
     }
 
@@ -544,4 +619,15 @@ fn function_of(function: Function) -> impl Field + 'static {
 /// The coordinates of points, three numbers each.
 fn coordinates(points: &[DVec3]) -> Float64Array {
     Float64Array::from(bytemuck::cast_slice::<_, f64>(points))
+}
+
+/// The image of an array, see [`Core::open_voxels`].
+fn image_of(voxel_type: &str, size: &[u32], rows: &[f64], bytes: Vec<u8>) -> Result<Image, Fault> {
+    let wrong = || Fault::new(FaultKind::Request, &"an image has three sizes and twelve numbers of a map");
+    let voxel_type = VoxelType::named(voxel_type).ok_or_else(wrong)?;
+    let size: [u32; 3] = size.try_into().map_err(|_| wrong())?;
+    let [x, y, z] = rows.as_chunks().0 else { return Err(wrong()) };
+    Image::from_bytes(size.map(|n| n as usize), voxel_type, bytes)
+        .and_then(|image| image.with_affine([*x, *y, *z]))
+        .map_err(|error| Fault::new(FaultKind::Image, &error))
 }

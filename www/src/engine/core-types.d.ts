@@ -170,12 +170,14 @@ export type Fault = {
 };
 
 /** Kind of the error with which a command is refused. */
-export type FaultKind = "request" | "settings" | "thickness" | "spacing" | "value" | "too_many" | "unknown_surface" | "box" | "points" | FormulaErrorKind;
+export type FaultKind = "request" | "settings" | "thickness" | "spacing" | "value" | "too_many" | "unknown_surface" | "box" | "points" | "image" | FormulaErrorKind;
 
 /** The field as it now is. */
 export type FieldAnswer = {
   /** The model, if the field is made of points; else it is a formula. */
   model: ModelInfo | null,
+  /** The image, if the field is a surface of one. */
+  image: ImageInfo | null,
   /** Gallery surface, if the formula is still its own. */
   surface: string | null,
   /** Text of the formula; empty if there is none. */
@@ -435,8 +437,71 @@ export type Hole = {
   ratio: number,
 };
 
+/** What is known of an image before its surface is chosen. */
+export type ImageFacts = {
+  /** Voxels along each axis. */
+  size: [number, number, number],
+  /** Distances between voxels along each axis. */
+  spacing: [number, number, number],
+  /** Type of the voxels, such as `int16`. */
+  voxel_type: string,
+  /** Smallest and largest voxel. */
+  range: [number, number],
+  /** Number of voxels in each of 256 bins of equal width over the range. */
+  histogram: Array<number>,
+  /** The iso value that Otsu's method chooses. */
+  otsu: number,
+  /** Its labels with their numbers of voxels, the background 0 included, if its values look like
+  * labels: up to 256 whole numbers. */
+  labels: Array<LabelFacts>,
+  /** What the reader has decided, in sentences. */
+  notes: Array<string>,
+};
+
+/** The image whose surface is sampled, and what was chosen of it. */
+export type ImageInfo = {
+  /** Name of the file or the array. */
+  name: string,
+  /** Voxels along each axis. */
+  size: [number, number, number],
+  /** Smallest and largest voxel. */
+  range: [number, number],
+  /** The label whose boundary is sampled, in place of an iso value. */
+  label: number | null,
+  /** The value on the surface; of a label, that of the distance from it. */
+  iso: number,
+  /** Width of the Gaussian in voxels, 0 for none. */
+  smooth: number,
+  /** Whether the width was chosen for the image, and not by the user. */
+  is_smooth_chosen: boolean,
+  /** Standard deviation of the noise, in the values of the voxels. */
+  noise: number,
+  /** Whether darker voxels are inside. */
+  is_dark_inside: boolean,
+  /** What was decided, in sentences. */
+  notes: Array<string>,
+};
+
+/** What the header of a file promises. */
+export type ImagePromise = {
+  /** Voxels along each axis; none if only the whole file tells. */
+  size: [number, number, number] | null,
+  /** Type of the voxels, such as `int16`; empty if only the whole file tells. */
+  voxel_type: string,
+  /** Bytes of memory that reading and filtering take; 0 if only the whole file tells. */
+  memory: number,
+};
+
 /** The sign of f inside of the closed parts of a surface. */
 export type Inside = "f < 0" | "f > 0" | "f < 0, f > 0";
+
+/** A label of an image. */
+export type LabelFacts = {
+  /** The value of its voxels. */
+  value: number,
+  /** Number of its voxels. */
+  voxels: number,
+};
 
 /** A part of a run, before which a snapshot is taken. */
 export type LessonChapter = {

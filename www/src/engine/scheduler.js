@@ -33,14 +33,20 @@ export class Scheduler {
   constructor({ store, columns, picture, onReady }) {
     this.store = store;
     this.#timer = undefined;
-    this.loader = new ModelLoader({ store, spawn: spawnSolver, sample: (kind) => this.resample({ kind }) });
+    this.loader = new ModelLoader({
+      store,
+      spawn: spawnSolver,
+      sample: (kind) => this.resample({ kind }),
+      openImage: (image, onProgress) => this.sampling.client.openImage(image, onProgress),
+      stopImage: () => this.sampling.client.stopImage(),
+    });
     this.sampling = new Sampler({
       store,
       columns,
       picture,
       spawn: spawnSampler,
       whole: () => this.#request(),
-      solved: (key) => this.loader.client.get(key),
+      solved: (key) => this.loader.solved(key),
       onReady,
       onAsk: (predicted, asked) => this.#askSize(predicted, asked),
     });

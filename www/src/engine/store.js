@@ -66,6 +66,7 @@ export function createStore() {
     loading: signal(null),
     loadingError: signal(null),
     model: signal(null),
+    image: signal(null),
     frame: signal(0),
     turned: signal(0),
     theme: signal('light'),

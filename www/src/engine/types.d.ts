@@ -66,6 +66,8 @@ export type Mesh = { triangles: Uint32Array; about: MeshAnswer; leavesOutChips?:
 /** A piece of a mesh. */
 export type Body = import('./core-types.js').Body;
 export type CoreAnswer<T> = Answer<T, FieldFault>;
+export type ImageFacts = import('./core-types.js').ImageFacts;
+export type ImageInfo = import('./core-types.js').ImageInfo;
 export type FieldAnswer = CoreAnswer<import('./core-types.js').FieldAnswer>;
 /** `surface` is of a model its id, of a file {@link FILE_SURFACE} */
 export type FieldOk = Extract<FieldAnswer, { ok: true }>;
@@ -342,12 +344,17 @@ export interface EngineSignals {
   loadingError: ReadonlySignal<LoadingError | null>;
   /** of the surface shown; null for a formula */
   model: ReadonlySignal<ModelInfo | null>;
+  /** of the image that was opened last; null before */
+  image: ReadonlySignal<ImageFacts | null>;
 }
 export interface EngineCommands {
   /** a gallery surface, a built-in model, or {@link FILE_SURFACE} to return to the file opened last */
   setSurface: (id: string) => void;
-  /** samples the points of a file; resolves once it is sampled, refused or cancelled */
-  openFile: (file: File) => Promise<void>;
+  /**
+   * samples the points or the image of a file, whose voxels may be in a file beside it; resolves once it is sampled,
+   * refused or cancelled
+   */
+  openFile: (file: File, beside?: File[]) => Promise<void>;
   /** fits another number of the points of the present model or file */
   setCentres: (count: number) => void;
   /** cancels the model or file that is loading */
@@ -360,6 +367,8 @@ export interface EngineCommands {
   setFormula: (text: string, options?: { typing?: boolean; whole?: boolean }) => void;
   /** `live` during a drag; call once more without it at the end */
   setParameter: (name: string, value: number, options?: { live?: boolean }) => void;
+  /** samples another label of an image, or its grey values, as a new surface: its parameters `label` and `dark` */
+  chooseOfImage: (parameters: Record<string, number>) => void;
   /** restores the value of the gallery or of the declaration */
   resetParameter: (name: string) => void;
   /**

@@ -23,9 +23,10 @@ export function bindLearnLink(link, engine) {
   };
   for (const type of ['pointerdown', 'focus', 'click']) link.addEventListener(type, write);
   explain(link, () => {
-    // A model from points is too large for a link.
-    const isOwn = !engine.field.peek()?.model;
-    const on = isOwn ? 'this surface' : 'an ellipsoid: a link cannot hold a model from points';
+    // A model from points and an image are too large for a link.
+    const field = engine.field.peek();
+    const held = field?.model ? 'a model from points' : field?.image ? 'an image' : null;
+    const on = held === null ? 'this surface' : `an ellipsoid: a link cannot hold ${held}`;
     return { title: 'The lesson', text: `The paper’s idea in one sitting, with figures on ${on}.` };
   });
 }

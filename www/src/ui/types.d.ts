@@ -17,6 +17,7 @@ type AttributeName =
   | `aria-${string}`
   | `data-${string}`
   | 'accept'
+  | 'multiple'
   | 'alt'
   | 'autocapitalize'
   | 'autocomplete'

@@ -53,6 +53,90 @@ test('a file of particles and a file of the mesh', async () => {
   await expect(ball.toFile('csv', { mesh: true })).rejects.toMatchObject({ name: 'InputError' });
 });
 
+describe('an image', () => {
+  const Side = 32;
+  const Middle = [15.3, 15.6, 15.1];
+  const fromMiddle = (/** @type {number} */ at) => {
+    const p = [at % Side, Math.floor(at / Side) % Side, Math.floor(at / Side ** 2)];
+    return Math.hypot(...p.map((v, k) => v - Middle[k]));
+  };
+  const size = /** @type {[number, number, number]} */ ([Side, Side, Side]);
+  const ball = Int16Array.from({ length: Side ** 3 }, (_, at) => Math.round(100 * (10 - fromMiddle(at))));
+
+  test('of an array is the surface at its iso value, where its spacing and origin put it', async () => {
+    const origin = /** @type {[number, number, number]} */ ([7, -3, 100]);
+    const made5 = await made.sample({ image: ball, size, spacing: 0.5, origin }, { iso: 200, smooth: 0, count: 600 });
+    expect(made5.image).toMatchObject({ size, iso: 200, smooth: 0, label: null, is_dark_inside: false });
+    expect(made5.params).toEqual({ iso: 200, smooth: 0 });
+    for (let i = 0; i < made5.points.length; i += 3) {
+      const out = [0, 1, 2].map((k) => made5.points[i + k] - origin[k] - 0.5 * Middle[k]);
+      expect(Math.abs(Math.hypot(...out) - 4)).toBeLessThan(0.01);
+      const along = out.reduce((sum, v, k) => sum + v * made5.normals[i + k], 0) / 4;
+      expect(along).toBeGreaterThan(0.99);
+    }
+    const affine = [0, 1, 2].map((r) => [...[0, 1, 2].map((c) => (r === c ? 0.5 : 0)), origin[r]]);
+    const same = await made.sample({ image: ball, size, affine }, { iso: 200, smooth: 0, count: 600 });
+    expect(same.digest).toBe(made5.digest);
+  });
+
+  test('of a file is that of its array, in a blob, a buffer or its bytes', async () => {
+    const header = `${"{'descr': '<i2', 'fortran_order': True, 'shape': (32, 32, 32), }".padEnd(117)}\n`;
+    const magic = Uint8Array.from([0x93, ...new TextEncoder().encode('NUMPY'), 1, 0, header.length, 0]);
+    const file = new Blob([magic, header, ball]);
+    const options = /** @type {const} */ ({ iso: 0, count: 500 });
+    const { digest, warnings } = await made.sample({ image: ball, size }, options);
+    expect(warnings).toEqual([]);
+    const buffer = await file.arrayBuffer();
+    for (const image of [file, buffer, new Uint8Array(buffer)])
+      expect((await made.sample({ image }, options)).digest).toBe(digest);
+  });
+
+  test('moves to another iso value, to the surface that a sampling there has', async () => {
+    const first = await made.sample({ image: ball, size }, { iso: 0, count: 600 });
+    const moved = await first.moved({ iso: 10 });
+    expect(moved.params.iso).toBe(10);
+    for (let i = 0; i < moved.points.length; i += 3) {
+      const out = [0, 1, 2].map((k) => moved.points[i + k] - Middle[k]);
+      expect(Math.abs(Math.hypot(...out) - 9.9)).toBeLessThan(0.02);
+    }
+  });
+
+  test('has labels, a dark side, and an operand in a formula', async () => {
+    const mask = Uint8Array.from(ball, (v) => (v > 0 ? 3 : 0));
+    const label = await made.sample({ image: mask, size }, { label: 3, count: 500 });
+    expect(label.params).toEqual({ smooth: 1 });
+    expect(Math.abs(Math.sqrt((label.report?.quality?.area ?? 0) / (4 * Math.PI)) - 10)).toBeLessThan(0.5);
+    const dark = await made.sample({ image: ball, size }, { iso: 0, darkInside: true, count: 300 });
+    const out = [0, 1, 2].map((k) => dark.points[k] - Middle[k]);
+    expect(out.reduce((sum, v, k) => sum + v * dark.normals[k], 0)).toBeLessThan(0);
+    const half = await made.sample({ image: ball, size }, { iso: 0, formula: 'max(model, z - 15.1)', count: 500 });
+    const highest = Math.max(...half.points.filter((_, k) => k % 3 === 2));
+    expect(highest).toBeCloseTo(15.1, 3);
+  });
+
+  test('is refused with what is wrong', async () => {
+    const image = ball;
+    for (const [field, options, words] of /** @type {[any, any, RegExp][]} */ ([
+      [{ image }, {}, /no known kind/],
+      [{ image: 'scan.nii' }, {}, /a File, a Blob/],
+      [{ image, size: [32, 32, 31] }, {}, /31744 values, and the array has 32768/],
+      [{ image: [...image], size }, {}, /typed array/],
+      [{ image, size, spacing: [1, 0, 1] }, {}, /spacing\[1\]: a length above 0/],
+      [{ image, size, spacing: 1, affine: [] }, {}, /in place of spacing/],
+      [{ image: new Blob([ball]), spacing: 2 }, {}, /spacing: for an array/],
+      [{ image, size }, { iso: 1e6 }, /choose one between them/],
+      [{ image, size }, { iso: 1, label: 1 }, /one of the two/],
+      [{ image, size }, { label: 5000 }, /no voxel has the label/i],
+      [{ image, size }, { smooth: -1 }, /from 0 to 100/],
+      ['x', { iso: 1 }, /iso: for an image/],
+    ]))
+      await expect(made.sample(field, options)).rejects.toMatchObject({
+        name: 'InputError',
+        message: expect.stringMatching(words),
+      });
+  });
+});
+
 test('a cell of a sheet is a closed solid whose opposite faces match', async () => {
   const bounds = /** @type {const} */ ({ min: [-3, -3, -3], max: [3, 3, 3] });
   const gyroid = 'sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)';
@@ -454,7 +538,7 @@ describe('what is wrong has a name and says what to do', () => {
     ['InputError', 'points[4]: a number, not NaN', { points: [1, 2, 3, 4, NaN, 6] }, {}],
     ['InputError', 'normals: one for each point, not 1 for 2', { points: [1, 2, 3, 4, 5, 6], normals: [0, 0, 1] }, {}],
     ['InputError', 'points lie on a straight', { points: [0, 0, 0, 1, 0, 0] }, {}],
-    ['InputError', 'a function or points have none', () => 1, { params: { a: 1 } }],
+    ['InputError', 'a function, points or an image have none', () => 1, { params: { a: 1 } }],
     ['InputError', 'formula: for points', SPHERE, { formula: 'max(model, z)' }],
     ['InputError', 'formula: a text', { points: [1, 2, 3] }, { formula: 3 }],
     ['InputError', 'The option radius has no effect with adaptive: true', SPHERE, { radius: 0.01, adaptive: true }],

@@ -14,6 +14,7 @@ const ENGINE_FACE = [
   'engine/pulls',
   'engine/columns',
   'engine/core-numbers',
+  'engine/scans',
   'engine/share/base64url',
 ];
 
@@ -29,6 +30,7 @@ const MAY_USE = {
   'engine/core-types': [],
   'engine/core-numbers': [],
   'engine/constants': [],
+  'engine/scans': [],
   'engine/vector': ['engine/types'],
   'engine/pulls': ['engine/types', 'engine/vector'],
   'engine/types': ['engine/columns', 'engine/core-types', 'engine/lesson', 'engine/share/view'],
@@ -53,13 +55,24 @@ const MAY_USE = {
     'engine/core-numbers',
     'engine/vector',
     'engine/pulls',
+    'engine/scans',
     'engine/view',
   ],
   // How a bundle is brought in, and how a worker keeps its pace.
   'engine/bundle': [],
   // The lesson runs beside the sampler and knows nothing of it.
   'engine/lesson': ['engine/core-types', 'engine/bundle'],
-  'engine/points': ['engine/types', 'engine/constants', 'engine/store', 'engine/share', 'engine/bundle'],
+  // Files of images, opened in the core: in the worker, and in that of the package.
+  'engine/images': ['engine/types', 'engine/core-types', 'engine/bundle'],
+  'engine/points': [
+    'engine/types',
+    'engine/constants',
+    'engine/store',
+    'engine/share',
+    'engine/bundle',
+    'engine/images',
+    'engine/scans',
+  ],
   'engine/sampling': [
     'engine/types',
     'engine/constants',
@@ -67,6 +80,7 @@ const MAY_USE = {
     'engine/store',
     'engine/share',
     'engine/bundle',
+    'engine/images',
     'engine/points/types',
   ],
   'engine/commands': [
@@ -76,6 +90,7 @@ const MAY_USE = {
     'engine/share',
     'engine/points',
     'engine/parts',
+    'engine/scans',
   ],
   // The files beside these rooms put them together.
   engine: ['engine'],

@@ -74,3 +74,28 @@ fn images_that_cannot_be_sampled_are_refused() {
     fs::write(&cut, &fs::read(&path).expect("read")[..5_000]).expect("written");
     assert!(fails(2, &["sample", "--image", &cut.display().to_string()]).contains("cut off"));
 }
+
+#[test]
+fn voxels_without_a_header_are_what_the_option_says() {
+    let path = ball("with-header.npy");
+    let surface = ["--iso", "0", "--count", "500", "--voxel-size", "0.5x0.5x2"];
+    let digest = |args: &[&str]| sample(&[args, &surface].concat())["digest"].clone();
+    let wanted = digest(&["--image", &path]);
+    // The voxels alone, with their bytes in the other order, behind seven others.
+    let voxels = fs::read(&path).expect("read")[128..].to_vec();
+    let swapped = voxels.chunks(8).flat_map(|bytes| bytes.iter().rev()).copied();
+    let raw = file("ball.raw");
+    fs::write(&raw, [0; 7].into_iter().chain(swapped).collect::<Vec<u8>>()).expect("written");
+    let raw = raw.display().to_string();
+    assert_eq!(digest(&["--image", &raw, "--raw", "24x24x24,float64,big,skip=7"]), wanted);
+    for (form, words) in [
+        ("24x24,uint8", "x, y and z come first"),
+        ("24x24x24,short", "one of uint8"),
+        ("24x24x24,uint8,skip=x", "number of bytes"),
+        ("24x24x24,uint8,middle", "neither big"),
+    ] {
+        assert!(fails(2, &["sample", "--image", &raw, "--raw", form]).contains(words), "{form}");
+    }
+    assert!(fails(2, &["sample", "--image", &raw, "--raw", "24x24x25,float64"]).contains("cut off"));
+    assert!(fails(2, &["sample", "--image", &raw, "--voxel-size", "1x0x1"]).contains("above 0"));
+}

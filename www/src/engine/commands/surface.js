@@ -6,6 +6,7 @@
 
 import { batch } from '@preact/signals-core';
 import { FILE_SURFACE } from '../constants.js';
+import { scanOf } from '../scans.js';
 import {
   freshShape,
   fromPoints,
@@ -31,9 +32,9 @@ import { change, changeView, description, showAll } from '../store.js';
  *   'restore'>} SurfaceCommands
  */
 /**
- * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'pull' | 'setPulls' | 'declareParameter' |
- *   'readNumber' | 'thicknessFault' | 'setBounds' | 'enlargement' | 'setPlane' | 'fitBox' | 'setSetting' |
- *   'resetSetting'>} InputCommands
+ * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'chooseOfImage' | 'pull' | 'setPulls' |
+ *   'declareParameter' | 'readNumber' | 'thicknessFault' | 'setBounds' | 'enlargement' | 'setPlane' | 'fitBox' |
+ *   'setSetting' | 'resetSetting'>} InputCommands
  */
 
 /**
@@ -100,9 +101,11 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
     setSurface(id) {
       const about = store.description.value;
       const surface = surfaceOf(about, id);
-      if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && scheduler.loader.hasFile)) return;
+      const isKnown = surface || scanOf(id) || modelOf(about, id);
+      if (!isKnown && !(id === FILE_SURFACE && scheduler.loader.hasFile)) return;
       showAll(store);
-      change(store, freshShape(description(store), state.value.settings, id));
+      const fresh = freshShape(description(store), state.value.settings, id);
+      change(store, { ...fresh, ...(id === FILE_SURFACE ? { parameters: scheduler.loader.beginning() } : {}) });
       // Another surface is framed, wherever the hand or a link has left the camera.
       viewer.linked = null;
       const { camera } = viewer;
@@ -112,10 +115,10 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
       }
       scheduler.choose('new');
     },
-    openFile(file) {
+    openFile(file, beside) {
       // A formula still waiting for its pause would replace the file.
       scheduler.forgetLater();
-      return scheduler.loader.openFile(file);
+      return scheduler.loader.openFile(file, beside);
     },
     setCentres(count) {
       const centres = validCentres(count, description(store), state.value.surface);
@@ -175,6 +178,10 @@ export function inputCommands({ store, scheduler, framing }) {
       const about = store.description.value;
       if (!about || !isName(about, name) || !Number.isFinite(value)) return;
       resample(live, { parameters: { ...state.value.parameters, [name]: value } });
+    },
+    chooseOfImage(parameters) {
+      change(store, { parameters });
+      scheduler.resample({ kind: 'new' });
     },
     resetParameter(name) {
       const { [name]: _, ...parameters } = state.value.parameters;

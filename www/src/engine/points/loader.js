@@ -1,29 +1,52 @@
 /**
- * Loads models and files and samples them once they are solved. The state may name a built-in model before it is
- * solved; if solving fails, the state returns to the previous surface. A file enters the state only after it has been
- * solved.
+ * Loads models and files and samples them once they are solved, or opened if they are images. The state may name a
+ * built-in model before it is solved; if solving fails, the state returns to the previous surface. A file enters the
+ * state only after that.
  *
  * @module
  */
 import { batch } from '@preact/signals-core';
-import { FILE_SURFACE } from '../constants.js';
+import { FILE_SURFACE, IMAGE_TYPES } from '../constants.js';
+import { scanOf } from '../scans.js';
 import { defaultState, emptyState, freshShape, fromPoints, modelOf } from '../share/state.js';
 import { PointsClient } from './client.js';
 
 /**
- * @import { SampleKind, Shape } from '../types.js'
+ * @import { KeyedImage, Opened } from '../images/types.js'
+ * @import { ImageFacts, SampleKind, Shape } from '../types.js'
+ * @import { Ending } from './client.js'
  * @import { LoaderOptions, Refusal, Wanted } from './types.js'
  */
 
 /** Key of a solved model. @param {string} points  of the model or the file @param {number | null} centres */
 const keyOf = (points, centres) => (centres === null ? points : `${points}, ${centres} centres`);
 
+/** An image with more different values is taken for one of grey values at first. */
+const MOST_BODIES = 32;
+
+/** Whether the name of a file is that of an image. @param {string} name */
+const isImageName = (name) => IMAGE_TYPES.split(',').some((type) => name.toLowerCase().endsWith(type));
+
+/**
+ * The parameters with which the surface of an image begins: of labels that of the largest body, else none.
+ * @param {ImageFacts} facts @returns {Shape['parameters']}
+ */
+function beginningOf({ labels }) {
+  if (labels.length === 0 || labels.length > MOST_BODIES) return {};
+  const bodies = labels.filter(({ value }) => value !== 0);
+  return { label: bodies.reduce((largest, other) => (other.voxels > largest.voxels ? other : largest)).value };
+}
+
 export class ModelLoader {
   #store;
   #sample;
+  #openImage;
+  #stopImage;
 
   /** The file opened last, and the beginning of the keys of its models. @type {{file: File, key: string} | null} */
   #opened;
+  /** The images that were opened, by their keys. @type {Map<string, {image: KeyedImage, facts: ImageFacts}>} */
+  #images = new Map();
   #files;
 
   /** The surface that was sampled last. @type {Shape | null} */
@@ -33,15 +56,14 @@ export class ModelLoader {
   #orderId;
 
   /** @param {LoaderOptions} options */
-  constructor({ store, spawn, sample }) {
+  constructor({ store, spawn, sample, openImage = () => Promise.resolve(null), stopImage = () => {} }) {
     this.#store = store;
     this.#sample = sample;
+    this.#openImage = openImage;
+    this.#stopImage = stopImage;
     this.client = new PointsClient({
       spawn,
-      onProgress: ({ label, fraction }) => {
-        const { loading } = store;
-        if (loading.value) loading.value = { ...loading.value, label, fraction };
-      },
+      onProgress: ({ label, fraction }) => this.#tell(label, fraction),
     });
     this.#opened = null;
     this.#files = 0;
@@ -59,19 +81,32 @@ export class ModelLoader {
   key() {
     const { surface, centres } = this.#store.state.value;
     if (!fromPoints(this.#store.description.value, surface)) return undefined;
-    return keyOf(surface === FILE_SURFACE ? (this.#opened?.key ?? '') : surface, centres);
+    const own = surface === FILE_SURFACE ? (this.#opened?.key ?? '') : surface;
+    return this.#images.has(own) || scanOf(own) ? own : keyOf(own, centres);
   }
 
   /** Returns whether the state's surface can be sampled now. */
   ready() {
     const key = this.key();
-    return key === undefined || this.client.get(key) !== undefined;
+    return key === undefined || this.solved(key) !== undefined;
+  }
+
+  /** Returns the solved model under this key, or the opened image. @param {string} key */
+  solved(key) {
+    return this.#images.get(key) ?? this.client.get(key);
+  }
+
+  /** The parameters with which the file opened last begins. @returns {Shape['parameters']} */
+  beginning() {
+    const known = this.#images.get(this.#opened?.key ?? '');
+    return known ? beginningOf(known.facts) : {};
   }
 
   /** Records the state's surface, which is being sampled, as the one to return to. */
   settled() {
     const { v: _, view: __, ...shape } = this.#store.state.value;
     this.#last = shape;
+    this.#store.image.value = this.#images.get(this.key() ?? '')?.facts ?? null;
   }
 
   /** Returns the state; while its model is loading, the state with the previous surface. */
@@ -93,7 +128,9 @@ export class ModelLoader {
     const key = this.key();
     const wanted = this.#wanted();
     if (key === undefined || !wanted || this.orderKey === key) return;
-    const done = await this.#order(wanted, key, () => {
+    const { order } = wanted;
+    const load = () => (order ? this.client.load(key, order) : this.#computed(key, wanted));
+    const done = await this.#order(wanted, key, load, () => {
       if (this.key() === key) this.#sample(kind);
     });
     if (done || this.key() !== key || this.orderKey === key) return;
@@ -109,14 +146,17 @@ export class ModelLoader {
   #wanted() {
     const { surface, centres } = this.#store.state.value;
     const model = modelOf(this.#store.description.value, surface);
+    const scan = scanOf(surface);
+    if (scan) return { id: surface, name: scan.name, order: null };
     if (model) return { id: surface, name: model.name, order: { model: surface, centres } };
-    if (surface !== FILE_SURFACE || !this.#opened) return null;
+    if (surface !== FILE_SURFACE || !this.#opened || this.#images.has(this.#opened.key)) return null;
     const { file } = this.#opened;
     return { id: surface, name: file.name, order: { file, centres } };
   }
 
-  /** @param {File} file */
-  async openFile(file) {
+  /** @param {File} file @param {File[]} [beside]  one of which may hold the voxels of an image */
+  async openFile(file, beside = []) {
+    if (isImageName(file.name)) return this.#openImageFile(file, beside);
     // Without a core the solver alone refuses what is too large.
     const most = this.#store.description.value?.limits.file_bytes ?? Number.POSITIVE_INFINITY;
     if (file.size > most) {
@@ -130,8 +170,8 @@ export class ModelLoader {
     this.#files += 1;
     const key = `file ${this.#files}`;
     const { state } = this.#store;
-    const wanted = { id: FILE_SURFACE, name: file.name, order: { file, centres: null } };
-    await this.#order(wanted, keyOf(key, null), () => {
+    const load = () => this.client.load(keyOf(key, null), { file, centres: null });
+    await this.#order({ id: FILE_SURFACE, name: file.name }, keyOf(key, null), load, () => {
       this.#opened = { file, key };
       const { value: now } = state;
       state.value = { ...now, ...freshShape(this.#store.description.value, now.settings, FILE_SURFACE) };
@@ -139,12 +179,55 @@ export class ModelLoader {
     });
   }
 
+  /** @param {File} file @param {File[]} beside */
+  async #openImageFile(file, beside) {
+    this.cancel();
+    this.#files += 1;
+    const others = beside.map((other) => ({ name: other.name, file: other }));
+    const image = { key: `file ${this.#files}`, name: file.name, file, beside: others };
+    await this.#order(
+      { id: FILE_SURFACE, name: file.name },
+      image.key,
+      () => this.#open(image),
+      () => {
+        this.#opened = { file, key: image.key };
+        const { state, description } = this.#store;
+        const { value: now } = state;
+        const fresh = freshShape(description.value, now.settings, FILE_SURFACE);
+        state.value = { ...now, ...fresh, parameters: this.beginning() };
+        this.#sample('new');
+      },
+    );
+  }
+
+  /** Computes an image of the gallery and opens it. @param {string} key @param {Pick<Wanted, 'id' | 'name'>} scan */
+  async #computed(key, { id, name }) {
+    const { scanFile } = await import('../images/scans.js');
+    return this.#open({ key, name, file: scanFile(id), beside: [] });
+  }
+
+  /** @param {KeyedImage} image @returns {Promise<Ending | { opened: Opened }>} */
+  async #open(image) {
+    const opened = await this.#openImage(image, (label, fraction) => this.#tell(label, fraction));
+    if (!opened) return { givenUp: true };
+    if (!opened.ok) return { refusal: { kind: 'image', message: opened.message } };
+    this.#images.set(image.key, { image, facts: opened.facts });
+    return { opened };
+  }
+
+  /** @param {string} label @param {number} fraction */
+  #tell(label, fraction) {
+    const { loading } = this.#store;
+    if (loading.value) loading.value = { ...loading.value, label, fraction };
+  }
+
   /**
-   * @param {Wanted} wanted @param {string} key
-   * @param {() => void} done  called once the model is solved
-   * @returns whether the model was solved
+   * @param {Pick<Wanted, 'id' | 'name'>} wanted @param {string} key
+   * @param {() => Promise<Ending | { opened: Opened }>} load
+   * @param {() => void} done  called once the model is solved, or the image is open
+   * @returns whether it is
    */
-  async #order({ id, name, order }, key, done) {
+  async #order({ id, name }, key, load, done) {
     const { loading, loadingError } = this.#store;
     this.#orderId += 1;
     const mine = this.#orderId;
@@ -153,16 +236,16 @@ export class ModelLoader {
       loadingError.value = null;
       loading.value = { id, name, label: 'Starting', fraction: 0 };
     });
-    const outcome = await this.client.load(key, order);
+    const outcome = await load();
     if (this.#orderId !== mine) return false;
     this.orderKey = '';
     // A batch, so that no effect runs between the end of the loading and the start of the run.
     batch(() => {
       loading.value = null;
-      if ('solved' in outcome) done();
+      if ('solved' in outcome || 'opened' in outcome) done();
       else if ('refusal' in outcome) this.#refused(id, name, outcome.refusal);
     });
-    return 'solved' in outcome;
+    return !('refusal' in outcome || 'givenUp' in outcome);
   }
 
   /** @param {string} id @param {string} name @param {Refusal} refusal */
@@ -175,5 +258,6 @@ export class ModelLoader {
   /** Gives up the current order. */
   cancel() {
     this.client.giveUp();
+    this.#stopImage();
   }
 }

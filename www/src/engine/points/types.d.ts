@@ -2,6 +2,7 @@
 // handles one model or file and is then terminated, which releases the memory that a large file takes. Termination is
 // also how an order is cancelled.
 import type { Timers } from '../bundle/types.js';
+import type { KeyedImage, Opened } from '../images/types.js';
 import type { Store } from '../store.js';
 import type { Bounds, ModelInfo, PointsAnswer, SampleKind, SolvedAnswer } from '../types.js';
 
@@ -12,8 +13,8 @@ export type Refusal = { kind: string; message: string; details?: string };
  * default number.
  */
 export type Order = ({ model: string } | { file: File }) & { centres: number | null };
-/** An order with the surface's id and its name on the page. */
-export type Wanted = { id: string; name: string; order: Order };
+/** An order with the surface's id and its name on the page; none for an image that is computed. */
+export type Wanted = { id: string; name: string; order: Order | null };
 /** A solved model. The core reads `field` together with `info`; `centres` has three coordinates per centre. */
 export type Solved = { field: Uint8Array; info: { info: ModelInfo; bounds: Bounds }; centres: Float32Array };
 /** `failed`: the bundle did not load */
@@ -43,4 +44,7 @@ export interface LoaderOptions {
   spawn: () => WorkerLike;
   /** samples the present state */
   sample: (kind?: SampleKind) => void;
+  /** opens the file of an image in the sampler's worker */
+  openImage?: (image: KeyedImage, onProgress: (label: string, fraction: number) => void) => Promise<Opened>;
+  stopImage?: () => void;
 }

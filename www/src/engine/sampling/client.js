@@ -8,6 +8,7 @@ import { Requests } from '../bundle/requests.js';
 import { Supervisor } from './supervisor.js';
 
 /**
+ * @import { KeyedImage, Opened } from '../images/types.js'
  * @import { FileRequest, Language } from '../types.js'
  * @import { ClientEvents, Clock, FromWorker, ToWorker, WorkerLike } from './types.js'
  */
@@ -24,6 +25,10 @@ export class SamplingClient {
   #files = new Requests();
   /** The texts that are being read as numbers or thicknesses, and the programs that are being written. */
   #texts = new Requests();
+  /** The image that is being opened, and what hears of its progress. */
+  #images = new Requests();
+  /** @type {(label: string, fraction: number) => void} */
+  #onImage = () => {};
   #isBusy = false;
 
   /** @param {ClientEvents & {spawn: () => WorkerLike, clock?: Clock}} options */
@@ -129,9 +134,28 @@ export class SamplingClient {
     return this.#texts.make((request) => this.post({ type: 'thickness', request, text })).catch(() => null);
   }
 
+  /**
+   * Opens the file of an image in the worker. Resolves with null if that is stopped, or the worker is gone.
+   * @param {KeyedImage} image @param {(label: string, fraction: number) => void} onProgress
+   * @returns {Promise<Opened>}
+   */
+  openImage(image, onProgress) {
+    if (!this.isThere) return Promise.resolve({ ok: false, message: 'the sampler is not running' });
+    this.#onImage = onProgress;
+    return this.#images.make((request) => this.post({ type: 'image', request, image })).catch(() => null);
+  }
+
+  /** Gives up the image that is being opened: at once here, and in the worker as soon as it listens. */
+  stopImage() {
+    if (this.#images.count === 0) return;
+    this.post({ type: 'image_stop' });
+    this.#images.refuseAll(lost());
+  }
+
   /** Gives up all files and texts, because the worker is gone. */
   forgetFiles() {
     this.#texts.refuseAll(lost());
+    this.#images.refuseAll(lost());
     this.#files.refuseAll(lost());
     this.#attend();
   }
@@ -168,6 +192,10 @@ export class SamplingClient {
         return;
       case 'thickness':
         return this.#texts.answer(message.request, message.fault);
+      case 'image_progress':
+        return this.#onImage(message.label, message.fraction);
+      case 'image':
+        return this.#images.answer(message.request, message.opened);
       case 'file':
         if (message.bytes) this.#files.answer(message.request, message.bytes);
         else this.#files.refuse(message.request, lost());

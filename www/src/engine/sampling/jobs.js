@@ -9,6 +9,8 @@ import { KINDS } from './kinds.js';
 
 /**
  * @import { Core } from '../../wasm/core/core.js'
+ * @import { ImageKeeper } from '../images/keeper.js'
+ * @import { KeyedImage } from '../images/types.js'
  * @import { FieldAnswer } from '../types.js'
  * @import { FromWorker, Job, SampleJob, ToWorker } from './types.js'
  */
@@ -19,15 +21,28 @@ import { KINDS } from './kinds.js';
  */
 const PATIENCE_MS = 150;
 
+/**
+ * What opens images in the core. `isReady` opens the one of a job if need be, and has the worker ask again.
+ * @typedef {{isReady: (core: Core, image: KeyedImage) => boolean, setField: ImageKeeper['setField']}} Images
+ */
+/** Where no job is of an image. @type {Images} */
+const NO_IMAGES = {
+  isReady: () => true,
+  setField: () => {
+    throw new Error('there are no images here');
+  },
+};
+
 /** A job that has not started. @typedef {{job: Job, stopped: boolean}} Pending */
 
 /**
  * Sets the field of a job in the core. A model is passed again for every job: it has a few kilobytes, and tracking
  * which model the core holds would cost more.
- * @param {Core} core @param {SampleJob} job
+ * @param {Core} core @param {SampleJob} job @param {Images} images
  * @returns {FieldAnswer}
  */
-function setField(core, { field, points }) {
+function setField(core, { field, points, image }, images) {
+  if (image) return images.setField(core, image, field);
   if (!points) return core.set_field(field);
   return core.set_points(points.field, points.info, field);
 }
@@ -48,6 +63,7 @@ export function measured(core, { request, field, placed: { positions, normals, r
 export class Jobs {
   #post;
   #nowMs;
+  #images;
 
   /** The latest job; its field has not been passed to the core. @type {Pending | null} */
   #waiting;
@@ -64,10 +80,11 @@ export class Jobs {
   /** When it began, and whether all its particles are on their way to the page. */
   #running = { sinceMs: 0, isSampled: false };
 
-  /** @param {(message: FromWorker) => void} post @param {() => number} nowMs */
-  constructor(post, nowMs) {
+  /** @param {(message: FromWorker) => void} post @param {() => number} nowMs @param {Images} [images] */
+  constructor(post, nowMs, images = NO_IMAGES) {
     this.#post = post;
     this.#nowMs = nowMs;
+    this.#images = images;
     this.#waiting = null;
     this.#accepted = null;
     /** The job that runs. @type {Job | null} */
@@ -138,9 +155,10 @@ export class Jobs {
     const next = this.#waiting;
     if (!next || this.#isPatient(next.job)) return;
     const { job } = next;
+    if (job.kind !== 'relax' && job.image && !this.#images.isReady(core, job.image)) return;
     this.#waiting = null;
     if (job.kind !== 'relax') {
-      const answer = setField(core, job);
+      const answer = setField(core, job, this.#images);
       this.#post({ type: 'field', id: job.id, answer });
       if (!answer.ok) return;
     }

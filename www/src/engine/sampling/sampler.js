@@ -159,13 +159,15 @@ export class Sampler {
   #jobOf(id, request) {
     if (request.kind === 'relax') return { ...request, id };
     const { kind, field, settings, following = [] } = request;
+    const solved = field.points === undefined ? undefined : this.solved(field.points);
     return {
       kind,
       id,
       field,
       settings,
       following,
-      points: (field.points !== undefined && this.solved(field.points)) || null,
+      points: solved && 'field' in solved ? solved : null,
+      image: solved && 'image' in solved ? solved.image : null,
       askAbove: KINDS[kind].isUnasked ? Number.MAX_SAFE_INTEGER : Number(settings.max_particles),
     };
   }

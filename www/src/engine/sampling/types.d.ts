@@ -1,6 +1,7 @@
 // Messages between the page and the sampler's worker, and the record of the runs.
 
 import type { Timers, WorkerEnv } from '../bundle/types.js';
+import type { KeyedImage, Opened } from '../images/types.js';
 import type { Solved } from '../points/types.js';
 import type { Store } from '../store.js';
 import type {
@@ -30,13 +31,15 @@ export type Mesh = import('../types.js').Mesh;
 /**
  * Samples the field from the start, in the way of its kind (see `kinds.js`). The particles may follow the surface
  * instead in the settings of `following`; with `isClosed` they are then neither born nor die. A job with more than
- * `askAbove` expected particles is returned without running. `points` is the solved model that `field` names.
+ * `askAbove` expected particles is returned without running. `points` is the solved model that `field` names,
+ * and `image` the image.
  */
 export interface SampleJob {
   kind: SampleKind;
   id: number;
   field: FieldRequest;
   points: Pick<Solved, 'field' | 'info'> | null;
+  image?: KeyedImage | null;
   settings: Settings;
   following: Settings[];
   isClosed?: boolean;
@@ -52,7 +55,8 @@ export type Job = SampleJob | RelaxJob;
  * particles that the worker holds. `mesh` says whether the page draws a mesh. If so, it is made at the end of every
  * run, and sent with the last columns. `export` asks for the mesh as a file, once no job is left. `number` asks for
  * the number that a text without names stands for, `code` for the program that makes the particles. `measure` measures
- * particles that the sampler has not placed: a worker that is asked has no jobs. The first message is `core`, or
+ * particles that the sampler has not placed: a worker that is asked has no jobs. `image` opens the file of an image,
+ * which `image_stop` gives up. The first message is `core`, or
  * `no_core` if the core could not be loaded.
  */
 export type ToWorker =
@@ -66,6 +70,8 @@ export type ToWorker =
   | { type: 'code'; request: number; language: Language }
   | { type: 'thickness'; request: number; text: string }
   | { type: 'measure'; request: number; field: Partial<FieldRequest>; placed: PlacedColumns; isAdaptive: boolean }
+  | { type: 'image'; request: number; image: KeyedImage }
+  | { type: 'image_stop' }
   | { type: 'stop' }
   | { type: 'drawn'; id: number };
 /** Particles that the sampler has not placed: vectors of three floats. */
@@ -128,6 +134,8 @@ export type FromWorker =
   | RecordMessage
   | ReportMessage
   | { type: 'file'; request: number; bytes: Uint8Array<ArrayBuffer> | null }
+  | { type: 'image_progress'; request: number; label: string; fraction: number }
+  | { type: 'image'; request: number; opened: Opened }
   | { type: 'measured'; request: number; measures: PlacedMeasures }
   | { type: 'measured'; request: number; error: FieldFault }
   | { type: 'crashed'; id: number; message: string; stack: string };
@@ -262,7 +270,7 @@ export interface SamplerOptions {
   /** returns the full run of the present state */
   whole: () => SampleRequest;
   /** returns the solved model that a field names */
-  solved?: (key: string) => Solved | undefined;
+  solved?: (key: string) => Solved | { image: KeyedImage } | undefined;
   clock?: Clock;
 }
 export interface SupervisorOptions {

@@ -6,6 +6,7 @@
  */
 import init, { Core } from '../../wasm/core/core.js';
 import { crashWords } from '../bundle/crash.js';
+import { ImageKeeper } from '../images/keeper.js';
 import { curvatureColumn, meshColumn, runJob } from './job.js';
 import { Jobs, measured } from './jobs.js';
 import { join, write } from './joining.js';
@@ -17,6 +18,8 @@ import { BEAT_MS } from './protocol.js';
 
 /** Largest memory of a run and its report. Browsers end pages that use much more, on phones much earlier. */
 const MEMORY_MB = { desk: 512, phone: 256 };
+/** Largest memory of an image while it is read and filtered. */
+const IMAGE_MB = { desk: 1600, phone: 400 };
 
 /** @param {Navigator & {userAgentData?: {mobile: boolean}, deviceMemory?: number}} device */
 const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) =>
@@ -25,7 +28,17 @@ const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) =>
 /** @param {FromWorker} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
 
-const jobs = new Jobs(post, () => performance.now());
+const device = onPhone(navigator) ? 'phone' : 'desk';
+const images = new ImageKeeper(IMAGE_MB[device] * 1e6);
+/** Continues once the image of a job is open. @param {unknown} [error] */
+const opened = (error) => {
+  if (error) crashed(0, error);
+  else void pump();
+};
+const jobs = new Jobs(post, () => performance.now(), {
+  isReady: (ours, image) => images.isReady(ours, image, opened),
+  setField: (ours, image, field) => images.setField(ours, image, field),
+});
 /** Number of column messages that the page has not drawn yet. */
 let undrawn = 0;
 /** Whether the page shows the curvature, and whether it draws a mesh. */
@@ -174,6 +187,12 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
     case 'thickness':
       post({ type: 'thickness', request: data.request, fault: core?.thickness_fault(data.text) ?? null });
       break;
+    case 'image':
+      void open(data);
+      break;
+    case 'image_stop':
+      images.stop();
+      break;
     case 'measure':
       placed.push(data);
       void pump();
@@ -187,6 +206,18 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
     default:
   }
 };
+
+/** Opens the file of an image for the page. @param {Extract<ToWorker, {type: 'image'}>} question */
+async function open({ request, image }) {
+  if (!core) return post({ type: 'image', request, opened: { ok: false, message: 'the sampler is not there yet' } });
+  try {
+    const tell = (/** @type {string} */ label, /** @type {number} */ fraction) =>
+      post({ type: 'image_progress', request, label, fraction });
+    post({ type: 'image', request, opened: await images.open(core, image, tell) });
+  } catch (error) {
+    crashed(0, error);
+  }
+}
 
 // Shows the supervisor that the worker is alive while the core loads.
 const beat = setInterval(() => post({ type: 'beat' }), BEAT_MS);
@@ -203,7 +234,7 @@ async function boot(module) {
   try {
     await init({ module_or_path: module });
     core = new Core();
-    core.limit_memory(MEMORY_MB[onPhone(navigator) ? 'phone' : 'desk']);
+    core.limit_memory(MEMORY_MB[device]);
     post({ type: 'ready', description: core.describe() });
   } catch (error) {
     failed('init', `The sampler did not start: ${crashOf(error).message}`);

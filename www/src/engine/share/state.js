@@ -6,6 +6,7 @@
 
 import { FILE_SURFACE, MODEL, MOST_PARAMETERS, MOST_PULLS } from '../constants.js';
 import { LONGEST_PULL } from '../pulls.js';
+import { scanOf } from '../scans.js';
 import { size, vec } from '../vector.js';
 import { finite, isRecord, vec3, within } from './valid.js';
 import { homeView, validView } from './view.js';
@@ -94,7 +95,9 @@ export function lastingSettings({ settings: known }, settings) {
  */
 export function freshShape(description, settings, surface, formula = ownFormula(description, surface)) {
   const { v: _, view: __, ...shape } = emptyState();
-  return { ...shape, surface, formula, settings: description ? lastingSettings(description, settings) : settings };
+  const parameters = { ...scanOf(surface)?.parameters };
+  const lasting = description ? lastingSettings(description, settings) : settings;
+  return { ...shape, surface, formula, parameters, settings: lasting };
 }
 
 /**
@@ -113,11 +116,12 @@ export function clampSettings(description, settings) {
 export const modelOf = (description, id) => description?.models.find((model) => model.id === id);
 
 /**
- * Returns whether a surface is made from points: a built-in model or a file.
+ * Returns whether a surface is made from points or voxels: a built-in model, a computed image or a file.
  * @param {Description | null} description
  * @param {string} id
  */
-export const fromPoints = (description, id) => id === FILE_SURFACE || modelOf(description, id) !== undefined;
+export const fromPoints = (description, id) =>
+  id === FILE_SURFACE || scanOf(id) !== undefined || modelOf(description, id) !== undefined;
 
 /** The box alone. @param {Bounds} bounds @returns {Bounds} */
 const boxOf = ({ min, max }) => ({ min, max });
@@ -136,7 +140,11 @@ export function fieldRequest(state, description, points) {
     request.points = points;
     if (state.pulls.length) request.pulls = state.pulls;
     // A model by itself needs no formula.
-    if (state.formula.trim() === MODEL) return request;
+    if (state.formula.trim() === MODEL) {
+      // What is chosen of an image are parameters.
+      if (Object.keys(state.parameters).length > 0) request.parameters = { ...state.parameters };
+      return request;
+    }
   }
   request.parameters = { ...state.parameters };
   if (state.formula !== ownFormula(description, state.surface)) request.formula = state.formula;
@@ -250,7 +258,7 @@ export function sanitize(raw, description, hasFile = false) {
     // surface.
     const { camera: _, ...view } = isRecord(raw.view) ? raw.view : {};
     const rest = sanitize({ settings: raw.settings, view }, description);
-    return { state: rest.state, reset: ['the surface, whose points are in a file', ...rest.reset] };
+    return { state: rest.state, reset: ['the surface, whose points or voxels are in a file', ...rest.reset] };
   }
 
   const id = typeof raw.surface === 'string' ? raw.surface : '';
@@ -321,6 +329,9 @@ export function sanitize(raw, description, hasFile = false) {
   return { state, reset };
 }
 
+/** What is chosen of a computed image at first. @param {unknown} surface */
+const beginningOf = (surface) => ({ parameters: { ...scanOf(String(surface))?.parameters } });
+
 /**
  * Applies a patch to a state. Another surface, or a formula in the place of a model that it does
  * not name, brings its own parameters and box. The surface null is the one that a state begins with.
@@ -337,7 +348,12 @@ export function mergeState(now, given, description, hasFile) {
       ? patch.surface !== now.surface
       : typeof patch.formula === 'string' && fromPoints(description, now.surface) && !namesModel(patch.formula);
   const base = another
-    ? { ...defaultState(description), view: now.view, settings: lastingSettings(description, now.settings) }
+    ? {
+        ...defaultState(description),
+        ...beginningOf(patch.surface),
+        view: now.view,
+        settings: lastingSettings(description, now.settings),
+      }
     : now;
   const raw = {
     ...base,

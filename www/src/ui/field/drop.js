@@ -1,6 +1,6 @@
 /** Opens a file that is dropped anywhere on the page, and shows a hint while a file is dragged over it. */
 import { h } from '../dom.js';
-import { carriesFiles, filesOf } from './files.js';
+import { carriesFiles, filesOf, IMAGE_FORMATS, ofFiles } from './files.js';
 
 /**
  * @import { Engine } from '../../engine/types.js'
@@ -20,6 +20,7 @@ export function mountDrop(engine, toast) {
       { class: 'drop-text' },
       h('strong', null, 'Drop to sample its surface'),
       h('span', { class: 'quiet' }, () => filesOf(engine)),
+      h('span', { class: 'quiet' }, `or an image: ${IMAGE_FORMATS}`),
     ),
   );
   document.body.append(target);
@@ -51,11 +52,12 @@ export function mountDrop(engine, toast) {
       event.preventDefault();
       // Otherwise the formula editor would insert the file as text.
       event.stopPropagation();
-      const [file, ...others] = dataTransfer.files;
+      const { file, beside } = ofFiles([...dataTransfer.files]);
       if (!file) return;
-      if (others.length > 0)
+      // Of an image the voxels may be beside the header.
+      if (beside.length > 1 || (beside.length === 1 && !/\.(hdr|nhdr|mhd)$/i.test(file.name)))
         toast({ id: 'files', kind: 'info', text: `One file makes one surface: ${file.name} was taken.` });
-      void engine.openFile(file);
+      void engine.openFile(file, beside);
     },
     true,
   );

@@ -1,4 +1,4 @@
-/** Describes the point files that can be read, and the errors in reading them. */
+/** Describes the files that can be read, and the errors in reading them. */
 import { FILE_TYPES } from '../../engine/constants.js';
 
 /** @import { Engine, LoadingError } from '../../engine/types.js' */
@@ -10,6 +10,20 @@ const FORMATS = FILE_TYPES.split(',')
 
 /** @param {string[]} words */
 const listOf = (words) => (words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} or ${words.at(-1)}`);
+
+/** The formats of three-dimensional images. */
+export const IMAGE_FORMATS = 'NIfTI, NRRD, NPY, MetaImage, cube or TIFF';
+/** Extensions of headers of images, whose voxels may be in a file beside them. */
+const HEADERS = /\.(hdr|nhdr|mhd|nii|nii\.gz)$/i;
+
+/**
+ * The file of several that makes a surface, which is a header if there is one, and those beside it.
+ * @param {File[]} files
+ */
+export function ofFiles(files) {
+  const file = files.find(({ name }) => HEADERS.test(name)) ?? files[0];
+  return { file, beside: files.filter((other) => other !== file) };
+}
 
 /** Returns the kinds of files that can be opened, in words. @param {Engine} engine */
 export const filesOf = ({ description }) =>
@@ -24,6 +38,7 @@ export const carriesFiles = (transfer) => transfer?.types.includes('Files') ?? f
 /** Advice after the refusal of a file or model, by the kind of error. @type {Record<string, string>} */
 const ADVICE = {
   too_large: 'Thin the points out, or save fewer decimals.',
+  image: 'Choose another file, or convert it.',
   unreadable: 'Check that the file is still there and may be read.',
   crashed: 'The page is not harmed. Try another file; the report is worth sending with this one.',
   silent: 'Try fewer points.',

@@ -110,7 +110,7 @@ class FormulaInput {
   #names() {
     const field = this.#engine.field.peek();
     const names = field?.parameters.map(({ name }) => name) ?? [];
-    return field?.model ? [MODEL, ...names] : names;
+    return field?.model || field?.image ? [MODEL, ...names] : names;
   }
 
   /** Replaces the text area by the full editor, on the first focus. If it cannot load, the text area stays. */

@@ -3,12 +3,13 @@
  * models from points and the file opened last. A search looks through all groups.
  */
 import { batch, computed, signal } from '@preact/signals-core';
-import { FILE_SURFACE, FILE_TYPES } from '../../engine/constants.js';
+import { FILE_SURFACE, FILE_TYPES, IMAGE_TYPES } from '../../engine/constants.js';
+import { SCANS } from '../../engine/scans.js';
 import { button } from '../button.js';
 import { h, live } from '../dom.js';
 import { explain } from '../explain.js';
 import { icon } from '../icons.js';
-import { filesOf } from './files.js';
+import { filesOf, IMAGE_FORMATS, ofFiles } from './files.js';
 
 /**
  * @import { Description, Engine, Signal } from '../../engine/types.js'
@@ -133,7 +134,8 @@ function pictured(engine, finding, group, entry) {
 function createFileTile(engine, finding) {
   let last = '';
   const file = computed(() => {
-    if (engine.field.value?.surface === FILE_SURFACE) last = engine.field.value.model?.name ?? 'File';
+    if (engine.field.value?.surface === FILE_SURFACE)
+      last = (engine.field.value.model ?? engine.field.value.image)?.name ?? 'File';
     return last;
   });
   return () => {
@@ -145,13 +147,14 @@ function createFileTile(engine, finding) {
 }
 
 /**
- * Returns the groups of the gallery in their order, the models last.
+ * Returns the groups of the gallery in their order, the computed images and the models last.
  * @param {Description} description
  */
 function groupsOf({ surfaces, models }) {
   /** @type {Map<string, Entry[]>} */
   const groups = new Map();
   for (const entry of surfaces) groups.set(entry.group, [...(groups.get(entry.group) ?? []), entry]);
+  groups.set('Scans', [...SCANS]);
   groups.set(POINTS, models);
   return [...groups].map(([name, entries]) => ({ name, entries }));
 }
@@ -210,21 +213,22 @@ const extensionOf = (name) => /\.([a-z0-9]{1,4})$/i.exec(name)?.[1].toUpperCase(
 function createOpen(engine) {
   const chooser = h('input', {
     type: 'file',
-    accept: FILE_TYPES,
+    accept: `${FILE_TYPES},${IMAGE_TYPES}`,
+    multiple: true,
     hidden: true,
     on: {
       change: () => {
-        const file = chooser.files?.[0];
+        const { file, beside } = ofFiles([...(chooser.files ?? [])]);
         // Without this, choosing the same file again after a change would send no event.
         chooser.value = '';
-        if (file) void engine.openFile(file);
+        if (file) void engine.openFile(file, beside);
       },
     },
   });
   const opener = button({ class: 'open-file', press: () => chooser.click() }, 'Open file…');
   explain(opener, () => ({
-    title: 'A file of points',
-    text: `${filesOf(engine)}: points with normals, points alone, or a mesh. It stays on this device. It can also be dropped anywhere on the page.`,
+    title: 'A file of points, or an image',
+    text: `${filesOf(engine)}: points with normals, points alone, or a mesh. ${IMAGE_FORMATS}: a three-dimensional image. It stays on this device. It can also be dropped anywhere on the page.`,
   }));
   return [opener, chooser];
 }

@@ -29,6 +29,8 @@ export function createLoading(engine) {
     createBar(engine.loading),
   );
   live(working, () => {
+    // Below the gallery it may be out of sight.
+    if (name.value !== null) queueMicrotask(() => working.scrollIntoView({ block: 'nearest' }));
     // The Cancel button disappears, so the focus moves to the button that opens a file.
     if (name.value === null && document.activeElement === cancel) opener().focus();
   });
@@ -75,7 +77,7 @@ function createBar(present) {
 /** Creates what is said after a refusal. @param {Engine['loadingError']} error */
 function createRefusal(error) {
   const told = computed(() => error.value && describeLoadingError(error.value));
-  return h(
+  const refusal = h(
     'div',
     {
       class: 'section refused',
@@ -95,4 +97,8 @@ function createRefusal(error) {
         ),
       ],
   );
+  live(refusal, () => {
+    if (told.value) queueMicrotask(() => refusal.scrollIntoView({ block: 'nearest' }));
+  });
+  return refusal;
 }

@@ -3,15 +3,16 @@
  * button that returns to the formula before it.
  */
 import { computed } from '@preact/signals-core';
-import { button, term } from '../button.js';
+import { term } from '../button.js';
 import { h, live } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount } from '../format.js';
 import { createSlider } from '../slider.js';
 import { createWarning } from '../warning.js';
 import { factsOf, fittedOf, plainOf } from './facts.js';
+import { createWayBack } from './way-back.js';
 
-/** @import { Description, Engine, ModelInfo, ReadonlySignal, Shape } from '../../engine/types.js' */
+/** @import { Description, Engine, ModelInfo, ReadonlySignal } from '../../engine/types.js' */
 
 /**
  * @param {Engine} engine
@@ -20,15 +21,11 @@ import { factsOf, fittedOf, plainOf } from './facts.js';
 export function createModel(engine, description) {
   const model = computed(() => engine.field.value?.model ?? null);
   const warnings = computed(() => model.value?.warnings ?? []);
+  const head = h('div', { class: 'section-head' }, h('h2', null, 'Function'));
   const section = h(
     'div',
     { class: 'section model', hidden: () => !model.value },
-    h(
-      'div',
-      { class: 'section-head' },
-      h('h2', null, 'Function'),
-      button({ class: 'plain small', press: () => goBack() }, 'Back to the formula'),
-    ),
+    head,
     h('p', { class: 'quiet' }, () => model.value && plainOf(model.value)),
     h(
       'details',
@@ -41,19 +38,7 @@ export function createModel(engine, description) {
     h('ul', { class: 'warnings', hidden: () => warnings.value.length === 0 }, () => warnings.value.map(createWarning)),
   );
 
-  // The last formula, with its parameters and box, for the way back.
-  /** @type {Shape | null} */
-  let left = null;
-  live(section, () => {
-    const { v: _, view: __, ...shape } = engine.state.value;
-    const isFormula = description.surfaces.some(({ id }) => id === shape.surface);
-    if (isFormula && !engine.field.value?.model) left = shape;
-  });
-  function goBack() {
-    if (left) engine.restore({ ...left, settings: engine.state.peek().settings });
-    else engine.setSurface(description.surfaces[0].id);
-  }
-
+  head.append(createWayBack(engine, description, section));
   return section;
 }
 

@@ -5,6 +5,7 @@ import { createClipBox } from './clip-box.js';
 import { createCuttingPlane } from './cutting-plane.js';
 import { createFormula } from './formula.js';
 import { createGallery } from './gallery.js';
+import { createImage } from './image.js';
 import { createLoading } from './loading.js';
 import { createModel } from './model.js';
 import { createParameters } from './parameters.js';
@@ -27,6 +28,7 @@ export function mountField(body, engine, description, shared) {
     body,
     createFormula(engine, description, shared.replace),
     createModel(engine, description),
+    createImage(engine, description),
     createParameters(engine, shared),
     createGallery(engine, description, shared.replace),
     ...createLoading(engine),
@@ -45,7 +47,11 @@ export function mountField(body, engine, description, shared) {
 function createStory(engine, description) {
   const story = computed(() => {
     const field = engine.field.value;
-    return storyOf(description, field ? field.surface : engine.state.value.surface, field?.model ?? null);
+    return storyOf(
+      description,
+      field ? field.surface : engine.state.value.surface,
+      field?.model ?? field?.image ?? null,
+    );
   });
   return h('div', { class: 'section story' }, () => {
     const { name, facts, text, credit } = story.value;

@@ -8,6 +8,7 @@ import { formatStep, plural } from '../format.js';
 import { createSegmented } from '../segmented.js';
 import { createSelect } from '../select.js';
 import { createSlider } from '../slider.js';
+import { createHistogram } from './image.js';
 import { inviteToDrag } from './invite.js';
 
 /**
@@ -75,16 +76,22 @@ function grabbing(engine, pins) {
   }));
 }
 
+/** The names of the sliders that were moved: what is chosen of an image besides stays. @param {Engine} engine */
+const changedOf = ({ state, field }) =>
+  Object.keys(state.value.parameters).filter(
+    (name) => !field.value?.image || field.value.parameters.some((parameter) => parameter.name === name),
+  );
+
 /** @param {Engine} engine */
 function resetAll(engine) {
   const changed = computed(() => {
-    const { parameters, pulls } = engine.state.value;
-    return Object.keys(parameters).length > 0 || pulls.length > 0;
+    const { pulls } = engine.state.value;
+    return changedOf(engine).length > 0 || pulls.length > 0;
   });
   const press = () =>
     batch(() => {
       if (engine.state.peek().pulls.length > 0) engine.setPulls([]);
-      for (const name of Object.keys(engine.state.peek().parameters)) engine.resetParameter(name);
+      for (const name of changedOf(engine)) engine.resetParameter(name);
     });
   return button({ class: () => (changed.value ? 'plain small' : 'plain small invisible'), press }, 'Reset');
 }
@@ -123,6 +130,10 @@ function createRow(engine, { name, label, value, min, max, step }, { values, mot
     title,
     text: `From ${formatStep(min, step)} to ${formatStep(max, step)}. Shift drags ten times finer, a double click resets.`,
   }));
+  if (name === 'iso' && engine.field.peek()?.image) {
+    row.classList.add('has-histogram');
+    row.append(createHistogram(engine, () => values.value.iso ?? answered.value?.value ?? value));
+  }
   return row;
 }
 

@@ -95,7 +95,7 @@ export function createSolid(engine, { settings }, print) {
       class: 'section solid',
       role: 'group',
       'aria-label': 'Solid',
-      hidden: () => engine.field.value?.model?.beyond_share === 0,
+      hidden: () => engine.field.value?.model?.beyond_share === 0 || Boolean(engine.field.value?.image),
     },
     h(
       'div',

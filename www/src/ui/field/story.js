@@ -1,17 +1,24 @@
 /** Returns the description of the present surface. */
 import { FILE_SURFACE } from '../../engine/constants.js';
+import { scanOf } from '../../engine/scans.js';
 import { plural } from '../format.js';
 
-/** @import { Description, ModelInfo } from '../../engine/types.js' */
+/** @import { Description, ImageInfo, ModelInfo } from '../../engine/types.js' */
 
 /**
  * @param {Description} description
  * @param {string | null} id null for a formula that is not in the gallery
- * @param {ModelInfo | null} info of a surface from points
+ * @param {ModelInfo | ImageInfo | null} info of a surface from points or of an image
  */
 export function storyOf(description, id, info) {
   const model = description.models.find((entry) => entry.id === id);
   if (model) return { name: model.name, facts: plural(model.points, 'point'), text: model.story, credit: model.credit };
+  const scan = id === null ? undefined : scanOf(id);
+  if (scan) return { name: scan.name, facts: '', text: scan.story, credit: '' };
+  if (info && 'size' in info) {
+    const what = info.label === null ? 'on which the image has one value' : 'around one label of the image';
+    return { name: info.name, facts: '', text: `The surface ${what}.`, credit: '' };
+  }
   if (id === FILE_SURFACE) {
     return {
       name: info?.name ?? 'File',

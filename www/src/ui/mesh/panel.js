@@ -48,6 +48,9 @@ const FORMATS = {
 const UNITS = ['', 'mm', 'cm', 'm', 'in'];
 const AXES = ['z', 'y', 'x'];
 
+/** Whether the surface is none of a formula. @param {Engine} engine */
+const isOfFile = ({ field: { value: field } }) => Boolean(field?.model || field?.image);
+
 /**
  * @param {Engine} engine
  * @param {{ toast: Toast, close: () => void, print: Print }} page
@@ -57,7 +60,7 @@ export function createMeshPanel(engine, { toast, close, print }) {
   const use = signal('print');
   const made = computed(() => (engine.busy.value || engine.empty.value ? null : engine.mesh.value));
   const isPrint = () => use.value === 'print';
-  const next = () => nextOf(made.value, Boolean(engine.field.value?.model));
+  const next = () => nextOf(made.value, isOfFile(engine));
   const lines = viewLines(engine);
   /** Scale and unit of the file. */
   const ofFile = () => (isPrint() ? { scale: print.scale() ?? 1, unit: 'mm' } : lines.ofFile());
@@ -260,9 +263,9 @@ function printLines(engine, { print, toast, made }) {
     else engine.setSetting('thickness', thickness);
   });
   const wallLine = line('Wall', wall, h('span', { class: 'unit' }, 'mm'));
-  // A surface from points takes no thickness.
+  // A surface from points or of an image takes no thickness.
   live(wallLine, () => {
-    wallLine.hidden = Boolean(engine.field.value?.model);
+    wallLine.hidden = isOfFile(engine);
   });
   return [line('Size', size, h('span', { class: 'unit' }, 'mm along the longest side')), wallLine];
 }

@@ -122,13 +122,17 @@ export function captionOf(engine) {
   const field = engine.field.peek();
   const about = engine.description.peek();
   const entry = about?.surfaces.find(({ id }) => id === field?.surface);
-  const name = field?.model?.name ?? entry?.name ?? 'f(x, y, z) = 0';
+  const name = field?.model?.name ?? field?.image?.name ?? entry?.name ?? 'f(x, y, z) = 0';
   const { particles } = engine.progress.peek();
   const formula = field?.formula.replace(/\s+/g, ' ') ?? '';
   const values = (field?.parameters ?? []).map(({ name, value }) => `${name} = ${formatSignificant(value)}`);
   return [
     `${name} · ${plural(particles, 'particle')}`,
-    formula.length > 0 && formula.length <= LONGEST_FORMULA ? [formula, ...values].join(', ') : '',
+    formula.length > 0 && formula.length <= LONGEST_FORMULA
+      ? [formula, ...values].join(', ')
+      : field?.image
+        ? values.join(', ')
+        : '',
     field?.model?.credit ?? '',
   ].filter(Boolean);
 }

@@ -47,7 +47,7 @@ async function createSheet(engine) {
     { class: 'sheet' },
     h('h1', null, title),
     picture,
-    isBareModel(engine.field.peek()) ? null : (math ?? h('p', null, formula)),
+    isBareModel(engine.field.peek()) || engine.field.peek()?.image ? null : (math ?? h('p', null, formula)),
     parameters.length ? h('p', null, parameters.join(', ')) : null,
     copyOf('.figures'),
     credit && credit !== formula ? h('p', null, credit) : null,

@@ -19,8 +19,8 @@ const OFFSET_PX = 16;
  */
 export function mountHover(host, engine, { view, explainIt }) {
   const { hover } = engine;
-  // A link cannot hold a model from points.
-  const isTold = () => !engine.field.value?.model;
+  // A link cannot hold a model from points or an image.
+  const isTold = () => !engine.field.value?.model && !engine.field.value?.image;
   const go = (/** @type {number} */ index) => {
     if (!isTold()) return;
     engine.dismissHover();

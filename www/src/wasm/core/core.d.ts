@@ -8,6 +8,8 @@ import type {
     FieldAnswer,
     FieldRequest,
     FileRequest,
+    ImageFacts,
+    ImagePromise,
     MeshAnswer,
     Progress,
     FileRecord,
@@ -39,6 +41,10 @@ export class Core {
      * Ends the run and keeps the particles: `Progress`.
      */
     cancel(): Progress;
+    /**
+     * Forgets the image that was opened last. The present field keeps its own.
+     */
+    close_image(): void;
     /**
      * The program that makes the particles of the last run, in the language of this word (`rust`,
      * `js`, `python` or `shell`): an `Answer` with `Code`.
@@ -96,6 +102,11 @@ export class Core {
     fraction(): number;
     free(): void;
     /**
+     * What a file of an image promises that begins with these bytes, a megabyte of it or all: an
+     * `Answer` with `ImagePromise`.
+     */
+    image_promise(name: string, start: Uint8Array | number[]): Answer<ImagePromise, Fault>;
+    /**
      * Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is
      * complete, nothing before.
      */
@@ -137,6 +148,17 @@ export class Core {
      * other text.
      */
     number(text: string): number | undefined;
+    /**
+     * Opens a file of an image, for [`Core::set_image`]: an `Answer` with `ImageFacts`. `beside`
+     * gives the bytes of a file beside it by its name. After an error the last good image stays.
+     */
+    open_image(name: string, bytes: Uint8Array | number[], beside: (name: string) => Uint8Array | undefined): Answer<ImageFacts, Fault>;
+    /**
+     * Opens an image of an array: the bytes of voxels of a type such as `int16`, of which the
+     * index along the first axis changes fastest, and the affine map from indices to points, row
+     * by row; an `Answer` with `ImageFacts`.
+     */
+    open_voxels(name: string, voxel_type: string, size: Uint32Array | number[], rows: Float64Array | number[], bytes: Uint8Array | number[]): Answer<ImageFacts, Fault>;
     /**
      * Parents from particle `from` on; 0xffffffff for a seed.
      */
@@ -202,6 +224,13 @@ export class Core {
      * ends.
      */
     set_function(_function: (points: Float64Array, out: Float64Array, piece?: number) => void, request: Partial<FieldRequest>, labels?: (points: Float64Array, out: Uint32Array) => void): Answer<FieldAnswer, Fault>;
+    /**
+     * Changes the field to a surface of the image that was opened last: of a `FieldRequest` the
+     * parameters `iso`, `label`, `smooth` and `dark`, the box, and a formula with the surface as
+     * an operand count; to an `Answer` with `FieldAnswer`. After an error the last good field
+     * stays.
+     */
+    set_image(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
      * Changes the field to a model from points: the solved system as `Points.field` gives it, what
      * `Points.info` says of it, `SolvedModel`, and a `FieldRequest`, of which the box, the pulls

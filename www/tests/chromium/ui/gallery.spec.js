@@ -17,7 +17,7 @@ test('the gallery', { tag: '@all' }, async ({ page }) => {
     await expect(tile(page, 'gyroid')).toBeVisible();
     await expect(tile(page, 'ellipsoid')).toBeHidden();
     // Past the other groups, the search and the button for files.
-    for (let presses = 0; presses < 5; presses += 1) await page.keyboard.press('Tab');
+    for (let presses = 0; presses < 6; presses += 1) await page.keyboard.press('Tab');
     await page.keyboard.press('Space');
     await settled(page);
     expect((await state(page)).surface).toBe('gyroid');

@@ -4,8 +4,9 @@
  */
 
 /**
+ * @import { Answer, ImageFacts, ImagePromise } from '../../../src/engine/core-types.js'
  * @import {
- *   Bounds, CoreProgress, CoreReport, FieldAnswer, FieldRequest, MeshAnswer, Settings, SolvedModel, StartAnswer,
+ *   Bounds, CoreProgress, CoreReport, FieldAnswer, FieldFault, FieldRequest, MeshAnswer, Settings, SolvedModel, StartAnswer,
  *   StopReason,
  * } from '../../../src/engine/types.js'
  */
@@ -17,6 +18,7 @@
 const field = (formula, bounds) => ({
   ok: true,
   model: null,
+  image: null,
   surface: null,
   formula,
   parameters: [],
@@ -26,6 +28,34 @@ const field = (formula, bounds) => ({
   periods: [null, null, null],
   mathml: null,
   grip: null,
+});
+
+/** @type {ImageFacts} */
+const facts = {
+  size: [2, 2, 2],
+  spacing: [1, 1, 1],
+  voxel_type: 'uint8',
+  range: [0, 7],
+  histogram: [],
+  otsu: 3,
+  labels: [],
+  notes: [],
+};
+
+/** @param {string} message @returns {{ok: false, error: FieldFault}} */
+const refused = (message) => ({
+  ok: false,
+  error: {
+    kind: 'image',
+    message,
+    start: 0,
+    end: 0,
+    suggestion: null,
+    choices: [],
+    mended: null,
+    name: null,
+    excess: null,
+  },
 });
 
 /**
@@ -118,6 +148,7 @@ export function fakeCore({
       return {
         ok: true,
         model: info,
+        image: null,
         surface: null,
         formula: '',
         parameters: [],
@@ -128,6 +159,22 @@ export function fakeCore({
         mathml: null,
         grip: null,
       };
+    },
+    /** @param {string} name @returns {Answer<ImagePromise, FieldFault>} */
+    image_promise: (name) =>
+      name.endsWith('.bad') ? refused('no image') : { ok: true, size: [2, 2, 2], voxel_type: 'uint8', memory: 72 },
+    /** @param {string} name @param {Uint8Array} bytes @returns {Answer<ImageFacts, FieldFault>} */
+    open_image(name, bytes) {
+      calls.push(`open_image ${name} ${bytes.length}`);
+      return { ok: true, ...facts };
+    },
+    /** @returns {Answer<ImageFacts, FieldFault>} */
+    open_voxels: () => ({ ok: true, ...facts }),
+    close_image: () => {},
+    /** @param {Partial<FieldRequest>} request @returns {FieldAnswer} */
+    set_image({ parameters = {} }) {
+      calls.push(`set_image ${JSON.stringify(parameters)}`);
+      return field('', { min: [-1, -1, -1], max: [1, 1, 1] });
     },
     /**
      * @param {Settings} _settings @param {boolean} _onlyGrows @param {number} budget

@@ -18,7 +18,12 @@ describe('a formula typed for a model', () => {
     /** @type {any} */
     const parts = {
       store,
-      scheduler: { chooseTyped: () => {}, choose: () => {}, loader: { hasFile: true }, sampling: { commit: () => {} } },
+      scheduler: {
+        chooseTyped: () => {},
+        choose: () => {},
+        loader: { hasFile: true, beginning: () => ({}) },
+        sampling: { commit: () => {} },
+      },
       framing: { written: () => {}, restored: () => {} },
       picture: { viewer: { linked: null, camera: { state: store.state.value.view.camera } } },
     };

@@ -1,0 +1,384 @@
+//! The surface of a three-dimensional image as the field of a session.
+
+use serde::Serialize;
+
+/// The image whose surface is sampled, and what was chosen of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct ImageInfo {
+    /// Name of the file or the array.
+    pub name: String,
+    /// Voxels along each axis.
+    pub size: [usize; 3],
+    /// Smallest and largest voxel.
+    pub range: [f64; 2],
+    /// The label whose boundary is sampled, in place of an iso value.
+    pub label: Option<f64>,
+    /// The value on the surface; of a label, that of the distance from it.
+    pub iso: f64,
+    /// Width of the Gaussian in voxels, 0 for none.
+    pub smooth: f64,
+    /// Whether the width was chosen for the image, and not by the user.
+    pub is_smooth_chosen: bool,
+    /// Standard deviation of the noise, in the values of the voxels.
+    pub noise: f64,
+    /// Whether darker voxels are inside.
+    pub is_dark_inside: bool,
+    /// What was decided, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// What is known of an image before its surface is chosen.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct ImageFacts {
+    /// Voxels along each axis.
+    pub size: [usize; 3],
+    /// Distances between voxels along each axis.
+    pub spacing: [f64; 3],
+    /// Type of the voxels, such as `int16`.
+    pub voxel_type: String,
+    /// Smallest and largest voxel.
+    pub range: [f64; 2],
+    /// Number of voxels in each of 256 bins of equal width over the range.
+    pub histogram: Vec<u64>,
+    /// The iso value that Otsu's method chooses.
+    pub otsu: f64,
+    /// Its labels with their numbers of voxels, the background 0 included, if its values look like
+    /// labels: up to 256 whole numbers.
+    pub labels: Vec<LabelFacts>,
+    /// What the reader has decided, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// A label of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct LabelFacts {
+    /// The value of its voxels.
+    pub value: f64,
+    /// Number of its voxels.
+    pub voxels: u64,
+}
+
+/// What the header of a file promises.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct ImagePromise {
+    /// Voxels along each axis; none if only the whole file tells.
+    pub size: Option<[usize; 3]>,
+    /// Type of the voxels, such as `int16`; empty if only the whole file tells.
+    pub voxel_type: String,
+    /// Bytes of memory that reading and filtering take; 0 if only the whole file tells.
+    pub memory: u64,
+}
+
+#[cfg(feature = "images")]
+pub use with_images::ImageSource;
+
+#[cfg(feature = "images")]
+mod with_images {
+    use super::super::{FieldAnswer, FieldRequest, ModelFormula, Session, Source, check_box};
+    use super::{ImageFacts, ImageInfo, ImagePromise, LabelFacts};
+    use crate::extent::FALLBACK;
+    use crate::field::Field;
+    use crate::field::formula::Parameter;
+    use crate::image::{Image, ImageChoice, ImageOutline, ImageSurface};
+    use crate::session::{Fault, FaultKind};
+    use std::collections::BTreeMap;
+    use std::sync::Arc;
+
+    /// Steps of the slider of the iso value over the range of the voxels, at least.
+    const STEPS: f64 = 200.0;
+    /// Largest width of the Gaussian on its slider, in voxels.
+    const WIDEST: f64 = 4.0;
+    /// Labels that are listed at most; more different values are grey values.
+    const MOST_LABELS: usize = 256;
+
+    /// The names of a choice among the parameters of a request.
+    const NAMES: [&str; 4] = ["iso", "label", "smooth", "dark"];
+
+    /// The choice that values by name make.
+    fn choice_of(values: &BTreeMap<String, f64>) -> ImageChoice {
+        let [iso, label, smooth, dark] = NAMES.map(|name| values.get(name).copied());
+        ImageChoice { iso, label, smooth, is_dark_inside: dark.is_some_and(|dark| dark != 0.0) }
+    }
+
+    /// The surface of an image, as a session samples it.
+    #[derive(Clone)]
+    pub struct ImageSource {
+        name: String,
+        surface: ImageSurface,
+        /// The formula whose operand the surface is, if one is sampled in its place.
+        within: Option<ModelFormula>,
+    }
+
+    impl ImageSource {
+        /// What is sampled.
+        pub(in super::super) fn field(&self) -> &(dyn Field + 'static) {
+            match &self.within {
+                Some(formula) => &*formula.field,
+                None => self.surface.field(),
+            }
+        }
+
+        /// The same, shared.
+        pub(in super::super) fn shared(&self) -> Arc<dyn Field> {
+            match &self.within {
+                Some(formula) => Arc::new(formula.field.clone()),
+                None => Arc::new(self.surface.field().clone()),
+            }
+        }
+
+        /// The parameters of the formula, if there is one.
+        pub(in super::super) fn formula_parameters(&self) -> &[Parameter] {
+            self.within.as_ref().map_or(&[], |formula| &formula.parameters)
+        }
+
+        fn info(&self) -> ImageInfo {
+            let (image, choice) = (self.surface.image(), self.surface.choice());
+            ImageInfo {
+                name: self.name.clone(),
+                size: image.size(),
+                range: image.range(),
+                label: choice.label,
+                iso: self.surface.field().iso(),
+                smooth: self.surface.smooth(),
+                is_smooth_chosen: choice.smooth.is_none(),
+                noise: image.noise(),
+                is_dark_inside: choice.is_dark_inside,
+                notes: self.surface.notes().to_vec(),
+            }
+        }
+
+        /// The sliders of the surface: that of the iso value, which a label does not have, and that
+        /// of the Gaussian.
+        fn parameters(&self) -> Vec<Parameter> {
+            let image = self.surface.image();
+            let smooth = Parameter {
+                name: NAMES[2].into(),
+                label: "Smoothing".into(),
+                value: self.surface.smooth(),
+                min: 0.0,
+                max: WIDEST.max(self.surface.smooth()),
+                step: 0.1,
+            };
+            if self.surface.choice().label.is_some() {
+                return vec![smooth];
+            }
+            let [min, max] = image.range();
+            let step = step_in(max - min);
+            // At the ends there is no surface.
+            let (first, last) = (min + step, max - step);
+            let iso = Parameter {
+                name: NAMES[0].into(),
+                label: "Iso value".into(),
+                value: self.surface.field().iso(),
+                min: if first < last { first } else { min },
+                max: if first < last { last } else { max },
+                step,
+            };
+            vec![iso, smooth]
+        }
+
+        /// The description of the field.
+        pub(in super::super) fn answer(&self, answer: FieldAnswer) -> FieldAnswer {
+            let mut parameters = self.parameters();
+            let answer = FieldAnswer { image: Some(self.info()), ..answer };
+            let Some(formula) = &self.within else { return FieldAnswer { parameters, ..answer } };
+            parameters.extend(formula.parameters.iter().filter(|own| !NAMES.contains(&&*own.name)).cloned());
+            FieldAnswer {
+                formula: formula.text.clone(),
+                parameters,
+                auto: formula.auto.clone(),
+                mathml: Some(formula.mathml.clone()),
+                ..answer
+            }
+        }
+    }
+
+    /// The largest power of ten, or half or a fifth of it, that is at least [`STEPS`] times in a
+    /// range.
+    fn step_in(range: f64) -> f64 {
+        let wanted = range / STEPS;
+        let power = libm::pow(10.0, libm::floor(libm::log10(wanted)));
+        [5.0, 2.0, 1.0].map(|part| part * power).into_iter().find(|step| *step <= wanted).unwrap_or(power)
+    }
+
+    impl ImageFacts {
+        /// The facts of an image.
+        #[must_use]
+        pub fn of(image: &Image) -> Self {
+            let labels = image.labels();
+            let are_few = (2..=MOST_LABELS).contains(&labels.len());
+            let of = |label: &crate::image::Label| LabelFacts { value: label.value, voxels: label.voxels };
+            Self {
+                size: image.size(),
+                spacing: image.placement().spacing(),
+                voxel_type: image.voxel_type().to_string(),
+                range: image.range(),
+                histogram: image.histogram(),
+                otsu: image.otsu(),
+                labels: if are_few { labels.iter().map(of).collect() } else { Vec::new() },
+                notes: image.notes().to_vec(),
+            }
+        }
+    }
+
+    impl ImagePromise {
+        /// What an outline promises.
+        #[must_use]
+        pub fn of(outline: Option<&ImageOutline>) -> Self {
+            Self {
+                size: outline.map(|outline| outline.size),
+                voxel_type: outline.map(|outline| outline.voxel_type.to_string()).unwrap_or_default(),
+                memory: outline.map_or(0, ImageOutline::memory),
+            }
+        }
+    }
+
+    impl Session {
+        /// Changes the field to the surface of an image. Of the parameters of the request `iso`,
+        /// `label`, `smooth` and, if it is not 0, `dark` are an [`ImageChoice`]. A formula of the
+        /// request has the surface as an operand, see [`Formula::with_model`]. The box is that of
+        /// the request, or is fitted. [`Session::set_field`] without a surface and a formula changes
+        /// the choice.
+        ///
+        /// [`Formula::with_model`]: crate::field::formula::Formula::with_model
+        ///
+        /// # Errors
+        ///
+        /// If the choice has no surface, the formula has a mistake or the box is not one; nothing is
+        /// changed then.
+        pub fn set_image(
+            &mut self,
+            image: &Image,
+            name: &str,
+            request: &FieldRequest,
+        ) -> Result<FieldAnswer, Fault> {
+            let own = request.bounds.unwrap_or(FALLBACK);
+            check_box(&own)?;
+            let choice = choice_of(&request.parameters);
+            let before = match self.run.field() {
+                Source::Image(before) => Some(&**before),
+                _ => None,
+            };
+            let refused = |error| Fault::new(FaultKind::Image, &error);
+            let surface = image.surface(&choice, before.map(|before| &before.surface)).map_err(refused)?;
+            let within = match &request.formula {
+                Some(text) => {
+                    let field: Arc<dyn Field> = Arc::new(surface.field().clone());
+                    Some(Self::model_formula(text, &field, request)?)
+                }
+                None => None,
+            };
+            // Whether the image is the same, and whether its surface is, too.
+            let is_kept = before.is_some_and(|before| before.surface.is_of(image) && before.within == within);
+            let is_same = is_kept && before.is_some_and(|before| before.surface.choice() == &choice);
+            let is_open = request.bounds.is_none();
+            let keeps_box = is_kept && is_open && self.fitting.is_fitted;
+            let source = Source::Image(Box::new(ImageSource { name: name.to_owned(), surface, within }));
+            self.run.set_field(source, is_same);
+            self.surface = None;
+            self.declared.clear();
+            if !is_same {
+                self.fitting.restart();
+            }
+            if !keeps_box {
+                self.fitting.discard();
+                self.fitting.is_given = !is_open;
+                (self.own, self.clip, self.reach) = (own, own, None);
+                self.run.set_bounds(own, None);
+            }
+            Ok(self.answer())
+        }
+
+        /// Changes what is sampled of the present image: values that the request does not name stay.
+        /// None if the field is of something else.
+        pub(in super::super) fn change_image(
+            &mut self,
+            request: &FieldRequest,
+        ) -> Option<Result<FieldAnswer, Fault>> {
+            let Source::Image(present) = self.run.field() else { return None };
+            let (image, name) = (present.surface.image().clone(), present.name.clone());
+            let ImageChoice { iso, label, smooth, is_dark_inside } = *present.surface.choice();
+            let mut request = request.clone();
+            let dark = is_dark_inside.then_some(1.0);
+            for (name, value) in NAMES.into_iter().zip([iso, label, smooth, dark]) {
+                if let Some(value) = value {
+                    request.parameters.entry(name.to_owned()).or_insert(value);
+                }
+            }
+            request.bounds = request.bounds.or(self.fitting.is_given.then_some(self.own));
+            Some(self.set_image(&image, &name, &request))
+        }
+    }
+}
+
+#[cfg(all(test, feature = "images"))]
+mod tests {
+    use crate::image::Image;
+    use crate::sampler::{Phase, Settings};
+    use crate::session::{FaultKind, FieldAnswer, FieldRequest, Session};
+    use std::collections::BTreeMap;
+
+    /// A ball of the radius 8 voxels: 0 lies on it, and 100 a voxel within.
+    fn ball() -> Image {
+        let off = |at: usize| (at % 24) as f64 - 11.4;
+        let distance = |at: usize| (off(at).powi(2) + off(at / 24).powi(2) + off(at / 576).powi(2)).sqrt();
+        let voxels: Vec<i16> =
+            (0..24 * 24 * 24).map(|at| (100.0 * (8.0 - distance(at))).round() as i16).collect();
+        Image::new([24; 3], voxels).expect("an image")
+    }
+
+    fn request(values: &[(&str, f64)]) -> FieldRequest {
+        let parameters: BTreeMap<String, f64> =
+            values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
+        FieldRequest { parameters, ..FieldRequest::default() }
+    }
+
+    /// The digest of a run on the present field.
+    fn digest(session: &mut Session) -> u64 {
+        session.start(&Settings::with_count(400)).expect("a run");
+        while session.run.step(10_000).phase != Phase::Done {}
+        session.run.particles().digest()
+    }
+
+    fn iso(answer: &FieldAnswer) -> f64 {
+        answer.image.as_ref().expect("an image").iso
+    }
+
+    #[test]
+    fn another_iso_value_gives_what_opening_at_it_gives() {
+        let (mut moved, mut fresh) = (Session::new(), Session::new());
+        let image = ball();
+        moved.set_image(&image, "ball", &request(&[("iso", 0.0)])).expect("a field");
+        let first = digest(&mut moved);
+        for value in [150.0, 300.0, 100.0] {
+            let answer = moved.set_field(&request(&[("iso", value)])).expect("a field");
+            assert_eq!(iso(&answer), value);
+        }
+        fresh.set_image(&ball(), "ball", &request(&[("iso", 100.0)])).expect("a field");
+        let last = digest(&mut moved);
+        assert_ne!(first, last);
+        assert_eq!(last, digest(&mut fresh));
+        // What is not named stays.
+        let answer = moved.set_field(&request(&[("dark", 1.0)])).expect("a field");
+        assert_eq!(iso(&answer), 100.0);
+        assert!(answer.image.is_some_and(|image| image.is_dark_inside));
+    }
+
+    #[test]
+    fn a_surface_that_is_not_there_leaves_the_one_before_it() {
+        let mut session = Session::new();
+        let image = ball();
+        session.set_image(&image, "ball", &request(&[("iso", 0.0)])).expect("a field");
+        for values in [[("iso", 1e6)], [("label", 12_345.0)], [("smooth", -1.0)]] {
+            let fault = session.set_image(&image, "ball", &request(&values)).expect_err("refused");
+            assert_eq!(fault.kind, FaultKind::Image, "{fault}");
+            assert_eq!(iso(&session.answer()), 0.0);
+        }
+        let formula = FieldRequest { formula: Some("x^2 + y^2 = 1".to_owned()), ..FieldRequest::default() };
+        assert!(session.set_field(&formula).expect("a field").image.is_none());
+    }
+}

@@ -1,0 +1,144 @@
+/** Files of images on their way into the core, and the jobs that are of them. */
+import { createHash } from 'node:crypto';
+import { describe, expect, test } from 'vitest';
+import { ImageKeeper } from '../../../src/engine/images/keeper.js';
+import { openImage } from '../../../src/engine/images/open.js';
+import { scanFile } from '../../../src/engine/images/scans.js';
+import { Jobs } from '../../../src/engine/sampling/jobs.js';
+import { SCANS } from '../../../src/engine/scans.js';
+import { ofFiles } from '../../../src/ui/field/files.js';
+import { barsOf, filteredOf, voxelsOf } from '../../../src/ui/field/image-words.js';
+import { fakeCore } from './fake-core.js';
+
+const ROOM = 1e9;
+
+/** @param {string} name @param {string} [text] */
+const imageOf = (name, text = 'voxels') => ({
+  key: name,
+  name,
+  file: new Blob([text]),
+  beside: [],
+});
+
+/** @param {ReturnType<typeof fakeCore>} fake @returns {any} */
+const coreOf = (fake) => fake;
+
+describe('a file of an image', () => {
+  test('is read once its header and its memory are known, and told how far it is', async () => {
+    const core = coreOf(fakeCore());
+    /** @type {[string, number][]} */
+    const told = [];
+    const tell = (/** @type {string} */ label, /** @type {number} */ share) => void told.push([label, share]);
+    const opened = await openImage(core, imageOf('a.nii'), { tell, isOver: () => false, mostBytes: ROOM });
+    expect(opened).toMatchObject({ ok: true, facts: { otsu: 3 } });
+    expect(core.calls).toEqual(['open_image a.nii 6']);
+    expect(told[1]).toEqual(['Reading 2 × 2 × 2 voxels of uint8, about 1 MB of memory', 0]);
+    expect(told.at(-1)?.[1]).toBeGreaterThan(0.5);
+  });
+
+  test('is refused by its header, and by its memory, before it is read', async () => {
+    const core = coreOf(fakeCore());
+    const env = { tell: () => {}, isOver: () => false, mostBytes: ROOM };
+    expect(await openImage(core, imageOf('a.bad'), env)).toEqual({ ok: false, message: 'no image' });
+    const large = await openImage(core, imageOf('a.nii'), { ...env, mostBytes: 71 });
+    expect(large).toMatchObject({ ok: false, message: expect.stringContaining('2 × 2 × 2 voxels takes about 1 MB') });
+    expect(core.calls).toEqual([]);
+  });
+
+  test('is given up without reaching the core', async () => {
+    const core = coreOf(fakeCore());
+    const env = { tell: () => {}, isOver: () => true, mostBytes: ROOM };
+    expect(await openImage(core, imageOf('a.nii'), env)).toBe(null);
+    expect(core.calls).toEqual([]);
+  });
+
+  test('is its header where files are dropped together', () => {
+    const files = ['a.img', 'a.hdr'].map((name) => new File([], name));
+    expect(ofFiles(files)).toEqual({ file: files[1], beside: [files[0]] });
+    expect(ofFiles(files.slice(0, 1)).file).toBe(files[0]);
+    expect(ofFiles([]).file).toBe(undefined);
+  });
+});
+
+describe('a job of an image', () => {
+  const job = (/** @type {number} */ id, /** @type {string} */ name) =>
+    /** @type {any} */ ({ kind: 'new', id, field: { parameters: { iso: id } }, settings: {}, image: imageOf(name) });
+
+  test('waits until the core has its image, also after another one', async () => {
+    const core = coreOf(fakeCore());
+    const keeper = new ImageKeeper(ROOM);
+    /** @type {any[]} */
+    const posted = [];
+    /** @type {() => void} */
+    let ready = () => {};
+    const jobs = new Jobs(
+      (message) => void posted.push(message),
+      () => 0,
+      {
+        isReady: (ours, image) => keeper.isReady(ours, image, () => ready()),
+        setField: (ours, image, field) => keeper.setField(ours, image, field),
+      },
+    );
+    for (const [id, name] of /** @type {[number, string][]} */ ([
+      [1, 'a.nii'],
+      [2, 'b.nii'],
+      [3, 'a.nii'],
+    ])) {
+      const isOpen = new Promise((done) => {
+        ready = () => done(null);
+      });
+      jobs.add(job(id, name));
+      expect(jobs.take(core)).toBe(null);
+      await isOpen;
+      expect(jobs.take(core)?.id).toBe(id);
+    }
+    expect(core.calls.filter((/** @type {string} */ call) => call.startsWith('open'))).toHaveLength(3);
+    expect(core.calls.at(-1)).toBe('set_image {"iso":3}');
+    expect(posted.map(({ type, id }) => `${type} ${id}`)).toEqual(['field 1', 'field 2', 'field 3']);
+    // The image is still there for the next one.
+    jobs.add(job(4, 'a.nii'));
+    expect(jobs.take(core)?.id).toBe(4);
+  });
+
+  test('is refused if its file is none any more', async () => {
+    const core = coreOf(fakeCore());
+    const keeper = new ImageKeeper(ROOM);
+    const image = imageOf('a.bad');
+    await new Promise((done) => {
+      expect(keeper.isReady(core, image, done)).toBe(false);
+    });
+    expect(keeper.isReady(core, image, () => {})).toBe(true);
+    expect(keeper.setField(core, image, {})).toMatchObject({
+      ok: false,
+      error: { kind: 'image', message: 'no image' },
+    });
+  });
+});
+
+test('the computed images are the same every time', async () => {
+  const sums = await Promise.all(
+    SCANS.map(async ({ id }) => {
+      const bytes = Buffer.from(await scanFile(id).arrayBuffer());
+      return createHash('sha256').update(bytes).digest('hex').slice(0, 16);
+    }),
+  );
+  expect(sums).toEqual(['beb58918ec473f19', '40841137e17ab6c3', '8e077dfbe0296c64']);
+});
+
+describe('an image is described', () => {
+  test('by its voxels and by what filtered them', () => {
+    const facts = /** @type {any} */ ({ size: [64, 64, 1200], spacing: [0.7, 0.7, 1.5], voxel_type: 'int16' });
+    expect(voxelsOf({ ...facts, range: [-1024, 3071] })).toBe(
+      '64 × 64 × 1,200 voxels of 0.7 × 0.7 × 1.5, int16, −1,024 to 3,071.',
+    );
+    const info = /** @type {any} */ ({ smooth: 0.7, is_smooth_chosen: true, label: null, noise: 15.2 });
+    expect(filteredOf(info)).toBe('A Gaussian of 0.7 voxels against noise of 15: it rounds corners by about as much.');
+    expect(filteredOf({ ...info, noise: 0 })).toContain('against the steps between whole numbers');
+    expect(filteredOf({ ...info, smooth: 1, label: 3 })).toContain('A Gaussian of 1 voxel over the distance');
+    expect(filteredOf({ ...info, smooth: 0, is_smooth_chosen: false })).toBe('');
+  });
+
+  test('by a histogram whose highest bar is full', () => {
+    expect(barsOf([0, 999, 0, 1])).toBe('M1 1V0h1V1zM3 1V0.9h1V1z');
+  });
+});
