@@ -148,6 +148,9 @@ pub mod particles;
 pub mod pointcloud;
 #[doc(hidden)]
 pub mod quality;
+#[cfg(all(feature = "images", feature = "points"))]
+#[doc(hidden)]
+pub mod remesh;
 mod run;
 #[doc(hidden)]
 pub mod sampler;
@@ -198,6 +201,11 @@ pub use pointcloud::job::JobError;
 #[cfg(feature = "points")]
 pub use pointcloud::read::{InputFormat, ReadError};
 pub use quality::{Figures, Histogram, Hole, Measurements, NamedValues, Pair, Places, figures};
+#[cfg(all(feature = "images", feature = "points"))]
+pub use remesh::{
+    MeshChange, MeshDistances, MeshEdges, MeshError, MeshField, MeshKind, MeshRepairs, MeshSolid,
+    TriangleMesh,
+};
 pub use run::{
     Cut, Error, Growth, Measured, Measures, MeshAnswer, MeshComponent, Proof, Radii, Report, Reporting, Run,
     Sample, Severity, Start, Value, ValueError, Warning, sample,

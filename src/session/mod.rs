@@ -428,7 +428,10 @@ impl Session {
         let mut field = known.map_or_else(|| RbfField::new(data), Ok).map_err(refused)?.untrimmed();
         field.pull(pulls).map_err(refused)?;
         let within = match &request.formula {
-            Some(text) => Some(Self::model_formula(text, &field, request)?),
+            Some(text) => {
+                let model: Arc<dyn Field> = Arc::new(field.clone());
+                Some(Self::model_formula(text, &model, request)?)
+            }
             None => None,
         };
         let is_same = has_same_pulls && within == before;
@@ -445,15 +448,18 @@ impl Session {
     }
 
     /// The formula of a request, in which the model is an operand.
-    fn model_formula(text: &str, model: &RbfField, request: &FieldRequest) -> Result<ModelFormula, Fault> {
+    fn model_formula(
+        text: &str,
+        model: &Arc<dyn Field>,
+        request: &FieldRequest,
+    ) -> Result<ModelFormula, Fault> {
         let mut declared = request.declare.clone();
         declared.retain(|parameter| parameter.name != MODEL);
         declared.push(Parameter::automatic(MODEL));
         let combined = || {
             let mut formula = Formula::as_written(text, &declared)?;
             set_known(&mut formula, &request.parameters)?;
-            let model: Arc<dyn Field> = Arc::new(model.clone());
-            let field = formula.with_model(&model)?;
+            let field = formula.with_model(model)?;
             let mut parameters = formula.parameters().to_vec();
             parameters.retain(|parameter| parameter.name != MODEL);
             let (auto, mathml) = (formula.auto().to_vec(), formula.mathml());
@@ -485,6 +491,21 @@ impl Session {
         self.fitting.is_given = bounds.is_some();
         (self.own, self.clip, self.reach) = (own, own, None);
         Ok(self.answer())
+    }
+
+    /// Changes the field to another one, or to the formula of a request in which it is an operand by
+    /// the name [`MODEL`], in the box of the request or in one that is fitted: see
+    /// [`Session::set_function`]. The answer has the parameters of the formula.
+    ///
+    /// # Errors
+    ///
+    /// If the formula has a mistake or the box is not one; nothing is changed then.
+    pub fn set_model(&mut self, model: Arc<dyn Field>, request: &FieldRequest) -> Result<FieldAnswer, Fault> {
+        let Some(text) = &request.formula else { return self.set_function(model, request.bounds) };
+        let ModelFormula { text, parameters, auto, mathml, field } =
+            Self::model_formula(text, &model, request)?;
+        let answer = self.set_function(Arc::new(field), request.bounds)?;
+        Ok(FieldAnswer { formula: text, parameters, auto, mathml: Some(mathml), ..answer })
     }
 
     /// Starts a run on the present field.
