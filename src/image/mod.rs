@@ -20,6 +20,7 @@ pub use field::ImageField;
 pub use labels::{DEFAULT_LABEL_WIDTH, Label};
 pub use placement::Placement;
 pub use read::{ImageFormat, ImageReadError, MAX_IMAGE_BYTES};
+pub(crate) use smooth::blur;
 pub use voxels::{Voxel, VoxelType};
 
 use core::fmt::{self, Debug, Formatter};

@@ -10,6 +10,7 @@
 //!   surface is that of its spline ([`scan`]).
 
 mod compare;
+mod cross;
 mod edges;
 mod mesh;
 mod parts;
@@ -101,6 +102,19 @@ pub enum MeshError {
         /// Number of edges with more than two faces.
         fans: usize,
     },
+    /// Edges are to be kept of a mesh whose faces intersect.
+    #[error(
+        "faces intersect near ({}, {}, {}), so that edges cannot be kept; unite the parts first, or have \
+         the mesh rounded (--mesh-edges none, `MeshEdges::Rounded`)",
+        significant(place.x), significant(place.y), significant(place.z)
+    )]
+    Intersects {
+        /// A point in which they do.
+        place: DVec3,
+    },
+    /// Edges are to be kept, and a Gaussian to round them.
+    #[error("a Gaussian is for scans: give its width or an angle of edges, and not both")]
+    Both,
     /// The angle of edges is out of its range.
     #[error("the angle of edges is {angle}°, and can be from 1° to 180°")]
     Angle {
@@ -128,8 +142,8 @@ pub enum MeshError {
 /// Which edges of a mesh stay sharp.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum MeshEdges {
-    /// Those whose faces meet at [`DEFAULT_EDGE_ANGLE`] or more, if the mesh is closed and such
-    /// edges form curves; none of a scan or a smooth shape.
+    /// Those whose faces meet at 30° or more, if the mesh is closed, its faces do not intersect, and
+    /// such edges form curves; none of a scan or a smooth shape.
     #[default]
     Auto,
     /// Those whose faces meet at this angle or more, in degrees.
@@ -194,19 +208,29 @@ impl MeshSolid {
         if let Some(width) = smooth.filter(|width| !(0.0..=10.0).contains(width)) {
             return Err(MeshError::Width { width });
         }
+        let usual = DEFAULT_EDGE_ANGLE.to_radians();
+        let may_keep = edges != MeshEdges::Rounded && smooth.is_none() && self.is_closed();
+        let intersection = if may_keep { self.intersection() } else { None };
         let patches = match edges {
-            MeshEdges::Rounded => None,
-            MeshEdges::Auto if smooth.is_some() || !self.is_closed() => None,
-            MeshEdges::Auto => {
-                Some(Patches::new(self, DEFAULT_EDGE_ANGLE.to_radians())).filter(Patches::are_of_part)
+            MeshEdges::Auto if may_keep && intersection.is_none() => {
+                Some(Patches::new(self, usual)).filter(Patches::are_of_part)
             }
-            MeshEdges::Angle(angle) if !EDGE_ANGLES.contains(&angle) => {
-                return Err(MeshError::Angle { angle });
+            MeshEdges::Auto | MeshEdges::Rounded => None,
+            MeshEdges::Angle(angle) => {
+                if !EDGE_ANGLES.contains(&angle) {
+                    return Err(MeshError::Angle { angle });
+                }
+                if smooth.is_some() {
+                    return Err(MeshError::Both);
+                }
+                if !self.is_closed() {
+                    return Err(MeshError::Open { borders: self.border_edges(), fans: self.fan_edges() });
+                }
+                if let Some(place) = intersection {
+                    return Err(MeshError::Intersects { place });
+                }
+                Some(Patches::new(self, angle.to_radians()))
             }
-            MeshEdges::Angle(_) if !self.is_closed() => {
-                return Err(MeshError::Open { borders: self.border_edges(), fans: self.fan_edges() });
-            }
-            MeshEdges::Angle(angle) => Some(Patches::new(self, angle.to_radians())),
         };
         let (kind, function) = match patches {
             Some(patches) => {
@@ -219,7 +243,8 @@ impl MeshSolid {
                 (kind, Function::Parts(PartsField::new(self, patches)))
             }
             None => {
-                let (field, Chosen { size, cell, width }) = ScanField::new(self, smooth)?;
+                let (field, Chosen { size, cell, width }) =
+                    ScanField::new(self, patches::sharp_count(self), smooth)?;
                 (MeshKind::Scan { size, cell, smooth: width }, Function::Scan(field))
             }
         };

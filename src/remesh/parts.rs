@@ -26,8 +26,6 @@ struct Shared {
     /// The creases as segments.
     segments: Vec<[DVec3; 2]>,
     creases: Tree,
-    /// Largest `near` of a crease.
-    near: f64,
     bounds: Bounds,
     /// Largest height of the smooth surface over the faces.
     bulge: f64,
@@ -51,24 +49,19 @@ impl Shared {
     /// What decides f where the nearest point of the mesh is `q`, on this patch: the patch alone,
     /// or the rule of a crease or a corner near it.
     fn taken(&self, q: DVec3, patch: u32, p: DVec3) -> u32 {
-        let creases = &self.patches.creases;
+        let Patches { creases, corners, near, .. } = &self.patches;
         let is_own = |k: u32| creases[k as usize].patches.contains(&patch);
-        let Some(found) = self.creases.nearest_of(q, self.near * self.near, is_own) else { return patch };
+        let Some(found) = self.creases.nearest_of(q, near * near, is_own) else { return patch };
         let crease = creases[found.triangle as usize];
+        let mut value = |patch: u32| self.sheets[patch as usize].at(p).value;
         for (end, place) in crease.ends.into_iter().zip(self.segments[found.triangle as usize]) {
-            let at = self.patches.corners.binary_search_by_key(&end, |corner| corner.vertex);
-            let corner = at.ok().map(|at| &self.patches.corners[at]);
-            if let Some(corner) =
-                corner.filter(|corner| q.distance_squared(place) <= corner.near * corner.near)
-            {
-                return corner.rule.taken(&mut |patch| self.sheets[patch as usize].at(p).value).0;
+            let Ok(at) = corners.binary_search_by_key(&end, |corner| corner.vertex) else { continue };
+            if q.distance_squared(place) <= corners[at].near * corners[at].near {
+                return corners[at].rule.taken(&mut value).0;
             }
         }
-        if found.distance_sq > crease.near * crease.near {
-            return patch;
-        }
         let rule = Rule::of(crease.is_convex, crease.patches.map(Rule::Patch).to_vec());
-        rule.taken(&mut |patch| self.sheets[patch as usize].at(p).value).0
+        rule.taken(&mut value).0
     }
 
     fn label(&self, p: DVec3) -> u32 {
@@ -112,7 +105,7 @@ impl PartsField {
         let sheets = (0..).zip(&faces).map(|(patch, faces)| {
             let is_inner =
                 |edge: usize| edges.sides(edge).iter().all(|side| of_face[side.face as usize] == patch);
-            Sheet::new(mesh, edges, faces, is_inner, diagonal, FLAT * diagonal)
+            Sheet::new(mesh, edges, faces, is_inner, &patches.is_flat, diagonal, FLAT * diagonal)
         });
         let sheets: Vec<Sheet> = sheets.collect();
         let place = |vertex: u32| mesh.vertices()[vertex as usize];
@@ -122,7 +115,6 @@ impl PartsField {
             tree: Arc::clone(&solid.tree),
             segments,
             creases: Tree::new(&corners),
-            near: patches.creases.iter().map(|crease| crease.near).fold(0.0, f64::max),
             bounds,
             bulge: sheets.iter().map(Sheet::bulge).fold(0.0, f64::max),
             patches,

@@ -1,18 +1,20 @@
 //! The smooth patches of a mesh, and the edges and corners at which they meet.
 
-use super::MeshSolid;
 use super::edges::{Edges, ends_of};
 use super::rule::Rule;
+use super::tree::Tree;
+use super::{MeshSolid, TriangleMesh};
 use crate::math::NONE;
 use glam::DVec3;
 
-/// Share of the length of an edge within which both of its patches may give f. The smooth patches
-/// leave the faces by the height of an arc over its chord, which at 30° is a fifteenth of it.
-const NEAR: f64 = 0.5;
-/// Most length of that, over the diagonal: the functions of patches go that far beyond them.
-const MOST_NEAR: f64 = 0.06;
-/// Smallest angle between two planes that meet in an edge, though it is less than that of edges:
-/// rounding and repairs of a plane bend it by less.
+/// Distance from an edge within which both of its patches may give f, over the diagonal. The smooth
+/// patches meet beside the edge, by the height of an arc over its chord; they go on for twice this
+/// distance.
+const NEAR: f64 = 0.06;
+/// Distance from a corner within which all of its patches may give f, as a share of that of the
+/// next corner.
+const NEAR_CORNER: f64 = 0.45;
+/// Largest angle between faces of one plane, which rounding and repairs bend by less.
 const BENT: f64 = 0.02;
 
 /// An edge of the mesh at which two patches meet.
@@ -21,14 +23,13 @@ pub(super) struct Crease {
     pub(super) ends: [u32; 2],
     pub(super) patches: [u32; 2],
     pub(super) is_convex: bool,
-    /// The distance within which both patches may give f.
-    pub(super) near: f64,
 }
 
 /// A vertex at which creases meet.
 #[derive(Clone, Debug)]
 pub(super) struct Corner {
     pub(super) vertex: u32,
+    /// The distance within which all of its patches may give f.
     pub(super) near: f64,
     pub(super) rule: Rule,
 }
@@ -38,6 +39,9 @@ pub(super) struct Corner {
 pub(super) struct Patches {
     /// The patch of each face.
     pub(super) of_face: Vec<u32>,
+    /// Whether each face lies in a plane, beside whose width the curved faces next to it are narrow:
+    /// it is no facet of a curve.
+    pub(super) is_flat: Vec<bool>,
     pub(super) count: usize,
     pub(super) creases: Vec<Crease>,
     pub(super) corners: Vec<Corner>,
@@ -46,6 +50,8 @@ pub(super) struct Patches {
     pub(super) faded: usize,
     /// All sharp edges.
     pub(super) sharp: usize,
+    /// The distance from a crease within which both of its patches may give f.
+    pub(super) near: f64,
 }
 
 impl Patches {
@@ -55,11 +61,14 @@ impl Patches {
         let (mesh, edges) = (&*solid.mesh, &*solid.edges);
         let normals: Vec<DVec3> = mesh.area_vectors().map(DVec3::normalize_or_zero).collect();
         let mut is_sharp = sharp_edges(edges, &normals, angle);
-        add_lone_bends(edges, &normals, &mut is_sharp);
+        let planes = Planes::new(solid, &normals);
+        planes.add_lone_bends(edges, &mut is_sharp);
+        bridge(mesh, edges, &mut is_sharp);
+        let is_flat = planes.are_flat(solid, &is_sharp);
         let of_face = flood(normals.len(), edges, &is_sharp);
         let count = of_face.iter().max().map_or(0, |&last| last as usize + 1);
-        let most = MOST_NEAR * mesh.bounds().diagonal();
-        let mut found = Self { of_face, count, ..Self::default() };
+        let near = NEAR * mesh.bounds().diagonal();
+        let mut found = Self { of_face, is_flat, count, near, ..Self::default() };
         for edge in (0..edges.len()).filter(|&edge| is_sharp[edge]) {
             let [here, there] = edges.sides(edge) else { continue };
             found.sharp += 1;
@@ -69,11 +78,10 @@ impl Patches {
                 continue;
             }
             let ends = edges.ends(edge);
-            let [a, b] = ends.map(|end| mesh.vertices()[end as usize]);
+            let a = mesh.vertices()[ends[0] as usize];
             let other = mesh.faces()[there.face as usize][(there.side as usize + 2) % 3];
             let rise = normals[here.face as usize].dot(mesh.vertices()[other as usize] - a);
-            let near = (NEAR * a.distance(b)).min(most);
-            found.creases.push(Crease { ends, patches, is_convex: rise < 0.0, near });
+            found.creases.push(Crease { ends, patches, is_convex: rise < 0.0 });
         }
         found.corners = found.find_corners(solid, &normals);
         found
@@ -101,8 +109,11 @@ impl Patches {
         for (face, corners) in (0..).zip(mesh.faces()) {
             corners.iter().for_each(|&corner| face_at[corner as usize] = face);
         }
+        let meetings = || at_vertex.chunk_by(|a, b| a.0 == b.0).filter(|own| own.len() > 2);
+        let places: Vec<[DVec3; 3]> = meetings().map(|own| [mesh.vertices()[own[0].0 as usize]; 3]).collect();
+        let places = Tree::new(&places);
         let mut corners = Vec::new();
-        for own in at_vertex.chunk_by(|a, b| a.0 == b.0).filter(|own| own.len() > 2) {
+        for (number, own) in (0..).zip(meetings()) {
             let vertex = own[0].0;
             let Some(ring) = ring(mesh.faces(), edges, vertex, face_at[vertex as usize]) else { continue };
             let place = mesh.vertices()[vertex as usize];
@@ -137,12 +148,73 @@ impl Patches {
             let shortest = lengths.fold(f64::INFINITY, f64::min);
             let is_inside = |way: DVec3| solid.tree.winding(place + 0.1 * shortest * way) > 0.5;
             if let Some(rule) = Rule::around(&around, is_inside) {
-                let near = own.iter().map(|&(_, k)| self.creases[k as usize].near).fold(0.0, f64::max);
-                corners.push(Corner { vertex, near: near.min(NEAR * shortest), rule });
+                let next =
+                    places.nearest_of(place, self.near * self.near / (NEAR_CORNER * NEAR_CORNER), |k| {
+                        k != number
+                    });
+                let near = next.map_or(self.near, |next| NEAR_CORNER * libm::sqrt(next.distance_sq));
+                corners.push(Corner { vertex, near, rule });
             }
         }
         corners
     }
+}
+
+/// Makes edges sharp that join the end of one curve of sharp edges to another one: where two curved
+/// surfaces cross, the angle between them may pass through zero.
+fn bridge(mesh: &TriangleMesh, edges: &Edges, is_sharp: &mut [bool]) {
+    /// Most edges between two ends.
+    const STEPS: usize = 12;
+    /// Cosine of the largest turn between edges.
+    const AHEAD: f64 = 0.7;
+    let place = |vertex: u32| mesh.vertices()[vertex as usize];
+    let mut at_vertex: Vec<(u32, u32)> =
+        (0..edges.len()).flat_map(|edge| edges.ends(edge).map(|end| (end, edge as u32))).collect();
+    at_vertex.sort_unstable();
+    let around = |vertex: u32| {
+        let first = at_vertex.partition_point(|own| own.0 < vertex);
+        at_vertex[first..].iter().take_while(move |own| own.0 == vertex).map(|own| own.1 as usize)
+    };
+    let mut ends: Vec<u32> =
+        (0..edges.len()).filter(|&edge| is_sharp[edge]).flat_map(|edge| edges.ends(edge)).collect();
+    ends.sort_unstable();
+    let lone: Vec<u32> =
+        ends.chunk_by(|a, b| a == b).filter(|own| own.len() == 1).map(|own| own[0]).collect();
+    ends.dedup();
+    for start in lone {
+        let Some(first) = around(start).find(|&edge| is_sharp[edge]) else { continue };
+        let across = |edge: usize, vertex: u32| {
+            let [a, b] = edges.ends(edge);
+            if a == vertex { b } else { a }
+        };
+        let mut at = start;
+        let mut way = (place(start) - place(across(first, start))).normalize_or_zero();
+        let mut path = Vec::new();
+        while path.len() < STEPS && (path.is_empty() || ends.binary_search(&at).is_err()) {
+            let ahead = around(at).filter(|&edge| !is_sharp[edge]).map(|edge| {
+                let step = (place(across(edge, at)) - place(at)).normalize_or_zero();
+                (edge, step, step.dot(way))
+            });
+            let best = ahead.fold(None, |best: Option<(usize, DVec3, f64)>, own| match best {
+                Some(best) if best.2 >= own.2 => Some(best),
+                _ => Some(own),
+            });
+            let Some((edge, step, _)) = best.filter(|best| best.2 > AHEAD) else { break };
+            path.push(edge);
+            (at, way) = (across(edge, at), step);
+        }
+        if !path.is_empty() && ends.binary_search(&at).is_ok() {
+            path.into_iter().for_each(|edge| is_sharp[edge] = true);
+        }
+    }
+}
+
+/// The number of edges with two faces that meet at the usual angle of sharp ones or more.
+pub(super) fn sharp_count(solid: &MeshSolid) -> usize {
+    let normals: Vec<DVec3> = solid.mesh.area_vectors().map(DVec3::normalize_or_zero).collect();
+    let is_sharp = sharp_edges(&solid.edges, &normals, super::DEFAULT_EDGE_ANGLE.to_radians());
+    let has_two = |edge: usize| solid.edges.sides(edge).len() == 2;
+    (0..is_sharp.len()).filter(|&edge| is_sharp[edge] && has_two(edge)).count()
 }
 
 /// Which edges have faces that meet at `angle` or more.
@@ -156,39 +228,97 @@ fn sharp_edges(edges: &Edges, normals: &[DVec3], angle: f64) -> Vec<bool> {
         .collect()
 }
 
-/// Adds the edges in which two planes meet that bend nowhere else: they are no part of a curved
-/// patch, however small their angle.
-fn add_lone_bends(edges: &Edges, normals: &[DVec3], is_sharp: &mut [bool]) {
-    let turn = |edge: usize| match edges.sides(edge) {
-        [a, b] => {
-            let [n, m] = [a, b].map(|side| normals[side.face as usize]);
-            libm::atan2(n.cross(m).length(), n.dot(m))
+/// The planes that the faces of a mesh lie in, and the edges at which these meet.
+struct Planes {
+    of_face: Vec<u32>,
+    count: usize,
+    is_bent: Vec<bool>,
+}
+
+impl Planes {
+    fn new(solid: &MeshSolid, normals: &[DVec3]) -> Self {
+        let edges = &*solid.edges;
+        let mut of_face = vec![NONE; normals.len()];
+        let (mut count, mut open) = (0, Vec::new());
+        for start in 0..normals.len() {
+            if of_face[start] != NONE {
+                continue;
+            }
+            of_face[start] = count;
+            open.push(start as u32);
+            while let Some(face) = open.pop() {
+                for side in edges.of_face(face).iter().flat_map(|&edge| edges.sides(edge as usize)) {
+                    let other = side.face as usize;
+                    // Compared with the first face: a fine curve is no plane.
+                    let turn = normals[start].cross(normals[other]).length();
+                    if of_face[other] == NONE && turn < BENT && normals[start].dot(normals[other]) > 0.0 {
+                        of_face[other] = count;
+                        open.push(side.face);
+                    }
+                }
+            }
+            count += 1;
         }
-        _ => 0.0,
-    };
-    let turns: Vec<f64> = (0..edges.len()).map(turn).collect();
-    let is_bent: Vec<bool> = turns.iter().map(|&turn| turn > BENT).collect();
-    let plane = flood(normals.len(), edges, &is_bent);
-    let bends = |edge: &usize| is_bent[*edge] && !is_sharp[*edge];
-    // The planes next to each plane across edges that are not sharp.
-    let mut beside: Vec<[u32; 2]> = Vec::new();
-    for edge in (0..edges.len()).filter(bends) {
-        if let [a, b] = edges.sides(edge) {
-            let [p, q] = [a, b].map(|side| plane[side.face as usize]);
-            beside.extend([[p, q], [q, p]]);
+        let is_bent = (0..edges.len()).map(|edge| match edges.sides(edge) {
+            [a, b] => of_face[a.face as usize] != of_face[b.face as usize],
+            _ => true,
+        });
+        Self { is_bent: is_bent.collect(), count: count as usize, of_face }
+    }
+
+    /// The planes on both sides of an edge at which they meet, if it is not sharp.
+    fn meeting(&self, edges: &Edges, is_sharp: &[bool], edge: usize) -> Option<[u32; 2]> {
+        match edges.sides(edge) {
+            [a, b] if self.is_bent[edge] && !is_sharp[edge] => {
+                Some([a, b].map(|side| self.of_face[side.face as usize]))
+            }
+            _ => None,
         }
     }
-    beside.sort_unstable();
-    beside.dedup();
-    let neighbours = |p: u32| {
-        let first = beside.partition_point(|pair| pair[0] < p);
-        beside[first..].iter().take_while(|pair| pair[0] == p).count()
-    };
-    let lone: Vec<usize> = (0..edges.len())
-        .filter(bends)
-        .filter(|&edge| edges.sides(edge).iter().all(|side| neighbours(plane[side.face as usize]) == 1))
-        .collect();
-    lone.into_iter().for_each(|edge| is_sharp[edge] = true);
+
+    /// Makes those edges sharp in which two planes meet that bend nowhere else: they are no part of
+    /// a curved patch, however small their angle.
+    fn add_lone_bends(&self, edges: &Edges, is_sharp: &mut [bool]) {
+        let pairs = (0..edges.len()).filter_map(|edge| self.meeting(edges, is_sharp, edge));
+        let mut beside: Vec<[u32; 2]> = pairs.flat_map(|[p, q]| [[p, q], [q, p]]).collect();
+        beside.sort_unstable();
+        beside.dedup();
+        let neighbours = |p: &u32| {
+            let first = beside.partition_point(|pair| pair[0] < *p);
+            beside[first..].iter().take_while(|pair| pair[0] == *p).count()
+        };
+        let lone = (0..edges.len()).filter(|&edge| {
+            let pair = self.meeting(edges, is_sharp, edge);
+            pair.is_some_and(|pair| pair.iter().all(|plane| neighbours(plane) == 1))
+        });
+        let lone: Vec<usize> = lone.collect();
+        lone.into_iter().for_each(|edge| is_sharp[edge] = true);
+    }
+
+    /// Which faces are flat, by the widths of the planes: twice the area over the length of the
+    /// edges at which they bend, the distance of these edges of a facet.
+    fn are_flat(&self, solid: &MeshSolid, is_sharp: &[bool]) -> Vec<bool> {
+        /// How much wider a plane is than a facet beside it. Facets of one curve differ by less.
+        const WIDER: f64 = 3.0;
+        let (mesh, edges) = (&*solid.mesh, &*solid.edges);
+        let mut size = vec![[0.0, 0.0]; self.count];
+        for (&plane, vector) in self.of_face.iter().zip(mesh.area_vectors()) {
+            size[plane as usize][0] += vector.length();
+        }
+        for edge in 0..edges.len() {
+            let Some(pair) = self.meeting(edges, is_sharp, edge) else { continue };
+            let [a, b] = edges.ends(edge).map(|end| mesh.vertices()[end as usize]);
+            pair.iter().for_each(|&plane| size[plane as usize][1] += a.distance(b));
+        }
+        let width: Vec<f64> = size.iter().map(|[area, length]| 2.0 * area / length).collect();
+        let mut is_flat = vec![false; self.count];
+        for [p, q] in (0..edges.len()).filter_map(|edge| self.meeting(edges, is_sharp, edge)) {
+            for (own, other) in [(p, q), (q, p)] {
+                is_flat[own as usize] |= width[own as usize] > WIDER * width[other as usize];
+            }
+        }
+        self.of_face.iter().map(|&plane| is_flat[plane as usize]).collect()
+    }
 }
 
 /// The part of each face, where parts end at the edges that are a limit.

@@ -7,7 +7,7 @@
 use super::edges::Edges;
 use super::{MeshError, MeshSolid, TriangleMesh};
 use crate::field::{Evaluator, Facts, Field, Frame, Jet};
-use crate::image::{Image, ImageError, ImageField};
+use crate::image::{Image, ImageError, ImageField, blur};
 use crate::math::{Bounds, Sym3, median};
 use crate::slices;
 use glam::{DVec3, Vec3};
@@ -16,14 +16,16 @@ use glam::{DVec3, Vec3};
 /// ones show the facets.
 const CELL: f64 = 0.8;
 /// Fewest cells along the longest side.
-const FEWEST: f64 = 40.0;
+const FEWEST: f64 = 96.0;
 /// Most cells of the grid: some seconds, and 100 MB.
 const MOST: f64 = 4e6;
 /// Room around the mesh, in cells: for the Gaussian and for a surface that bulges.
 const ROOM: f64 = 6.0;
-/// Widths of the Gaussian in cells. The least one levels the edges between faces; wider ones round
-/// what is small.
-const WIDTHS: [f64; 2] = [0.7, 3.0];
+/// Widths of the Gaussian in cells. The least one levels the edges between faces of a smooth mesh,
+/// the second one rounds sharp edges far enough for particles; wider ones lose what is small.
+const WIDTHS: [f64; 3] = [0.7, 1.5, 3.0];
+/// Share of sharp edges from which on a mesh is not smooth.
+const SHARP_SHARE: f64 = 1e-3;
 /// Slope of the noise that is left, as the tangent of an angle.
 const LEFT: f64 = 0.1;
 /// Voxels along the sides of blocks, which are searched together.
@@ -93,22 +95,30 @@ impl Grid {
 
 impl ScanField {
     /// The field, with a Gaussian of this width in cells, or one that is chosen by the noise of the
-    /// vertices.
-    pub(super) fn new(solid: &MeshSolid, width: Option<f64>) -> Result<(Self, Chosen), MeshError> {
+    /// vertices and the number of `sharp` edges.
+    pub(super) fn new(
+        solid: &MeshSolid,
+        sharp: usize,
+        width: Option<f64>,
+    ) -> Result<(Self, Chosen), MeshError> {
         let grid = Grid::new(&solid.mesh);
         let width = width.unwrap_or_else(|| {
             let noise = noise(&solid.mesh, &solid.edges);
             // The noise of independent vertices falls with the square root of the area that the
-            // Gaussian takes the mean of, and its slope with the width once more.
+            // Gaussian takes the mean of, and its slope with the width once more. The filter, of
+            // two Gaussians, takes half as much again.
             let wanted = libm::sqrt(noise / grid.cell / (LEFT * libm::sqrt(4.0 * core::f64::consts::PI)));
-            wanted.clamp(WIDTHS[0], WIDTHS[1])
+            let is_smooth = (sharp as f64) < SHARP_SHARE * solid.edges.len() as f64;
+            (1.5 * wanted).clamp(if is_smooth { WIDTHS[0] } else { WIDTHS[1] }, WIDTHS[2])
         });
-        let values = slices::in_pool(|| slices::complete(distances(solid, &grid)));
+        let mut values = slices::in_pool(|| slices::complete(distances(solid, &grid)));
+        if width > 0.0 {
+            smooth(&grid, &mut values, width);
+        }
         let narrow = |_: ImageError| MeshError::Narrow { cell: grid.cell };
         let image = Image::new(grid.size, values).map_err(narrow)?;
         let image = image.with_spacing([grid.cell; 3]).map_err(narrow)?;
         let image = image.with_origin(grid.origin).map_err(narrow)?;
-        let image = if width > 0.0 { image.smoothed(width).map_err(narrow)? } else { image };
         let last = grid.place(grid.size.map(|n| n - 1));
         let field = Self { image: image.at(0.0).map_err(narrow)?, domain: Bounds::new(grid.origin, last) };
         Ok((field, Chosen { size: grid.size, cell: grid.cell, width }))
@@ -254,40 +264,36 @@ async fn distances(solid: &MeshSolid, grid: &Grid) -> Vec<f32> {
         let (_, away, winding) = known[number_of(block)];
         let near = neighbours(block, grid.blocks).map(|other| known[number_of(other)]);
         let near: Vec<(u32, f64, f64)> = near.collect();
-        let is_near = away <= half + 2.0 * cell;
+        let is_near = away <= half + cell;
         // Far from the mesh the winding number changes slowly. In the opening of a hole it passes
         // through a half.
-        let is_sure =
-            is_closed || near.iter().all(|own| (0.5 - own.2).abs() > 0.3 && (own.2 > 0.5) == (winding > 0.5));
+        let is_like = |own: &(u32, f64, f64)| (0.5 - own.2).abs() > 0.3 && (own.2 > 0.5) == (winding > 0.5);
+        let is_sure = !is_near && (is_closed || near.iter().all(is_like));
         let mut out = [0.0_f32; SIDE * SIDE * SIDE];
-        let mut last: Option<(f64, f64)> = None;
-        for (at, out) in out.iter_mut().enumerate() {
-            let steps = [at % SIDE, at / SIDE % SIDE, at / SIDE / SIDE];
+        // The winding number of the last voxel, and how far it is from the mesh: first of the middle.
+        let (mut last, mut step) = ((winding, away), half);
+        for at in 0..out.len() {
+            let steps = snake(at);
             let p = grid.place([0, 1, 2].map(|a| SIDE * block[a] + steps[a]));
+            let most = (last.1 + step) * (1.0 + 1e-9);
             let distance_sq = if is_near {
-                tree.nearest_of(p, (away + half) * (away + half) * 1.01, |_| true)
-                    .map(|found| found.distance_sq)
+                tree.nearest_of(p, most * most, |_| true).map(|found| found.distance_sq)
             } else {
                 let to = |own: &(u32, f64, f64)| super::tree::nearest_on(p, corners[own.0 as usize]);
                 near.iter().map(|own| to(own).distance_squared(p)).reduce(f64::min)
             };
-            let distance = libm::sqrt(distance_sq.unwrap_or(away * away));
-            if steps[0] == 0 {
-                last = None;
-            }
-            let winding = match last {
-                _ if !is_near && is_sure => winding,
-                // No face of a closed mesh lies between this voxel and the last one.
-                Some((winding, reach)) if is_closed && reach > cell => winding,
-                _ => tree.winding(p),
-            };
-            last = Some((winding, distance));
+            let distance = libm::sqrt(distance_sq.unwrap_or(most * most));
+            // Where no face of a closed mesh lies between this voxel and the last one, it is on the
+            // same side.
+            let is_same = is_sure || is_closed && last.1 > step;
+            let winding = if is_same { last.0 } else { tree.winding(p) };
+            (last, step) = ((winding, distance), cell);
             let factor = match is_closed {
                 true if winding > 0.5 => -1.0,
                 true => 1.0,
                 false => (1.0 - 2.0 * winding).clamp(-1.0, 1.0),
             };
-            *out = -(distance * factor) as f32;
+            out[steps[0] + SIDE * (steps[1] + SIDE * steps[2])] = -(distance * factor) as f32;
         }
         out
     };
@@ -310,6 +316,22 @@ async fn distances(solid: &MeshSolid, grid: &Grid) -> Vec<f32> {
     values
 }
 
+/// Filters values by twice a Gaussian less the Gaussian of that. It moves no surface by its
+/// curvature, as one Gaussian does, but only by how that changes.
+fn smooth(grid: &Grid, values: &mut [f32], width: f64) {
+    blur(grid.size, values, [width; 3]);
+    let mut twice = values.to_vec();
+    blur(grid.size, &mut twice, [width; 3]);
+    values.iter_mut().zip(twice).for_each(|(once, twice)| *once = 2.0 * *once - twice);
+}
+
+/// The voxels of a block in an order in which each lies beside the last one.
+fn snake(at: usize) -> [usize; 3] {
+    let turned = |k: usize, is_turned: bool| if is_turned { SIDE - 1 - k } else { k };
+    let [i, j, k] = [at % SIDE, at / SIDE % SIDE, at / SIDE / SIDE];
+    [turned(i, at / SIDE % 2 == 1), turned(j, k % 2 == 1), k]
+}
+
 /// A block and those beside it.
 fn neighbours(block: [usize; 3], count: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
     let ways = [[0, 0, 0], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
@@ -323,12 +345,17 @@ fn neighbours(block: [usize; 3], count: [usize; 3]) -> impl Iterator<Item = [usi
 /// height of a vertex over the mean of its neighbours differs from the heights of these, which on a
 /// smooth surface are nearly equal.
 fn noise(mesh: &TriangleMesh, edges: &Edges) -> f64 {
+    /// Fewest vertices of a scan: those of a part are no noise.
+    const FEWEST: usize = 1_000;
     /// The median of the size of a normal variable.
     const MEDIAN: f64 = 0.674_489_750_196_081_7;
     /// Standard deviation of the measure over that of the noise, with six neighbours: the weights of
     /// a vertex, its six neighbours and the twelve beyond are 1.17, −0.39 or so, and 0.05.
     const GAIN: f64 = 1.5;
     let count = mesh.vertices().len();
+    if count < FEWEST {
+        return 0.0;
+    }
     let mut normal = vec![DVec3::ZERO; count];
     for (face, vector) in mesh.faces().iter().zip(mesh.area_vectors()) {
         face.iter().for_each(|&corner| normal[corner as usize] += vector);

@@ -13,14 +13,15 @@
 use super::TriangleMesh;
 use super::edges::{Edges, ends_of};
 use super::tree::Tree;
-use crate::math::{Sym3, sort_numbers};
+use crate::math::{Sym3, median};
 use glam::{DMat2, DVec2, DVec3};
 
-/// The width τ of the weights over the height of small faces. Smaller ones leave facets, larger
+/// The width τ of the weights over the median height of curved faces. Smaller ones leave facets, larger
 /// ones take more faces for each value.
 const WIDTH: f64 = 0.4;
-/// Share of the bent faces that are lower than those that decide the width: a few slivers do not.
-const LOW: f64 = 0.1;
+/// Cosine of the largest angle between a face and the normal at its corner. Where faces turn
+/// further, as around the tip of a cone, there is no normal.
+const TIP: f64 = 0.88;
 /// Largest (d² − d₀²)/τ² of a face that counts, with the nearest one at d₀: weights below 1e-10 are
 /// lost in the rounding of single precision many times over.
 const REACH: f64 = 23.0;
@@ -59,12 +60,14 @@ type Element = ([DVec3; 3], [DVec3; 3]);
 
 impl Sheet {
     /// The function of these faces of a mesh with this diagonal. `is_inner` says of an edge whether
-    /// the patch goes on beyond it; `flat` is the largest distance of a vertex from a plane.
+    /// the patch goes on beyond it, `is_flat` which faces are no facets of a curve; `flat` is the
+    /// largest distance of a vertex from a plane.
     pub(super) fn new(
         mesh: &TriangleMesh,
         edges: &Edges,
         faces: &[u32],
         is_inner: impl Fn(usize) -> bool,
+        is_flat: &[bool],
         diagonal: f64,
         flat: f64,
     ) -> Self {
@@ -74,24 +77,24 @@ impl Sheet {
         if let Some(plane) = plane_of(&corners, area, flat) {
             return plane;
         }
-        let normals = Normals::new(mesh, faces, &corners);
+        let normals = Normals::new(mesh, faces, &corners, is_flat);
         let mut elements: Vec<Element> = Vec::new();
         let mut heights = Vec::new();
         for (&face, &corners) in faces.iter().zip(&corners) {
-            let own = mesh.faces()[face as usize].map(|vertex| normals.at(vertex));
             let [a, b, c] = corners;
             let across = (b - a).cross(c - a);
-            let size = across.length();
-            let is_bent = own.iter().any(|normal| normal.dot(across) < (1.0 - 1e-7) * size);
-            if is_bent {
-                heights.push(size / a.distance(b).max(b.distance(c)).max(c.distance(a)));
+            let normal = across.normalize_or_zero();
+            let own = mesh.faces()[face as usize].map(|vertex| {
+                let at = normals.at(vertex);
+                if is_flat[face as usize] || at.dot(normal) < TIP { normal } else { at }
+            });
+            if !is_flat[face as usize] {
+                heights.push(across.length() / a.distance(b).max(b.distance(c)).max(c.distance(a)));
             }
             elements.push((corners, own));
         }
-        sort_numbers(&mut heights);
         let least = 1e-4 * diagonal;
-        let height = heights.get((LOW * heights.len() as f64) as usize).copied().unwrap_or(diagonal);
-        let width = WIDTH * height.max(least);
+        let width = WIDTH * median(heights).unwrap_or(least).max(least);
         elements.extend(skirt(mesh, edges, faces, is_inner, &normals, SKIRT * diagonal));
         let quadrics: Vec<Quadric> = elements.iter().map(|element| Quadric::new(element, width)).collect();
         let bulge = quadrics[..faces.len()].iter().map(|own| own.value.abs()).fold(0.0, f64::max);
@@ -162,29 +165,35 @@ fn plane_of(corners: &[[DVec3; 3]], area: DVec3, flat: f64) -> Option<Sheet> {
     is_plane.then_some(Sheet::Plane { normal, point: point + mean * normal })
 }
 
-/// The normals of a patch at its vertices: means of those of its faces by the angles there.
+/// The normals of a patch at its vertices: means of those of the faces there, with the weights that
+/// are exact for spheres, and for cylinders, too (N. Max, "Weights for Computing Vertex Normals from
+/// Facet Normals", 1999). Where a plane goes over into a curve, they are those of the plane.
 struct Normals {
     vertices: Vec<u32>,
     normals: Vec<DVec3>,
 }
 
 impl Normals {
-    fn new(mesh: &TriangleMesh, faces: &[u32], corners: &[[DVec3; 3]]) -> Self {
+    fn new(mesh: &TriangleMesh, faces: &[u32], corners: &[[DVec3; 3]], is_flat: &[bool]) -> Self {
         let of_face = |face: &u32| mesh.faces()[*face as usize];
         let mut vertices: Vec<u32> = faces.iter().flat_map(of_face).collect();
         vertices.sort_unstable();
         vertices.dedup();
-        let mut known = Self { normals: vec![DVec3::ZERO; vertices.len()], vertices };
-        for (face, corners) in faces.iter().map(of_face).zip(corners) {
-            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
-            for k in 0..3 {
+        let count = vertices.len();
+        let mut known = Self { normals: Vec::new(), vertices };
+        // Those of flat faces, and of all.
+        let mut sums = vec![[DVec3::ZERO; 2]; count];
+        for (face, corners) in faces.iter().zip(corners) {
+            for (k, vertex) in of_face(face).into_iter().enumerate() {
                 let [u, v] = [1, 2].map(|step| corners[(k + step) % 3] - corners[k]);
-                let angle = libm::atan2(u.cross(v).length(), u.dot(v));
-                let place = known.place(face[k]);
-                known.normals[place] += angle * normal;
+                let normal = u.cross(v) / (u.length_squared() * v.length_squared());
+                let own = &mut sums[known.place(vertex)];
+                own[0] += if is_flat[*face as usize] { normal } else { DVec3::ZERO };
+                own[1] += normal;
             }
         }
-        known.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
+        let normal = |[flat, all]: [DVec3; 2]| flat.normalize_or(all.normalize_or_zero());
+        known.normals = sums.into_iter().map(normal).collect();
         known
     }
 

@@ -20,6 +20,7 @@ from ._fields import (
     union,
 )
 from ._image import Image
+from ._remesh import TriangleMesh, remesh
 from ._report import Report
 from ._sample import Mesh, Sample, SampleWarning, sample
 
@@ -34,12 +35,14 @@ __all__ = [
     "Report",
     "Sample",
     "SampleWarning",
+    "TriangleMesh",
     "__version__",
     "difference",
     "field",
     "fit_points",
     "intersection",
     "offset",
+    "remesh",
     "sample",
     "smooth_union",
     "union",
