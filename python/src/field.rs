@@ -148,8 +148,8 @@ impl Field {
         })
     }
 
-    /// The field of a triangle mesh, which keeps edges as `edges` says: "auto", "none" or an angle in
-    /// degrees.
+    /// The field of a triangle mesh, which keeps edges as `edges` says: "auto", "none" or an angle
+    /// in degrees.
     #[staticmethod]
     fn mesh(
         py: Python<'_>,

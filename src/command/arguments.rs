@@ -327,8 +327,8 @@ pub(crate) struct SurfaceArguments {
     pub(crate) surface: Option<String>,
 
     /// Formula of the surface; with --surface, it replaces the formula of that surface. Beside
-    /// --points, --mesh-in or a model, `model` stands for their function, as an operand of max, min, smin,
-    /// smax or abs, or with a number that is added: "max(model, z)" cuts it
+    /// --points, --mesh-in or a model, `model` stands for their function, as an operand of max,
+    /// min, smin, smax or abs, or with a number that is added: "max(model, z)" cuts it
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true, help_heading = "Surface")]
     pub(crate) formula: Option<String>,
 
@@ -382,8 +382,8 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, value_name = "DEGREES|auto|none", value_parser = mesh_edges, requires = "mesh_in", help_heading = "Surface")]
     pub(crate) mesh_edges: Option<MeshEdges>,
 
-    /// Width of a Gaussian against the noise of a scan of --mesh-in, in cells of the grid that it is
-    /// put on, 0 to 10 [default: by the noise that is measured, from 0.7 to 3]
+    /// Take --mesh-in for a scan, and smooth it by a Gaussian of this width, in cells of the grid
+    /// that it is put on, 0 to 10 [default: by the noise that is measured, from 0.7 to 3]
     #[arg(long, value_name = "CELLS", value_parser = number, requires = "mesh_in", help_heading = "Surface")]
     pub(crate) mesh_smooth: Option<f64>,
 

@@ -13,7 +13,8 @@ use glam::DVec3;
 /// use marching_particles::glam::dvec3;
 ///
 /// // A tetrahedron, whose corners and edges stay.
-/// let corners = [dvec3(1.0, 1.0, 1.0), dvec3(1.0, -1.0, -1.0), dvec3(-1.0, 1.0, -1.0), dvec3(-1.0, -1.0, 1.0)];
+/// let corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]];
+/// let corners = corners.map(|[x, y, z]| dvec3(x.into(), y.into(), z.into()));
 /// let faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
 /// let solid = TriangleMesh::new(corners.to_vec(), faces.to_vec())?.solid()?;
 /// let sample = sample(solid.field(MeshEdges::Auto, None)?, &Settings::with_count(1_000))?;
@@ -135,8 +136,8 @@ impl TriangleMesh {
     }
 }
 
-/// The volume that faces enclose. It is summed about a vertex of theirs, so that no digit is lost far
-/// from the origin.
+/// The volume that faces enclose. It is summed about a vertex of theirs, so that no digit is lost
+/// far from the origin.
 pub(super) fn volume<'a>(vertices: &[DVec3], mut faces: impl Iterator<Item = &'a [u32; 3]>) -> f64 {
     let Some(first) = faces.next() else { return 0.0 };
     let origin = vertices[first[0] as usize];

@@ -142,8 +142,8 @@ pub enum MeshError {
 /// Which edges of a mesh stay sharp.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum MeshEdges {
-    /// Those whose faces meet at 30° or more, if the mesh is closed, its faces do not intersect, and
-    /// such edges form curves; none of a scan or a smooth shape.
+    /// Those whose faces meet at 30° or more, if the mesh is closed, its faces do not intersect,
+    /// and such edges form curves; none of a scan or a smooth shape.
     #[default]
     Auto,
     /// Those whose faces meet at this angle or more, in degrees.
@@ -197,7 +197,8 @@ enum Function {
 
 impl MeshSolid {
     /// The field of the mesh. `smooth` is the width of a Gaussian over a scan, in cells of its
-    /// grid; by default it is 0.7, or up to 3 by the noise of the vertices.
+    /// grid, 0 to 10: a mesh is taken for a scan if it is given. By default it is from 0.7 to 3, by
+    /// the noise of the vertices, and 1.5 or more where there are sharp edges.
     ///
     /// # Errors
     ///

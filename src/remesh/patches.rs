@@ -39,8 +39,8 @@ pub(super) struct Corner {
 pub(super) struct Patches {
     /// The patch of each face.
     pub(super) of_face: Vec<u32>,
-    /// Whether each face lies in a plane, beside whose width the curved faces next to it are narrow:
-    /// it is no facet of a curve.
+    /// Whether each face lies in a plane, beside whose width the curved faces next to it are
+    /// narrow: it is no facet of a curve.
     pub(super) is_flat: Vec<bool>,
     pub(super) count: usize,
     pub(super) creases: Vec<Crease>,
@@ -353,8 +353,8 @@ fn sides_at(face: [u32; 3], vertex: u32) -> [u32; 2] {
     [face[(k + 1) % 3], face[(k + 2) % 3]]
 }
 
-/// The faces around a vertex in counter-clockwise order, each with the edge to the next one; none if
-/// they do not close to one ring.
+/// The faces around a vertex in counter-clockwise order, each with the edge to the next one; none
+/// if they do not close to one ring.
 fn ring(faces: &[[u32; 3]], edges: &Edges, vertex: u32, first: u32) -> Option<Vec<(u32, u32)>> {
     /// More faces at a vertex are hardly a corner.
     const MOST: usize = 4096;

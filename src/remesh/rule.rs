@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// Most patches around a corner with both convex and concave edges whose rules are tried.
-const MOST: usize = 6;
+const MOST: usize = 5;
 /// Directions in which a rule is compared with the mesh.
 const DIRECTIONS: u32 = 200;
 /// Least share of them in which they agree. Faces of curved patches are not their tangent planes.

@@ -270,7 +270,8 @@ async fn distances(solid: &MeshSolid, grid: &Grid) -> Vec<f32> {
         let is_like = |own: &(u32, f64, f64)| (0.5 - own.2).abs() > 0.3 && (own.2 > 0.5) == (winding > 0.5);
         let is_sure = !is_near && (is_closed || near.iter().all(is_like));
         let mut out = [0.0_f32; SIDE * SIDE * SIDE];
-        // The winding number of the last voxel, and how far it is from the mesh: first of the middle.
+        // The winding number of the last voxel, and how far it is from the mesh: first of the
+        // middle.
         let (mut last, mut step) = ((winding, away), half);
         for at in 0..out.len() {
             let steps = snake(at);
@@ -349,8 +350,8 @@ fn noise(mesh: &TriangleMesh, edges: &Edges) -> f64 {
     const FEWEST: usize = 1_000;
     /// The median of the size of a normal variable.
     const MEDIAN: f64 = 0.674_489_750_196_081_7;
-    /// Standard deviation of the measure over that of the noise, with six neighbours: the weights of
-    /// a vertex, its six neighbours and the twelve beyond are 1.17, −0.39 or so, and 0.05.
+    /// Standard deviation of the measure over that of the noise, with six neighbours: the weights
+    /// of a vertex, its six neighbours and the twelve beyond are 1.17, −0.39 or so, and 0.05.
     const GAIN: f64 = 1.5;
     let count = mesh.vertices().len();
     if count < FEWEST {

@@ -16,9 +16,9 @@ use super::tree::Tree;
 use crate::math::{Sym3, median};
 use glam::{DMat2, DVec2, DVec3};
 
-/// The width τ of the weights over the median height of curved faces. Smaller ones leave facets, larger
-/// ones take more faces for each value.
-const WIDTH: f64 = 0.4;
+/// The width τ of the weights over the median height of curved faces. Smaller ones leave facets,
+/// larger ones take more faces for each value.
+const WIDTH: f64 = 0.25;
 /// Cosine of the largest angle between a face and the normal at its corner. Where faces turn
 /// further, as around the tip of a cone, there is no normal.
 const TIP: f64 = 0.88;
@@ -166,8 +166,8 @@ fn plane_of(corners: &[[DVec3; 3]], area: DVec3, flat: f64) -> Option<Sheet> {
 }
 
 /// The normals of a patch at its vertices: means of those of the faces there, with the weights that
-/// are exact for spheres, and for cylinders, too (N. Max, "Weights for Computing Vertex Normals from
-/// Facet Normals", 1999). Where a plane goes over into a curve, they are those of the plane.
+/// are exact for spheres, and for cylinders, too (N. Max, "Weights for Computing Vertex Normals
+/// from Facet Normals", 1999). Where a plane goes over into a curve, they are those of the plane.
 struct Normals {
     vertices: Vec<u32>,
     normals: Vec<DVec3>,

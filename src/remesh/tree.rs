@@ -132,7 +132,8 @@ impl Tree {
         self.nearest_of(p, f64::INFINITY, |_| true).unwrap_or(far)
     }
 
-    /// Calls `each` with the triangles no farther than the root of `most`, and their nearest points.
+    /// Calls `each` with the triangles no farther than the root of `most`, and their nearest
+    /// points.
     pub(super) fn within(&self, p: DVec3, most: f64, mut each: impl FnMut(Nearest)) {
         self.descend(
             |bounds| distance_sq(bounds, p) <= most,
@@ -179,8 +180,8 @@ impl Tree {
     }
 
     /// The generalised winding number: 1 inside a closed surface whose faces turn outward, 0
-    /// outside, and between them where faces are missing (A. Jacobson et al., "Robust Inside-Outside
-    /// Segmentation Using Generalized Winding Numbers", 2013).
+    /// outside, and between them where faces are missing (A. Jacobson et al., "Robust
+    /// Inside-Outside Segmentation Using Generalized Winding Numbers", 2013).
     pub(super) fn winding(&self, p: DVec3) -> f64 {
         let mut sum = 0.0;
         let mut stack = [0_u32; 64];

@@ -32,7 +32,7 @@ fn remeshed(shape: &Shape, count: u32, what: &str) -> (MeshField, Sample) {
 /// A prism over a polygon whose triangles are given, from z = 0 to `height`.
 fn prism(outline: &[[f64; 2]], triangles: &[[u32; 3]], height: f64) -> Shape {
     let n = outline.len() as u32;
-    let vertices = [0.0, height].iter().flat_map(|&z| outline.iter().map(move |&[x, y]| dvec3(x, y, z)));
+    let vertices = [0.0, height].into_iter().flat_map(|z| outline.iter().map(move |&[x, y]| dvec3(x, y, z)));
     let mut faces: Vec<[u32; 3]> =
         (0..n).flat_map(|i| [[i, (i + 1) % n, n + (i + 1) % n], [i, n + (i + 1) % n, n + i]]).collect();
     faces.extend(triangles.iter().flat_map(|&[a, b, c]| [[a, c, b], [n + a, n + b, n + c]]));
@@ -230,8 +230,8 @@ fn a_lone_bend_between_planes_is_an_edge_whatever_its_angle() {
     check(&made, (2, 15, 4.5), 1e-6, "roof");
 }
 
-/// Each patch has a continuous gradient across its inner edges and beyond its border: it turns along
-/// a line by no more than the curvature and the spread of the facets tell.
+/// Each patch has a continuous gradient across its inner edges and beyond its border: it turns
+/// along a line by no more than the curvature and the spread of the facets tell.
 #[test]
 fn gradients_of_patches_are_continuous_within_and_beyond_them() {
     let field = field_of(&regular(48));

@@ -27,8 +27,8 @@ class TriangleMesh(Field):
             counter-clockwise seen from outside.
         edges: ``"auto"``; the angle between faces from which on an edge stays sharp, in degrees, 1
             to 180; or None, to round all edges.
-        smooth: Width of a Gaussian against the noise of a scan, in cells of its grid, 0 to 10; by
-            default it is chosen by the noise.
+        smooth: Width of a Gaussian in cells of the grid of a scan, 0 to 10: the mesh is taken for
+            one if it is given. By default it is chosen by the noise.
 
     Attributes:
         bounds: The box of the surface, ``((x0, y0, z0), (x1, y1, z1))``.
