@@ -53,7 +53,10 @@ impl MeshField {
     #[must_use]
     pub fn compare(&self, vertices: &[DVec3], faces: &[[u32; 3]]) -> MeshChange {
         let old = self.solid().mesh();
-        let new = TriangleMesh::of_parts(vertices.to_vec(), faces.to_vec());
+        let new = TriangleMesh::of_parts(
+            vertices.iter().map(|p| p - self.solid().origin()).collect(),
+            faces.to_vec(),
+        );
         let on_edges = self.edge_points();
         let work = || {
             slices::complete(async {

@@ -3,11 +3,11 @@
 //! A [`TriangleMesh`] is [mended](TriangleMesh::solid) to a [`MeshSolid`], and that is made to a
 //! [`MeshField`] by one of two ways:
 //!
-//! * *Parts with edges*. The faces are parted into [`patches`] along edges whose faces meet at an
-//!   angle. Each patch has a smooth function ([`sheet`]), and f is the greatest of them at convex
-//!   edges and the least at concave ones ([`parts`], [`rule`]).
-//! * *Scans and smooth shapes*. The distance from the mesh on a grid becomes an image, whose
-//!   surface is that of its spline ([`scan`]).
+//! * *Parts with edges*. The faces are parted into patches along edges whose faces meet at an angle
+//!   (`patches`). Each patch has a smooth function (`sheet`), and f is the greatest of them at convex
+//!   edges and the least at concave ones (`parts`, `rule`).
+//! * *Scans and smooth shapes*. The distance from the mesh on a grid becomes an image, whose surface
+//!   is that of its spline (`scan`).
 
 mod compare;
 mod cross;
@@ -77,6 +77,12 @@ pub enum MeshError {
         /// Index of the vertex.
         vertex: usize,
     },
+    /// The mesh is far from the origin for its size.
+    #[error(
+        "the mesh lies more than 1,000 of its diagonals from the origin, where single precision shows no \
+         particle in its place; move it to the origin first"
+    )]
+    Far,
     /// No face has an area.
     #[error("no face of the mesh has an area; check its vertices and its unit")]
     NoArea,
@@ -228,12 +234,12 @@ impl MeshSolid {
                     return Err(MeshError::Open { borders: self.border_edges(), fans: self.fan_edges() });
                 }
                 if let Some(place) = intersection {
-                    return Err(MeshError::Intersects { place });
+                    return Err(MeshError::Intersects { place: self.origin + place });
                 }
                 Some(Patches::new(self, angle.to_radians()))
             }
         };
-        let (kind, function) = match patches {
+        let (kind, function) = match patches.map(|patches| patches.with_corners(self)) {
             Some(patches) => {
                 let kind = MeshKind::Parts {
                     patches: patches.count,
@@ -266,7 +272,7 @@ impl MeshField {
         self.kind
     }
 
-    /// Points along the sharp edges.
+    /// Points along the sharp edges, counted from the origin of the mesh.
     fn edge_points(&self) -> Vec<DVec3> {
         /// Points on each edge of the mesh.
         const EACH: u32 = 8;

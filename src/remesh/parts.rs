@@ -20,6 +20,8 @@ const FLAT: f64 = 1e-6;
 
 /// What the evaluators of a mesh share.
 struct Shared {
+    /// The place from which everything here is counted.
+    origin: DVec3,
     tree: Arc<Tree>,
     patches: Patches,
     sheets: Vec<Sheet>,
@@ -112,6 +114,7 @@ impl PartsField {
         let segments: Vec<[DVec3; 2]> = patches.creases.iter().map(|crease| crease.ends.map(place)).collect();
         let corners: Vec<[DVec3; 3]> = segments.iter().map(|&[a, b]| [a, b, b]).collect();
         let shared = Shared {
+            origin: solid.origin,
             tree: Arc::clone(&solid.tree),
             segments,
             creases: Tree::new(&corners),
@@ -131,7 +134,8 @@ impl PartsField {
         !self.shared.patches.creases.is_empty()
     }
 
-    /// f and its derivatives, or those of a patch.
+    /// f and its derivatives, or those of a patch, at a place that is counted from the origin of
+    /// the mesh.
     fn slope(&self, label: Option<u32>, p: DVec3) -> Slope {
         if !p.is_finite() {
             return Slope { value: f64::NAN, gradient: DVec3::NAN, hessian: Sym3::splat(f64::NAN) };
@@ -152,22 +156,24 @@ impl PartsField {
     }
 
     fn seams(&self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+        let origin = self.shared.origin;
         // The edges of an offset are not those of the mesh.
-        if self.shift == 0.0 {
-            return self.shared.cells(bounds, width);
+        if self.shift != 0.0 {
+            return edges::seams_between(self, &|p| self.shared.label(p - origin), bounds, width);
         }
-        edges::seams_between(self, &|p| self.shared.label(p), bounds, width)
+        let cells = self.shared.cells(&bounds.relative_to(origin), width);
+        cells.iter().map(|cell| cell.relative_to(-origin)).collect()
     }
 }
 
 impl Field for PartsField {
     fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
-        let Slope { value, gradient, .. } = self.slope(None, p);
+        let Slope { value, gradient, .. } = self.slope(None, p - self.shared.origin);
         (value, gradient)
     }
 
     fn jet(&self, p: DVec3) -> Jet {
-        let Slope { value, gradient, hessian } = self.slope(None, p);
+        let Slope { value, gradient, hessian } = self.slope(None, p - self.shared.origin);
         Jet { value, gradient, hessian }
     }
 
@@ -176,7 +182,7 @@ impl Field for PartsField {
     }
 
     fn facts(&self) -> Facts {
-        let bounds = self.shared.bounds.enlarged(self.room());
+        let bounds = self.shared.bounds.relative_to(-self.shared.origin).enlarged(self.room());
         Facts { within: Some(Within { bounds, is_cut: false }), ..Facts::default() }
     }
 
@@ -222,8 +228,13 @@ struct PartsEvaluator<'a> {
 }
 
 impl PartsEvaluator<'_> {
+    /// A place of the frame, counted from the origin of the mesh.
+    fn place(&self, p: DVec3) -> DVec3 {
+        p + (self.frame.origin - self.field.shared.origin)
+    }
+
     fn exact(&self, p: DVec3) -> Jet {
-        let Slope { value, gradient, hessian } = self.field.slope(self.label, self.frame.place(p));
+        let Slope { value, gradient, hessian } = self.field.slope(self.label, self.place(p));
         Jet { value, gradient, hessian }
     }
 }
@@ -278,14 +289,14 @@ impl Evaluator for PartsEvaluator<'_> {
 
 impl Pieces for PartsEvaluator<'_> {
     fn label(&mut self, p: DVec3) -> u32 {
-        self.field.shared.label(self.frame.place(p))
+        self.field.shared.label(self.place(p))
     }
 
     fn labels_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
         let around = bounds.enlarged(0.25 * bounds.size().max_element() + self.field.room());
         let shared = &self.field.shared;
         let mut found = Vec::new();
-        shared.tree.in_box(&self.frame.outward(&around), |face| {
+        shared.tree.in_box(&around.relative_to(shared.origin - self.frame.origin), |face| {
             let patch = shared.patches.of_face[face as usize];
             if let Err(place) = found.binary_search(&patch) {
                 found.insert(place, patch);

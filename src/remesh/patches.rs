@@ -50,6 +50,9 @@ pub(super) struct Patches {
     pub(super) faded: usize,
     /// All sharp edges.
     pub(super) sharp: usize,
+    /// The vertices at which two creases meet and no more, those first at which they turn by more
+    /// than 45° or one is convex and the other one concave.
+    pub(super) turns: [usize; 2],
     /// The distance from a crease within which both of its patches may give f.
     pub(super) near: f64,
 }
@@ -83,18 +86,48 @@ impl Patches {
             let rise = normals[here.face as usize].dot(mesh.vertices()[other as usize] - a);
             found.creases.push(Crease { ends, patches, is_convex: rise < 0.0 });
         }
-        found.corners = found.find_corners(solid, &normals);
+        found.turns = found.count_turns(mesh);
         found
     }
 
+    /// The patches with the rules of their corners.
+    pub(super) fn with_corners(self, solid: &MeshSolid) -> Self {
+        let normals: Vec<DVec3> = solid.mesh.area_vectors().map(DVec3::normalize_or_zero).collect();
+        Self { corners: self.find_corners(solid, &normals), ..self }
+    }
+
     /// Whether these are the patches of a part with edges: nearly all sharp edges part two patches,
-    /// and the patches are few. The sharp edges of a noisy scan begin and end anywhere.
+    /// the patches are few, and curves of sharp edges hardly bend. Those of a noisy scan begin and
+    /// end anywhere, zigzag, and are convex here and concave there.
     pub(super) fn are_of_part(&self) -> bool {
         /// Largest share of the sharp edges that fade out.
         const FADED: f64 = 0.1;
         /// Most patches.
         const MOST: usize = 2_000;
-        self.sharp > 0 && self.faded as f64 <= FADED * self.sharp as f64 && self.count <= MOST
+        /// Largest share of the vertices between two sharp edges at which a curve turns.
+        const TURNS: f64 = 0.25;
+        let [turns, all] = self.turns;
+        self.sharp > 0
+            && self.faded as f64 <= FADED * self.sharp as f64
+            && self.count <= MOST
+            && turns as f64 <= TURNS * all as f64
+    }
+
+    fn count_turns(&self, mesh: &TriangleMesh) -> [usize; 2] {
+        const STRAIGHT: f64 = 0.7;
+        let both = |&Crease { ends: [a, b], is_convex, .. }: &Crease| [(a, b, is_convex), (b, a, is_convex)];
+        let mut from_vertex: Vec<(u32, u32, bool)> = self.creases.iter().flat_map(both).collect();
+        from_vertex.sort_unstable();
+        let place = |vertex: u32| mesh.vertices()[vertex as usize];
+        let mut turns = [0, 0];
+        for own in from_vertex.chunk_by(|a, b| a.0 == b.0) {
+            if let &[(at, a, first), (_, b, second)] = own {
+                let [u, v] = [a, b].map(|end| (place(end) - place(at)).normalize_or_zero());
+                turns[0] += usize::from(u.dot(v) > -STRAIGHT || first != second);
+                turns[1] += 1;
+            }
+        }
+        turns
     }
 
     /// The vertices at which three or more creases meet, each with the rule by which the patches

@@ -51,6 +51,8 @@ impl MeshRepairs {
 #[derive(Clone)]
 pub struct MeshSolid {
     pub(super) mesh: Arc<TriangleMesh>,
+    /// The place from which the vertices are counted.
+    pub(super) origin: DVec3,
     pub(super) edges: Arc<Edges>,
     pub(super) tree: Arc<Tree>,
     repairs: MeshRepairs,
@@ -73,11 +75,21 @@ impl TriangleMesh {
     ///
     /// # Errors
     ///
-    /// [`MeshError::NoArea`] if no face is left, [`MeshError::Sheet`] if it encloses nothing.
+    /// [`MeshError::NoArea`] if no face is left, [`MeshError::Sheet`] if it encloses nothing, and
+    /// [`MeshError::Far`] if it is more than 1,000 of its diagonals from the origin.
     pub fn solid(&self) -> Result<MeshSolid, MeshError> {
+        /// Diagonals from the origin up to which boxes are sampled.
+        const FAR: f64 = 1000.0;
         let mut repairs = MeshRepairs::default();
-        let width = SAME * self.bounds().diagonal();
-        let (vertices, merged) = merged(self, width);
+        let bounds = self.bounds();
+        if bounds.lo().abs().max(bounds.hi().abs()).max_element() > FAR * bounds.diagonal() {
+            return Err(if bounds.diagonal() > 0.0 { MeshError::Far } else { MeshError::NoArea });
+        }
+        let origin = bounds.local_origin();
+        let near =
+            Self::of_parts(self.vertices().iter().map(|p| p - origin).collect(), self.faces().to_vec());
+        let width = SAME * near.bounds().diagonal();
+        let (vertices, merged) = merged(&near, width);
         repairs.merged = merged.0;
         let mut faces = kept(&vertices, merged.1, width, &mut repairs);
         if faces.is_empty() {
@@ -99,6 +111,7 @@ impl TriangleMesh {
         let tree = Tree::new(&mesh.all_corners());
         let solid = MeshSolid {
             mesh: Arc::new(mesh),
+            origin,
             edges: Arc::new(edges),
             tree: Arc::new(tree),
             repairs,
@@ -112,10 +125,17 @@ impl TriangleMesh {
 }
 
 impl MeshSolid {
-    /// The mended mesh.
+    /// The mended mesh, whose vertices are counted from [`MeshSolid::origin`].
     #[must_use]
     pub fn mesh(&self) -> &TriangleMesh {
         &self.mesh
+    }
+
+    /// The place from which the vertices of [`MeshSolid::mesh`] are counted: zero, unless the mesh
+    /// is far from it for its size.
+    #[must_use]
+    pub fn origin(&self) -> DVec3 {
+        self.origin
     }
 
     /// What was mended.

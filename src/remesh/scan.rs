@@ -118,9 +118,10 @@ impl ScanField {
         let narrow = |_: ImageError| MeshError::Narrow { cell: grid.cell };
         let image = Image::new(grid.size, values).map_err(narrow)?;
         let image = image.with_spacing([grid.cell; 3]).map_err(narrow)?;
-        let image = image.with_origin(grid.origin).map_err(narrow)?;
-        let last = grid.place(grid.size.map(|n| n - 1));
-        let field = Self { image: image.at(0.0).map_err(narrow)?, domain: Bounds::new(grid.origin, last) };
+        let image = image.with_origin(solid.origin + grid.origin).map_err(narrow)?;
+        let domain = Bounds::new(grid.origin, grid.place(grid.size.map(|n| n - 1)));
+        let domain = domain.relative_to(-solid.origin);
+        let field = Self { image: image.at(0.0).map_err(narrow)?, domain };
         Ok((field, Chosen { size: grid.size, cell: grid.cell, width }))
     }
 
