@@ -49,7 +49,7 @@
 //! # Features
 //!
 //! `points` and `images`, which are on by default, fit surfaces to points and find them in
-//! three-dimensional images. With `parallel` all threads of the current
+//! three-dimensional images; both of them sample triangle meshes anew. With `parallel` all threads of the current
 //! [rayon](https://docs.rs/rayon) pool share measuring, fits to points and parts of the mesh,
 //! natively; the results are the same. Functions of the program are then called from several
 //! threads at once. A program that does such work in [steps](Reporting::step) takes them in a
@@ -100,6 +100,7 @@
 //! | solids of two fields | [`union`], [`intersection`], [`difference`], [`smooth_union`], [`offset`], [`Combined`] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
 //! | three-dimensional images | [`Image`], [`ImageField`], [`ImageChoice`], [`ImageSurface`], [`ImageOutline`], [`ImagePlacement`], [`Voxel`], [`VoxelType`], [`Label`], [`DEFAULT_LABEL_WIDTH`], [`ImageFormat`], [`RawVoxels`], [`ImageError`], [`ImageReadError`] |
+//! | triangle meshes | [`TriangleMesh`], [`MeshSolid`], [`MeshRepairs`], [`MeshEdges`], [`MeshField`], [`MeshKind`], [`MeshChange`], [`MeshDistances`], [`MeshError`] |
 //! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Body`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
 //! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measured`], [`Measures`], [`Cut`] |
 //! | its figures | [`Figures`] with the groups in [figures], [`Histogram`], [`Places`], [`Pair`], [`Hole`], [`Measurements`]; [`Value`], [`NamedValues`] |
@@ -148,6 +149,9 @@ pub mod particles;
 pub mod pointcloud;
 #[doc(hidden)]
 pub mod quality;
+#[cfg(all(feature = "images", feature = "points"))]
+#[doc(hidden)]
+pub mod remesh;
 mod run;
 #[doc(hidden)]
 pub mod sampler;
@@ -198,6 +202,11 @@ pub use pointcloud::job::JobError;
 #[cfg(feature = "points")]
 pub use pointcloud::read::{InputFormat, ReadError};
 pub use quality::{Figures, Histogram, Hole, Measurements, NamedValues, Pair, Places, figures};
+#[cfg(all(feature = "images", feature = "points"))]
+pub use remesh::{
+    MeshChange, MeshDistances, MeshEdges, MeshError, MeshField, MeshKind, MeshRepairs, MeshSolid,
+    TriangleMesh,
+};
 pub use run::{
     Cut, Error, Growth, Measured, Measures, MeshAnswer, MeshComponent, Proof, Radii, Report, Reporting, Run,
     Sample, Severity, Start, Value, ValueError, Warning, sample,

@@ -12,7 +12,7 @@ type Room = (&'static str, &'static [(&'static str, &'static [&'static str])]);
 /// Who may use whom in the rooms whose order is a decision. A module of a listed room that is not
 /// listed has no place in it yet; what is not listed may not be used. Parents, which declare their
 /// modules, may be used by them.
-const ROOMS: [Room; 5] = [
+const ROOMS: [Room; 6] = [
     (
         "",
         &[
@@ -27,6 +27,9 @@ const ROOMS: [Room; 5] = [
             ("image", &["math", "field"]),
             // From a file to a field. The core that samples is built without it.
             ("pointcloud", &["math", "field", "spatial", "topology", "slices"]),
+            // From a triangle mesh to a field. Its files are read as those of points are, and a scan
+            // becomes an image.
+            ("remesh", &["math", "slices", "field", "image", "pointcloud"]),
             // Particles, meshes of them and the search among them know no field: they hold whatever
             // made them.
             ("spatial", &["math", "slices"]),
@@ -132,6 +135,22 @@ const ROOMS: [Room; 5] = [
             ("labels", &["smooth", "voxels"]),
             ("read", &["placement", "voxels"]),
             ("choice", &["field", "smooth", "labels", "otsu"]),
+        ],
+    ),
+    (
+        "remesh",
+        &[
+            ("tree", &[]),
+            ("edges", &[]),
+            ("mesh", &[]),
+            ("prepare", &["edges", "mesh", "tree"]),
+            ("cross", &[]),
+            ("rule", &[]),
+            ("patches", &["edges", "rule", "tree"]),
+            ("sheet", &["edges", "tree"]),
+            ("parts", &["patches", "rule", "sheet", "tree"]),
+            ("scan", &["edges", "tree"]),
+            ("compare", &["tree"]),
         ],
     ),
     (

@@ -6,7 +6,8 @@ use marching_particles::glam::DVec3;
 use marching_particles::pointcloud::job::Job;
 use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{
-    BatchField, BatchPiecewise, Bounds, Combined, Formula, Image, ImageChoice, ImageError, VoxelType,
+    BatchField, BatchPiecewise, Bounds, Combined, Formula, Image, ImageChoice, ImageError, MeshEdges,
+    MeshError, MeshField, MeshKind, TriangleMesh, VoxelType,
 };
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::exceptions::PyValueError;
@@ -140,6 +141,34 @@ impl Field {
         })
     }
 
+    /// The field of a triangle mesh, which keeps edges as `edges` says: "auto", "none" or an angle
+    /// in degrees.
+    #[staticmethod]
+    fn mesh(
+        py: Python<'_>,
+        vertices: PyReadonlyArray2<'_, f64>,
+        faces: PyReadonlyArray2<'_, u32>,
+        edges: &str,
+        smooth: Option<f64>,
+    ) -> PyResult<(Self, Mesh, String)> {
+        let vertices: Vec<DVec3> =
+            vertices.as_slice()?.as_chunks::<3>().0.iter().map(|&p| DVec3::from_array(p)).collect();
+        let faces = faces.as_slice()?.as_chunks::<3>().0.to_vec();
+        py.detach(|| Self::meshed(TriangleMesh::new(vertices, faces), edges, smooth))
+    }
+
+    /// [`Self::mesh`] of the content of a file of this name.
+    #[staticmethod]
+    fn mesh_file(
+        py: Python<'_>,
+        name: &str,
+        content: Vec<u8>,
+        edges: &str,
+        smooth: Option<f64>,
+    ) -> PyResult<(Self, Mesh, String)> {
+        py.detach(|| Self::meshed(TriangleMesh::read(name, content), edges, smooth))
+    }
+
     /// The union, in a box around those of both fields if they are known.
     fn union(&self, other: &Self) -> Self {
         self.with(other, marching_particles::union, self.joined(other))
@@ -181,7 +210,53 @@ impl Field {
     }
 }
 
+/// A triangle mesh, with which one that was made of it can be compared.
+#[pyclass(frozen, module = "marching_particles._core")]
+pub(crate) struct Mesh(MeshField);
+
+#[pymethods]
+impl Mesh {
+    /// How far a mesh is from this one, as JSON.
+    fn compare(
+        &self,
+        py: Python<'_>,
+        points: PyReadonlyArray2<'_, f64>,
+        faces: PyReadonlyArray2<'_, i32>,
+    ) -> PyResult<String> {
+        let points: Vec<DVec3> =
+            points.as_slice()?.as_chunks::<3>().0.iter().map(|&p| DVec3::from_array(p)).collect();
+        let faces = faces.as_slice()?.as_chunks::<3>().0;
+        let faces: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|corner| corner as u32)).collect();
+        let change = py.detach(|| self.0.compare(&points, &faces));
+        Ok(serde_json::to_string(&change).expect("numbers are data"))
+    }
+}
+
 impl Field {
+    fn meshed(
+        mesh: Result<TriangleMesh, MeshError>,
+        edges: &str,
+        smooth: Option<f64>,
+    ) -> PyResult<(Self, Mesh, String)> {
+        let raised = |error: MeshError| PyValueError::new_err(error.to_string());
+        let mesh = mesh.map_err(raised)?;
+        let edges = match edges {
+            "auto" => MeshEdges::Auto,
+            "none" => MeshEdges::Rounded,
+            angle => MeshEdges::Angle(angle.parse().unwrap_or(f64::NAN)),
+        };
+        let solid = mesh.solid().map_err(raised)?;
+        let field = solid.field(edges, smooth).map_err(raised)?;
+        let known = serde_json::json!({
+            "kind": if matches!(field.kind(), MeshKind::Parts { .. }) { "part" } else { "scan" },
+            "repairs": solid.repairs().words(),
+            "border_edges": solid.border_edges(),
+            "notes": mesh.notes(),
+        });
+        let bounds = extent::find(&field).with_room(|_| 0.0);
+        Ok((Self::new(Arc::new(field.clone()), Some(bounds)), Mesh(field), known.to_string()))
+    }
+
     fn new(field: Shared, bounds: Option<Bounds>) -> Self {
         Self { field, bounds, formula: None }
     }

@@ -5,7 +5,7 @@ mod errors;
 mod field;
 mod run;
 
-use field::Field;
+use field::{Field, Mesh};
 use marching_particles::CENTRES;
 use marching_particles::session::settings;
 use pyo3::prelude::*;
@@ -18,6 +18,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     // The smallest and the largest number that is accepted.
     module.add("CENTRES", (*CENTRES.start(), *CENTRES.end()))?;
     module.add_class::<Field>()?;
+    module.add_class::<Mesh>()?;
     module.add_class::<Sample>()?;
     module.add_function(wrap_pyfunction!(sample, module)?)
 }

@@ -15,7 +15,7 @@ use marching_particles::session::{
     BeyondPoints, BoxCell, BoxFaces, BoxMode, FileRecord, Language, SolidSettings,
 };
 use marching_particles::{
-    Bodies, Format, Measured, MeshFormat, Placement, Thickness, Unit, UpAxis, Vertices, gallery,
+    Bodies, Format, Measured, MeshEdges, MeshFormat, Placement, Thickness, Unit, UpAxis, Vertices, gallery,
 };
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
@@ -149,7 +149,7 @@ pub(crate) struct Sweep {
 const SAMPLE_LONG: &str = "\
 Sample a surface, write it to files and say how good it is.
 
-Name a surface, give a formula, a file of points, with or without normals, or a three-dimensional image. Say how fine: by the radius of the particles (neighbours sit two radii apart) or by \
+Name a surface, give a formula, a file of points, with or without normals, a triangle mesh, or a three-dimensional image. Say how fine: by the radius of the particles (neighbours sit two radii apart) or by \
 their number. Without --out and --mesh nothing is written, only measured.";
 
 const SAMPLE_AFTER: &str = "\
@@ -177,6 +177,7 @@ Examples:
   marching-particles sample --points scan.ply --formula \"max(model, abs(z) - 0.1)\" --mesh slice.stl
   marching-particles sample --image scan.nii.gz --iso 300 --count 50000 --mesh bone.stl
   marching-particles sample --image organs.nrrd --label 3 --mesh liver.stl
+  marching-particles sample --mesh-in part.stl --count 20000 --mesh even.stl
   marching-particles sample --surface torus --mesh - --format glb --quiet | viewer
   marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --count 5000 --print python
   marching-particles sample --formula \"(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3\" --relax 0
@@ -184,7 +185,7 @@ Examples:
 Exit codes:
   0  done
   1  a file could not be read or written
-  2  the command, the formula, a setting or a file of points or of an image cannot be understood
+  2  the command, the formula, a setting or a file of points, of a mesh or of an image cannot be understood
   3  there is nothing to sample: no surface in the box, a constant or undefined formula
   4  more particles than the limit; what was placed before it was reached is written";
 
@@ -204,7 +205,7 @@ pub(crate) struct SampleArguments {
     /// Share of the box of --closed that the sheet leaves empty, by the volume of the mesh: 70% or
     /// 0.7. Finds the thickness; a --thickness by a formula is scaled. Corrected by up to two more
     /// runs. For formulas
-    #[arg(long, value_name = "SHARE%", value_parser = porosity, requires = "closed", conflicts_with_all = ["points", "image"], help_heading = "Surface")]
+    #[arg(long, value_name = "SHARE%", value_parser = porosity, requires = "closed", conflicts_with_all = ["points", "image", "mesh_in"], help_heading = "Surface")]
     pub(crate) porosity: Option<f64>,
 
     #[command(flatten)]
@@ -287,7 +288,7 @@ pub(crate) struct SampleArguments {
     /// --unit
     #[arg(
         long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true,
-        conflicts_with_all = ["thickness", "porosity", "points", "image", "print"], help_heading = "Output"
+        conflicts_with_all = ["thickness", "porosity", "points", "image", "mesh_in", "print"], help_heading = "Output"
     )]
     pub(crate) wall: Option<Length>,
 
@@ -311,7 +312,7 @@ pub(crate) struct SampleArguments {
     /// Print the program that makes these particles, in place of making them: on the library in
     /// Rust, on the package for npm (js), on the Python package, or as a command (shell). No file
     /// is written; --mesh chooses the method as usual. For formulas
-    #[arg(long, value_name = "LANGUAGE", value_parser = one_of(&Language::ALL), conflicts_with_all = ["json", "porosity", "image"], help_heading = "Output")]
+    #[arg(long, value_name = "LANGUAGE", value_parser = one_of(&Language::ALL), conflicts_with_all = ["json", "porosity", "image", "mesh_in"], help_heading = "Output")]
     pub(crate) print: Option<(&'static str, Language)>,
 
     /// Print nothing but errors, and the line of --json; show no progress bar (there is none
@@ -328,8 +329,8 @@ pub(crate) struct SurfaceArguments {
     pub(crate) surface: Option<String>,
 
     /// Formula of the surface; with --surface, it replaces the formula of that surface. Beside
-    /// --points or a model, `model` stands for their function, as an operand of max, min, smin,
-    /// smax or abs, or with a number that is added: "max(model, z)" cuts it
+    /// --points, --mesh-in or a model, `model` stands for their function, as an operand of max,
+    /// min, smin, smax or abs, or with a number that is added: "max(model, z)" cuts it
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true, help_heading = "Surface")]
     pub(crate) formula: Option<String>,
 
@@ -345,7 +346,7 @@ pub(crate) struct SurfaceArguments {
     /// medical images
     #[arg(
         long, value_name = "FILE", help_heading = "Surface",
-        conflicts_with_all = ["surface", "formula", "points", "parameters", "closed", "thickness"]
+        conflicts_with_all = ["surface", "formula", "points", "mesh_in", "parameters", "closed", "thickness"]
     )]
     pub(crate) image: Option<PathBuf>,
 
@@ -378,6 +379,26 @@ pub(crate) struct SurfaceArguments {
     /// Distances between the voxels of --image along its axes, in place of those in the file
     #[arg(long, value_name = "XxYxZ", value_parser = voxel_size, requires = "image", help_heading = "Surface")]
     pub(crate) voxel_size: Option<VoxelSize>,
+
+    /// File of a triangle mesh that is sampled anew: STL, OBJ, PLY or OFF; `-` is standard input.
+    /// Its sharp edges stay, holes are closed, and the report says how far the new mesh is from it.
+    /// With --formula it is an operand by the name `model`
+    #[arg(
+        long, value_name = "FILE", help_heading = "Surface",
+        conflicts_with_all = ["surface", "points", "image", "closed", "thickness"]
+    )]
+    pub(crate) mesh_in: Option<PathBuf>,
+
+    /// Which edges of --mesh-in stay sharp: those whose faces meet at this angle or more, in
+    /// degrees; `none` rounds all; `auto` is 30, and `none` for scans, smooth shapes and meshes
+    /// with holes [default: auto]
+    #[arg(long, value_name = "DEGREES|auto|none", value_parser = mesh_edges, requires = "mesh_in", help_heading = "Surface")]
+    pub(crate) mesh_edges: Option<MeshEdges>,
+
+    /// Take --mesh-in for a scan, and smooth it by a Gaussian of this width, in cells of the grid
+    /// that it is put on, 0 to 10 [default: by the noise that is measured, from 0.7 to 3]
+    #[arg(long, value_name = "CELLS", value_parser = number, requires = "mesh_in", help_heading = "Surface")]
+    pub(crate) mesh_smooth: Option<f64>,
 
     /// Centres of the surface among the points of --points or of a model, 100 to 800: more follow
     /// finer details and take longer [default: 200]
@@ -481,6 +502,7 @@ impl SampleArguments {
             && surface.formula.is_none()
             && surface.points.is_none()
             && surface.image.is_none()
+            && surface.mesh_in.is_none()
         {
             let own = record.surface.as_deref().and_then(gallery::find).map(|own| record.solid.own_box(own));
             if surface.bounds.is_none() && own != Some(record.bounds) {
@@ -528,6 +550,15 @@ fn vertices() -> impl TypedValueParser<Value = Vertices> {
         let found = VERTICES.iter().find(|choice| choice.value.name() == given);
         found.map(|choice| choice.value).ok_or("there is no such way")
     })
+}
+
+/// Which edges of a mesh stay sharp.
+fn mesh_edges(text: &str) -> Result<MeshEdges, String> {
+    match text {
+        "auto" => Ok(MeshEdges::Auto),
+        "none" => Ok(MeshEdges::Rounded),
+        _ => Ok(MeshEdges::Angle(number(text)?)),
+    }
 }
 
 /// Where the surface of points ends.

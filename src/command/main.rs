@@ -10,6 +10,7 @@ mod outcome;
 mod output;
 mod points;
 mod porosity;
+mod remesh;
 mod sample;
 mod spacing;
 mod summary;

@@ -1,6 +1,7 @@
 //! Result of a run.
 
 use crate::image::ImageInfo;
+use crate::remesh::RemeshInfo;
 use marching_particles::field::model::ModelInfo;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::Settings;
@@ -12,7 +13,7 @@ use std::collections::BTreeMap;
 /// Wall times of the phases in seconds.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(crate) struct Seconds {
-    /// Time to read points and to fit a field to them, or to read an image and to filter it.
+    /// Time to read points and to fit a field to them, or to read an image or a mesh.
     pub(crate) points: f64,
     pub(crate) seeding: f64,
     pub(crate) generation: f64,
@@ -42,6 +43,9 @@ pub(crate) struct Outcome {
     /// The image, for a surface in one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) image: Option<ImageInfo>,
+    /// The mesh that was sampled anew.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) remesh: Option<RemeshInfo>,
     pub(crate) formula: String,
     pub(crate) parameters: BTreeMap<String, f64>,
     pub(crate) bounds: Bounds,

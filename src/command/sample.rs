@@ -47,7 +47,12 @@ fn read_record(path: &Path, surface: &SurfaceArguments) -> Result<FileRecord, Fa
         Failure::Usage(format!("the record in {} could not be read: {error}", path.display()))
     })?;
     match &record.model {
-        Some(model) if surface.surface.is_none() && surface.points.is_none() && surface.image.is_none() => {
+        Some(model)
+            if surface.surface.is_none()
+                && surface.points.is_none()
+                && surface.image.is_none()
+                && surface.mesh_in.is_none() =>
+        {
             Err(Failure::Usage(format!(
                 "{} was made from points, {model}: name them with --surface or --points, beside --like",
                 path.display()
@@ -64,7 +69,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     }
     let spacing = arguments.spacing_text()?;
     arguments.sampling.check(spacing.is_some())?;
-    if !arguments.mesh.is_empty() || arguments.porosity.is_some() {
+    if !arguments.mesh.is_empty() || arguments.porosity.is_some() || arguments.surface.mesh_in.is_some() {
         arguments.sampling.prefer_refined();
     }
     let arguments = &arguments;
@@ -85,7 +90,8 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     check_placement(arguments)?;
     let records: Vec<PathBuf> = (arguments.out.iter().zip(&formats))
         .filter(|(path, format)| {
-            **format == Format::Csv && !is_standard(path) && arguments.surface.image.is_none()
+            let has_record = arguments.surface.image.is_none() && arguments.surface.mesh_in.is_none();
+            **format == Format::Csv && !is_standard(path) && has_record
         })
         .map(|(path, _)| record_path(path))
         .collect();
@@ -122,7 +128,9 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     };
     let bar = bar(arguments.quiet);
     let measured = arguments.report.measured();
-    let is_mesh = !mesh_formats.is_empty() || wish.is_some();
+    // A mesh is compared with the one that it was made of.
+    let is_remeshed = matches!(origin, Origin::Mesh(_)) && arguments.surface.formula.is_none();
+    let is_mesh = !mesh_formats.is_empty() || wish.is_some() || is_remeshed;
     let (settings, predicted_count, is_joined, peak_sampling_mb) = loop {
         bar.set_message("looking for the box and the edges");
         let (settings, start) = timed(&mut seconds.seeding, || {
@@ -145,7 +153,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     };
     let reach = session.run.reach();
     let bounds = session.run.bounds();
-    // No record holds an image.
+    // No record holds an image or a mesh.
     let mut made = session.record(None);
     if let Some(made) = &mut made {
         // The steps that were asked for, though an even surface takes fewer.
@@ -203,11 +211,19 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
 
     let report = sample.report().clone();
     let capped = report.stop_reason == Some(StopReason::Cap);
-    let (model, image) = match origin {
-        Origin::Formula => (None, None),
-        Origin::Points(model) => (Some(model), None),
-        Origin::Image(image) => (None, Some(image)),
-    };
+    let (mut model, mut image, mut remesh) = (None, None, None);
+    match origin {
+        Origin::Formula => {}
+        Origin::Points(info) => model = Some(info),
+        Origin::Image(info) => image = Some(info),
+        Origin::Mesh(own) => {
+            let (field, mut info) = *own;
+            if is_remeshed && is_joined {
+                timed(&mut seconds.quality, || info.compare(&field, &sample));
+            }
+            remesh = Some(info);
+        }
+    }
     let mut sampled = settings;
     sampled.bounds = None;
     let thickness = made.as_ref().and_then(|made| made.solid.sheet().cloned());
@@ -219,6 +235,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         surface,
         model,
         image,
+        remesh,
         formula,
         parameters,
         bounds,

@@ -16,6 +16,10 @@ const COLUMN: usize = 13;
 pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     let report = &outcome.report;
     match (&outcome.model, &outcome.image) {
+        _ if outcome.remesh.is_some() => {
+            let lines = outcome.remesh.iter().flat_map(|mesh| mesh.lines());
+            lines.into_iter().try_for_each(|line| writeln!(out, "{line}"))?;
+        }
         (_, Some(image)) => image.lines().iter().try_for_each(|line| writeln!(out, "{line}"))?,
         (Some(model), _) => points(out, outcome.surface.as_deref().unwrap_or("points"), model)?,
         _ => writeln!(out, "{}: {}", outcome.surface.as_deref().unwrap_or("formula"), outcome.formula)?,
@@ -65,6 +69,9 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     if outcome.image.is_some() {
         write!(out, "image {}, ", time(s.points))?;
     }
+    if outcome.remesh.is_some() {
+        write!(out, "mesh {}, ", time(s.points))?;
+    }
     write!(out, "seeding {}, generation {}", time(s.seeding), time(s.generation))?;
     if s.refinement > 0.0 {
         write!(out, ", refinement {}", time(s.refinement))?;
@@ -80,6 +87,9 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     writeln!(out, "; in all {}, {} \u{b5}s a particle", time(s.all()), significant(1e6 * each))?;
     if let Some(mesh) = &outcome.mesh {
         writeln!(out, "mesh of {}", mesh_line(mesh))?;
+    }
+    for line in outcome.remesh.iter().flat_map(|mesh| mesh.change_lines()) {
+        writeln!(out, "{line}")?;
     }
     if let Some(peak) = outcome.peak_mb {
         writeln!(out, "peak memory {peak:.0} MB")?;

@@ -5,6 +5,7 @@ use crate::bar::bar;
 use crate::failure::Failure;
 use crate::image::{self, ImageInfo};
 use crate::points;
+use crate::remesh::{self, RemeshInfo};
 use marching_particles::field::formula::{self, MODEL};
 use marching_particles::field::model::{self, ModelInfo};
 use marching_particles::math::shortest_text;
@@ -13,7 +14,7 @@ use marching_particles::pointcloud::job::DEFAULT_CENTRES;
 use marching_particles::session::{
     BoxFaces, Fault, FaultKind, FieldAnswer, FieldRequest, Session, SolidSettings, Source,
 };
-use marching_particles::{Bounds, Field, Parameter, Settings, Thickness, gallery};
+use marching_particles::{Bounds, Field, MeshField, Parameter, Settings, Thickness, gallery};
 use std::sync::Arc;
 
 /// The fit to a file of points or a built-in model, if one is requested.
@@ -61,6 +62,7 @@ pub(crate) enum Origin {
     /// Points, with the report of the fit.
     Points(ModelInfo),
     Image(ImageInfo),
+    Mesh(Box<(MeshField, RemeshInfo)>),
 }
 
 /// Has the session take the surface that the arguments name.
@@ -75,6 +77,18 @@ pub(crate) fn choose(
         session.set_function(Arc::new(field), given).map_err(refused)?;
         session.choose(solid).map_err(|fault| Failure::Usage(fault.message))?;
         return Ok(Origin::Image(info));
+    }
+    if let Some((field, info)) = remesh::of_arguments(arguments)? {
+        let request = FieldRequest {
+            formula: arguments.formula.clone(),
+            parameters: arguments.parameters.iter().cloned().collect(),
+            bounds: given,
+            ..FieldRequest::default()
+        };
+        let answer = session.set_model(Arc::new(field.clone()), &request).map_err(refused)?;
+        check_parameters(arguments, &answer)?;
+        session.choose(solid).map_err(|fault| Failure::Usage(fault.message))?;
+        return Ok(Origin::Mesh(Box::new((field, info))));
     }
     let mut request =
         FieldRequest { bounds: given, pulls: arguments.pulls.clone(), ..FieldRequest::default() };

@@ -22,6 +22,7 @@ pub use field::ImageField;
 pub use labels::{DEFAULT_LABEL_WIDTH, Label};
 pub use placement::Placement;
 pub use read::{ImageFormat, ImageOutline, ImageReadError, MAX_IMAGE_BYTES, RawVoxels};
+pub(crate) use smooth::blur;
 pub use voxels::{Voxel, VoxelType};
 
 use core::fmt::{self, Debug, Formatter};

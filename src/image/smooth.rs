@@ -49,7 +49,7 @@ fn gaussian(deviation: f64) -> Vec<f32> {
 
 /// Filters voxels by a Gaussian along each axis in turn. Beyond the border they are those of the
 /// border.
-pub(super) fn blur(size: [usize; 3], voxels: &mut [f32], deviations: [f64; 3]) {
+pub(crate) fn blur(size: [usize; 3], voxels: &mut [f32], deviations: [f64; 3]) {
     let strides = [1, size[0], size[0] * size[1]];
     for axis in 0..3 {
         let weights = gaussian(deviations[axis]);

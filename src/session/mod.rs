@@ -514,6 +514,21 @@ impl Session {
         Ok(self.answer())
     }
 
+    /// Changes the field to another one, or to the formula of a request in which it is an operand by
+    /// the name [`MODEL`], in the box of the request or in one that is fitted: see
+    /// [`Session::set_function`]. The answer has the parameters of the formula.
+    ///
+    /// # Errors
+    ///
+    /// If the formula has a mistake or the box is not one; nothing is changed then.
+    pub fn set_model(&mut self, model: Arc<dyn Field>, request: &FieldRequest) -> Result<FieldAnswer, Fault> {
+        let Some(text) = &request.formula else { return self.set_function(model, request.bounds) };
+        let ModelFormula { text, parameters, auto, mathml, field } =
+            Self::model_formula(text, &model, request)?;
+        let answer = self.set_function(Arc::new(field), request.bounds)?;
+        Ok(FieldAnswer { formula: text, parameters, auto, mathml: Some(mathml), ..answer })
+    }
+
     /// Starts a run on the present field.
     ///
     /// # Errors

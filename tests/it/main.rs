@@ -62,6 +62,7 @@ mod random_solids;
 mod rbf;
 mod refine;
 mod relax;
+mod remesh;
 mod runs;
 mod seams;
 mod session;

@@ -21,6 +21,7 @@ from ._fields import (
     union,
 )
 from ._image import Image
+from ._remesh import TriangleMesh, remesh
 from ._report import Report
 from ._sample import Mesh, Sample, SampleWarning, sample
 
@@ -35,6 +36,7 @@ __all__ = [
     "Report",
     "Sample",
     "SampleWarning",
+    "TriangleMesh",
     "__version__",
     "difference",
     "field",
@@ -42,6 +44,7 @@ __all__ = [
     "intersection",
     "offset",
     "piecewise",
+    "remesh",
     "sample",
     "smooth_union",
     "union",

@@ -55,6 +55,9 @@ class Sample:
     first asked for, and kept.
     """
 
+    #: How far the mesh is from the one that :func:`remesh` was given, a dict; else None.
+    change = None
+
     def __init__(self, core):
         self._core = core
 

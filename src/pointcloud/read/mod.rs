@@ -129,6 +129,10 @@ impl Reader {
     /// If the file is empty, too large or of an unknown format.
     pub fn new(name: &str, bytes: Vec<u8>) -> Result<Self, ReadError> {
         check_size(bytes.len() as u64)?;
+        Self::of_any_size(name, bytes)
+    }
+
+    fn of_any_size(name: &str, bytes: Vec<u8>) -> Result<Self, ReadError> {
         let format = format::sniff(name, &bytes)?;
         let mut mesh = FileMesh::default();
         if let Some(extension) = format.contradicting_extension(name) {
@@ -137,6 +141,19 @@ impl Reader {
             ));
         }
         Ok(Self { format, bytes, mesh })
+    }
+
+    /// [`Reader::new`] for a mesh that is kept whole, of any size.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Reader::new`].
+    #[cfg(feature = "images")]
+    pub(crate) fn of_mesh(name: &str, bytes: Vec<u8>) -> Result<Self, ReadError> {
+        if bytes.is_empty() {
+            return Err(ReadError::Empty);
+        }
+        Self::of_any_size(name, bytes)
     }
 
     /// Detected format.

@@ -8,6 +8,7 @@ mod code;
 #[expect(dead_code, reason = "no bytes are digested here")]
 mod golden;
 mod images;
+mod meshes;
 mod spacing;
 mod sweeps;
 mod thickness;

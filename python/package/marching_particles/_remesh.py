@@ -1,0 +1,147 @@
+"""Triangle meshes, sampled anew with their edges."""
+
+import json
+import os
+
+import numpy as np
+
+from . import _core
+from ._fields import Field, numbers
+from ._sample import sample
+
+# Settings of the front, which the refined method does without.
+_OF_FRONT = ("relax", "match_tolerance", "gaps")
+
+
+class TriangleMesh(Field):
+    """The solid in a triangle mesh, to be given to :func:`sample`, :func:`difference` and the like.
+
+    A closed mesh with sharp edges keeps them: f is made of a smooth function for each patch between
+    edges. Of a scan, a smooth shape or a mesh with holes f is the distance on a grid, smoothed a
+    little; holes are closed. Before that, vertices at the same place are merged, faces without area
+    and doubled ones dropped, and faces turned to agree.
+
+    Args:
+        mesh: The path of a file, STL, OBJ, PLY or OFF; a mesh of trimesh or PyVista; or a pair
+            ``(vertices, faces)`` of arrays (n, 3) and (m, 3), in any unit of length, with faces
+            counter-clockwise seen from outside.
+        edges: ``"auto"``; the angle between faces from which on an edge stays sharp, in degrees, 1
+            to 180; or None, to round all edges.
+        smooth: Width of a Gaussian in cells of the grid of a scan, 0 to 10: the mesh is taken for
+            one if it is given. By default it is chosen by the noise.
+
+    Attributes:
+        bounds: The box of the surface, ``((x0, y0, z0), (x1, y1, z1))``.
+        kind: ``"part"``, with edges, or ``"scan"``.
+        repairs: Sentences on what was mended.
+        border_edges: Number of edges with one face, at the borders of holes.
+        notes: Sentences on what of a file was left out.
+
+    Raises:
+        TypeError: If the mesh is none of these.
+        ValueError: If it has no area, encloses no volume, or its edges cannot be kept.
+        OSError: If the file cannot be read.
+    """
+
+    def __init__(self, mesh, *, edges="auto", smooth=None):
+        if edges is None:
+            edges = "none"
+        elif edges != "auto":
+            edges = repr(float(numbers("edges", edges, (), '"auto", an angle or None')))
+        smooth = None if smooth is None else float(numbers("smooth", smooth, (), "a number"))
+        if isinstance(mesh, (str, os.PathLike)):
+            path = os.fspath(mesh)
+            with open(path, "rb") as file:
+                content = file.read()
+            made = _core.Field.mesh_file(os.path.basename(path), content, edges, smooth)
+        else:
+            made = _core.Field.mesh(*_arrays(mesh), edges, smooth)
+        field, self._mesh, known = made
+        super().__init__(field)
+        known = json.loads(known)
+        self.kind = known["kind"]
+        self.repairs = known["repairs"]
+        self.border_edges = known["border_edges"]
+        self.notes = known["notes"]
+
+    def __repr__(self):
+        return f"<TriangleMesh, a {self.kind}>"
+
+    def compare(self, mesh):
+        """How far another mesh is from this one, as it was mended.
+
+        Args:
+            mesh: A :class:`Mesh` of a sample, or what :class:`TriangleMesh` takes but a path.
+
+        Returns:
+            A dict: ``to_new`` and ``to_old``, the distances of points of this mesh from the other
+            one and back, each with ``mean``, ``most`` (99 % are below) and ``largest``;
+            ``volume`` and ``area`` of both; ``edges``, the largest distance of the sharp edges
+            from the other mesh, or None; and ``diagonal``, that of the box of this mesh. Lengths
+            are in its units.
+        """
+        points, faces = _arrays(mesh)
+        return json.loads(self._mesh.compare(points, faces.astype(np.int32)))
+
+
+def remesh(mesh, *, edges="auto", smooth=None, **options):
+    """Samples the surface of a triangle mesh anew, with even triangles.
+
+    >>> import numpy as np
+    >>> import marching_particles as mp
+    >>> corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    >>> sample = mp.remesh((corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]), count=1000)
+    >>> sample.report["proof"]["creases"], bool(sample.change["to_new"]["largest"] < 1e-6)
+    (6, True)
+
+    Args:
+        mesh: What :class:`TriangleMesh` takes, or one of these.
+        edges: See :class:`TriangleMesh`.
+        smooth: See :class:`TriangleMesh`.
+        options: The arguments of :func:`sample`, such as ``count``, ``spacing`` or ``adaptive``.
+            The method is ``"refined"`` if none is given.
+
+    Returns:
+        A :class:`Sample`, whose :meth:`Sample.mesh` is the new mesh, and whose ``change`` says how
+        far it is from the old one: see :meth:`TriangleMesh.compare`.
+
+    Raises:
+        The errors of :class:`TriangleMesh` and of :func:`sample`.
+    """
+    if not isinstance(mesh, TriangleMesh):
+        mesh = TriangleMesh(mesh, edges=edges, smooth=smooth)
+    elif edges != "auto" or smooth is not None:
+        raise TypeError("edges and smooth belong to TriangleMesh: give them to it")
+    if not any(name in options for name in _OF_FRONT):
+        options.setdefault("method", "refined")
+    result = sample(mesh, **options)
+    result.change = mesh.compare(result.mesh())
+    return result
+
+
+def _arrays(mesh):
+    """The vertices and the faces of a mesh."""
+    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):  # trimesh
+        vertices, faces = mesh.vertices, mesh.faces
+    elif hasattr(mesh, "points") and hasattr(mesh, "faces"):
+        vertices, faces = mesh.points, mesh.faces
+        if hasattr(mesh, "triangulate"):  # PyVista, whose faces begin with their number of corners
+            mesh = mesh.triangulate()
+            vertices, faces = mesh.points, np.reshape(mesh.faces, (-1, 4))[:, 1:]
+    elif isinstance(mesh, (tuple, list)) and len(mesh) == 2:
+        vertices, faces = mesh
+    else:
+        raise TypeError(
+            "mesh must be a path, a mesh of trimesh or PyVista or a pair (vertices, faces), and not "
+            f"{type(mesh).__name__}"
+        )
+    vertices = numbers("vertices", vertices, (None, 3), "an array of n points, of the shape (n, 3)")
+    faces = np.asarray(faces)
+    if faces.ndim != 2 or faces.shape[1] != 3 or faces.dtype.kind not in "iu":
+        raise ValueError(
+            "faces must be an array of whole numbers of the shape (m, 3), and not of the type "
+            f"{faces.dtype} and the shape {faces.shape}"
+        )
+    if faces.size and not 0 <= faces.min() <= faces.max() < len(vertices):
+        raise ValueError(f"faces has indices beyond the {len(vertices)} vertices")
+    return vertices, np.ascontiguousarray(faces, dtype=np.uint32)

@@ -1,0 +1,57 @@
+"""Triangle meshes, sampled anew."""
+
+import marching_particles as mp
+import numpy as np
+import pytest
+import trimesh
+
+
+def moved(new, old):
+    """The largest distance of vertices of one mesh from another one, by trimesh."""
+    return np.abs(trimesh.proximity.closest_point(old, new.vertices)[1]).max()
+
+
+def test_box_keeps_its_edges(tmp_path):
+    box = trimesh.creation.box((1, 2, 3))
+    path = tmp_path / "box.stl"
+    box.export(path)
+    for given in (box, path, (box.vertices, box.faces)):
+        sample = mp.remesh(given, count=2000)
+        new = sample.to_trimesh()
+        assert new.is_watertight and new.euler_number == 2
+        assert new.volume == pytest.approx(6, rel=1e-6)
+        assert sample.report["proof"]["creases"] == 12
+        assert sample.change["edges"] < 1e-6 and sample.change["volume"] == pytest.approx([6, 6])
+        assert moved(new, box) < 1e-6
+
+
+def test_spacing_is_that_of_the_neighbours():
+    sample = mp.remesh(trimesh.creation.box((1, 1, 1)), spacing=0.05)
+    new = sample.to_trimesh()
+    assert np.median(new.edges_unique_length) == pytest.approx(0.05, rel=0.1)
+
+
+def test_smooth_mesh_is_a_scan():
+    ball = trimesh.creation.icosphere(4)
+    model = mp.TriangleMesh(ball)
+    assert model.kind == "scan" and model.repairs == []
+    new = mp.remesh(model, count=3000).to_trimesh()
+    assert new.is_watertight and new.euler_number == 2
+    assert np.abs(np.linalg.norm(new.vertices, axis=1) - 1).max() < 5e-3
+
+
+def test_mesh_is_an_operand():
+    box = mp.TriangleMesh(trimesh.creation.box((2, 2, 1)))
+    drilled = mp.difference(box, "x^2 + y^2 - 0.25")
+    new = mp.sample(drilled, count=3000, method="refined").to_trimesh()
+    assert new.is_watertight and new.euler_number == 0
+    assert new.volume == pytest.approx(4 - np.pi / 4, rel=2e-3)
+
+
+def test_what_cannot_be_sampled_is_refused():
+    with pytest.raises(ValueError, match="sheet that encloses no volume"):
+        mp.remesh(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), count=500)
+    with pytest.raises(ValueError, match="beyond the 3 vertices"):
+        mp.remesh(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 3]]), count=500)
+    with pytest.raises(TypeError, match="a mesh of trimesh or PyVista"):
+        mp.remesh(7, count=500)

@@ -1,0 +1,124 @@
+//! How far a new mesh is from the old one.
+
+use super::tree::Tree;
+use super::{MeshField, TriangleMesh};
+use crate::math::sort_numbers;
+use crate::slices;
+use glam::DVec3;
+use serde::Serialize;
+
+/// Points on each mesh from which distances are measured, beside its vertices.
+const POINTS: f64 = 50_000.0;
+/// Points of a slice of work.
+const AT_ONCE: usize = 32;
+
+/// Distances of points from a surface, in the units of the mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct MeshDistances {
+    /// Their mean.
+    pub mean: f64,
+    /// The distance that 99 % of them do not exceed.
+    pub most: f64,
+    /// The largest.
+    pub largest: f64,
+}
+
+/// What has become of a mesh by being sampled anew.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct MeshChange {
+    /// Diagonal of the box of the old mesh.
+    pub diagonal: f64,
+    /// Distances of points of the old mesh from the new one.
+    pub to_new: MeshDistances,
+    /// Distances of points of the new mesh from the old one.
+    pub to_old: MeshDistances,
+    /// Volume of the old and of the new mesh; that of an open one depends on the origin.
+    pub volume: [f64; 2],
+    /// Area of the old and of the new mesh.
+    pub area: [f64; 2],
+    /// Largest distance of the sharp edges of the old mesh from the new one; none without such
+    /// edges.
+    pub edges: Option<f64>,
+}
+
+impl MeshField {
+    /// How far a mesh of this field is from the one that it was made of, by its vertices, and its
+    /// faces of three indices each: those of [`buffers`](crate::Sample::buffers), for example.
+    ///
+    /// # Panics
+    ///
+    /// If an index is beyond the vertices.
+    #[must_use]
+    pub fn compare(&self, vertices: &[DVec3], faces: &[[u32; 3]]) -> MeshChange {
+        let old = self.solid().mesh();
+        let new = TriangleMesh::of_parts(
+            vertices.iter().map(|p| p - self.solid().origin()).collect(),
+            faces.to_vec(),
+        );
+        let on_edges = self.edge_points();
+        let work = || {
+            slices::complete(async {
+                let tree = Tree::new(&new.all_corners());
+                let to_new = from_all(&tree, &points_on(old)).await;
+                let to_old = from_all(&self.solid().tree, &points_on(&new)).await;
+                let edges = from_all(&tree, &on_edges).await;
+                (to_new, to_old, edges)
+            })
+        };
+        let (to_new, to_old, edges) = slices::in_pool(work);
+        MeshChange {
+            diagonal: old.bounds().diagonal(),
+            to_new: summary(to_new),
+            to_old: summary(to_old),
+            volume: [old.volume(), new.volume()],
+            area: [old.area(), new.area()],
+            edges: edges.into_iter().reduce(f64::max),
+        }
+    }
+}
+
+/// The vertices of the faces and points within these, by their shares of the area.
+fn points_on(mesh: &TriangleMesh) -> Vec<DVec3> {
+    /// Steps of the two coordinates of evenly spread points: 1/p and 1/p² with p³ = p + 1 (M.
+    /// Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
+    const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
+    let mut used: Vec<u32> = mesh.faces().as_flattened().to_vec();
+    used.sort_unstable();
+    used.dedup();
+    let mut points: Vec<DVec3> = used.iter().map(|&vertex| mesh.vertices()[vertex as usize]).collect();
+    let (total, mut sum, mut made) = (mesh.area(), 0.0, 0.0);
+    for (face, vector) in mesh.faces().iter().zip(mesh.area_vectors()) {
+        let [a, b, c] = mesh.corners(face);
+        sum += vector.length();
+        while made + 0.5 < POINTS * sum / total {
+            made += 1.0;
+            let [mut u, mut v] = STEPS.map(|step| (made * step).fract());
+            if u + v > 1.0 {
+                (u, v) = (1.0 - u, 1.0 - v);
+            }
+            points.push(a + (b - a) * u + (c - a) * v);
+        }
+    }
+    points
+}
+
+async fn from_all(tree: &Tree, points: &[DVec3]) -> Vec<f64> {
+    let distance = |p: &DVec3| libm::sqrt(tree.nearest(*p).distance_sq);
+    let found = slices::map(
+        points.len(),
+        AT_ONCE,
+        || (),
+        |(), range| points[range].iter().map(distance).collect::<Vec<_>>(),
+    );
+    found.await.into_iter().flatten().collect()
+}
+
+fn summary(mut distances: Vec<f64>) -> MeshDistances {
+    let mean = distances.iter().sum::<f64>() / distances.len().max(1) as f64;
+    sort_numbers(&mut distances);
+    let at = |share: f64| distances.get((share * distances.len() as f64) as usize).copied();
+    let largest = distances.last().copied().unwrap_or(f64::NAN);
+    MeshDistances { mean, most: at(0.99).unwrap_or(largest), largest }
+}

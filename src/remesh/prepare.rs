@@ -1,0 +1,369 @@
+//! What is mended in a mesh before it becomes a field.
+
+use super::edges::{Edges, ends_of};
+use super::mesh::volume;
+use super::tree::Tree;
+use super::{MeshError, TriangleMesh};
+use crate::math::{Bounds, IndexTable, counted, hash};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// Distance, as a share of the diagonal, up to which vertices are one and a face has no width: some
+/// units of the last digit of numbers in single precision.
+const SAME: f64 = 2e-7;
+/// Rounds in which vertices on the sides of faces divide them; each divides one side of a face.
+const ROUNDS: usize = 6;
+
+/// What was mended in a mesh, in the order in which it was done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct MeshRepairs {
+    /// Vertices that were merged with another one at the same place.
+    pub merged: usize,
+    /// Faces without an area, which were dropped.
+    pub degenerate: usize,
+    /// Faces with the corners of another one, which were dropped.
+    pub doubled: usize,
+    /// Faces that were divided at a vertex on one of their sides.
+    pub divided: usize,
+    /// Faces that were turned.
+    pub turned: usize,
+}
+
+impl MeshRepairs {
+    /// What was mended, as a list in words; empty if nothing was.
+    #[must_use]
+    pub fn words(&self) -> Vec<String> {
+        let Self { merged, degenerate, doubled, divided, turned } = *self;
+        let all = [
+            (merged, "vertex merged", "vertices merged"),
+            (degenerate, "face without area dropped", "faces without area dropped"),
+            (doubled, "doubled face dropped", "doubled faces dropped"),
+            (divided, "face divided at a vertex on its side", "faces divided at vertices on their sides"),
+            (turned, "face turned", "faces turned"),
+        ];
+        let some = all.into_iter().filter(|(count, ..)| *count > 0);
+        some.map(|(count, one, many)| counted(count, one, many)).collect()
+    }
+}
+
+/// A mesh that was mended, with what tells inside from outside.
+#[derive(Clone)]
+pub struct MeshSolid {
+    pub(super) mesh: Arc<TriangleMesh>,
+    /// The place from which the vertices are counted.
+    pub(super) origin: DVec3,
+    pub(super) edges: Arc<Edges>,
+    pub(super) tree: Arc<Tree>,
+    repairs: MeshRepairs,
+    borders: usize,
+    fans: usize,
+    pieces: usize,
+}
+
+impl core::fmt::Debug for MeshSolid {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("MeshSolid").field("repairs", &self.repairs).finish_non_exhaustive()
+    }
+}
+
+impl TriangleMesh {
+    /// The solid that the mesh encloses. Vertices at the same place are merged, faces without an
+    /// area and doubled ones dropped, faces divided at vertices on their sides, and turned so that
+    /// neighbours agree. A piece that then encloses a negative volume is turned, with the pieces in
+    /// it: one that is turned against the piece around it stays a hollow.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshError::NoArea`] if no face is left, [`MeshError::Sheet`] if it encloses nothing, and
+    /// [`MeshError::Far`] if it is more than 1,000 of its diagonals from the origin.
+    pub fn solid(&self) -> Result<MeshSolid, MeshError> {
+        /// Diagonals from the origin up to which boxes are sampled.
+        const FAR: f64 = 1000.0;
+        let mut repairs = MeshRepairs::default();
+        let bounds = self.bounds();
+        if bounds.lo().abs().max(bounds.hi().abs()).max_element() > FAR * bounds.diagonal() {
+            return Err(if bounds.diagonal() > 0.0 { MeshError::Far } else { MeshError::NoArea });
+        }
+        let origin = bounds.local_origin();
+        let near =
+            Self::of_parts(self.vertices().iter().map(|p| p - origin).collect(), self.faces().to_vec());
+        let width = SAME * near.bounds().diagonal();
+        let (vertices, merged) = merged(&near, width);
+        repairs.merged = merged.0;
+        let mut faces = kept(&vertices, merged.1, width, &mut repairs);
+        if faces.is_empty() {
+            return Err(MeshError::NoArea);
+        }
+        for _ in 0..ROUNDS {
+            let edges = Edges::new(&faces);
+            let divided = divide(&vertices, &mut faces, &edges, width);
+            if divided == 0 {
+                break;
+            }
+            repairs.divided += divided;
+            faces = kept(&vertices, faces, width, &mut repairs);
+        }
+        let edges = Edges::new(&faces);
+        let pieces = orient(&vertices, &mut faces, &edges, &mut repairs.turned);
+        let (borders, fans) = (edges.count(|sides| sides == 1), edges.count(|sides| sides > 2));
+        let mesh = TriangleMesh::of_parts(vertices, faces);
+        let tree = Tree::new(&mesh.all_corners());
+        let solid = MeshSolid {
+            mesh: Arc::new(mesh),
+            origin,
+            edges: Arc::new(edges),
+            tree: Arc::new(tree),
+            repairs,
+            borders,
+            fans,
+            pieces,
+        };
+        solid.check()?;
+        Ok(solid)
+    }
+}
+
+impl MeshSolid {
+    /// The mended mesh, whose vertices are counted from [`MeshSolid::origin`].
+    #[must_use]
+    pub fn mesh(&self) -> &TriangleMesh {
+        &self.mesh
+    }
+
+    /// The place from which the vertices of [`MeshSolid::mesh`] are counted: zero, unless the mesh
+    /// is far from it for its size.
+    #[must_use]
+    pub fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    /// What was mended.
+    #[must_use]
+    pub fn repairs(&self) -> MeshRepairs {
+        self.repairs
+    }
+
+    /// Number of edges with one face: those of holes.
+    #[must_use]
+    pub fn border_edges(&self) -> usize {
+        self.borders
+    }
+
+    /// Number of edges with more than two faces.
+    #[must_use]
+    pub fn fan_edges(&self) -> usize {
+        self.fans
+    }
+
+    /// Number of pieces whose faces hang together by edges of two faces.
+    #[must_use]
+    pub fn pieces(&self) -> usize {
+        self.pieces
+    }
+
+    /// Whether each edge has two faces.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.borders == 0 && self.fans == 0
+    }
+
+    /// Refuses a mesh that encloses nothing: a sheet, however it is bent. The sum of its area
+    /// vectors, which is zero for a closed mesh, is that of the openings.
+    fn check(&self) -> Result<(), MeshError> {
+        /// Largest opening, as a share of the area. A hemisphere's is a half of its area, a flat
+        /// sheet's all of it.
+        const OPEN: f64 = 0.4;
+        /// Least volume, as a share of that of the ball with the same area.
+        const THIN: f64 = 1e-6;
+        let area = self.mesh.area();
+        let open: DVec3 = self.mesh.area_vectors().sum();
+        let ball = area * libm::sqrt(area) / libm::sqrt(36.0 * core::f64::consts::PI);
+        if open.length() > OPEN * area || self.mesh.volume().abs() < THIN * ball {
+            return Err(MeshError::Sheet { borders: self.borders });
+        }
+        Ok(())
+    }
+}
+
+/// The vertices of the faces, of which those within a distance are one, the number of those that
+/// were merged, and the faces.
+fn merged(mesh: &TriangleMesh, width: f64) -> (Vec<DVec3>, (usize, Vec<[u32; 3]>)) {
+    let (mut table, mut kept) = (IndexTable::default(), Vec::<DVec3>::new());
+    let cell = 4.0 * width.max(f64::MIN_POSITIVE);
+    let hash_at = |p: DVec3| hash((p / cell).floor().to_array().map(|x| x as i64 as u64));
+    let mut number = vec![None; mesh.vertices().len()];
+    let mut used = 0;
+    let faces = mesh.faces().iter().map(|face| {
+        face.map(|corner| {
+            *number[corner as usize].get_or_insert_with(|| {
+                used += 1;
+                let p = mesh.vertices()[corner as usize];
+                let is_same = |k: usize| kept[k].distance_squared(p) <= width * width;
+                let ways = Bounds::symmetric([width; 3]).corners();
+                let found = ways.iter().find_map(|&way| table.find(hash_at(p + way), is_same));
+                found.unwrap_or_else(|| {
+                    let fresh = kept.len();
+                    // Only a failure to allocate gives none.
+                    let index = table.find_or_add(hash_at(p), fresh, |_| false).unwrap_or(0);
+                    kept.push(p);
+                    index
+                })
+            })
+        })
+    });
+    let faces = faces.collect();
+    let merged = used - kept.len();
+    (kept, (merged, faces))
+}
+
+/// The faces that have an area, each once.
+fn kept(vertices: &[DVec3], faces: Vec<[u32; 3]>, width: f64, repairs: &mut MeshRepairs) -> Vec<[u32; 3]> {
+    let (mut table, mut sorted, mut kept) = (IndexTable::default(), Vec::<[u32; 3]>::new(), Vec::new());
+    for face in faces {
+        let [a, b, c] = face.map(|corner| vertices[corner as usize]);
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        // Written so that NaN fails.
+        let has_width = (b - a).cross(c - a).length() > width * longest;
+        if face[0] == face[1] || face[1] == face[2] || face[2] == face[0] || !has_width {
+            repairs.degenerate += 1;
+            continue;
+        }
+        let mut key = face;
+        key.sort_unstable();
+        let fresh = sorted.len();
+        let index = table.find_or_add(hash(key.map(u64::from)), fresh, |k| sorted[k] == key);
+        if index == Some(fresh as u32) {
+            sorted.push(key);
+            kept.push(face);
+        } else {
+            repairs.doubled += 1;
+        }
+    }
+    kept
+}
+
+/// Divides faces at the vertices of borders that lie on one of their sides, where that side is a
+/// border, too. Returns the number of faces that were divided.
+fn divide(vertices: &[DVec3], faces: &mut Vec<[u32; 3]>, edges: &Edges, width: f64) -> usize {
+    let borders: Vec<usize> = (0..edges.len()).filter(|&edge| edges.sides(edge).len() == 1).collect();
+    let place = |vertex: u32| vertices[vertex as usize];
+    let segments: Vec<[DVec3; 3]> = borders
+        .iter()
+        .map(|&edge| {
+            let [a, b] = edges.ends(edge).map(place);
+            [a, b, b]
+        })
+        .collect();
+    let tree = Tree::new(&segments);
+    let mut corners: Vec<u32> = borders.iter().flat_map(|&edge| edges.ends(edge)).collect();
+    corners.sort_unstable();
+    corners.dedup();
+    let mut on_edge: Vec<(usize, u32)> = Vec::new();
+    for vertex in corners {
+        tree.within(place(vertex), width * width, |found| {
+            let edge = borders[found.triangle as usize];
+            let [a, b] = edges.ends(edge);
+            let is_inside = [a, b].iter().all(|&end| place(end).distance(place(vertex)) > 2.0 * width);
+            if is_inside && vertex != a && vertex != b {
+                on_edge.push((edge, vertex));
+            }
+        });
+    }
+    on_edge.sort_unstable();
+    let mut is_done = vec![false; faces.len()];
+    let mut divided = 0;
+    for own in on_edge.chunk_by(|a, b| a.0 == b.0) {
+        let side = edges.sides(own[0].0)[0];
+        let face = side.face as usize;
+        if core::mem::replace(&mut is_done[face], true) {
+            continue;
+        }
+        let [a, b] = ends_of(&faces[face], side.side);
+        let third = faces[face][(side.side as usize + 2) % 3];
+        let mut row: Vec<u32> = own.iter().map(|&(_, vertex)| vertex).collect();
+        row.retain(|&vertex| vertex != third);
+        row.sort_by(|&u, &v| place(a).distance(place(u)).total_cmp(&place(a).distance(place(v))));
+        row.push(b);
+        if row.len() == 1 {
+            continue;
+        }
+        divided += 1;
+        faces[face] = [a, row[0], third];
+        faces.extend(row.windows(2).map(|pair| [pair[0], pair[1], third]));
+    }
+    divided
+}
+
+/// A part of the faces that hang together by edges of two faces.
+struct Piece {
+    faces: Vec<u32>,
+    /// The faces, turned so that neighbours agree.
+    corners: Vec<[u32; 3]>,
+    bounds: Bounds,
+    volume: f64,
+}
+
+/// Turns faces so that neighbours agree, and pieces so that they enclose a positive volume. Returns
+/// the number of pieces.
+fn orient(vertices: &[DVec3], faces: &mut [[u32; 3]], edges: &Edges, turned: &mut usize) -> usize {
+    let mut pieces: Vec<Piece> = Vec::new();
+    let mut is_turned = vec![false; faces.len()];
+    let mut is_known = vec![false; faces.len()];
+    for start in 0..faces.len() {
+        if core::mem::replace(&mut is_known[start], true) {
+            continue;
+        }
+        let mut own = vec![start as u32];
+        let mut next = 0;
+        while let Some(&face) = own.get(next) {
+            next += 1;
+            for edge in edges.of_face(face) {
+                let [a, b] = edges.sides(edge as usize) else { continue };
+                let (here, there) = if a.face == face { (a, b) } else { (b, a) };
+                if core::mem::replace(&mut is_known[there.face as usize], true) {
+                    continue;
+                }
+                let runs_alike = ends_of(&faces[face as usize], here.side)
+                    == ends_of(&faces[there.face as usize], there.side);
+                is_turned[there.face as usize] = is_turned[face as usize] ^ runs_alike;
+                own.push(there.face);
+            }
+        }
+        let corners: Vec<[u32; 3]> =
+            own.iter().map(|&face| turned_if(is_turned[face as usize], faces[face as usize])).collect();
+        let bounds = Bounds::around(corners.as_flattened().iter().map(|&corner| vertices[corner as usize]));
+        let volume = volume(vertices, corners.iter());
+        pieces.push(Piece { faces: own, corners, bounds, volume });
+    }
+    for k in 0..pieces.len() {
+        // A piece within others goes with the largest of them.
+        let around = (0..pieces.len()).filter(|&other| is_within(vertices, &pieces[k], &pieces[other]));
+        let outermost =
+            around.fold(k, |a, b| if pieces[b].volume.abs() > pieces[a].volume.abs() { b } else { a });
+        if pieces[outermost].volume < 0.0 {
+            for &face in &pieces[k].faces {
+                is_turned[face as usize] ^= true;
+            }
+        }
+        *turned += pieces[k].faces.iter().filter(|&&face| is_turned[face as usize]).count();
+    }
+    for (face, is_turned) in faces.iter_mut().zip(is_turned) {
+        *face = turned_if(is_turned, *face);
+    }
+    pieces.len()
+}
+
+fn turned_if(is_turned: bool, [a, b, c]: [u32; 3]) -> [u32; 3] {
+    if is_turned { [a, c, b] } else { [a, b, c] }
+}
+
+/// Whether a piece lies within a larger one.
+fn is_within(vertices: &[DVec3], piece: &Piece, other: &Piece) -> bool {
+    if piece.volume.abs() >= other.volume.abs() || !other.bounds.holds_inside(&piece.bounds) {
+        return false;
+    }
+    let place = |&corner: &u32| vertices[corner as usize];
+    let corners: Vec<[DVec3; 3]> = other.corners.iter().map(|face| face.map(|c| place(&c))).collect();
+    Tree::new(&corners).winding(place(&piece.corners[0][0])).abs() > 0.5
+}

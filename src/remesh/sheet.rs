@@ -1,0 +1,363 @@
+//! The smooth function of a patch of faces: its zeros are a smooth surface through all vertices of
+//! the patch, and go on beyond its border.
+//!
+//! Each face has a quadratic function that vanishes at its three corners and bends as the normals
+//! there turn. The function of the patch is the mean of those near a place, with weights
+//! exp(−(d/τ)²), where d is the distance from a face: as its square has a continuous gradient, so
+//! has the mean. Faces that are farther than the nearest one by a few τ count nothing, however far
+//! the place is from all of them.
+//!
+//! Beyond the border of a patch lies a *skirt* of further triangles along the tangents there, so
+//! that the function is never asked far from a face.
+
+use super::TriangleMesh;
+use super::edges::{Edges, ends_of};
+use super::tree::Tree;
+use crate::math::{Sym3, median};
+use glam::{DMat2, DVec2, DVec3};
+
+/// The width τ of the weights over the median height of curved faces. Smaller ones leave facets,
+/// larger ones take more faces for each value.
+const WIDTH: f64 = 0.25;
+/// Cosine of the largest angle between a face and the normal at its corner. Where faces turn
+/// further, as around the tip of a cone, there is no normal.
+const TIP: f64 = 0.88;
+/// Largest (d² − d₀²)/τ² of a face that counts, with the nearest one at d₀: weights below 1e-10 are
+/// lost in the rounding of single precision many times over.
+const REACH: f64 = 23.0;
+/// Length of the skirt over the diagonal of the mesh: two diameters of the particles of a coarse
+/// sampling.
+const SKIRT: f64 = 0.125;
+/// Cosine of the largest angle between two borders at a vertex whose skirts share one side.
+const ROUND: f64 = 0.7;
+
+/// The function of a patch.
+pub(super) enum Sheet {
+    /// A plane: its unit normal and a point.
+    Plane { normal: DVec3, point: DVec3 },
+    /// A mean of quadratic functions.
+    Curved { quadrics: Vec<Quadric>, tree: Tree, width_sq: f64, bulge: f64 },
+}
+
+/// b + a·x + xᵀHx/2 with x = p − c.
+pub(super) struct Quadric {
+    middle: DVec3,
+    value: f64,
+    slope: DVec3,
+    bend: Sym3<f64>,
+}
+
+/// Value, gradient and, for the shape of the surface, the mean Hessian of the quadratic functions.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slope {
+    pub(super) value: f64,
+    pub(super) gradient: DVec3,
+    pub(super) hessian: Sym3<f64>,
+}
+
+/// A triangle with the normals at its corners.
+type Element = ([DVec3; 3], [DVec3; 3]);
+
+impl Sheet {
+    /// The function of these faces of a mesh with this diagonal. `is_inner` says of an edge whether
+    /// the patch goes on beyond it, `is_flat` which faces are no facets of a curve; `flat` is the
+    /// largest distance of a vertex from a plane.
+    pub(super) fn new(
+        mesh: &TriangleMesh,
+        edges: &Edges,
+        faces: &[u32],
+        is_inner: impl Fn(usize) -> bool,
+        is_flat: &[bool],
+        diagonal: f64,
+        flat: f64,
+    ) -> Self {
+        let corners: Vec<[DVec3; 3]> =
+            faces.iter().map(|&face| mesh.corners(&mesh.faces()[face as usize])).collect();
+        let area: DVec3 = corners.iter().map(|[a, b, c]| (b - a).cross(c - a)).sum();
+        if let Some(plane) = plane_of(&corners, area, flat) {
+            return plane;
+        }
+        let normals = Normals::new(mesh, faces, &corners, is_flat);
+        let mut elements: Vec<Element> = Vec::new();
+        let mut heights = Vec::new();
+        for (&face, &corners) in faces.iter().zip(&corners) {
+            let [a, b, c] = corners;
+            let across = (b - a).cross(c - a);
+            let normal = across.normalize_or_zero();
+            let own = mesh.faces()[face as usize].map(|vertex| {
+                let at = normals.at(vertex);
+                if is_flat[face as usize] || at.dot(normal) < TIP { normal } else { at }
+            });
+            if !is_flat[face as usize] {
+                heights.push(across.length() / a.distance(b).max(b.distance(c)).max(c.distance(a)));
+            }
+            elements.push((corners, own));
+        }
+        let least = 1e-4 * diagonal;
+        let width = WIDTH * median(heights).unwrap_or(least).max(least);
+        elements.extend(skirt(mesh, edges, faces, is_inner, &normals, SKIRT * diagonal));
+        let quadrics: Vec<Quadric> = elements.iter().map(|element| Quadric::new(element, width)).collect();
+        let bulge = quadrics[..faces.len()].iter().map(|own| own.value.abs()).fold(0.0, f64::max);
+        let corners: Vec<[DVec3; 3]> = elements.iter().map(|(corners, _)| *corners).collect();
+        Self::Curved { quadrics, tree: Tree::new(&corners), width_sq: width * width, bulge }
+    }
+
+    /// The height of the surface over the middle of a face, at most.
+    pub(super) fn bulge(&self) -> f64 {
+        match self {
+            Self::Plane { .. } => 0.0,
+            Self::Curved { bulge, .. } => *bulge,
+        }
+    }
+
+    /// f, ∇f and the shape of the surface at a place.
+    pub(super) fn at(&self, p: DVec3) -> Slope {
+        match self {
+            Self::Plane { normal, point } => {
+                Slope { value: normal.dot(p - point), gradient: *normal, hessian: Sym3::default() }
+            }
+            Self::Curved { quadrics, tree, width_sq, .. } => {
+                let nearest = tree.nearest(p).distance_sq;
+                let mut sum = 0.0;
+                let (mut value, mut gradient, mut turn) = (0.0, DVec3::ZERO, DVec3::ZERO);
+                let mut hessian = Sym3::<f64>::default();
+                tree.within(p, nearest + REACH * width_sq, |found| {
+                    let weight = libm::exp((nearest - found.distance_sq) / width_sq);
+                    let own = &quadrics[found.triangle as usize];
+                    let Slope { value: f, gradient: g, hessian: h } = own.at(p);
+                    // The gradient of the weight over the weight.
+                    let s = (found.point - p) * (2.0 / width_sq);
+                    sum += weight;
+                    value += weight * f;
+                    gradient += weight * (g + f * s);
+                    turn += weight * s;
+                    hessian = sum_of(&hessian, &h, weight);
+                });
+                let value = value / sum;
+                let gradient = (gradient - value * turn) / sum;
+                Slope { value, gradient, hessian: hessian.map(|entry| entry / sum) }
+            }
+        }
+    }
+}
+
+fn sum_of(a: &Sym3<f64>, b: &Sym3<f64>, weight: f64) -> Sym3<f64> {
+    Sym3 {
+        xx: a.xx + weight * b.xx,
+        xy: a.xy + weight * b.xy,
+        xz: a.xz + weight * b.xz,
+        yy: a.yy + weight * b.yy,
+        yz: a.yz + weight * b.yz,
+        zz: a.zz + weight * b.zz,
+    }
+}
+
+/// The plane of faces that lie in one.
+fn plane_of(corners: &[[DVec3; 3]], area: DVec3, flat: f64) -> Option<Sheet> {
+    let normal = area.try_normalize()?;
+    let all = corners.as_flattened();
+    let point = corners[0][0];
+    // The mean height is that of the plane.
+    let mean = all.iter().map(|p| normal.dot(*p - point)).sum::<f64>() / all.len() as f64;
+    let is_near = |p: &DVec3| (normal.dot(*p - point) - mean).abs() <= flat;
+    let is_along = |[a, b, c]: &[DVec3; 3]| (*b - *a).cross(*c - *a).dot(normal) > 0.0;
+    let is_plane = all.iter().all(is_near) && corners.iter().all(is_along);
+    is_plane.then_some(Sheet::Plane { normal, point: point + mean * normal })
+}
+
+/// The normals of a patch at its vertices: means of those of the faces there, with the weights that
+/// are exact for spheres, and for cylinders, too (N. Max, "Weights for Computing Vertex Normals
+/// from Facet Normals", 1999). Where a plane goes over into a curve, they are those of the plane.
+struct Normals {
+    vertices: Vec<u32>,
+    normals: Vec<DVec3>,
+}
+
+impl Normals {
+    fn new(mesh: &TriangleMesh, faces: &[u32], corners: &[[DVec3; 3]], is_flat: &[bool]) -> Self {
+        let of_face = |face: &u32| mesh.faces()[*face as usize];
+        let mut vertices: Vec<u32> = faces.iter().flat_map(of_face).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let count = vertices.len();
+        let mut known = Self { normals: Vec::new(), vertices };
+        // Those of flat faces, and of all.
+        let mut sums = vec![[DVec3::ZERO; 2]; count];
+        for (face, corners) in faces.iter().zip(corners) {
+            for (k, vertex) in of_face(face).into_iter().enumerate() {
+                let [u, v] = [1, 2].map(|step| corners[(k + step) % 3] - corners[k]);
+                let normal = u.cross(v) / (u.length_squared() * v.length_squared());
+                let own = &mut sums[known.place(vertex)];
+                own[0] += if is_flat[*face as usize] { normal } else { DVec3::ZERO };
+                own[1] += normal;
+            }
+        }
+        let normal = |[flat, all]: [DVec3; 2]| flat.normalize_or(all.normalize_or_zero());
+        known.normals = sums.into_iter().map(normal).collect();
+        known
+    }
+
+    fn place(&self, vertex: u32) -> usize {
+        self.vertices.partition_point(|&own| own < vertex)
+    }
+
+    fn at(&self, vertex: u32) -> DVec3 {
+        self.normals[self.place(vertex)]
+    }
+}
+
+/// The side of a face on the border of a patch.
+struct Rim {
+    ends: [u32; 2],
+    /// The unit vectors along the surface away from the patch, at both ends.
+    away: [DVec3; 2],
+}
+
+/// The triangles of the skirt of a patch, no longer than `length`. They end in the middle between
+/// two parts of the border.
+fn skirt(
+    mesh: &TriangleMesh,
+    edges: &Edges,
+    faces: &[u32],
+    is_inner: impl Fn(usize) -> bool,
+    normals: &Normals,
+    length: f64,
+) -> Vec<Element> {
+    let place = |vertex: u32| mesh.vertices()[vertex as usize];
+    let mut rims = Vec::new();
+    for &face in faces {
+        let of_face = &mesh.faces()[face as usize];
+        for side in (0..3).filter(|&side| !is_inner(edges.of_face(face)[side as usize] as usize)) {
+            let ends = ends_of(of_face, side);
+            let [a, b] = ends.map(place);
+            // The face lies to the left of its sides.
+            let away = ends.map(|end| (b - a).cross(normals.at(end)).normalize_or_zero());
+            rims.push(Rim { ends, away });
+        }
+    }
+    // For each vertex the rims that end and begin there.
+    let mut at_vertex: Vec<(u32, bool, usize)> = Vec::new();
+    for (k, rim) in rims.iter().enumerate() {
+        at_vertex.extend([(rim.ends[0], true, k), (rim.ends[1], false, k)]);
+    }
+    at_vertex.sort_unstable();
+    let corners: Vec<[DVec3; 3]> =
+        at_vertex.chunk_by(|a, b| a.0 == b.0).map(|own| [place(own[0].0); 3]).collect();
+    let tree = Tree::new(&corners);
+    let mut elements = Vec::new();
+    let mut outer: Vec<[Option<DVec3>; 2]> = vec![[None; 2]; rims.len()];
+    for (number, own) in at_vertex.chunk_by(|a, b| a.0 == b.0).enumerate() {
+        let (p, normal) = (place(own[0].0), normals.at(own[0].0));
+        let half = own.partition_point(|&(_, begins, _)| !begins);
+        for (&(_, _, before), &(_, _, after)) in own[..half].iter().zip(&own[half..]) {
+            let (u, v) = (rims[before].away[1], rims[after].away[0]);
+            let mean = (u + v).normalize_or(u);
+            let is_reflex = u.cross(v).dot(normal) < 0.0;
+            let end = |way: DVec3| p + way * free_length(p, way, length, &tree, number as u32);
+            if is_reflex || u.dot(v) > ROUND {
+                (outer[before][1], outer[after][0]) = (Some(end(mean)), Some(end(mean)));
+                continue;
+            }
+            // A corner of the patch: between both skirts lies a part of the tangent plane.
+            let fan = [end(u), end(mean), end(v)];
+            (outer[before][1], outer[after][0]) = (Some(fan[0]), Some(fan[2]));
+            elements.extend(fan.array_windows().map(|&[a, b]| ([p, a, b], [normal; 3])));
+        }
+        // Where parts of the patch touch in a vertex, what is left over has no neighbour.
+        for &(_, begins, k) in own {
+            let side = usize::from(!begins);
+            outer[k][side].get_or_insert(p + 0.5 * length * rims[k].away[side]);
+        }
+    }
+    for (rim, ends) in rims.iter().zip(outer) {
+        let [Some(c), Some(d)] = ends else { continue };
+        let ([a, b], [m, n]) = (rim.ends.map(place), rim.ends.map(|end| normals.at(end)));
+        elements.push(([b, a, c], [n, m, m]));
+        elements.push(([b, c, d], [n, m, n]));
+    }
+    // A sliver has no direction to bend in.
+    let has_area = |([a, b, c], _): &Element| {
+        let longest = a.distance(*b).max(b.distance(*c)).max(c.distance(*a));
+        (*b - *a).cross(*c - *a).length() > 1e-6 * longest * longest
+    };
+    elements.retain(has_area);
+    elements
+}
+
+/// The length of a skirt from `p` along `way`: the radius of the largest ball that touches the
+/// border there and holds no other vertex of it (J. Ma et al., "3D Medial Axis Point Approximation
+/// Using Nearest Neighbors and the Normal Field", 2012).
+fn free_length(p: DVec3, way: DVec3, length: f64, border: &Tree, own: u32) -> f64 {
+    /// Rounds after which the ball is small enough; most take two or three.
+    const ROUNDS: u32 = 12;
+    let mut radius = length;
+    for _ in 0..ROUNDS {
+        let most = radius * radius * (1.0 - 1e-9);
+        let Some(found) = border.nearest_of(p + radius * way, most, |vertex| vertex != own) else { break };
+        let to = found.point - p;
+        let along = to.dot(way);
+        if along <= 0.0 {
+            break;
+        }
+        radius = radius.min(to.length_squared() / (2.0 * along));
+    }
+    radius
+}
+
+impl Quadric {
+    /// The function of a triangle. Its Hessian is that of the least squares to the normals, damped
+    /// in directions in which the triangle is much narrower than the weights are wide.
+    fn new((corners, normals): &Element, width: f64) -> Self {
+        const DAMPING: f64 = 0.02;
+        let middle = corners.iter().sum::<DVec3>() / 3.0;
+        let [a, b, c] = *corners;
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let u = (b - a).normalize_or_zero();
+        let v = normal.cross(u);
+        let flat = |x: DVec3| DVec2::new(x.dot(u), x.dot(v));
+        let x = corners.map(|corner| flat(corner - middle));
+        let mean = normals.iter().map(|n| flat(*n)).sum::<DVec2>() / 3.0;
+        let outer = |a: DVec2, b: DVec2| DMat2::from_cols(a * b.x, a * b.y);
+        let (mut spread, mut turn) = (DMat2::ZERO, DMat2::ZERO);
+        for (x, n) in x.iter().zip(normals) {
+            spread += outer(*x, *x);
+            turn += outer(flat(*n) - mean, *x);
+        }
+        let damped = |share: f64| spread + DMat2::from_diagonal(DVec2::splat(share * width * width));
+        let bend = turn * damped(DAMPING).inverse();
+        let bend = 0.5 * (bend + bend.transpose());
+        // The values at the corners are zero: on the mean, and by a slope.
+        let half = x.map(|x| 0.5 * x.dot(bend * x));
+        let value = -half.iter().sum::<f64>() / 3.0;
+        let lacking = x.iter().zip(half).map(|(x, half)| *x * -(half + value)).sum::<DVec2>();
+        let slope = damped(1e-6).inverse() * lacking;
+        let entry = |i: usize, j: usize| {
+            let (p, q) = ([u[i], v[i]], [u[j], v[j]]);
+            let bend = bend.to_cols_array_2d();
+            (0..4).map(|k| bend[k / 2][k % 2] * p[k / 2] * q[k % 2]).sum()
+        };
+        Self {
+            middle,
+            value,
+            slope: normal + slope.x * u + slope.y * v,
+            bend: Sym3 {
+                xx: entry(0, 0),
+                xy: entry(0, 1),
+                xz: entry(0, 2),
+                yy: entry(1, 1),
+                yz: entry(1, 2),
+                zz: entry(2, 2),
+            },
+        }
+    }
+
+    fn at(&self, p: DVec3) -> Slope {
+        let x = p - self.middle;
+        let bent = self.bend.apply(x);
+        Slope {
+            value: self.value + x.dot(self.slope + 0.5 * bent),
+            gradient: self.slope + bent,
+            hessian: self.bend,
+        }
+    }
+}

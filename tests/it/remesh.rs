@@ -1,0 +1,486 @@
+//! Triangle meshes, sampled anew. The oracles are exact solids and distances from all triangles.
+
+use core::f64::consts::PI;
+use glam::{DVec3, dvec3};
+use marching_particles::field::{Field, Frame};
+use marching_particles::remesh::MAX_TRIANGLES;
+use marching_particles::{
+    Formula, MeshEdges, MeshError, MeshField, MeshKind, Sample, Search, Settings, TriangleMesh, Vertices,
+    difference, offset, sample,
+};
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
+
+type Shape = (Vec<DVec3>, Vec<[u32; 3]>);
+
+fn solid_of((vertices, faces): &Shape) -> marching_particles::MeshSolid {
+    let mesh = TriangleMesh::new(vertices.clone(), faces.clone()).expect("a mesh");
+    mesh.solid().expect("a solid")
+}
+
+fn field_of(shape: &Shape) -> MeshField {
+    solid_of(shape).field(MeshEdges::Auto, None).expect("a field")
+}
+
+fn remeshed(shape: &Shape, count: u32, what: &str) -> (MeshField, Sample) {
+    let field = field_of(shape);
+    let made = sample(field.clone(), &Settings::with_count(count).refined());
+    let made = made.unwrap_or_else(|error| panic!("{what}: {error}"));
+    (field, made)
+}
+
+/// A prism over a polygon whose triangles are given, from z = 0 to `height`.
+fn prism(outline: &[[f64; 2]], triangles: &[[u32; 3]], height: f64) -> Shape {
+    let n = outline.len() as u32;
+    let vertices = [0.0, height].into_iter().flat_map(|z| outline.iter().map(move |&[x, y]| dvec3(x, y, z)));
+    let mut faces: Vec<[u32; 3]> =
+        (0..n).flat_map(|i| [[i, (i + 1) % n, n + (i + 1) % n], [i, n + (i + 1) % n, n + i]]).collect();
+    faces.extend(triangles.iter().flat_map(|&[a, b, c]| [[a, c, b], [n + a, n + b, n + c]]));
+    (vertices.collect(), faces)
+}
+
+fn fan(n: u32) -> Vec<[u32; 3]> {
+    (1..n - 1).map(|i| [0, i, i + 1]).collect()
+}
+
+fn cuboid([x, y, z]: [f64; 3]) -> Shape {
+    prism(&[[0.0, 0.0], [x, 0.0], [x, y], [0.0, y]], &fan(4), z)
+}
+
+fn regular(n: u32) -> Shape {
+    let outline: Vec<[f64; 2]> =
+        (0..n).map(|k| 2.0 * PI * f64::from(k) / f64::from(n)).map(|t| [t.cos(), t.sin()]).collect();
+    prism(&outline, &fan(n), 2.0)
+}
+
+fn bracket() -> Shape {
+    let outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 0.5], [0.5, 0.5], [0.5, 2.0], [0.0, 2.0]];
+    prism(&outline, &[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]], 1.0)
+}
+
+/// A block from (−1, −1, 0) to (1, 1, 1) with a hole of radius 0.4 of `n` sides, a multiple of 8.
+fn drilled(n: u32) -> Shape {
+    let ring = |radius: &dyn Fn(f64, f64) -> f64, z: f64| {
+        let angles = (0..n).map(|k| 2.0 * PI * f64::from(k) / f64::from(n));
+        let place = |t: f64| radius(t.cos(), t.sin()) * dvec3(t.cos(), t.sin(), 0.0) + z * DVec3::Z;
+        angles.map(place).collect::<Vec<_>>()
+    };
+    let (inner, outer) = (|_: f64, _: f64| 0.4, |c: f64, s: f64| 1.0 / c.abs().max(s.abs()));
+    let rings = [ring(&inner, 0.0), ring(&outer, 0.0), ring(&inner, 1.0), ring(&outer, 1.0)];
+    let mut faces = Vec::new();
+    for i in 0..n {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|ring| ring * n + i);
+        let [e, f, g, h] = [0, 1, 2, 3].map(|ring| ring * n + (i + 1) % n);
+        faces.extend([
+            [c, d, h],
+            [c, h, g],
+            [a, f, b],
+            [a, e, f],
+            [b, f, h],
+            [b, h, d],
+            [a, g, e],
+            [a, c, g],
+        ]);
+    }
+    (rings.concat(), faces)
+}
+
+fn joined(mut a: Shape, (vertices, faces): &Shape) -> Shape {
+    let first = a.0.len() as u32;
+    a.0.extend(vertices);
+    a.1.extend(faces.iter().map(|face| face.map(|corner| corner + first)));
+    a
+}
+
+fn moved((vertices, faces): &Shape, map: impl Fn(DVec3) -> DVec3) -> Shape {
+    (vertices.iter().map(|&p| map(p)).collect(), faces.clone())
+}
+
+fn turned((vertices, faces): &Shape) -> Shape {
+    (vertices.clone(), faces.iter().map(|&[a, b, c]| [a, c, b]).collect())
+}
+
+/// A torus of radii 1 and 0.4, with noise along its normals.
+fn torus(nu: u32, nv: u32, noise: f64) -> Shape {
+    let mut random = Pcg32::seed_from_u64(5);
+    let mut vertices = Vec::new();
+    for i in 0..nu {
+        for j in 0..nv {
+            let [u, v] = [(i, nu), (j, nv)].map(|(k, n)| 2.0 * PI * f64::from(k) / f64::from(n));
+            let sum: f64 = (0..12).map(|_| f64::from(random.next_u32()) / f64::from(u32::MAX)).sum();
+            let r = 0.4 + noise * (sum - 6.0);
+            let out = dvec3(u.cos(), u.sin(), 0.0);
+            vertices.push(out * (1.0 + r * v.cos()) + r * v.sin() * DVec3::Z);
+        }
+    }
+    let at = |i: u32, j: u32| i % nu * nv + j % nv;
+    let quads = (0..nu).flat_map(|i| (0..nv).map(move |j| (i, j)));
+    let faces = quads.flat_map(|(i, j)| {
+        [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
+    });
+    (vertices, faces.collect())
+}
+
+fn off_torus(p: DVec3) -> f64 {
+    ((p.truncate().length() - 1.0).hypot(p.z) - 0.4).abs()
+}
+
+/// The distance from a triangle, by its plane and its three sides.
+fn distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    let sides = [(a, b), (b, c), (c, a)];
+    if sides.iter().all(|&(from, to)| (to - from).cross(p - from).dot(normal) >= 0.0) {
+        return (p - a).dot(normal).abs();
+    }
+    let to_side = |&(from, to): &(DVec3, DVec3)| {
+        let t = ((p - from).dot(to - from) / (to - from).length_squared()).clamp(0.0, 1.0);
+        p.distance(from.lerp(to, t))
+    };
+    sides.iter().map(to_side).fold(f64::INFINITY, f64::min)
+}
+
+fn off_shape(p: DVec3, (vertices, faces): &Shape) -> f64 {
+    let of_face = |face: &[u32; 3]| distance(p, face.map(|corner| vertices[corner as usize]));
+    faces.iter().map(of_face).fold(f64::INFINITY, f64::min)
+}
+
+/// Checks that the mesh of a sample is closed with this Euler number, number of creases and volume.
+fn check(made: &Sample, (euler, creases, volume): (i64, usize, f64), within: f64, what: &str) {
+    let topology = &made.mesh().topology;
+    assert!(topology.is_closed(), "{what}: {:?}", made.report().warnings);
+    assert_eq!(topology.euler(), euler, "{what}");
+    if creases > 0 {
+        assert_eq!(made.report().proof.creases, Some(creases), "{what}");
+    }
+    let found = made.volume().unwrap_or_default();
+    assert!((found / volume - 1.0).abs() < within, "{what}: {found} of {volume}");
+}
+
+#[test]
+fn parts_with_planes_keep_every_edge_and_stay_where_they_are() {
+    let hollow = joined(
+        cuboid([2.0, 1.5, 1.0]),
+        &turned(&moved(&cuboid([1.9, 1.4, 0.9]), |p| p + DVec3::splat(0.05))),
+    );
+    let shapes = [
+        ("box", cuboid([1.0, 2.0, 3.0]), 2, 12, 6.0),
+        ("bracket", bracket(), 2, 18, 1.75),
+        ("hexagonal prism", regular(6), 2, 18, 3.0 * 3.0_f64.sqrt()),
+        ("thin-walled box", hollow, 4, 24, 3.0 - 1.9 * 1.4 * 0.9),
+    ];
+    for (what, shape, euler, creases, volume) in shapes {
+        let (field, made) = remeshed(&shape, 3_000, what);
+        check(&made, (euler, creases, volume), 1e-6, what);
+        assert!((made.particles().count() as f64 / 3_000.0 - 1.0).abs() < 0.03, "{what}");
+        let new = made.buffers(Vertices::Joined);
+        let most = new.positions.iter().map(|&p| off_shape(p, &shape)).fold(0.0, f64::max);
+        assert!(most < 1e-6, "{what}: {most}");
+        let change = field.compare(&new.positions, &new.triangles);
+        assert!(change.edges.is_some_and(|edges| edges < 1e-6), "{what}: {change:?}");
+        assert!(change.to_new.largest < 1e-6 && change.to_old.largest < 1e-6, "{what}: {change:?}");
+        let obtuse = made.report().measures.quality.as_ref().map(|quality| quality.angles.triangles_above_90);
+        assert!(obtuse.is_none_or(|share| share < 0.01), "{what}: {obtuse:?}");
+    }
+}
+
+#[test]
+fn drilled_block_keeps_its_edges_and_its_hole_is_round() {
+    let shape = drilled(64);
+    let (field, made) = remeshed(&shape, 6_000, "drilled block");
+    check(&made, (0, 14, 4.0 - 0.16 * PI), 1e-3, "drilled block");
+    let MeshKind::Parts { patches: 7, corners: 8, faded: 0, .. } = field.kind() else {
+        panic!("{:?}", field.kind())
+    };
+    // The sides of the hole have an arc of 0.0005 over their chords.
+    let inner = made.buffers(Vertices::Joined).positions.into_iter();
+    let inner = inner.map(|p| p.truncate().length()).filter(|&radius| radius < 0.41);
+    let off: Vec<f64> = inner.map(|radius| (radius - 0.4).abs()).collect();
+    assert!(
+        off.len() > 200 && off.iter().all(|&off| off < 2e-4),
+        "{:?}",
+        off.iter().copied().reduce(f64::max)
+    );
+}
+
+#[test]
+fn planes_beside_a_fillet_stay_flat() {
+    // A block with two edges rounded by eight steps each.
+    let arc = |x: f64, from: f64| {
+        (0..=8)
+            .map(move |k| from + 0.5 * PI * f64::from(k) / 8.0)
+            .map(move |t| [x + 0.3 * t.cos(), 0.7 + 0.3 * t.sin()])
+    };
+    let mut outline = vec![[0.0, 0.0], [2.0, 0.0]];
+    outline.extend(arc(1.7, 0.0).chain(arc(0.3, 0.5 * PI)));
+    let shape = prism(&outline, &fan(outline.len() as u32), 1.0);
+    let (_, made) = remeshed(&shape, 4_000, "fillet");
+    check(&made, (2, 0, 2.0 - 2.0 * 0.09 * (1.0 - 0.25 * PI)), 5e-4, "fillet");
+    for p in made.buffers(Vertices::Joined).positions {
+        if (0.4..1.6).contains(&p.x) && p.y > 0.5 {
+            assert!(p.y < 1.0 + 1e-6, "{p}");
+        }
+    }
+}
+
+#[test]
+fn a_lone_bend_between_planes_is_an_edge_whatever_its_angle() {
+    // A roof of 14°.
+    let outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.25], [0.0, 1.0]];
+    let (_, made) = remeshed(&prism(&outline, &fan(5), 2.0), 3_000, "roof");
+    check(&made, (2, 15, 4.5), 1e-6, "roof");
+}
+
+/// Each patch has a continuous gradient across its inner edges and beyond its border: it turns
+/// along a line by no more than the curvature and the spread of the facets tell.
+#[test]
+fn gradients_of_patches_are_continuous_within_and_beyond_them() {
+    let field = field_of(&regular(48));
+    let mut evaluator = field.evaluator(Frame::default());
+    let label = evaluator.label(dvec3(0.99, 0.1, 1.0));
+    let side = evaluator.on(Some(label));
+    let diagonal = 12.0_f64.sqrt();
+    for height in [0.02, 0.5, 1.3, 2.0, 2.0 + 0.02 * diagonal, 2.0 + 0.06 * diagonal] {
+        for radius in [0.95, 1.0, 1.05] {
+            let place = |k: u32| {
+                let t = 0.3 * f64::from(k) / 2_000.0;
+                dvec3(radius * t.cos(), radius * t.sin(), height)
+            };
+            let mut last = side.value_and_gradient(place(0));
+            for k in 1..=2_000 {
+                let (p, q) = (place(k - 1), place(k));
+                let (value, gradient) = side.value_and_gradient(q);
+                let turn = gradient.distance(last.1);
+                assert!(turn < 20.0 * p.distance(q), "{q}: {turn} over {}", p.distance(q));
+                let mean = 0.5 * (gradient + last.1);
+                assert!((value - last.0 - mean.dot(q - p)).abs() < 1e-6, "{q}");
+                assert!((gradient.length() - 1.0).abs() < 0.02, "{q}: {gradient}");
+                assert!((value - (radius - 1.0)).abs() < 3e-3, "{q}: {value}");
+                last = (value, gradient);
+            }
+        }
+    }
+    // Along the axis, over the border, as well.
+    let mut last = side.value_and_gradient(dvec3(1.0, 0.01, 1.5));
+    for k in 1..=1_000 {
+        let q = dvec3(1.0, 0.01, 1.5 + 1e-3 * f64::from(k));
+        let own = side.value_and_gradient(q);
+        assert!(own.1.distance(last.1) < 0.02, "{q}");
+        last = own;
+    }
+}
+
+#[test]
+fn smooth_scan_is_closed_and_near_its_shape() {
+    let (field, made) = remeshed(&torus(120, 50, 0.0), 5_000, "torus");
+    assert!(matches!(field.kind(), MeshKind::Scan { .. }));
+    check(&made, (0, 0, 2.0 * PI * PI * 0.16), 8e-3, "torus");
+    let most = made.buffers(Vertices::Joined).positions.into_iter().map(off_torus).fold(0.0, f64::max);
+    assert!(most < 3e-3, "{most}");
+    assert_eq!(made.report().proof.search, Search::Searched, "a distance on a grid proves nothing");
+}
+
+#[test]
+fn noisy_scan_is_closed_and_smoother_than_its_noise() {
+    let noise = 0.006;
+    let (field, made) = remeshed(&torus(120, 50, noise), 4_000, "noisy torus");
+    assert!(matches!(field.kind(), MeshKind::Scan { .. }), "{:?}", field.kind());
+    check(&made, (0, 0, 2.0 * PI * PI * 0.16), 0.02, "noisy torus");
+    let new = made.buffers(Vertices::Joined).positions;
+    let square: f64 = new.iter().map(|&p| off_torus(p).powi(2)).sum::<f64>() / new.len() as f64;
+    assert!(square.sqrt() < 0.7 * noise, "{}", square.sqrt());
+}
+
+#[test]
+fn hole_of_a_scan_is_closed_smoothly() {
+    let (vertices, faces) = torus(120, 50, 0.0);
+    let is_kept = |face: &[u32; 3]| vertices[face[0] as usize].distance(dvec3(1.4, 0.0, 0.0)) > 0.2;
+    let kept: Vec<[u32; 3]> = faces.iter().copied().filter(is_kept).collect();
+    let shape = (vertices, kept);
+    let solid = solid_of(&shape);
+    assert!(solid.border_edges() > 10 && !solid.is_closed());
+    let (_, made) = remeshed(&shape, 4_000, "torus with a hole");
+    check(&made, (0, 0, 2.0 * PI * PI * 0.16), 0.02, "torus with a hole");
+    let refused = solid.field(MeshEdges::Angle(30.0), None);
+    assert!(matches!(refused, Err(MeshError::Open { fans: 0, .. })), "{refused:?}");
+}
+
+#[test]
+fn mended_mesh_is_sampled_as_one_that_is_whole() {
+    let whole = drilled(32);
+    // Three vertices of their own for each face, as in STL; some faces twice, some turned.
+    let mut soup = (Vec::new(), Vec::new());
+    for (k, face) in whole.1.iter().enumerate() {
+        let first = soup.0.len() as u32;
+        soup.0.extend(face.map(|corner| whole.0[corner as usize]));
+        let own = if k % 20 == 7 { [first, first + 2, first + 1] } else { [first, first + 1, first + 2] };
+        soup.1.push(own);
+        if k % 20 == 3 {
+            soup.1.push([own[1], own[0], own[2]]);
+        }
+    }
+    let solid = solid_of(&soup);
+    let repairs = solid.repairs();
+    assert_eq!((repairs.merged, repairs.doubled, repairs.turned), (3 * 256 - 128, 13, 13), "{repairs:?}");
+    assert_eq!(repairs.words().len(), 3);
+    assert_eq!((solid.is_closed(), solid.pieces(), solid.mesh().faces().len()), (true, 1, 256));
+    let exact = (0, 14, 4.0 - 0.16 * PI);
+    check(&remeshed(&soup, 2_000, "soup").1, exact, 3e-3, "soup");
+    let inside_out = turned(&whole);
+    assert_eq!(solid_of(&inside_out).repairs().turned, 256);
+    check(&remeshed(&inside_out, 2_000, "inside out").1, exact, 3e-3, "inside out");
+}
+
+#[test]
+fn faces_are_divided_at_vertices_on_their_sides() {
+    // The top of a box has a vertex in the middle of a side, and the side below it has not.
+    let (mut vertices, mut faces) = cuboid([1.0, 1.0, 1.0]);
+    vertices.push(dvec3(0.5, 0.0, 1.0));
+    let at = faces.iter().position(|face| face.contains(&4) && face.contains(&5) && face.contains(&6));
+    faces.swap_remove(at.expect("the top has the side 4, 5"));
+    faces.extend([[4, 8, 6], [8, 5, 6]]);
+    let solid = solid_of(&(vertices, faces));
+    assert_eq!(solid.repairs().divided, 1);
+    assert!(solid.is_closed());
+    assert!((solid.mesh().volume() - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn hollows_stay_hollow_and_go_with_what_is_around_them() {
+    let hollow = |inner: &Shape| joined(cuboid([3.0; 3]), &moved(inner, |p| p + DVec3::ONE));
+    let shape = hollow(&turned(&cuboid([1.0; 3])));
+    for (shape, volume) in [(&shape, 26.0), (&turned(&shape), 26.0), (&hollow(&cuboid([1.0; 3])), 28.0)] {
+        assert!((solid_of(shape).mesh().volume() - volume).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn boxes_far_from_the_origin_keep_their_edges_and_farther_ones_are_refused() {
+    let far = |by: f64| moved(&cuboid([2.0, 3.0, 1.0]), |p| p + by * dvec3(3.0, -2.0, 1.0));
+    let (_, made) = remeshed(&far(1e3), 1_500, "far box");
+    check(&made, (2, 12, 6.0), 1e-4, "far box");
+    let (vertices, faces) = far(1e6);
+    let refused = TriangleMesh::new(vertices, faces).expect("a mesh").solid();
+    assert!(matches!(refused, Err(MeshError::Far)), "{refused:?}");
+}
+
+#[test]
+fn faces_that_intersect_or_touch_are_rounded() {
+    let crossed = joined(cuboid([1.0; 3]), &moved(&cuboid([1.0; 3]), |p| p + DVec3::splat(0.6)));
+    let solid = solid_of(&crossed);
+    assert!(matches!(solid.field(MeshEdges::Angle(30.0), None), Err(MeshError::Intersects { .. })));
+    let (field, made) = remeshed(&crossed, 3_000, "boxes that cross");
+    assert!(matches!(field.kind(), MeshKind::Scan { .. }));
+    check(&made, (2, 0, 2.0 - 0.4_f64.powi(3)), 0.02, "boxes that cross");
+    // Two boxes with one edge in common, of four faces.
+    let touching = joined(cuboid([1.0; 3]), &moved(&cuboid([1.0; 3]), |p| p + dvec3(1.0, 1.0, 0.0)));
+    let solid = solid_of(&touching);
+    assert_eq!((solid.fan_edges(), solid.border_edges()), (1, 0));
+    let field = solid.field(MeshEdges::Auto, None).expect("a scan");
+    assert!(matches!(field.kind(), MeshKind::Scan { .. }));
+}
+
+#[test]
+fn meshes_are_operands_and_have_offsets() {
+    let block = field_of(&moved(&cuboid([2.0, 2.0, 1.0]), |p| p - dvec3(1.0, 1.0, 0.5)));
+    let hole = Formula::parse("x^2 + y^2 - 0.25").expect("a formula");
+    let settings = Settings::with_count(4_000).refined();
+    let made = sample(difference(block.clone(), hole), &settings).expect("a sample");
+    check(&made, (0, 14, 4.0 - 0.25 * PI), 2e-3, "drilled mesh");
+    let made = sample(offset(block, 0.1), &settings).expect("a sample");
+    check(&made, (2, 12, 2.2 * 2.2 * 1.2), 1e-4, "larger mesh");
+}
+
+#[test]
+fn compared_distances_are_those_of_all_triangles() {
+    let shape = bracket();
+    let field = field_of(&shape);
+    // Moved aside, each point of it is at most so far away.
+    let other = moved(&shape, |p| p + dvec3(0.03, 0.0, 0.0));
+    let change = field.compare(&other.0, &other.1);
+    assert!((change.to_old.largest - 0.03).abs() < 1e-12 && (change.to_new.largest - 0.03).abs() < 1e-12);
+    assert!((change.volume[0] - 1.75).abs() < 1e-12 && (change.volume[1] - 1.75).abs() < 1e-12);
+    assert!((change.area[0] - change.area[1]).abs() < 1e-12 && (change.area[0] - 11.5).abs() < 1e-12);
+    assert!(change.edges.is_some_and(|edges| (edges - 0.03).abs() < 1e-12));
+    let most = other.0.iter().map(|&p| off_shape(p, &shape)).fold(0.0, f64::max);
+    assert!((change.to_old.largest - most).abs() < 1e-12);
+}
+
+#[test]
+fn every_format_of_a_mesh_is_read() {
+    let (vertices, faces) = bracket();
+    let corner = |index: &u32| vertices[*index as usize];
+    let lines = |text: &mut String, word: &str| {
+        for p in &vertices {
+            *text += &format!("{word}{} {} {}\n", p.x, p.y, p.z);
+        }
+    };
+    let mut stl = vec![0; 80];
+    stl.extend((faces.len() as u32).to_le_bytes());
+    let mut solid = "solid s\n".to_owned();
+    for face in &faces {
+        stl.extend([0; 12]);
+        solid += "facet normal 0 0 0\nouter loop\n";
+        for p in face.iter().map(corner) {
+            stl.extend(p.to_array().iter().flat_map(|x| (*x as f32).to_le_bytes()));
+            solid += &format!("vertex {} {} {}\n", p.x, p.y, p.z);
+        }
+        stl.extend([0; 2]);
+        solid += "endloop\nendfacet\n";
+    }
+    let (mut obj, mut off, mut ply) = (
+        String::new(),
+        format!("OFF\n{} {} 0\n", vertices.len(), faces.len()),
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nelement face {}\n\
+             property list uchar int vertex_indices\nend_header\n",
+            vertices.len(),
+            faces.len()
+        ),
+    );
+    lines(&mut obj, "v ");
+    lines(&mut off, "");
+    lines(&mut ply, "");
+    for [a, b, c] in &faces {
+        obj += &format!("f {} {} {}\n", a + 1, b + 1, c + 1);
+        off += &format!("3 {a} {b} {c}\n");
+        ply += &format!("3 {a} {b} {c}\n");
+    }
+    let files = [
+        ("a.stl", stl),
+        ("b.stl", solid.into_bytes()),
+        ("c.obj", obj.into_bytes()),
+        ("d.off", off.into_bytes()),
+        ("e.ply", ply.into_bytes()),
+    ];
+    for (name, bytes) in files {
+        let mesh = TriangleMesh::read(name, bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let solid = mesh.solid().expect("a solid");
+        assert_eq!((solid.mesh().faces().len(), solid.mesh().vertices().len()), (20, 12), "{name}");
+        assert!((solid.mesh().volume() - 1.75).abs() < 1e-6, "{name}");
+    }
+}
+
+#[test]
+fn what_is_no_solid_is_refused_with_what_to_do() {
+    let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    let one = || TriangleMesh::new(corners.clone(), vec![[0, 1, 2]]).expect("a mesh");
+    let refused =
+        |result: Result<_, MeshError>| result.err().map(|error| error.to_string()).unwrap_or_default();
+    assert!(refused(TriangleMesh::new(corners.clone(), vec![])).contains("there are no faces"));
+    assert!(refused(TriangleMesh::new(corners.clone(), vec![[0, 1, 3]])).contains("face 0 has a corner 3"));
+    assert!(refused(TriangleMesh::new(vec![DVec3::NAN], vec![[0, 0, 0]])).contains("vertex 0"));
+    let many = vec![[0, 1, 2]; MAX_TRIANGLES + 1];
+    assert!(refused(TriangleMesh::new(corners.clone(), many)).contains("10,000,001 triangles"));
+    assert!(refused(TriangleMesh::read("a.stl", Vec::new())).contains("the file is empty"));
+    assert!(refused(TriangleMesh::read("a.xyz", b"0 0 0\n1 0 0\n".to_vec())).contains("only points"));
+    let refused = |mesh: TriangleMesh| mesh.solid().err().map(|error| error.to_string()).unwrap_or_default();
+    assert!(refused(one()).contains("a sheet that encloses no volume, with 3 edges"));
+    let flat = TriangleMesh::new(vec![DVec3::ZERO, DVec3::X, 2.0 * DVec3::X], vec![[0, 1, 2], [1, 1, 2]]);
+    assert!(refused(flat.expect("a mesh")).contains("no face of the mesh has an area"));
+    let solid = solid_of(&cuboid([1.0; 3]));
+    for (edges, smooth) in
+        [(MeshEdges::Angle(0.5), None), (MeshEdges::Auto, Some(11.0)), (MeshEdges::Angle(30.0), Some(1.0))]
+    {
+        assert!(solid.field(edges, smooth).is_err(), "{edges:?} {smooth:?}");
+    }
+}
