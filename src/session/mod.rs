@@ -566,8 +566,8 @@ impl Session {
     }
 
     /// [`Run::report`] in slices, with what the session knows of the surface. No cause is told why
-    /// particles lie at the border of a model, or of an open surface of the gallery, whose box was
-    /// chosen for it. A closed one fills its box for the values that its sliders offer.
+    /// particles lie at the border of a model or an image, or of an open surface of the gallery,
+    /// whose box was chosen for it. A closed one fills its box for the values that its sliders offer.
     pub fn measure(&mut self, measured: Measured, budget: u32) -> Option<Report> {
         self.run.measure_copy(measured, budget).map(|report| self.completed(report))
     }
@@ -579,8 +579,9 @@ impl Session {
         let has_no_cause = match self.source() {
             Source::Formula(field) => field.is_constant(),
             Source::Points { .. } => true,
+            // Beyond the border of an image a larger box finds nothing.
             #[cfg(feature = "images")]
-            Source::Image(_) => false,
+            Source::Image(_) => !self.fitting.is_given,
             Source::Function(_) => false,
         };
         if has_own_box || has_no_cause {
