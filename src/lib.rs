@@ -49,11 +49,11 @@
 //! # Features
 //!
 //! `points` and `images`, which are on by default, fit surfaces to points and find them in
-//! three-dimensional images; both of them sample triangle meshes anew. With `parallel` all threads of the current
-//! [rayon](https://docs.rs/rayon) pool share measuring, fits to points and parts of the mesh,
-//! natively; the results are the same. Functions of the program are then called from several
-//! threads at once. A program that does such work in [steps](Reporting::step) takes them in a
-//! thread of the pool, as within `rayon::scope`: another thread would wait for each share.
+//! three-dimensional images; both of them sample triangle meshes anew. With `parallel` all threads
+//! of the current [rayon](https://docs.rs/rayon) pool share measuring, fits to points and parts of
+//! the mesh, natively; the results are the same. Functions of the program are then called from
+//! several threads at once. A program that does such work in [steps](Reporting::step) takes them in
+//! a thread of the pool, as within `rayon::scope`: another thread would wait for each share.
 //!
 //! # Glossary
 //!
