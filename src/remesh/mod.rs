@@ -198,7 +198,7 @@ pub struct MeshField {
 #[derive(Clone, Debug)]
 enum Function {
     Parts(PartsField),
-    Scan(ScanField),
+    Scan(Box<ScanField>),
 }
 
 impl MeshSolid {
@@ -252,7 +252,7 @@ impl MeshSolid {
             None => {
                 let (field, Chosen { size, cell, width }) =
                     ScanField::new(self, patches::sharp_count(self), smooth)?;
-                (MeshKind::Scan { size, cell, smooth: width }, Function::Scan(field))
+                (MeshKind::Scan { size, cell, smooth: width }, Function::Scan(Box::new(field)))
             }
         };
         Ok(MeshField { solid: self.clone(), kind, function })
@@ -287,7 +287,7 @@ impl MeshField {
     fn function(&self) -> &dyn Field {
         match &self.function {
             Function::Parts(field) => field,
-            Function::Scan(field) => field,
+            Function::Scan(field) => &**field,
         }
     }
 }
