@@ -33,6 +33,7 @@ use glam::DVec3;
 use parts::PartsField;
 use patches::Patches;
 use scan::{Chosen, ScanField};
+use std::sync::Arc;
 
 /// Most triangles of a mesh. With these its trees take some gigabytes.
 pub const MAX_TRIANGLES: usize = 10_000_000;
@@ -198,7 +199,7 @@ pub struct MeshField {
 #[derive(Clone, Debug)]
 enum Function {
     Parts(PartsField),
-    Scan(Box<ScanField>),
+    Scan(Arc<ScanField>),
 }
 
 impl MeshSolid {
@@ -252,7 +253,7 @@ impl MeshSolid {
             None => {
                 let (field, Chosen { size, cell, width }) =
                     ScanField::new(self, patches::sharp_count(self), smooth)?;
-                (MeshKind::Scan { size, cell, smooth: width }, Function::Scan(Box::new(field)))
+                (MeshKind::Scan { size, cell, smooth: width }, Function::Scan(Arc::new(field)))
             }
         };
         Ok(MeshField { solid: self.clone(), kind, function })

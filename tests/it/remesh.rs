@@ -48,8 +48,10 @@ fn cuboid([x, y, z]: [f64; 3]) -> Shape {
 }
 
 fn regular(n: u32) -> Shape {
-    let outline: Vec<[f64; 2]> =
-        (0..n).map(|k| 2.0 * PI * f64::from(k) / f64::from(n)).map(|t| [t.cos(), t.sin()]).collect();
+    let outline: Vec<[f64; 2]> = (0..n)
+        .map(|k| 2.0 * PI * f64::from(k) / f64::from(n))
+        .map(|t| [libm::cos(t), libm::sin(t)])
+        .collect();
     prism(&outline, &fan(n), 2.0)
 }
 
@@ -62,7 +64,9 @@ fn bracket() -> Shape {
 fn drilled(n: u32) -> Shape {
     let ring = |radius: &dyn Fn(f64, f64) -> f64, z: f64| {
         let angles = (0..n).map(|k| 2.0 * PI * f64::from(k) / f64::from(n));
-        let place = |t: f64| radius(t.cos(), t.sin()) * dvec3(t.cos(), t.sin(), 0.0) + z * DVec3::Z;
+        let place = |t: f64| {
+            radius(libm::cos(t), libm::sin(t)) * dvec3(libm::cos(t), libm::sin(t), 0.0) + z * DVec3::Z
+        };
         angles.map(place).collect::<Vec<_>>()
     };
     let (inner, outer) = (|_: f64, _: f64| 0.4, |c: f64, s: f64| 1.0 / c.abs().max(s.abs()));
@@ -109,8 +113,8 @@ fn torus(nu: u32, nv: u32, noise: f64) -> Shape {
             let [u, v] = [(i, nu), (j, nv)].map(|(k, n)| 2.0 * PI * f64::from(k) / f64::from(n));
             let sum: f64 = (0..12).map(|_| f64::from(random.next_u32()) / f64::from(u32::MAX)).sum();
             let r = 0.4 + noise * (sum - 6.0);
-            let out = dvec3(u.cos(), u.sin(), 0.0);
-            vertices.push(out * (1.0 + r * v.cos()) + r * v.sin() * DVec3::Z);
+            let out = dvec3(libm::cos(u), libm::sin(u), 0.0);
+            vertices.push(out * (1.0 + r * libm::cos(v)) + r * libm::sin(v) * DVec3::Z);
         }
     }
     let at = |i: u32, j: u32| i % nu * nv + j % nv;
@@ -122,7 +126,7 @@ fn torus(nu: u32, nv: u32, noise: f64) -> Shape {
 }
 
 fn off_torus(p: DVec3) -> f64 {
-    ((p.truncate().length() - 1.0).hypot(p.z) - 0.4).abs()
+    (libm::hypot(p.truncate().length() - 1.0, p.z) - 0.4).abs()
 }
 
 /// The distance from a triangle, by its plane and its three sides.
@@ -208,7 +212,7 @@ fn planes_beside_a_fillet_stay_flat() {
     let arc = |x: f64, from: f64| {
         (0..=8)
             .map(move |k| from + 0.5 * PI * f64::from(k) / 8.0)
-            .map(move |t| [x + 0.3 * t.cos(), 0.7 + 0.3 * t.sin()])
+            .map(move |t| [x + 0.3 * libm::cos(t), 0.7 + 0.3 * libm::sin(t)])
     };
     let mut outline = vec![[0.0, 0.0], [2.0, 0.0]];
     outline.extend(arc(1.7, 0.0).chain(arc(0.3, 0.5 * PI)));
@@ -243,7 +247,7 @@ fn gradients_of_patches_are_continuous_within_and_beyond_them() {
         for radius in [0.95, 1.0, 1.05] {
             let place = |k: u32| {
                 let t = 0.3 * f64::from(k) / 2_000.0;
-                dvec3(radius * t.cos(), radius * t.sin(), height)
+                dvec3(radius * libm::cos(t), radius * libm::sin(t), height)
             };
             let mut last = side.value_and_gradient(place(0));
             for k in 1..=2_000 {
