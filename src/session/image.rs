@@ -241,15 +241,15 @@ mod with_images {
         /// Changes the field to the surface of an image. Of the parameters of the request `iso`,
         /// `label`, `smooth` and, if it is not 0, `dark` are an [`ImageChoice`]. A formula of the
         /// request has the surface as an operand, see [`Formula::with_model`]. The box is that of
-        /// the request, or is fitted. [`Session::set_field`] without a surface and a formula changes
-        /// the choice.
+        /// the request, or is fitted. [`Session::set_field`] without a surface and a formula
+        /// changes the choice.
         ///
         /// [`Formula::with_model`]: crate::field::formula::Formula::with_model
         ///
         /// # Errors
         ///
-        /// If the choice has no surface, the formula has a mistake or the box is not one; nothing is
-        /// changed then.
+        /// If the choice has no surface, the formula has a mistake or the box is not one; nothing
+        /// is changed then.
         pub fn set_image(
             &mut self,
             image: &Image,
@@ -293,8 +293,8 @@ mod with_images {
             Ok(self.answer())
         }
 
-        /// Changes what is sampled of the present image: values that the request does not name stay.
-        /// None if the field is of something else.
+        /// Changes what is sampled of the present image: values that the request does not name
+        /// stay. None if the field is of something else.
         pub(in super::super) fn change_image(
             &mut self,
             request: &FieldRequest,

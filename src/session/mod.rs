@@ -567,7 +567,8 @@ impl Session {
 
     /// [`Run::report`] in slices, with what the session knows of the surface. No cause is told why
     /// particles lie at the border of a model or an image, or of an open surface of the gallery,
-    /// whose box was chosen for it. A closed one fills its box for the values that its sliders offer.
+    /// whose box was chosen for it. A closed one fills its box for the values that its sliders
+    /// offer.
     pub fn measure(&mut self, measured: Measured, budget: u32) -> Option<Report> {
         self.run.measure_copy(measured, budget).map(|report| self.completed(report))
     }

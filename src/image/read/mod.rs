@@ -1,5 +1,5 @@
-//! Readers of files of images: NIfTI, NRRD, NumPy, MetaImage, Gaussian cube and TIFF files, detected
-//! by content, and of voxels without a header.
+//! Readers of files of images: NIfTI, NRRD, NumPy, MetaImage, Gaussian cube and TIFF files,
+//! detected by content, and of voxels without a header.
 //!
 //! A file is not trusted: the sizes that its header promises are compared with what follows before
 //! memory is allocated, and compressed data is unpacked up to the promised size alone. The voxels
