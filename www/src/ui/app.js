@@ -100,6 +100,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
   mountOverlay(view, engine, { stage, poster: byId('poster'), start: byId('start'), told });
   // The layout leaves room for the message that there is no surface, so that it does not hide the box.
   layout.follow(query(view, '.empty'));
+  layout.follow(query(view, '.foot'));
   const boxDrawn = computed(() => isBoxDrawn(engine));
   live(view, () => {
     void boxDrawn.value;

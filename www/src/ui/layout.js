@@ -59,14 +59,15 @@ export function mountLayout({ shell, view, nav, panels, covered, inset }) {
     const { left, top, right, bottom } = view.getBoundingClientRect();
     const size = (/** @type {string} */ part) => view.querySelector(part) ?? { clientWidth: 0, clientHeight: 0 };
     const [tools, legend] = [size('.toolbar'), size('.legend')];
-    // On a phone the tools and the legend would cover the surface, so their areas are not free. In a larger window a
-    // fit leaves the corner of the legend free.
+    // On a phone the tools, the legend and the foot would cover the surface, so their areas are not free. In a larger
+    // window a fit leaves the corner of the legend free.
     const [aside, above] = compact.matches ? [tools.clientWidth, legend.clientHeight] : [0, 0];
+    const foot = compact.matches ? (view.querySelector('.foot')?.getBoundingClientRect().top ?? bottom) : bottom;
     inset({
       left,
       top: top + above,
       right: innerWidth - right + aside,
-      bottom: innerHeight - bottom + covered(),
+      bottom: innerHeight - bottom + Math.max(covered(), bottom - foot),
       corner: { width: legend.clientWidth, height: legend.clientHeight - above },
     });
   };
