@@ -30,6 +30,7 @@ const refusalOf = (/** @type {string} */ message) => ({
 
 export class ImageKeeper {
   #mostBytes;
+  #begins;
   /** The key of the image that the core has open. */
   #key = '';
   /** The file that cannot be opened again, and why. */
@@ -37,9 +38,13 @@ export class ImageKeeper {
   /** The key of the file that is being opened, and the number of that work. */
   #opening = { key: '', id: 0 };
 
-  /** @param {number} mostBytes  memory that an image may take */
-  constructor(mostBytes) {
+  /**
+   * @param {number} mostBytes  memory that an image may take
+   * @param {() => void} [begins]  says that the core begins work during which nothing is heard of it
+   */
+  constructor(mostBytes, begins = () => {}) {
     this.#mostBytes = mostBytes;
+    this.#begins = begins;
   }
 
   /**
@@ -47,7 +52,7 @@ export class ImageKeeper {
    * @param {Core} core @param {KeyedImage} image @param {(label: string, fraction: number) => void} [tell]
    * @returns {Promise<Opened>}
    */
-  async open(core, image, tell = () => {}) {
+  async open(core, image, tell = this.#begins) {
     const id = this.#opening.id + 1;
     this.#opening = { key: image.key, id };
     const isOver = () => this.#opening.id !== id;
@@ -76,6 +81,7 @@ export class ImageKeeper {
 
   /** @param {Core} core @param {KeyedImage} image @param {Partial<FieldRequest>} field @returns {FieldAnswer} */
   setField(core, image, field) {
+    this.#begins();
     return this.#key === image.key ? core.set_image(field) : refusalOf(this.#refused.message);
   }
 }

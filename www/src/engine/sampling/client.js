@@ -182,6 +182,7 @@ export class SamplingClient {
       case 'failed':
         return this.#onLoadFailed(message.message);
       case 'beat':
+      case 'filtering':
       case 'crashed':
         return;
       case 'number':

@@ -108,6 +108,9 @@ export class Supervisor {
       this.#rest();
     }
     this.#heard();
+    // The core reads and filters an image in one go, which takes seconds for a large one.
+    if (message.type === 'filtering' || message.type === 'image_progress')
+      this.#deadline = this.#clock.now() + LOADING_MS;
     if (message.type === 'failed') {
       this.#drop();
       this.state = 'failed';

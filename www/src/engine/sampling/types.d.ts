@@ -134,6 +134,7 @@ export type FromWorker =
   | RecordMessage
   | ReportMessage
   | { type: 'file'; request: number; bytes: Uint8Array<ArrayBuffer> | null }
+  | { type: 'filtering' }
   | { type: 'image_progress'; request: number; label: string; fraction: number }
   | { type: 'image'; request: number; opened: Opened }
   | { type: 'measured'; request: number; measures: PlacedMeasures }

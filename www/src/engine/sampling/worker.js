@@ -29,7 +29,7 @@ const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) =>
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
 
 const device = onPhone(navigator) ? 'phone' : 'desk';
-const images = new ImageKeeper(IMAGE_MB[device] * 1e6);
+const images = new ImageKeeper(IMAGE_MB[device] * 1e6, () => post({ type: 'filtering' }));
 /** Continues once the image of a job is open. @param {unknown} [error] */
 const opened = (error) => {
   if (error) crashed(0, error);

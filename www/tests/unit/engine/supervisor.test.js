@@ -68,6 +68,17 @@ beforeEach(() => {
 afterEach(() => vi.useRealTimers());
 
 describe('the supervisor', () => {
+  test('lets a worker that filters an image be silent for a minute', () => {
+    busy();
+    workers[0].say({ type: 'filtering' });
+    vi.advanceTimersByTime(59_000);
+    expect(workers).toHaveLength(1);
+    // After the next word it is that of any other work again.
+    workers[0].say({ type: 'field', id: 1, answer: { ok: true } });
+    vi.advanceTimersByTime(4300);
+    expect(workers).toHaveLength(2);
+  });
+
   test('replaces a busy worker that is silent for 4 s', () => {
     busy();
     vi.advanceTimersByTime(3900);
