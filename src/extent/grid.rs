@@ -16,8 +16,8 @@ const ZERO_SHARE: f64 = 1.0 / 16.0;
 /// there than at the ends of the edge, but no smaller than beside the jump.
 const NEAR_SHARE: f64 = 0.5;
 /// Number of divisions of an edge that lead to the short part, 1/64 of the edge. Fewer: f may halve
-/// on the way to a jump. More: rounding errors of terms that nearly cancel may be as large as f in a
-/// part that small.
+/// on the way to a jump. More: rounding errors of terms that nearly cancel may be as large as f in
+/// a part that small.
 const NEAR: u32 = 2;
 
 /// Parts into which an edge is divided at a time.
