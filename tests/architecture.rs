@@ -27,8 +27,8 @@ const ROOMS: [Room; 6] = [
             ("image", &["math", "field"]),
             // From a file to a field. The core that samples is built without it.
             ("pointcloud", &["math", "field", "spatial", "topology", "slices"]),
-            // From a triangle mesh to a field. Its files are read as those of points are, and a scan
-            // becomes an image.
+            // From a triangle mesh to a field. Its files are read as those of points are, and a
+            // scan becomes an image.
             ("remesh", &["math", "slices", "field", "image", "pointcloud"]),
             // Particles, meshes of them and the search among them know no field: they hold whatever
             // made them.

@@ -3,11 +3,11 @@
 //! A [`TriangleMesh`] is [mended](TriangleMesh::solid) to a [`MeshSolid`], and that is made to a
 //! [`MeshField`] by one of two ways:
 //!
-//! * *Parts with edges*. The faces are parted into patches along edges whose faces meet at an angle
-//!   (`patches`). Each patch has a smooth function (`sheet`), and f is the greatest of them at convex
-//!   edges and the least at concave ones (`parts`, `rule`).
-//! * *Scans and smooth shapes*. The distance from the mesh on a grid becomes an image, whose surface
-//!   is that of its spline (`scan`).
+//! * *Parts with edges*. The faces are parted into patches along edges whose faces meet at an
+//!   angle (`patches`). Each patch has a smooth function (`sheet`), and f is the greatest of them
+//!   at convex edges and the least at concave ones (`parts`, `rule`).
+//! * *Scans and smooth shapes*. The distance from the mesh on a grid becomes an image, whose
+//!   surface is that of its spline (`scan`).
 
 mod compare;
 mod cross;

@@ -107,6 +107,8 @@ impl TriangleMesh {
         let edges = Edges::new(&faces);
         let pieces = orient(&vertices, &mut faces, &edges, &mut repairs.turned);
         let (borders, fans) = (edges.count(|sides| sides == 1), edges.count(|sides| sides > 2));
+        // The sides of a face that was turned have other numbers.
+        let edges = Edges::new(&faces);
         let mesh = TriangleMesh::of_parts(vertices, faces);
         let tree = Tree::new(&mesh.all_corners());
         let solid = MeshSolid {

@@ -514,8 +514,8 @@ impl Session {
         Ok(self.answer())
     }
 
-    /// Changes the field to another one, or to the formula of a request in which it is an operand by
-    /// the name [`MODEL`], in the box of the request or in one that is fitted: see
+    /// Changes the field to another one, or to the formula of a request in which it is an operand
+    /// by the name [`MODEL`], in the box of the request or in one that is fitted: see
     /// [`Session::set_function`]. The answer has the parameters of the formula.
     ///
     /// # Errors

@@ -91,7 +91,7 @@ def remesh(mesh, *, edges="auto", smooth=None, **options):
     >>> import marching_particles as mp
     >>> corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
     >>> sample = mp.remesh((corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]), count=1000)
-    >>> sample.report["proof"]["creases"], bool(sample.change["to_new"]["largest"] < 1e-6)
+    >>> sample.report["creases"], bool(sample.change["to_new"]["largest"] < 1e-6)
     (6, True)
 
     Args:

@@ -25,7 +25,7 @@ fn a_mesh_is_sampled_anew_and_compared_with_the_new_one() {
     let run_of = sample(&["--mesh-in", &path, "--count", "1500", "--mesh", &new]);
     let remesh = &run_of["remesh"];
     assert_eq!((&remesh["faces"], &remesh["vertices"]), (&12.into(), &8.into()));
-    assert_eq!(run_of["proof"]["creases"], 12);
+    assert_eq!(run_of["creases"], 12);
     let edges = remesh["change"]["edges"].as_f64().expect("a distance");
     assert!(edges < 1e-6, "{edges}");
     assert!((run_of["mesh"]["volume"].as_f64().expect("a volume") - 6.0).abs() < 1e-6);
