@@ -50,7 +50,11 @@ const READ = {
   periodic: ({ periodic }, i) => periodic?.[i],
 };
 
-/** Returns what reads a column. @param {{name: string}} column @returns {(columns: Exported, i: number) => number | undefined} */
+/**
+ * Returns what reads a column.
+ * @param {{name: string}} column
+ * @returns {(columns: Exported, i: number) => number | undefined}
+ */
 const readerOf = ({ name }) => READ[name] ?? (({ values }, i) => values?.[name][i]);
 
 /**
