@@ -188,11 +188,11 @@ const ROOMS: [Room; 6] = [
             // What its operands do not know of their pieces is found out.
             ("combined", &["edges"]),
             ("edges", &[]),
-            ("piecewise", &["differences", "edges"]),
+            ("piecewise", &["differences"]),
             ("descent", &[]),
             ("crossing", &["descent"]),
             ("evaluator", &[]),
-            ("differences", &[]),
+            ("differences", &["edges"]),
             ("function", &["differences"]),
             ("given", &["function"]),
             ("gallery", &["formula"]),

@@ -240,9 +240,10 @@ pub(crate) struct SampleArguments {
 
     /// Column of numbers at the particles for the files, NAME=FORMULA: a formula of x, y, z, the
     /// normal n_x, n_y, n_z, the principal curvatures k_1 >= k_2 and the direction d_x, d_y, d_z of
-    /// k_1, radius, level, area (the share of the surface, of the mesh around the particle), edge (the
-    /// distance to the nearest sharp edge) and the parameters, such as "H=(k_1+k_2)/2". ply and csv name it, npy has it after the normal, glb
-    /// as the attribute _NAME in capitals. May be given again
+    /// k_1, radius, level, area (the share of the surface, of the mesh around the particle), edge
+    /// (the distance to the nearest sharp edge) and the parameters, such as "H=(k_1+k_2)/2". ply
+    /// and csv name it, npy has it after the normal, glb as the attribute _NAME in capitals. May be
+    /// given again
     #[arg(
         long = "value", value_name = "NAME=FORMULA", value_parser = value, allow_hyphen_values = true,
         help_heading = "Output"

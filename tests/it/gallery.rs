@@ -297,11 +297,14 @@ fn every_surface_and_model_has_its_picture_and_every_picture_its_surface() {
     let pictures: BTreeSet<String> =
         files.map(|file| file.file_name().to_string_lossy().into_owned()).collect();
     let ids = SURFACES.iter().map(|surface| surface.id).chain(MODELS.iter().map(|model| model.id));
-    let wanted: BTreeSet<String> = ids.map(|id| format!("{id}.webp")).collect();
+    // The page computes images, too, and names them.
+    let scans = std::fs::read_to_string(checkout().join("www/src/engine/scans.js")).expect("the scans");
+    let scans = scans.split("id: '").skip(1).filter_map(|rest| rest.split('\'').next());
+    let wanted: BTreeSet<String> = ids.chain(scans).map(|id| format!("{id}.webp")).collect();
     let missing: Vec<_> = wanted.difference(&pictures).collect();
     assert!(missing.is_empty(), "{missing:?} are missing: `npm run pictures -- ID …` in www draws them");
     let left_over: Vec<_> = pictures.difference(&wanted).collect();
-    assert!(left_over.is_empty(), "{left_over:?} show no surface and no model");
+    assert!(left_over.is_empty(), "{left_over:?} show no surface, no model and no scan");
 }
 
 #[test]

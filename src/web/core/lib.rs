@@ -195,8 +195,8 @@ impl Core {
     }
 
     /// Changes the field to a function that takes the coordinates of up to 512 points and an array
-    /// for f at each of them, to an `Answer` with `FieldAnswer`. With `labels` it takes the label of
-    /// a piece besides, and gives its values; `labels` writes the labels at points. Of the
+    /// for f at each of them, to an `Answer` with `FieldAnswer`. With `labels` it takes the label
+    /// of a piece besides, and gives its values; `labels` writes the labels at points. Of the
     /// `FieldRequest` the box counts. Once a function has thrown none is called again, and the run
     /// ends.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
