@@ -390,3 +390,18 @@ def test_a_mesh_and_a_path_are_taken_for_points(tmp_path):
     for given in (sphere, tmp_path / "ball.obj", str(tmp_path / "ball.obj")):
         sample = mp.sample(mp.fit_points(given), count=400)
         assert abs(np.linalg.norm(sample.points, axis=1) - 1).max() < 0.02
+
+
+def test_gaps_that_the_mesh_closes_are_none():
+    tubes = "(x^2 + y^2 + z^2 - 2)^3 + 2000(x^2y^2 + x^2z^2 + y^2z^2) = 10"
+    sample = mp.sample(tubes, count=5_000)
+    assert sample.report["components"] == 1
+    assert "open" not in [warning.code for warning in sample.warnings]
+
+
+def test_an_open_surface_with_f_above_0_inside_faces_outward():
+    # Its rim is a cusp, along which the mesh stays open.
+    sample = mp.sample("y^2*(1 - (x^2 + z^2)) - (x^2 + z^2 + 2*y - 1)^2 = 0", count=8_000)
+    mesh = trimesh.Trimesh(*sample.mesh()[::2], process=False)
+    assert not mesh.is_watertight and mesh.volume > 0
+    assert [warning.code for warning in sample.warnings].count("larger_inside") == 1

@@ -375,6 +375,11 @@ impl<F: Field> Run<F> {
         self.state.check_not_empty(&self.field)
     }
 
+    /// The report on particles that were measured, once their mesh is joined.
+    pub(crate) fn reported(&mut self) -> Report {
+        self.state.reported(&self.field)
+    }
+
     /// The sample of a run that has ended, with this report on it.
     pub(crate) fn into_sample(self, report: Report) -> Sample {
         Sample::new(self.state, report)

@@ -618,13 +618,20 @@ impl Session {
         const SLICES: u32 = 256;
         self.run.check_not_empty()?;
         let mut reporting = self.run.measure(measured);
-        let report = loop {
+        let mut report = loop {
             match reporting.step(SLICES) {
                 Some(report) => break report,
                 None => tell(reporting.fraction())?,
             }
         };
         drop(reporting);
+        if self.run.measured().opening.is_some() {
+            // Only the field can say which of the gaps are surface.
+            while self.run.join(SLICES).is_none() {
+                tell(1.0)?;
+            }
+            report = self.run.reported();
+        }
         let report = self.completed(report);
         Ok(self.run.into_sample(report))
     }

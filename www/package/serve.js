@@ -293,7 +293,13 @@ export function serve({ post, load }) {
     core.plan(measure ? 'particles' : 'nothing', false);
     const particles = await run(of);
     const measuring = () => ({ phase: 'measuring', particles, fraction: core.fraction() });
-    const report = measure ? await inSlices(of, (budget) => core.measure('particles', budget), measuring) : null;
+    const measured = () => inSlices(of, (budget) => core.measure('particles', budget), measuring);
+    let report = measure ? await measured() : null;
+    if (report?.warnings.some(({ code }) => code === 'open')) {
+      // Only the mesh, which asks the field, can say which of the gaps are surface.
+      await inSlices(of, (budget) => core.join(budget));
+      report = await measured();
+    }
     for (const [name, value] of Object.entries(values)) {
       const taken = typeof value === 'string' ? value : held(value, core, `The function of the value ${name}`).call;
       const fault = await inSlices(of, (budget) => core.add_value(name, taken, budget));

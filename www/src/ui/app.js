@@ -99,8 +99,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
   mountDrop(engine, toast);
   mountOverlay(view, engine, { stage, poster: byId('poster'), start: byId('start'), told });
   // The layout leaves room for the message that there is no surface, so that it does not hide the box.
-  layout.follow(query(view, '.empty'));
-  layout.follow(query(view, '.foot'));
+  for (const part of ['.empty', '.foot']) layout.follow(query(view, part));
   const boxDrawn = computed(() => isBoxDrawn(engine));
   live(view, () => {
     void boxDrawn.value;

@@ -41,6 +41,14 @@ test('every setting of the core is an option', async () => {
   for (const name of names) expect(known.split(/[ ,.]+/)).toContain(name);
 });
 
+test('gaps that the mesh closes are none', async () => {
+  const tubes = '(x^2 + y^2 + z^2 - 2)^3 + 2000(x^2y^2 + x^2z^2 + y^2z^2) = 10';
+  const sample = await made.sample(tubes, { count: 5000 });
+  expect(sample.report).toMatchObject({ components: 1 });
+  expect(sample.warnings.map(({ code }) => code)).not.toContain('open');
+  sample.dispose();
+});
+
 test('a file of particles and a file of the mesh', async () => {
   const ball = await made.sample(SPHERE, { count: 300, params: { a: 1 } });
   const text = async (/** @type {Promise<Uint8Array>} */ file) => new TextDecoder('latin1').decode(await file);
