@@ -1,6 +1,6 @@
 /** The field panel: the formula, its parameters, the gallery, the clip box and the cutting plane. */
 import { computed } from '@preact/signals-core';
-import { fill, h } from '../dom.js';
+import { fill, h, live } from '../dom.js';
 import { createClipBox } from './clip-box.js';
 import { createCuttingPlane } from './cutting-plane.js';
 import { createFormula } from './formula.js';
@@ -37,6 +37,9 @@ export function mountField(body, engine, description, shared) {
     createSolid(engine, description, shared.print),
     createCuttingPlane(engine),
   );
+  // What follows the sliders waits for them, so that nothing jumps.
+  const waits = () => [engine.field, engine.fieldError, engine.notice, engine.loading].every((own) => !own.value);
+  live(body, () => body.classList.toggle('waiting', waits()));
 }
 
 /**
