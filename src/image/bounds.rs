@@ -18,9 +18,9 @@ const FEW: usize = 27;
 /// Blocks along each axis whose bounds are joined at most; over more of them slopes are those of
 /// the whole image.
 const BLOCKS: usize = 4;
-/// Largest distance, in cells, by which a box may reach into the next cell and still be bounded by
-/// the polynomial of this cell. Across a face the two polynomials differ by the cube of the
-/// distance, so a box whose face was rounded outward stays a box of one cell.
+/// Tolerance, in cells, within which a box counts as part of one cell: a face that was rounded
+/// outward does not make it a box of two. The polynomials of two cells differ beyond their face by
+/// the cube of the distance only.
 const BESIDE: f64 = 1e-9;
 /// Roundings of the sums of 64 products, and of second derivatives [`BESIDE`] a cell, as a share of
 /// the largest coefficient.

@@ -24,7 +24,7 @@ pub struct MeshDistances {
     pub largest: f64,
 }
 
-/// What has become of a mesh by being sampled anew.
+/// The comparison of a mesh with the one that was sampled from it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct MeshChange {

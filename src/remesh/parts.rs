@@ -48,8 +48,8 @@ impl Debug for PartsField {
 }
 
 impl Shared {
-    /// What decides f where the nearest point of the mesh is `q`, on this patch: the patch alone,
-    /// or the rule of a crease or a corner near it.
+    /// The patch whose function gives f at `p`. The nearest point of the mesh is `q`, on `patch`,
+    /// which gives f unless a crease or a corner near `q` has a rule.
     fn taken(&self, q: DVec3, patch: u32, p: DVec3) -> u32 {
         let Patches { creases, corners, near, .. } = &self.patches;
         let is_own = |k: u32| creases[k as usize].patches.contains(&patch);

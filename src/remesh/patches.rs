@@ -130,8 +130,9 @@ impl Patches {
         turns
     }
 
-    /// The vertices at which three or more creases meet, each with the rule by which the patches
-    /// there make f. Where the rule of a vertex is not found, the nearest crease decides alone.
+    /// Finds the corners, the vertices at which three or more creases meet, and for each the minima
+    /// and maxima of its patches that give f. A corner without such a rule is left out: the nearest
+    /// crease decides there.
     fn find_corners(&self, solid: &MeshSolid, normals: &[DVec3]) -> Vec<Corner> {
         let (mesh, edges) = (&*solid.mesh, &*solid.edges);
         let mut at_vertex: Vec<(u32, u32)> =

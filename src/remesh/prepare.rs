@@ -140,7 +140,7 @@ impl MeshSolid {
         self.origin
     }
 
-    /// What was mended.
+    /// The counts of faces and vertices that were mended.
     #[must_use]
     pub fn repairs(&self) -> MeshRepairs {
         self.repairs
@@ -173,8 +173,8 @@ impl MeshSolid {
     /// Refuses a mesh that encloses nothing: a sheet, however it is bent. The sum of its area
     /// vectors, which is zero for a closed mesh, is that of the openings.
     fn check(&self) -> Result<(), MeshError> {
-        /// Largest opening, as a share of the area. A hemisphere's is a half of its area, a flat
-        /// sheet's all of it.
+        /// Largest opening of a solid, as a share of the area of its mesh. Larger: half a sphere,
+        /// whose opening has half of its area, counts as a solid with a hole.
         const OPEN: f64 = 0.4;
         /// Least volume, as a share of that of the ball with the same area.
         const THIN: f64 = 1e-6;

@@ -105,8 +105,8 @@ impl ScanField {
         let width = width.unwrap_or_else(|| {
             let noise = noise(&solid.mesh, &solid.edges);
             // The noise of independent vertices falls with the square root of the area that the
-            // Gaussian takes the mean of, and its slope with the width once more. The filter, of
-            // two Gaussians, takes half as much again.
+            // Gaussian takes the mean of, and its slope with the width once more. The filter adds a
+            // second Gaussian and lets more noise through, for which the width is 1.5 times that.
             let wanted = libm::sqrt(noise / grid.cell / (LEFT * libm::sqrt(4.0 * core::f64::consts::PI)));
             let is_smooth = (sharp as f64) < SHARP_SHARE * solid.edges.len() as f64;
             (1.5 * wanted).clamp(if is_smooth { WIDTHS[0] } else { WIDTHS[1] }, WIDTHS[2])

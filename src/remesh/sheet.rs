@@ -336,19 +336,7 @@ impl Quadric {
             let bend = bend.to_cols_array_2d();
             (0..4).map(|k| bend[k / 2][k % 2] * p[k / 2] * q[k % 2]).sum()
         };
-        Self {
-            middle,
-            value,
-            slope: normal + slope.x * u + slope.y * v,
-            bend: Sym3 {
-                xx: entry(0, 0),
-                xy: entry(0, 1),
-                xz: entry(0, 2),
-                yy: entry(1, 1),
-                yz: entry(1, 2),
-                zz: entry(2, 2),
-            },
-        }
+        Self { middle, value, slope: normal + slope.x * u + slope.y * v, bend: Sym3::by(entry) }
     }
 
     fn at(&self, p: DVec3) -> Slope {

@@ -226,7 +226,7 @@ mod with_images {
     }
 
     impl ImagePromise {
-        /// What an outline promises.
+        /// The size, type and memory of the image that a header announces.
         #[must_use]
         pub fn of(outline: Option<&ImageOutline>) -> Self {
             Self {

@@ -153,7 +153,8 @@ export interface Sample {
    */
   toFile(format: Format, how?: { mesh?: boolean }): Promise<Uint8Array<ArrayBuffer>>;
   /**
-   * the particles on the surface of other parameters, or of another `iso` of an image; they leave this sample, whose columns stay,
+   * the particles on the surface of other parameters, or of another `iso` of an image; they leave
+   * this sample, whose columns stay,
    * and are gone where there is no such surface or the signal ends it
    */
   moved(params: Record<string, number>, options?: Pick<Options, 'signal' | 'onProgress'>): Promise<Sample>;

@@ -267,8 +267,9 @@ impl ImageOutline {
 }
 
 impl Image {
-    /// What a file promises that begins with these bytes, a megabyte of it or all. None for a cube
-    /// file and a TIFF stack, which only the whole file tells.
+    /// Returns the size and type of the voxels, as the header in the first bytes of a file states
+    /// them; a megabyte is enough. Returns nothing for a cube file or a TIFF stack, of which all is
+    /// needed.
     ///
     /// # Errors
     ///

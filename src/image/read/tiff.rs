@@ -318,7 +318,7 @@ fn pack_bits(strip: &[u8], end: usize, out: &mut Vec<u8>) {
 fn lzw(strip: &[u8], end: usize, out: &mut Vec<u8>) {
     const CLEAR: usize = 256;
     const END: usize = 257;
-    /// Codes of twelve bits, of which the last one is not made.
+    /// Size of the LZW code table: codes have at most twelve bits.
     const MOST: usize = 4096;
     // The texts of the codes from 258 on, by their places in what was unpacked.
     let mut texts: Vec<(usize, usize)> = Vec::new();
