@@ -1,11 +1,11 @@
-//! Particles that follow a moving surface, beside fresh runs: the table of `docs/flow.md`.
+//! Particles that follow a moving surface, beside fresh runs: the table of `docs/results.md`.
 //!
 //! `cargo bench -p benches --bench flow > docs/tables/flow.md` moves each surface through a hundred
 //! frames with 5,000 and with 20,000 particles, of fronts and of refined runs, and with 5,000 of a
 //! refined run whose sizes follow the curvature. `--count N` takes another number of particles;
 //! `--front` and `--refined` run one of the two; `--adaptive` lets all sizes follow the curvature;
 //! `--random N` moves N random surfaces instead, which were used to choose the constants of the
-//! flow. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes the summary in `docs/flow.md`.
+//! flow. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes the summary in `docs/results.md`.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 use marching_particles::field::formula::Formula;
@@ -84,7 +84,7 @@ fn finish(run: &mut Run<Formula>) {
 const HEAD: &str = "\
 # Particles that follow a moving surface: all figures
 
-Written by `cargo bench -p benches --bench flow > docs/tables/flow.md`. [flow.md](../flow.md) explains the columns.
+Written by `cargo bench -p benches --bench flow > docs/tables/flow.md`. [Results](../results.md#moving-surfaces) explains the columns.
 ";
 
 const COLUMNS: &str = "\

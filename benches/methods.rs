@@ -1,11 +1,11 @@
 //! The front and the refined method over the gallery and the models: the table of
-//! `docs/methods.md`.
+//! `docs/results.md`.
 //!
 //! `cargo bench -p benches --bench methods > docs/tables/methods.md` measures every surface with
 //! 4,000 and with 20,000 particles. `--count N` takes another number, `--seeds K` reports the worst
 //! of the seeds 0 to K − 1 in each column, `--adaptive` lets sizes follow the curvature, and names
 //! of surfaces restrict the run to these. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes
-//! the summary in `docs/methods.md`.
+//! the summary in `docs/results.md`.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 #[path = "../tests/it/settings.rs"]
@@ -28,7 +28,7 @@ const RUNS: u32 = 3;
 
 /// Text above the tables.
 const HEAD: &str = "\
-Written by `cargo bench -p benches --bench methods > docs/tables/methods.md`. [methods.md](../methods.md) explains
+Written by `cargo bench -p benches --bench methods > docs/tables/methods.md`. [Results](../results.md#both-methods) explains
 the columns.";
 
 /// Plan of a measurement.

@@ -1,9 +1,9 @@
-//! Solids with sharp edges by both methods: the table of `docs/solids.md`.
+//! Solids with sharp edges by both methods: the table of `docs/results.md`.
 //!
 //! `cargo bench -p benches --bench solids --profile dev > docs/tables/solids.md` measures every
 //! solid with 1,500, 6,000 and 24,000 particles. With `-- FOLDER` it also writes every mesh to that
 //! folder, for `benches/tetrahedra.py`. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes
-//! the summary in `docs/solids.md`.
+//! the summary in `docs/results.md`.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 #[path = "../tests/it/solid_table.rs"]
@@ -27,7 +27,7 @@ const RUNS: u32 = 3;
 /// Text above the tables.
 const HEAD: &str = "\
 Written by `cargo bench -p benches --bench solids --profile dev > docs/tables/solids.md`.
-[solids.md](../solids.md) explains the columns.";
+[Results](../results.md#solids-with-sharp-edges) explains the columns.";
 
 /// A solid: its name, its field, and its exact volume, Euler number and numbers of creases and
 /// corners, where they are known.

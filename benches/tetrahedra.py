@@ -1,7 +1,7 @@
 """Fills every OBJ mesh of a folder with tetrahedra by TetGen and compares the volumes.
 
 pip install tetgen
-cargo bench -p benches --bench solids --profile dev -- target/solids > docs/solids.md
+cargo bench -p benches --bench solids --profile dev -- target/solids > docs/tables/solids.md
 python benches/tetrahedra.py target/solids
 """
 

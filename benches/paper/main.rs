@@ -5,7 +5,7 @@
 //! particle system after so many seconds of processor time, `--pictures FOLDER` says where the
 //! figures go, `--machine TEXT` names machine and commit, and `--quick` takes a twentieth of the
 //! particles, to try it out. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes the summary
-//! in `docs/paper.md`.
+//! in `docs/results.md`.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 #[path = "../../tests/it/settings.rs"]
@@ -119,7 +119,7 @@ fn head(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
         "\
 # The paper, reproduced: all figures
 
-Written by `cargo xtask paper`. [paper.md](../paper.md) explains rows and columns.
+Written by `cargo xtask paper`. [Results](../results.md#the-paper-reproduced) explains rows and columns.
 
 {}; {} jobs at a time, load average {load} at the start; particle systems stopped after {} s.
 ",

@@ -20,10 +20,11 @@ const FIT_SLICES: u32 = 50;
 /// A field that is shared.
 type Shared = Arc<dyn marching_particles::Field>;
 
-/// A field, with the box of its surface where it is known.
+/// A field.
 #[pyclass(frozen, module = "marching_particles._core")]
 pub(crate) struct Field {
     pub(crate) field: Shared,
+    /// The box that it is sampled in where none is asked for; without it one is fitted.
     bounds: Option<Bounds>,
     /// The request for a formula by itself; none for other fields.
     formula: Option<FieldRequest>,
@@ -135,9 +136,7 @@ impl Field {
                 "range": image.range(),
                 "notes": surface.notes(),
             });
-            let field = surface.field();
-            let bounds = extent::find(field).with_room(|_| 0.0);
-            Ok((Self::new(Arc::new(field.clone()), Some(bounds)), known.to_string()))
+            Ok((Self::new(Arc::new(surface.field().clone()), None), known.to_string()))
         })
     }
 
@@ -176,12 +175,12 @@ impl Field {
 
     /// The intersection, which lies in the box of either field.
     fn intersection(&self, other: &Self) -> Self {
-        self.with(other, marching_particles::intersection, self.bounds.or(other.bounds))
+        self.with(other, marching_particles::intersection, self.known().or_else(|| other.known()))
     }
 
     /// The difference, which lies in the box of this field.
     fn difference(&self, other: &Self) -> Self {
-        self.with(other, marching_particles::difference, self.bounds)
+        self.with(other, marching_particles::difference, self.known())
     }
 
     /// The smooth union. A smooth minimum is below the lesser value by a sixth of the width at
@@ -193,7 +192,7 @@ impl Field {
 
     /// The field less the distance.
     fn offset(&self, distance: f64) -> Self {
-        let bounds = self.bounds.map(|bounds| bounds.enlarged(distance.max(0.0)));
+        let bounds = self.known().map(|bounds| bounds.enlarged(distance.max(0.0)));
         Self::combined(marching_particles::offset(Arc::clone(&self.field), distance), bounds)
     }
 
@@ -206,7 +205,7 @@ impl Field {
     /// Corners of the box of the surface, if it is known.
     #[getter]
     fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
-        self.bounds.map(|bounds| (bounds.min, bounds.max))
+        self.known().map(|bounds| (bounds.min, bounds.max))
     }
 }
 
@@ -253,8 +252,14 @@ impl Field {
             "border_edges": solid.border_edges(),
             "notes": mesh.notes(),
         });
-        let bounds = extent::find(&field).with_room(|_| 0.0);
-        Ok((Self::new(Arc::new(field.clone()), Some(bounds)), Mesh(field), known.to_string()))
+        Ok((Self::new(Arc::new(field.clone()), None), Mesh(field), known.to_string()))
+    }
+
+    /// The box of the surface, if it is known.
+    fn known(&self) -> Option<Bounds> {
+        let found =
+            || self.field.facts().within.map(|_| extent::find(self.field.as_ref()).with_room(|_| 0.0));
+        self.bounds.or_else(found)
     }
 
     fn new(field: Shared, bounds: Option<Bounds>) -> Self {
@@ -306,7 +311,7 @@ impl Field {
 
     /// The box around those of both fields.
     fn joined(&self, other: &Self) -> Option<Bounds> {
-        self.bounds.zip(other.bounds).map(|(own, other)| own.joined(&other))
+        self.known().zip(other.known()).map(|(own, other)| own.joined(&other))
     }
 }
 

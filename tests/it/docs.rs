@@ -16,14 +16,15 @@ fn read(name: &str) -> String {
     fs::read_to_string(checkout().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// Holds the table between the marks of a page to `wanted`, or writes it there.
-fn check_table(page: &str, wanted: &str) {
-    let begin = "<!-- This table is written by a test: UPDATE_GOLDEN=1 cargo test --test it docs:: -->\n";
+/// Holds the table of a page, between its marks, to `wanted`, or writes it there.
+fn check_table(page: &str, name: &str, wanted: &str) {
+    let begin =
+        format!("<!-- Table of {name}, written by a test: UPDATE_GOLDEN=1 cargo test --test it docs:: -->\n");
     let text = read(page);
-    let (before, rest) = text.split_once(begin).unwrap_or_else(|| panic!("{page} has a begin mark"));
-    let (written, after) = rest.split_once(END).unwrap_or_else(|| panic!("{page} has an end mark"));
+    let (before, rest) = text.split_once(&begin).unwrap_or_else(|| panic!("{page} has no mark: {begin}"));
+    let (written, after) = rest.split_once(END).unwrap_or_else(|| panic!("{page} has no end of {name}"));
     if env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1") {
-        fs::write(checkout().join(page), [before, begin, wanted, END, after].concat()).expect("a page");
+        fs::write(checkout().join(page), [before, &begin, wanted, END, after].concat()).expect("a page");
         return;
     }
     assert_eq!(written, wanted, "{page}: UPDATE_GOLDEN=1 cargo test --test it docs:: puts it right");
@@ -264,15 +265,15 @@ fn everything_that_is_published_has_one_version() {
 
 #[test]
 fn the_table_of_settings_is_that_of_the_settings() {
-    check_table("docs/settings.md", &settings_table());
+    check_table("docs/settings.md", "settings", &settings_table());
 }
 
 #[test]
 fn the_summaries_are_those_of_the_tables() {
-    check_table("docs/flow.md", &flow_summary());
-    check_table("docs/methods.md", &methods_summary());
-    check_table("docs/solids.md", &solids_summary());
-    check_table("docs/paper.md", &paper_summary());
+    check_table("docs/results.md", "moving surfaces", &flow_summary());
+    check_table("docs/results.md", "methods", &methods_summary());
+    check_table("docs/results.md", "solids", &solids_summary());
+    check_table("docs/results.md", "the paper", &paper_summary());
 }
 
 /// The documents that people write: all but the tables of the benches.

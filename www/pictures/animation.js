@@ -44,12 +44,12 @@ function pixelsOf(picture) {
 }
 
 /**
- * @param {{ pictures: Buffer[], width: number, height: number, ms: number }} film  `pictures`: lossy ones without
- *   transparency, all of that size; `ms`: time for which each of them is shown
+ * @param {{ pictures: {picture: Buffer, ms: number}[], width: number, height: number }} film  lossy pictures without
+ *   transparency, all of that size, and the time for which each of them is shown
  */
-export function animation({ pictures, width, height, ms }) {
+export function animation({ pictures, width, height }) {
   const size = triples(width - 1, height - 1);
-  const frames = pictures.map((picture) =>
+  const frames = pictures.map(({ picture, ms }) =>
     chunk('ANMF', triples(0, 0), size, triples(ms), Buffer.from([NOT_BLENDED]), pixelsOf(picture)),
   );
   return chunk(

@@ -295,16 +295,17 @@ async function film(name, scenes) {
     }
     const pictures = [];
     for (let k = 0; k < FILM.pictures; k += 1)
-      pictures.push(
-        Buffer.from(
+      pictures.push({
+        picture: Buffer.from(
           await webp(
             taken.map((scene) => scene[k]),
             FILM_QUALITY,
           ),
         ),
-      );
+        ms: FILM.ms,
+      });
     const size = { width: scenes.length * LEVEL_PX.width, height: LEVEL_PX.height };
-    await write(`${name}-${theme}.webp`, animation({ pictures, ...size, ms: FILM.ms }));
+    await write(`${name}-${theme}.webp`, animation({ pictures, ...size }));
   }
 }
 

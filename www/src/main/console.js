@@ -1,5 +1,5 @@
 /**
- * Makes `window.marchingParticles`, which drives the page from the console or from a test. See www/CONSOLE.md.
+ * Makes `window.marchingParticles`, which drives the page from the console or from a test. See docs/page.md.
  *
  * @module
  */

@@ -1,6 +1,6 @@
 /**
  * Shows the picture alone, for a page that has this one in a frame, and answers the messages of that page. See
- * www/CONSOLE.md.
+ * docs/page.md.
  */
 import { byId } from '../ui/dom.js';
 import { loadSheet } from '../ui/sheet.js';

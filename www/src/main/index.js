@@ -1,6 +1,6 @@
 /**
  * Entry point of the page: creates the engine, connects it to the address and the console, and mounts the interface on
- * it. The head of docs/page-internals.md defines the words of the page.
+ * it. ARCHITECTURE.md defines the words of the page.
  */
 import '../ui/trusted.js';
 import { createEngine } from '../engine/index.js';
