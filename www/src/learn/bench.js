@@ -1,9 +1,12 @@
 /** The bench on which two runs are compared. */
+import { signal } from '@preact/signals-core';
 import { fill, h } from '../ui/dom.js';
+import { offerNumber, toleranceNumber } from './drag.js';
 import { createPair } from './pair.js';
 import { createSelectRow } from './parts.js';
-import { COMMON, setupOf, sidesOf, whatIfOf } from './whatifs.js';
+import { COMMON, FAIL, partsOf, setupOf, sidesOf, TOLERANCE, turned, USUAL, whatIfOf } from './whatifs.js';
 
+/** @import { ReadonlySignal } from '@preact/signals-core' */
 /** @import { Control, Lab, Setup, WhatIf } from './types.js' */
 
 /**
@@ -24,6 +27,8 @@ export async function createBench(
   const [above, below] = [h('div', { class: 'beside' }), h('div', { class: 'beside' })];
   let setup = first;
   let shown = Promise.resolve();
+  /** The knobs on the right; those of the lesson where there are none. */
+  const knobs = signal(USUAL);
   /** The choice whose controls stand there. */
   let standing = '';
   /** Shows the values of the controls. */
@@ -94,6 +99,7 @@ export async function createBench(
     const next = { ...asked, on: choices.some(({ value }) => value === asked.on) ? asked.on : '' };
     setup = next;
     const whatIf = whatIfOf(setup.what);
+    knobs.value = whatIf.knobs ? setup.right : USUAL;
     what.set(whatIf.id, whatIf.name);
     surface.set(next.on);
     await stand(whatIf);
@@ -105,6 +111,7 @@ export async function createBench(
     if (setup === next) await fail?.tell(next);
   }
 
+  if (locks.length === 0) offerTolerance(host, knobs, (right) => void open(FAIL, { on: setup.on, right }, choose));
   fill(host, chosen, above, look, pair.element, below);
   return {
     show,
@@ -122,6 +129,19 @@ export async function createBench(
       return all.filter(({ run }, k) => all.findIndex((one) => one.run === run) === k);
     },
   };
+}
+
+/**
+ * Makes the tolerance of the text that of the sampling on the right.
+ * @param {HTMLElement} host @param {ReadonlySignal<string>} knobs @param {(knobs: string) => void} turn
+ */
+function offerTolerance(host, knobs, turn) {
+  const about = toleranceNumber({
+    value: () => Number(partsOf(knobs.value)[TOLERANCE]),
+    change: (to) => turn(turned(knobs.peek(), TOLERANCE, String(to))),
+    stage: () => host,
+  });
+  offerNumber('knob', about);
 }
 
 /**

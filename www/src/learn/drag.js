@@ -1,9 +1,7 @@
 /** What is dragged beside the ranges: a number in a sentence, and a drawing. */
 import { clamp } from '../engine/vector.js';
 import { h, queryAll } from '../ui/dom.js';
-import { formatCount } from '../ui/format.js';
 import { afterKey, toPlace, toValue } from '../ui/scale.js';
-import { rangePlaces } from './parts.js';
 import { pin } from './pinned.js';
 import { TOLERANCES, toleranceWords } from './whatifs.js';
 
@@ -73,42 +71,34 @@ export function createNumber({ name, scale, value, say, change, stage }) {
 }
 
 /**
- * The tolerance as a number in a sentence.
- * @param {Pick<NumberOptions, 'value' | 'change' | 'stage'>} about
+ * What the tolerance is as a number in a sentence.
+ * @param {Pick<NumberOptions, 'value' | 'change' | 'stage'>} about  @returns {NumberOptions}
  */
-export const createTolerance = ({ change, ...about }) =>
-  createNumber({
-    ...about,
-    name: 'Tolerance',
-    scale: TOLERANCES,
-    say: toleranceWords,
-    change: (to) => change(Number(to.toPrecision(3))),
-  });
+export const toleranceNumber = ({ change, ...about }) => ({
+  ...about,
+  name: 'Tolerance',
+  scale: TOLERANCES,
+  say: toleranceWords,
+  change: (to) => change(Number(to.toPrecision(3))),
+});
 
 /**
- * Makes the numbers of the text that name a figure handles of its first range. A number with `data-times` is so many
- * times the range's value.
- * @param {HTMLElement} stage  with the live figure
+ * Makes the numbers of the text that name it in `data-number` handles of a number of a figure. One with `data-times` is
+ * so many times that number.
+ * @param {string} name @param {NumberOptions} about  its accessible name is the title of the number in the text, if any
  */
-export function mountNumbers(stage) {
-  const input = stage.querySelector('input[type="range"]');
-  const place = input && rangePlaces.get(input);
-  if (!(input instanceof HTMLInputElement) || !place) return;
-  for (const words of queryAll(document, `[data-number="${stage.dataset.figure}"]`)) {
+export function offerNumber(name, { scale, value, change, ...about }) {
+  for (const words of queryAll(document, `[data-number="${name}"]`)) {
     const times = Number(words.dataset.times ?? 1);
-    const scale = { min: 0, max: times * Number(input.max), step: times };
-    const element = createNumber({
-      name: words.title,
-      scale,
-      value: () => times * place.value,
-      say: formatCount,
-      stage: () => stage,
-      change(value) {
-        input.valueAsNumber = value / times;
-        input.dispatchEvent(new Event('input', { bubbles: true }));
-      },
-    });
-    words.replaceWith(element);
+    words.replaceWith(
+      createNumber({
+        ...about,
+        name: words.title || about.name,
+        scale: { min: times * scale.min, max: times * scale.max, step: times * scale.step },
+        value: () => times * value(),
+        change: (to) => change(to / times),
+      }),
+    );
   }
 }
 

@@ -4,12 +4,12 @@ import { button } from '../ui/button.js';
 import { fill, h } from '../ui/dom.js';
 import { kept } from '../ui/remembered.js';
 import { packed } from '../ui/surface-link.js';
-import { createTolerance } from './drag.js';
+import { createNumber, toleranceNumber } from './drag.js';
 import { reasonOf } from './figure.js';
 import { createSelectRow } from './parts.js';
 import { verdictOf, written } from './score.js';
 import { blame, isWorse, tryOut } from './verdict.js';
-import { FAIL, KNOBS, knobWords, partsOf, partWords, SEED, seedAt, turned, USUAL } from './whatifs.js';
+import { FAIL, KNOBS, knobWords, partsOf, partWords, SEED, seedAt, TOLERANCE, turned, USUAL } from './whatifs.js';
 
 /**
  * @import { Lab, Score, Setup, Try } from './types.js'
@@ -84,10 +84,12 @@ export function createFail(lab, { choose, isLocked, on }) {
     made.select.disabled = isLocked;
     return made;
   });
-  const number = createTolerance({
-    value: () => Number(partsOf(own.value)[1]),
-    change: (to) => turn(1, String(to)),
-  });
+  const number = createNumber(
+    toleranceNumber({
+      value: () => Number(partsOf(own.value)[TOLERANCE]),
+      change: (to) => turn(TOLERANCE, String(to)),
+    }),
+  );
   if (isLocked) number.setAttribute('aria-disabled', 'true');
   const keptRow = h('div', { class: 'kept', role: 'group', 'aria-label': 'Kept so far' }, () =>
     tries.ends.value.map(({ value, score }, k) =>

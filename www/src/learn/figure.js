@@ -5,22 +5,13 @@
 import { h } from '../ui/dom.js';
 import { NoSurface } from './lab.js';
 
-/** @import { Figure } from './types.js' */
-
 /** A figure is made once it is this near to the window, in pixels. */
 const AHEAD_PX = 500;
 
-/** @param {HTMLElement} stage  holds the still @param {() => Promise<(Node | null)[]>} build  @returns {Figure} */
+/** @param {HTMLElement} stage  holds the still @param {() => Promise<(Node | null)[]>} build */
 export function mountFigure(stage, build) {
   const status = h('p', { class: 'figure-status', role: 'status' });
   stage.after(status);
-  /** @type {Promise<void> | null} */
-  let made = null;
-  let tell = () => {};
-  /** @type {Promise<void>} */
-  const ready = new Promise((resolve) => {
-    tell = resolve;
-  });
   async function make() {
     stage.dataset.state = 'running';
     status.textContent = 'Running the algorithm on the surface';
@@ -29,18 +20,12 @@ export function mountFigure(stage, build) {
       stage.replaceChildren(...parts.filter((part) => part !== null));
       stage.dataset.state = 'live';
       status.textContent = '';
-      tell();
     } catch (error) {
       stage.dataset.state = 'still';
       status.textContent = `${reasonOf(error)} This is a still picture of the ellipsoid.`;
     }
   }
-  const load = () => {
-    made ??= make();
-    return made;
-  };
-  whenNear(stage, load);
-  return { stage, load, ready };
+  whenNear(stage, make);
 }
 
 /** Does something once an element comes near the window. @param {Element} element @param {() => Promise<void>} act */

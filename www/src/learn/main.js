@@ -35,11 +35,8 @@ if (stops.isBegun()) {
 
 /** Those of one class judge the same pairs. */
 const context = { lab, stops, series: parts.task ?? stops.series() };
-const figures = queryAll(document, '[data-figure]').map((host) =>
-  mountFigure(host, () => FIGURES[host.dataset.figure ?? ''](context)),
-);
-// The numbers of the text are handles of live figures.
-for (const { stage, ready } of figures) void ready.then(async () => (await import('./drag.js')).mountNumbers(stage));
+for (const host of queryAll(document, '[data-figure]'))
+  mountFigure(host, () => FIGURES[host.dataset.figure ?? ''](context));
 for (const host of queryAll(document, '.predict')) mountQuestion(host, host.id, QUESTIONS[host.id], context);
 mountTerms();
 const bench = lab.then(async (ready) => {

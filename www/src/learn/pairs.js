@@ -28,6 +28,9 @@ export const SIDES = [
   { value: 'alike', label: 'Neither: they differ by chance at most' },
 ];
 
+/** The same before chance is named. */
+export const PLAIN_SIDES = SIDES.with(2, { value: 'alike', label: 'Neither: they are alike' });
+
 /**
  * What a sampling is for, and the figure that says how good it is for that.
  * @type {readonly { key: keyof ScoreFigures, story: string, why: string }[]}
@@ -205,7 +208,7 @@ export async function drawn(lab, surfaces, series, number) {
  */
 export function questionOf({ pair, purpose: { key, story, why } }) {
   const right = (/** @type {readonly Score[]} */ scores) => winnerOf(scores, key);
-  const { writeChance, write } = rowOf(key);
+  const { name, writeChance, write } = rowOf(key);
   return {
     question: `${story} Which sampling is better for that?`,
     rounds: [
@@ -217,8 +220,8 @@ export function questionOf({ pair, purpose: { key, story, why } }) {
     ],
     ask: (lab) => scoresOf(lab, pair),
     words: (scores) => [
-      `${why} It is ${written(key, scores[0])} in A and ${written(key, scores[1])} in B.`,
-      `A difference of up to ${(writeChance ?? write)(Number(chanceOf(rowOf(key), scores)))} may be chance.`,
+      `${why} ${name}: ${written(key, scores[0])} in A, ${written(key, scores[1])} in B.`,
+      `Up to ${(writeChance ?? write)(Number(chanceOf(rowOf(key), scores)))} of a difference may be chance.`,
     ],
   };
 }

@@ -14,9 +14,6 @@ import { createSelect } from '../ui/select.js';
 
 /** @import { RangeRowOptions, SelectRowOptions } from './types.js' */
 
-/** The value of each range, by its input. @type {WeakMap<Element, Signal<number>>} */
-export const rangePlaces = new WeakMap();
-
 /**
  * A range with its name and its value in words.
  * @param {RangeRowOptions} about
@@ -36,7 +33,6 @@ export function createRangeRow({ name, max, value = 0, say, change }) {
     say: () => say(place.value),
     change: set,
   });
-  rangePlaces.set(input, place);
   const output = h('output', { class: 'range-value', for: id }, () => say(place.value));
   return {
     element: h('div', { class: 'range-row' }, h('label', { for: id }, name), input, output),

@@ -61,7 +61,10 @@ export function pin(number, stage, isDragged) {
       stage.classList.remove('pinned');
     };
     for (const kind of ['blur', 'pointerup', 'pointercancel']) number.addEventListener(kind, unpin, { signal });
-    addEventListener('scroll', unpin, { signal });
+    // What changes its height above is scrolled past by the browser itself, and leaves the number where it is.
+    const { top: place } = number.getBoundingClientRect();
+    const scrolled = () => Math.abs(number.getBoundingClientRect().top - place) > 1 && unpin();
+    addEventListener('scroll', scrolled, { signal });
     number.addEventListener('keydown', ({ key }) => key === 'Escape' && unpin(), { signal });
   }
   clearTimeout(timer);

@@ -9,7 +9,7 @@ import { formatCount, formatFixed, formatSignificant, plural } from '../ui/forma
 import { adaptiveRun } from './adaptive.js';
 import { childrenOf } from './decisions.js';
 import { asFineEverywhere, costOf, openBend, RING, ringsOf, scoresOfRest, widestHole } from './measure.js';
-import { FIGURES, OPENING, SIDES, scoresOf, winnerOf } from './pairs.js';
+import { FIGURES, OPENING, PLAIN_SIDES, SIDES, scoresOf, winnerOf } from './pairs.js';
 import { verdictOf, written } from './score.js';
 
 /** @import { Part, Question, Score } from './types.js' */
@@ -37,7 +37,7 @@ export const QUESTIONS = {
   'predict-first': one({
     question: 'Two samplings of a torus, with discs of one size. Which is the more regular pattern?',
     kind: 'choice',
-    choices: SIDES,
+    choices: PLAIN_SIDES,
     ask: (lab) => scoresOf(lab, OPENING),
     right: (/** @type {Score[]} */ scores) => winnerOf(scores, 'six'),
     words: ([a, b]) => [
@@ -89,7 +89,7 @@ export const QUESTIONS = {
       const words = `The widest hole is in the ring of the picture, beside a particle of level ${placed.levels[widest.particle]} of ${last}: on a seam, where parts of the front have met and left less room than a particle needs.`;
       if (typeof guess !== 'number') return [words];
       const far = distance(triple(placed.positions, guess), widest.hole.places[0]) / (2 * widest.radius);
-      return [words, `You pressed ${formatFixed(far, 1)} particle distances away from it.`];
+      return [words, `You pressed ${formatFixed(far, 1)} widths of a disc away from it.`];
     },
   }),
   'predict-rest': one({
@@ -108,7 +108,7 @@ export const QUESTIONS = {
     },
     words: ([before, after]) => [
       `The largest hole was ${written('hole', before)} and is ${written('hole', after)}; ${written('six', before)} had six neighbours and ${written('six', after)} have.`,
-      'Pushes even out the room that there is: those around a hole move in. For another neighbour whole rows would have to slip past each other, and hardly any does.',
+      'The pushes share out the room that there is: particles around a hole move in. For a particle to get another neighbour, whole rows would have to slip past each other, and hardly any does.',
     ],
   }),
   'predict-newton': one({

@@ -216,9 +216,6 @@ export type Work = {
   predictions: Guessed[];
   runs: object[];
 };
-/** `ready` is fulfilled once it is live, and never if it cannot be made. */
-export type Figure = { stage: HTMLElement; load: () => Promise<void>; ready: Promise<void> };
-
 export type Law = LessonSettings['law'];
 export type Subject = { surface: FormulaSurface; isOwn: boolean; from: string; notice: string };
 /** The input of a figure: the runs, the learner's answers, and the text from which pairs are drawn. */

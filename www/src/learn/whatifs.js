@@ -107,8 +107,8 @@ export const KNOBS = [
     why: () => 'Another seed moves the rings, and the seams with them. Their number hardly changes.',
   },
 ];
-/** The number of the knob that takes a place, too. */
-export const SEED = 3;
+/** The number of the knob of the tolerance, and of the one that takes a place, too. */
+export const [TOLERANCE, SEED] = [1, 3];
 
 /** The knobs as they stand in the lesson. */
 export const USUAL = ['queue', '0.7', '10', '0'].join(BETWEEN);

@@ -6,9 +6,11 @@
 import { clamp } from '../vector.js';
 import { encoded, linear } from './oklab.js';
 
-/** Tables from a byte to linear light, and from linear light in steps of 1/1023 to a byte. */
+/** Steps of linear light, as many as tell the darkest bytes of sRGB apart. */
+const STEPS = 4095;
+/** Tables from a byte to linear light, and from a step of linear light to a byte. */
 export const LINEAR = Float32Array.from({ length: 256 }, (_, v) => linear(v / 255));
-const ENCODED = Uint8Array.from({ length: 1024 }, (_, v) => Math.round(255 * encoded(v / 1023)));
+const ENCODED = Uint8Array.from({ length: STEPS + 1 }, (_, v) => Math.round(255 * encoded(v / STEPS)));
 
 /** Luminance of a ground above which it is light, and the light along the outline on a dark one, as there. */
 const LIGHT_GROUND = 0.179;
@@ -36,8 +38,9 @@ const luminanceOf = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
 export const rimOn = (ground) => (luminanceOf(ground) > LIGHT_GROUND ? 0 : RIM_LIGHT);
 
 /** Packs three linear components into a pixel. @param {number} r @param {number} g @param {number} b */
-export const packed = (r, g, b) =>
-  (255 << 24) | (ENCODED[(b * 1023) | 0] << 16) | (ENCODED[(g * 1023) | 0] << 8) | ENCODED[(r * 1023) | 0];
+export const packed = (r, g, b) => (255 << 24) | (encodedOf(b) << 16) | (encodedOf(g) << 8) | encodedOf(r);
+/** @param {number} value  in linear light, 0 … 1 */
+const encodedOf = (value) => ENCODED[(value * STEPS + 0.5) | 0];
 
 // A frame draws up to some million discs, so that what is found of one is written to the same places every time: arrays
 // of its own would take most of the frame.

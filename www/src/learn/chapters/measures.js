@@ -7,8 +7,10 @@ import { clamp } from '../../engine/vector.js';
 import { label, line, ring } from '../../figures/svg.js';
 import { button } from '../../ui/button.js';
 import { fill, h, live, s } from '../../ui/dom.js';
-import { formatFixed } from '../../ui/format.js';
+import { formatCount, formatFixed } from '../../ui/format.js';
+import { offerNumber } from '../drag.js';
 import { NoSurface } from '../lab.js';
+import { latest } from '../latest.js';
 import { createMarkKey } from '../marks.js';
 import { fromSeed, SEEDS } from '../pairs.js';
 import { HALF, patchOf } from '../patch.js';
@@ -19,47 +21,66 @@ import { chanceOf, DECIDING, rowOf, scoreAtEnd, widthOf, written } from '../scor
 /** @param {Context} context */
 export async function measures({ lab }) {
   const own = await lab;
-  const run = await fromSeed(own, 0);
-  const first = await scoreAtEnd(run);
-  const shown = signal({ run, score: first });
-  /** Those of the runs so far. @type {import('../../engine/types.js').Signal<readonly Score[]>} */
-  const scores = signal([first]);
+  /** Those so far, by their seeds. @type {{ run: LabRun, score: Score }[]} */
+  const all = [];
+  /** @type {import('../../engine/types.js').Signal<readonly Score[]>} */
+  const scores = signal([]);
+  /** The seed that is shown. */
+  const at = signal(0);
   const isBusy = signal(false);
-  const box = h('div', { class: 'drawing-box' });
-  live(box, () => fill(box, drawingOf(shown.value.run, shown.value.score)));
-  async function again() {
+  /** Shows a seed, after those before it. @param {number} seed */
+  async function make(seed) {
+    while (all.length <= seed) {
+      const run = await fromSeed(own, all.length);
+      all.push({ run, score: await scoreAtEnd(run) });
+    }
+    scores.value = all.map(({ score }) => score);
+    at.value = seed;
+  }
+  const show = latest(async (/** @type {number} */ seed) => {
     isBusy.value = true;
     try {
-      const next = await fromSeed(own, scores.peek().length);
-      const score = await scoreAtEnd(next);
-      scores.value = [...scores.peek(), score];
-      shown.value = { run: next, score };
+      await make(seed);
     } finally {
       isBusy.value = false;
     }
-  }
+  });
+  await make(0);
+  const box = h('div', { class: 'drawing-box' });
+  live(box, () => fill(box, drawingOf(all[at.value].run, all[at.value].score)));
   const isOver = () => scores.value.length >= SEEDS;
   const side = h(
     'div',
     { class: 'side' },
     createMarkKey(),
     h('p', null, 'Of the whole sampling, a dot for each run:'),
-    h('div', { class: 'dots' }, () => DECIDING.map((key) => dotsOf(key, scores.value))),
+    h('div', { class: 'dots' }, () => DECIDING.map((key) => dotsOf(key, scores.value, at.value))),
     h(
       'div',
       { class: 'controls' },
-      button({ hidden: isOver, disabled: () => isBusy.value, press: () => void again() }, () =>
+      button({ hidden: isOver, disabled: () => isBusy.value, press: () => void show(scores.peek().length) }, () =>
         isBusy.value ? 'It begins elsewhere' : 'Another seed',
       ),
     ),
     h('p', { class: 'told', 'aria-live': 'polite' }, () =>
       isOver()
-        ? `One method on one surface: only the place where it began differs. The dots are ${DECIDING.map((key) => widthWords(key, scores.value)).join(', ')} wide. That width is chance.`
+        ? `One method on one surface: only the place where it began differs, and the dots lie up to ${listOf(DECIDING.map((key) => widthWords(key, scores.value)))} apart. The pale bands are as wide as chance can be.`
         : `Run ${scores.value.length} of ${SEEDS}.`,
     ),
   );
+  offerNumber('seed', {
+    name: 'Seed',
+    scale: { min: 1, max: SEEDS, step: 1 },
+    value: () => at.value + 1,
+    say: formatCount,
+    stage: () => box.closest('.stage'),
+    change: (number) => void show(number - 1),
+  });
   return [h('div', { class: 'two' }, box, side)];
 }
+
+/** @param {readonly string[]} all */
+const listOf = (all) => `${all.slice(0, -1).join(', ')} and ${all.at(-1)}`;
 
 /** @param {typeof DECIDING[number]} key @param {readonly Score[]} scores */
 function widthWords(key, scores) {
@@ -73,9 +94,9 @@ const ROOM = 1.25;
 /**
  * A figure of several runs as dots, around the first. The band behind them is as wide as what
  * tables call chance.
- * @param {typeof DECIDING[number]} key @param {readonly Score[]} scores
+ * @param {typeof DECIDING[number]} key @param {readonly Score[]} scores @param {number} shown  number of the run
  */
-function dotsOf(key, scores) {
+function dotsOf(key, scores, shown) {
   const row = rowOf(key);
   const chance = Number(chanceOf(row, scores));
   const at = (/** @type {Score} */ score) =>
@@ -85,12 +106,12 @@ function dotsOf(key, scores) {
     'div',
     { class: 'dots-row' },
     h('span', null, row.name),
-    h('b', null, values[values.length - 1]),
+    h('b', null, values[shown]),
     h(
       'div',
       { class: 'dots-axis', role: 'img', 'aria-label': `${row.name}: ${values.join(', ')}` },
       scores.map((score, k) =>
-        h('span', { class: k === scores.length - 1 ? 'now' : null, style: { left: `${100 * at(score)}%` } }),
+        h('span', { class: k === shown ? 'now' : null, style: { left: `${100 * at(score)}%` } }),
       ),
     ),
   );

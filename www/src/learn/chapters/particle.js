@@ -13,7 +13,7 @@ import { formatCount, MISSING, plural } from '../../ui/format.js';
 import { loadSheet } from '../../ui/sheet.js';
 import { unpackParticle } from '../../ui/surface-link.js';
 import { readAddress } from '../address.js';
-import { createTolerance } from '../drag.js';
+import { offerNumber, toleranceNumber } from '../drag.js';
 import { reasonOf } from '../figure.js';
 import { latest } from '../latest.js';
 import { createRangeRow, facts } from '../parts.js';
@@ -205,10 +205,10 @@ export async function whoWasFirst({ lab }) {
     tolerance.value = to;
     void show(to);
   };
-  for (const words of queryAll(document, '[data-number="tolerance"]'))
-    words.replaceWith(
-      createTolerance({ value: () => tolerance.value, change: turn, stage: () => place.closest('.stage') }),
-    );
+  offerNumber(
+    'tolerance',
+    toleranceNumber({ value: () => tolerance.value, change: turn, stage: () => place.closest('.stage') }),
+  );
   return [
     place,
     h('p', { class: 'figure-count' }, () => `A run of ${plural(run.value.end.radii.length, 'particle')}.`),

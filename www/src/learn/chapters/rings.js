@@ -1,6 +1,7 @@
 /** The front that grows ring by ring. */
 import { h, live } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
+import { offerNumber } from '../drag.js';
 import { isClosed, RING, ringsOf } from '../measure.js';
 import { createChart, createPlay, createRangeRow } from '../parts.js';
 import { byLevel, Orbit, Picture } from '../picture.js';
@@ -61,6 +62,17 @@ export async function rings(context) {
   show(range.get());
   isMounted = true;
   const play = createPlay(range, { label: 'Grow', totalMs: GROWTH_MS });
+  offerNumber('rings', {
+    name: 'Ring',
+    scale: { min: 0, max: counts.length - 1, step: 1 },
+    value: () => range.place.value,
+    say: formatCount,
+    stage: () => picture.element.closest('.stage'),
+    change(level) {
+      play.stop();
+      range.set(level);
+    },
+  });
   const sizes = ringsOf(placed);
   const words = () => {
     const level = range.place.value;

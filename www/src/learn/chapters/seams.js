@@ -1,14 +1,15 @@
 /** The front, its seams, and the relaxation after it, as one course that a slider goes through. */
 import { signal } from '@preact/signals-core';
 import { triple } from '../../engine/vector.js';
-import { h, live } from '../../ui/dom.js';
+import { byId, fill, h, live } from '../../ui/dom.js';
 import { formatCount, formatSignificant, plural } from '../../ui/format.js';
+import { offerNumber } from '../drag.js';
 import { latest } from '../latest.js';
 import { createMarkKey } from '../marks.js';
 import { isBare, isClosed, widestHole } from '../measure.js';
 import { createPlay, createRangeRow } from '../parts.js';
 import { byNeighbours, byValue, Orbit, Picture } from '../picture.js';
-import { scoreOf } from '../score.js';
+import { scoreOf, written } from '../score.js';
 import { termShown } from '../terms.js';
 
 /**
@@ -176,18 +177,49 @@ export async function seams({ lab, stops }) {
     if (isNow && widest) orbit.turnTo(widest.hole.normal);
   });
   const words = h('p', { class: 'figure-count' }, () =>
-    isFree()
-      ? wordsAt(course, range.place.value)
-      : isCovered.value
-        ? 'Particles lie there already. Press a place that is still bare.'
-        : 'The slider goes on once you have said where.',
+    isFree() ? wordsAt(course, range.place.value) : asking(isCovered.value, stops.picked('predict-hole')),
   );
   const play = createPlay(range, { label: 'Play', totalMs: () => STEP_MS * limit() });
+  mountSteps({
+    last: last - front,
+    step,
+    stage: () => picture.element.closest('.stage'),
+    go(to) {
+      play.stop();
+      range.set(front + to);
+    },
+    score: () => (isRelaxing() ? scores.value[step()] : undefined),
+  });
   return [
     picture.element,
     h('div', { class: 'controls' }, play.element, range.element, words),
     createMarkKey({ hidden: () => !isFree() }),
   ];
+}
+
+/**
+ * The sentence of the text about a step of the relaxation, whose number is a handle. It gives the answer away, so it
+ * comes with the score.
+ * @param {{ last: number, step: () => number, stage: () => HTMLElement | null, go: (step: number) => void,
+ *   score: () => Score | undefined }} about  `score`: that of the step
+ */
+function mountSteps({ last, step, stage, go, score }) {
+  const scale = { min: 0, max: last, step: 1 };
+  offerNumber('steps', { name: 'Step', scale, value: step, say: formatCount, stage, change: go });
+  const sentence = byId('steps');
+  live(sentence, () => {
+    const own = score();
+    sentence.hidden = !own;
+    if (own) fill(byId('steps-hole'), written('hole', own));
+  });
+}
+
+/** What is said while a place is asked for. @param {boolean} isCovered @param {number | null} picked */
+function asking(isCovered, picked) {
+  if (isCovered) return 'Particles lie there already. Press a place that is still bare.';
+  return picked === null
+    ? 'The slider goes on once you have said where.'
+    : 'Your place has a dot. Press another one, or reveal.';
 }
 
 /** What there is to say of a place of the slider. @param {Course} course @param {number} place */

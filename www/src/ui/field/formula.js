@@ -255,7 +255,7 @@ function createPreview(engine) {
     width = preview.clientWidth;
   }).observe(preview);
   const unchanging = h('p', { class: 'quiet unchanging' }, () => unchangingOf(engine));
-  return [last, h('div', { class: 'shown' }, preview, unchanging)];
+  return [last, h('div', { class: 'code-shown' }, preview, unchanging)];
 }
 
 /** Says which coordinates a formula does without, and what surface that makes. @param {Engine} engine */

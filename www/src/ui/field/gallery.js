@@ -9,10 +9,11 @@ import { button } from '../button.js';
 import { h, live } from '../dom.js';
 import { explain } from '../explain.js';
 import { icon } from '../icons.js';
+import { createSelect } from '../select.js';
 import { filesOf, IMAGE_FORMATS, ofFiles } from './files.js';
 
 /**
- * @import { Description, Engine, Signal } from '../../engine/types.js'
+ * @import { Description, Engine, ReadonlySignal, Signal } from '../../engine/types.js'
  * @import { Replace } from '../types.js'
  * @import { Entry, Finding } from './types.js'
  */
@@ -20,6 +21,8 @@ import { filesOf, IMAGE_FORMATS, ofFiles } from './files.js';
 const PICTURE_PX = 160;
 /** Name of the group of models and files. */
 const POINTS = 'Points';
+/** Name of all groups, through which a search looks. */
+const ALL = 'All';
 
 /**
  * @param {Engine} engine
@@ -54,8 +57,13 @@ export function createGallery(engine, description, replace) {
     'fieldset',
     { class: 'section gallery' },
     h('legend', { class: 'visually-hidden' }, 'Surface'),
-    createGroups(groups, shown, query),
-    h('div', { class: 'gallery-find' }, createSearch(query), createOpen(engine)),
+    h(
+      'div',
+      { class: 'gallery-find' },
+      createGroups(groups, { shown, query, words }),
+      createSearch(query),
+      createOpen(engine),
+    ),
     tiles,
     h('p', { class: 'quiet', role: 'status' }, () =>
       groups.some(({ entries }) => entries.some((entry) => has(entry, words.value)))
@@ -166,22 +174,24 @@ function has({ name, story, formula = '', words: others = '' }, words) {
 }
 
 /**
- * Creates the buttons that choose the group.
+ * Creates the menu of the groups. While a search looks through all of them, it says so.
  * @param {{ name: string }[]} sections
- * @param {Signal<string>} shown
- * @param {Signal<string>} query
+ * @param {{ shown: Signal<string>, query: Signal<string>, words: ReadonlySignal<readonly string[]> }} how
  */
-function createGroups(sections, shown, query) {
-  const buttons = sections.map(({ name }) => {
-    const show = () =>
+function createGroups(sections, { shown, query, words }) {
+  const groups = sections.map(({ name }) => ({ value: name, label: name }));
+  const all = [...groups, { value: ALL, label: ALL }];
+  const isSearch = () => words.value.length > 0;
+  return createSelect({
+    name: 'Group of surfaces',
+    choices: () => (isSearch() ? all : groups),
+    value: () => (isSearch() ? ALL : shown.value),
+    change: (name) =>
       batch(() => {
         shown.value = name;
         query.value = '';
-      });
-    const pressed = () => String(query.value.trim() === '' && shown.value === name);
-    return button({ class: 'small plain', 'aria-pressed': pressed, press: show }, name);
+      }),
   });
-  return h('div', { class: 'gallery-groups', role: 'group', 'aria-label': 'Groups of surfaces' }, buttons);
 }
 
 /** Creates the search field. @param {Signal<string>} query */
@@ -189,7 +199,7 @@ function createSearch(query) {
   const input = h('input', {
     type: 'search',
     class: 'box search',
-    placeholder: 'Find a surface',
+    placeholder: 'Search',
     'aria-label': 'Find a surface',
     prop: { value: () => query.value },
     on: {

@@ -127,6 +127,46 @@ test('a number of the text is a handle of its figure, and follows it', { tag: '@
   clean();
 });
 
+test('numbers of the text turn the seed, the step of the relaxation and the tolerance of their figures', {
+  tag: '@all',
+}, async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: '#measures' });
+  const figure = await live(page, 'measures');
+  const seed = page.locator('#rule').getByRole('slider', { name: 'Seed' });
+  await seed.press('ArrowRight');
+  await expect(seed).toHaveText('2');
+  await expect(figure.locator('.dots-row').first().locator('.dots-axis > span')).toHaveCount(2);
+  await expect(figure.locator('.told')).toHaveText('Run 2 of 5.');
+  const [second, drawing] = [await figure.locator('b').first().textContent(), figure.locator('.patch')];
+  const patch = await drawing.getAttribute('aria-label');
+  await seed.press('Home');
+  await expect(drawing).not.toHaveAttribute('aria-label', patch ?? '');
+  await expect(figure.locator('b').first()).not.toHaveText(second ?? '');
+  await expect(figure.locator('.told')).toHaveText('Run 2 of 5.');
+
+  // What a step does is the answer to a question.
+  const sentence = page.locator('#steps');
+  await expect(sentence).toBeHidden();
+  await live(page, 'seams');
+  for (const id of ['#predict-hole', '#predict-rest'])
+    await page.locator(id).getByRole('button', { name: 'Skip' }).click();
+  await expect(sentence).toContainText('After 0 of the ten steps the largest hole is 1.49.');
+  const step = sentence.getByRole('slider', { name: 'Step of the relaxation' });
+  await step.press('End');
+  await expect(sentence).toContainText('After 10 of the ten steps the largest hole is 1.23.');
+  await expect(page.locator('[data-figure="seams"] .range-value')).toHaveText('step 10 of 10');
+
+  const bench = page.locator('#bench');
+  await bench.scrollIntoViewIfNeeded();
+  const tolerance = page.locator('#what-if').getByRole('slider', { name: 'Tolerance of the sampling on the right' });
+  await expect(tolerance).toHaveText('1.4 r');
+  await tolerance.press('End');
+  await expect(bench.getByLabel('What changes')).toHaveValue('fail');
+  await expect(bench.getByRole('slider', { name: 'Tolerance', exact: true })).toHaveText('1.9 r');
+  await expect(bench.locator('.said')).toContainText('Worse.');
+  clean();
+});
+
 test('a choice that was left is as it was: its dials show what is run, and go on from there', { tag: '@all' }, async ({
   page,
 }) => {

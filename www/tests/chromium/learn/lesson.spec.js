@@ -103,7 +103,7 @@ test('a question is answered from the keyboard alone, by a press on the picture,
   await page.keyboard.press('Enter');
   await hole.getByRole('button', { name: 'Reveal' }).focus();
   await page.keyboard.press('Enter');
-  await expect(hole.getByRole('status')).toContainText(/particle distances away|Exactly there/);
+  await expect(hole.getByRole('status')).toContainText(/widths of a disc away|Exactly there/);
   // The question and its picture stand together.
   const [asked, drawn] = [await hole.boundingBox(), await seams.boundingBox()];
   expect(asked && drawn && drawn.y - asked.y - asked.height).toBeLessThan(60);
@@ -483,7 +483,7 @@ test('five runs from other seeds become dots, and a term marks what it means', {
     await measures.getByRole('button', { name: 'Another seed' }).click();
   }
   await expect(dots).toHaveCount(5);
-  await expect(measures.locator('.told')).toContainText(/The dots are [\d.]+ points, 0\.\d+, 0\.\d+ wide/);
+  await expect(measures.locator('.told')).toContainText(/the dots lie up to [\d.]+ points, 0\.\d+ and 0\.\d+ apart/);
   await expect(measures.getByRole('button', { name: 'Another seed' })).toBeHidden();
   const cell = measures.locator('.cell').first();
   const width = () => cell.evaluate((one) => getComputedStyle(one).strokeWidth);

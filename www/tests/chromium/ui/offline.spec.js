@@ -71,7 +71,7 @@ for (const { place, tag } of [
     await openStored(page, `${address}${place}`);
     const { length } = asked;
     await close();
-    await page.locator('.gallery-groups').getByRole('button', { name: 'Points' }).click();
+    await page.getByRole('combobox', { name: 'Group of surfaces' }).selectOption('Points');
     await page.locator('.tile[data-surface="bunny"]').click();
     await expect.poll(async () => (await state(page)).surface).toBe('bunny');
     await settled(page);

@@ -1,6 +1,7 @@
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
 import { viewOf } from '../../../src/engine/view/camera.js';
 import { MOST_WORK, Painter } from '../../../src/engine/view/painter.js';
+import { LINEAR, packed } from '../../../src/engine/view/shade.js';
 
 const [WIDTH, HEIGHT] = [60, 40];
 
@@ -76,6 +77,13 @@ const front = () => {
 };
 /** @param {Uint8Array} pixels @param {number} x @param {number} y */
 const pixel = (pixels, x, y) => [...pixels.subarray(4 * (y * WIDTH + x), 4 * (y * WIDTH + x) + 3)];
+
+test('a colour that is drawn as it is keeps its bytes, so that the ground is that of the page', () => {
+  for (let byte = 0; byte < 256; byte += 1) {
+    const light = LINEAR[byte];
+    expect(packed(light, light, light) >>> 0).toBe((0xff000000 | (byte * 0x010101)) >>> 0);
+  }
+});
 
 test('edges are smooth: as much of a pixel is the ground as the surface leaves', async () => {
   const painter = await painted(front());

@@ -172,7 +172,9 @@ test('what the text states of rings, tolerance and rest is so in the run', async
   const run = await lab.run({}, { keep: true });
   says('On a plane, ring 12 has 72 particles.');
   says('if it lies within the <dfn>tolerance</dfn> of it, 1.4 <i>r</i>');
-  says('has a queue and the tolerance 1.4 <i>r</i>, and is relaxed by ten steps');
+  says(
+    'has a queue and the tolerance <span data-number="knob" title="Tolerance of the sampling on the right">1.4 <i>r</i></span>, and is relaxed by ten steps',
+  );
   // On a dome the rings fall behind 6k.
   says('On a dome the rings fall behind that number and shrink again');
   const rings = ringsOf(run.placed);
