@@ -5,7 +5,8 @@
 //! refined run whose sizes follow the curvature. `--count N` takes another number of particles;
 //! `--front` and `--refined` run one of the two; `--adaptive` lets all sizes follow the curvature;
 //! `--random N` moves N random surfaces instead, which were used to choose the constants of the
-//! flow. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes the summary in `docs/results.md`.
+//! flow. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes the summary in
+//! `docs/results.md`.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 use marching_particles::field::formula::Formula;
