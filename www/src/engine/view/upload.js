@@ -110,7 +110,7 @@ export class ParticleUpload {
 
   /** Whether the device has all that has changed. */
   get isWhole() {
-    return this.dirty.empty;
+    return this.dirty.empty && this.#recoloured.empty;
   }
 
   /**

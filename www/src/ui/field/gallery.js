@@ -167,10 +167,20 @@ function groupsOf({ surfaces, models }) {
   return [...groups].map(([name, entries]) => ({ name, entries }));
 }
 
-/** Returns whether all words are in what is said of a surface. @param {Entry} entry @param {readonly string[]} words */
+/**
+ * Returns whether all words begin a word that is said of a surface, or are in its formula.
+ * @param {Entry} entry @param {readonly string[]} words
+ */
 function has({ name, story, formula = '', words: others = '' }, words) {
-  const text = `${name} ${others} ${story} ${formula}`.toLowerCase();
-  return words.every((word) => text.includes(word));
+  const said = `${name} ${others} ${story}`.toLowerCase();
+  return words.every((word) => begins(said, word) || formula.toLowerCase().includes(word));
+}
+
+/** Whether a word of a text begins with a word. @param {string} text @param {string} word */
+function begins(text, word) {
+  for (let at = text.indexOf(word); at >= 0; at = text.indexOf(word, at + 1))
+    if (!/[\p{L}\p{N}]/u.test(text[at - 1] ?? '')) return true;
+  return false;
 }
 
 /**

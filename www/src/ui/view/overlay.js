@@ -52,9 +52,9 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   // The field panel announces the loading.
   const mesh = computed(() => (told.value ? '' : meshOf(engine)));
   const whole = computed(() => [text.value, told.value?.text, mesh.value].filter(Boolean).join('. '));
-  const caption = h('p', { class: 'caption', 'aria-hidden': 'true' });
-  // The panel of the mesh, which would cover this, says the same.
+  // The panel of the mesh, which would cover these, says the same.
   const isAlone = () => engine.meshing.value === null;
+  const caption = h('p', { class: 'caption', 'aria-hidden': 'true', hidden: () => !isAlone() });
   view.append(
     empty,
     h('div', { class: 'foot' }, createKept(engine, isAlone), createChip(engine), caption, hint),

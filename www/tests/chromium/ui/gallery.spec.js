@@ -35,6 +35,10 @@ test('the gallery', { tag: '@all' }, async ({ page }) => {
     await expect(tile(page, 'saddle-tower')).toBeVisible();
     await expect(tile(page, 'ellipsoid')).toBeHidden();
     await expect(groups(page)).toHaveValue('All');
+    // Words are found by their beginnings.
+    await search.fill('nut');
+    await expect(tile(page, 'drilled-block')).toBeVisible();
+    await expect(tile(page, 'torus')).toBeHidden();
     await search.fill('no such thing');
     await expect(page.locator('.gallery [role=status]')).toContainText('No surface');
     await search.press('Escape');

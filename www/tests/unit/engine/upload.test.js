@@ -55,6 +55,18 @@ describe('a device', () => {
     expect(upload.writes).toBe(3);
   });
 
+  test('lacks colours that have changed, and not only particles', () => {
+    const { renderer } = device();
+    const upload = new ParticleUpload(columnsOf(6));
+    upload.restart();
+    upload.write(renderer, look('level'), present());
+    expect(upload.isWhole).toBe(true);
+    upload.recolour(0, 6);
+    expect(upload.isWhole).toBe(false);
+    upload.write(renderer, look('level'), present());
+    expect(upload.isWhole).toBe(true);
+  });
+
   test('is told of more particles than a frame has time for in parts', () => {
     const { renderer, told } = device();
     const upload = new ParticleUpload(columnsOf(2 * MOST_UPLOADED + 3));
