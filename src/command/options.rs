@@ -260,6 +260,9 @@ impl FromArgMatches for SamplingOptions {
             self.given.push(setting);
             let value: Json = match setting.kind {
                 SettingKind::Choice if name == SAMPLING => ADAPTIVE.into(),
+                SettingKind::Text => {
+                    matches.get_one::<String>(name).ok_or_else(|| missing(name))?.as_str().into()
+                }
                 SettingKind::Choice => {
                     let word: &String = matches.get_one(name).ok_or_else(|| missing(name))?;
                     word.replace('-', "_").into()
@@ -304,6 +307,7 @@ fn option(setting: &Setting) -> Arg {
         return arg.action(ArgAction::SetTrue);
     }
     match setting.kind {
+        SettingKind::Text => arg.value_name("FORMULA"),
         SettingKind::Choice => {
             let words = setting.choices.iter().map(|choice| choice.value.replace('_', "-"));
             arg.value_name("WORD").value_parser(PossibleValuesParser::new(words.collect::<Vec<_>>()))

@@ -6,6 +6,7 @@ use crate::lesson::{self, LessonField};
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::pointcloud::job;
 use crate::quality::Measurements;
+use crate::remesh::MeshChange;
 use crate::run::{Measured, Measures, MeshAnswer, Report, Start};
 use crate::sampler::Progress;
 use crate::session::{
@@ -88,6 +89,7 @@ fn types_of_the_page_are_those_of_the_core() {
     declarations.add::<Report>();
     declarations.add::<Measures>();
     declarations.add::<MeshAnswer>();
+    declarations.add::<MeshChange>();
     declarations.add::<Measured>();
     declarations.add::<SolvedModel>();
     declarations.add::<job::PointsProgress>();

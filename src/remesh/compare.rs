@@ -14,6 +14,7 @@ const AT_ONCE: usize = 32;
 
 /// Distances of points from a surface, in the units of the mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[non_exhaustive]
 pub struct MeshDistances {
     /// Their mean.
@@ -26,6 +27,7 @@ pub struct MeshDistances {
 
 /// The comparison of a mesh with the one that was sampled from it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[non_exhaustive]
 pub struct MeshChange {
     /// Diagonal of the box of the old mesh.
@@ -52,22 +54,18 @@ impl MeshField {
     /// If an index is beyond the vertices.
     #[must_use]
     pub fn compare(&self, vertices: &[DVec3], faces: &[[u32; 3]]) -> MeshChange {
-        let old = self.solid().mesh();
-        let new = TriangleMesh::of_parts(
-            vertices.iter().map(|p| p - self.solid().origin()).collect(),
-            faces.to_vec(),
-        );
-        let on_edges = self.edge_points();
-        let work = || {
-            slices::complete(async {
-                let tree = Tree::new(&new.all_corners());
-                let to_new = from_all(&tree, &points_on(old)).await;
-                let to_old = from_all(&self.solid().tree, &points_on(&new)).await;
-                let edges = from_all(&tree, &on_edges).await;
-                (to_new, to_old, edges)
-            })
-        };
-        let (to_new, to_old, edges) = slices::in_pool(work);
+        let work = || slices::complete(self.clone().compared(vertices.to_vec(), faces.to_vec()));
+        slices::in_pool(work)
+    }
+
+    /// [`MeshField::compare`] in slices.
+    pub(crate) async fn compared(self, mut vertices: Vec<DVec3>, faces: Vec<[u32; 3]>) -> MeshChange {
+        vertices.iter_mut().for_each(|p| *p -= self.solid().origin());
+        let (old, new) = (self.solid().mesh(), TriangleMesh::of_parts(vertices, faces));
+        let tree = Tree::new(&new.all_corners());
+        let to_new = from_all(&tree, &points_on(old)).await;
+        let to_old = from_all(&self.solid().tree, &points_on(&new)).await;
+        let edges = from_all(&tree, &self.edge_points()).await;
         MeshChange {
             diagonal: old.bounds().diagonal(),
             to_new: summary(to_new),

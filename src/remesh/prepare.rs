@@ -170,6 +170,11 @@ impl MeshSolid {
         self.borders == 0 && self.fans == 0
     }
 
+    /// Whether both are copies of one.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.mesh, &other.mesh)
+    }
+
     /// Refuses a mesh that encloses nothing: a sheet, however it is bent. The sum of its area
     /// vectors, which is zero for a closed mesh, is that of the openings.
     fn check(&self) -> Result<(), MeshError> {

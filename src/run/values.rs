@@ -179,7 +179,7 @@ impl Sample {
         name: &str,
         value: &Value,
     ) -> Result<(), ValueError> {
-        check_name(name, self.values())?;
+        check_name(name, self.values().iter())?;
         let mesh = value.needs_mesh().then(|| self.mesh());
         let values = column(value, self.particles(), &field.into_field(), self.bounds().diagonal(), mesh)?;
         self.measured_mut().values.push(NamedValues { name: name.to_owned(), values });
@@ -195,23 +195,27 @@ impl Sample {
 
 impl<F: Field> Run<F> {
     /// [`Sample::add_value`] at the particles of a run that is complete, with the mesh joined if
-    /// the value [needs](Value::needs_mesh) it. A report that is taken later drops the columns.
+    /// the value [needs](Value::needs_mesh) it. It takes the place of one with this name. A report
+    /// that is taken later drops the columns.
     #[doc(hidden)]
     pub fn add_value(&mut self, name: &str, value: &Value) -> Result<(), ValueError> {
-        check_name(name, &self.measured().values)?;
+        let is_other = |own: &NamedValues| own.name != name;
+        check_name(name, self.measured().values.iter().filter(|own| is_other(own)))?;
         let values = column(value, self.particles(), self.field(), self.bounds().diagonal(), self.mesh())?;
-        self.measured_mut().values.push(NamedValues { name: name.to_owned(), values });
+        let all = &mut self.measured_mut().values;
+        all.retain(is_other);
+        all.push(NamedValues { name: name.to_owned(), values });
         Ok(())
     }
 }
 
 /// Checks that no other column has the name, and that every file can.
-fn check_name(name: &str, others: &[NamedValues]) -> Result<(), ValueError> {
-    let is_taken = COLUMNS.iter().map(|column| column.name).chain(others.iter().map(|v| &*v.name));
+fn check_name<'a>(name: &str, others: impl Iterator<Item = &'a NamedValues>) -> Result<(), ValueError> {
+    let mut taken = COLUMNS.iter().map(|column| column.name).chain(others.map(|v| &*v.name));
     let is_word = name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     // GLB has the names in capitals.
-    if !is_word || is_taken.into_iter().any(|known| known.eq_ignore_ascii_case(name)) {
+    if !is_word || taken.any(|known| known.eq_ignore_ascii_case(name)) {
         return Err(ValueError::Name { name: name.to_owned() });
     }
     Ok(())

@@ -165,13 +165,13 @@ impl Program<'_> {
                 "{name} cannot take a seed above {LAST_SAFE}: Rust and the command line can"
             ));
         }
-        let is_python = language == Language::Python;
-        let unsaid = match &self.record.spacing {
-            Some(_) if !is_python => "space particles by a formula (--spacing)",
-            Some(spacing) if spacing.is_limited() => "limit a spacing (--spacing-min, --spacing-max)",
-            _ => return Ok(()),
-        };
-        Err(format!("{} cannot {unsaid}: Rust and the command line can", language.runner()))
+        if self.record.spacing.as_ref().is_some_and(SpacingText::is_limited) {
+            let name = language.runner();
+            return Err(format!(
+                "{name} cannot limit a spacing (--spacing-min, --spacing-max): Rust and the command line can"
+            ));
+        }
+        Ok(())
     }
 
     fn rust(&self) -> String {

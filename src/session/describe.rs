@@ -159,6 +159,8 @@ pub enum ColourMode {
     Component,
     /// Direction of the normal.
     Normal,
+    /// A value by a formula.
+    Value,
     /// No quantity: all particles have one colour.
     Plain,
 }
@@ -170,7 +172,7 @@ pub fn describe() -> Description {
         version: env!("CARGO_PKG_VERSION"),
         surfaces: surfaces(),
         models: MODELS,
-        settings: setting::settings(),
+        settings: setting::with_spacing(),
         report: REPORT,
         fates: FATES,
         functions: FUNCTIONS,
@@ -406,5 +408,11 @@ const COLOURS: &[Colour] = &[
         unit: "",
     },
     Colour { id: ColourMode::Normal, label: "Normal", help: "Direction of the outward normal.", unit: "" },
+    Colour {
+        id: ColourMode::Value,
+        label: "A formula",
+        help: "A value by a formula of x, y, z and of the particle: n_x, n_y, n_z, k_1, k_2, d_x, d_y, d_z, radius, level, area, edge. Files have it as the column value.",
+        unit: "",
+    },
     Colour { id: ColourMode::Plain, label: "Plain", help: "One colour.", unit: "" },
 ];

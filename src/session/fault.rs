@@ -29,6 +29,12 @@ pub enum FaultKind {
     Points,
     /// The file is no image, or the image has no such surface.
     Image,
+    /// The file is no mesh, or the mesh has no such surface.
+    Mesh,
+    /// The file of a mesh has points alone.
+    NoFaces,
+    /// The mesh encloses nothing.
+    NoSolid,
     /// The formula has this mistake.
     #[serde(untagged)]
     Formula(FormulaErrorKind),

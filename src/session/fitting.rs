@@ -288,7 +288,7 @@ impl Session {
             Source::Formula(field) => search.step(|| choice.made_of(field.clone(), None), budget),
             Source::Function(field) => search.step(|| Arc::clone(field), budget),
             #[cfg(feature = "images")]
-            Source::Image(image) => search.step(|| image.shared(), budget),
+            Source::Opened(opened) => search.step(|| opened.shared(), budget),
             Source::Points { .. } => None,
         }?;
         let spacing = self.next_spacing();
@@ -356,7 +356,7 @@ impl Session {
             Source::Formula(_) => self.own_formula().is_some(),
             Source::Points { .. } => false,
             #[cfg(feature = "images")]
-            Source::Image(_) => true,
+            Source::Opened(_) => true,
             Source::Function(_) => true,
         }
     }

@@ -74,19 +74,16 @@ pub struct ImagePromise {
 }
 
 #[cfg(feature = "images")]
-pub use with_images::ImageSource;
+pub(super) use with_images::{choice, parameters};
 
 #[cfg(feature = "images")]
 mod with_images {
-    use super::super::{FieldAnswer, FieldRequest, ModelFormula, Session, Source, check_box};
+    use super::super::{FieldAnswer, FieldRequest, Session, opened::Surface};
     use super::{ImageFacts, ImageInfo, ImagePromise, LabelFacts};
-    use crate::extent::FALLBACK;
-    use crate::field::Field;
     use crate::field::formula::Parameter;
     use crate::image::{Image, ImageChoice, ImageOutline, ImageSurface};
     use crate::session::{Fault, FaultKind};
     use std::collections::BTreeMap;
-    use std::sync::Arc;
 
     /// Steps of the slider of the iso value over the range of the voxels, at least.
     const STEPS: f64 = 200.0;
@@ -104,97 +101,58 @@ mod with_images {
         ImageChoice { iso, label, smooth, is_dark_inside: dark.is_some_and(|dark| dark != 0.0) }
     }
 
-    /// The surface of an image, as a session samples it.
-    #[derive(Clone)]
-    pub struct ImageSource {
-        name: String,
-        surface: ImageSurface,
-        /// The formula whose operand the surface is, if one is sampled in its place.
-        within: Option<ModelFormula>,
+    /// The values by name that make the choice of a surface.
+    pub(in super::super) fn choice(surface: &ImageSurface) -> impl Iterator<Item = (&'static str, f64)> {
+        let ImageChoice { iso, label, smooth, is_dark_inside } = *surface.choice();
+        let values = [iso, label, smooth, is_dark_inside.then_some(1.0)];
+        NAMES.into_iter().zip(values).filter_map(|(name, value)| Some((name, value?)))
     }
 
-    impl ImageSource {
-        /// What is sampled.
-        pub(in super::super) fn field(&self) -> &(dyn Field + 'static) {
-            match &self.within {
-                Some(formula) => &*formula.field,
-                None => self.surface.field(),
-            }
-        }
-
-        /// The same, shared.
-        pub(in super::super) fn shared(&self) -> Arc<dyn Field> {
-            match &self.within {
-                Some(formula) => Arc::new(formula.field.clone()),
-                None => Arc::new(self.surface.field().clone()),
-            }
-        }
-
-        /// The parameters of the formula, if there is one.
-        pub(in super::super) fn formula_parameters(&self) -> &[Parameter] {
-            self.within.as_ref().map_or(&[], |formula| &formula.parameters)
-        }
-
-        fn info(&self) -> ImageInfo {
-            let (image, choice) = (self.surface.image(), self.surface.choice());
-            ImageInfo {
-                name: self.name.clone(),
+    impl ImageInfo {
+        pub(in super::super) fn of(name: &str, surface: &ImageSurface) -> Self {
+            let (image, choice) = (surface.image(), surface.choice());
+            Self {
+                name: name.to_owned(),
                 size: image.size(),
                 range: image.range(),
                 label: choice.label,
-                iso: self.surface.field().iso(),
-                smooth: self.surface.smooth(),
+                iso: surface.field().iso(),
+                smooth: surface.smooth(),
                 is_smooth_chosen: choice.smooth.is_none(),
                 noise: image.noise(),
                 is_dark_inside: choice.is_dark_inside,
-                notes: self.surface.notes().to_vec(),
+                notes: surface.notes().to_vec(),
             }
         }
+    }
 
-        /// The sliders of the surface: that of the iso value, which a label does not have, and that
-        /// of the Gaussian.
-        fn parameters(&self) -> Vec<Parameter> {
-            let image = self.surface.image();
-            let smooth = Parameter {
-                name: NAMES[2].into(),
-                label: "Smoothing".into(),
-                value: self.surface.smooth(),
-                min: 0.0,
-                max: WIDEST.max(self.surface.smooth()),
-                step: 0.1,
-            };
-            if self.surface.choice().label.is_some() {
-                return vec![smooth];
-            }
-            let [min, max] = image.range();
-            let step = step_in(max - min);
-            // At the ends there is no surface.
-            let (first, last) = (min + step, max - step);
-            let iso = Parameter {
-                name: NAMES[0].into(),
-                label: "Iso value".into(),
-                value: self.surface.field().iso(),
-                min: if first < last { first } else { min },
-                max: if first < last { last } else { max },
-                step,
-            };
-            vec![iso, smooth]
+    /// The sliders of a surface: that of the iso value, which a label does not have, and that of
+    /// the Gaussian.
+    pub(in super::super) fn parameters(surface: &ImageSurface) -> Vec<Parameter> {
+        let smooth = Parameter {
+            name: NAMES[2].into(),
+            label: "Smoothing".into(),
+            value: surface.smooth(),
+            min: 0.0,
+            max: WIDEST.max(surface.smooth()),
+            step: 0.1,
+        };
+        if surface.choice().label.is_some() {
+            return vec![smooth];
         }
-
-        /// The description of the field.
-        pub(in super::super) fn answer(&self, answer: FieldAnswer) -> FieldAnswer {
-            let mut parameters = self.parameters();
-            let answer = FieldAnswer { image: Some(self.info()), ..answer };
-            let Some(formula) = &self.within else { return FieldAnswer { parameters, ..answer } };
-            parameters.extend(formula.parameters.iter().filter(|own| !NAMES.contains(&&*own.name)).cloned());
-            FieldAnswer {
-                formula: formula.text.clone(),
-                parameters,
-                auto: formula.auto.clone(),
-                mathml: Some(formula.mathml.clone()),
-                ..answer
-            }
-        }
+        let [min, max] = surface.image().range();
+        let step = step_in(max - min);
+        // At the ends there is no surface.
+        let (first, last) = (min + step, max - step);
+        let iso = Parameter {
+            name: NAMES[0].into(),
+            label: "Iso value".into(),
+            value: surface.field().iso(),
+            min: if first < last { first } else { min },
+            max: if first < last { last } else { max },
+            step,
+        };
+        vec![iso, smooth]
     }
 
     /// The largest power of ten, or half or a fifth of it, that is at least [`STEPS`] times in a
@@ -256,61 +214,15 @@ mod with_images {
             name: &str,
             request: &FieldRequest,
         ) -> Result<FieldAnswer, Fault> {
-            let own = request.bounds.unwrap_or(FALLBACK);
-            check_box(&own)?;
             let choice = choice_of(&request.parameters);
-            let before = match self.run.field() {
-                Source::Image(before) => Some(&**before),
-                _ => None,
-            };
-            let refused = |error| Fault::new(FaultKind::Image, &error);
-            let surface = image.surface(&choice, before.map(|before| &before.surface)).map_err(refused)?;
-            let within = match &request.formula {
-                Some(text) => {
-                    let field: Arc<dyn Field> = Arc::new(surface.field().clone());
-                    Some(Self::model_formula(text, &field, request)?)
-                }
-                None => None,
-            };
-            // Whether the image is the same, and whether its surface is, too.
-            let is_kept = before.is_some_and(|before| before.surface.is_of(image) && before.within == within);
-            let is_same = is_kept && before.is_some_and(|before| before.surface.choice() == &choice);
-            let is_open = request.bounds.is_none();
-            let keeps_box = is_kept && is_open && self.fitting.is_fitted;
-            let source = Source::Image(Box::new(ImageSource { name: name.to_owned(), surface, within }));
-            self.run.set_field(source, is_same);
-            self.surface = None;
-            self.declared.clear();
-            if !is_same {
-                self.fitting.restart();
-            }
-            if !keeps_box {
-                self.fitting.discard();
-                self.fitting.is_given = !is_open;
-                (self.own, self.clip, self.reach) = (own, own, None);
-                self.run.set_bounds(own, None);
-            }
-            Ok(self.answer())
-        }
-
-        /// Changes what is sampled of the present image: values that the request does not name
-        /// stay. None if the field is of something else.
-        pub(in super::super) fn change_image(
-            &mut self,
-            request: &FieldRequest,
-        ) -> Option<Result<FieldAnswer, Fault>> {
-            let Source::Image(present) = self.run.field() else { return None };
-            let (image, name) = (present.surface.image().clone(), present.name.clone());
-            let ImageChoice { iso, label, smooth, is_dark_inside } = *present.surface.choice();
-            let mut request = request.clone();
-            let dark = is_dark_inside.then_some(1.0);
-            for (name, value) in NAMES.into_iter().zip([iso, label, smooth, dark]) {
-                if let Some(value) = value {
-                    request.parameters.entry(name.to_owned()).or_insert(value);
-                }
-            }
-            request.bounds = request.bounds.or(self.fitting.is_given.then_some(self.own));
-            Some(self.set_image(&image, &name, &request))
+            self.set_opened(name, request, |before| {
+                let before = match before {
+                    Some(Surface::Image(before)) => Some(before),
+                    _ => None,
+                };
+                let surface = image.surface(&choice, before);
+                Ok(Surface::Image(surface.map_err(|error| Fault::new(FaultKind::Image, &error))?))
+            })
         }
     }
 }

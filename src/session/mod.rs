@@ -7,6 +7,9 @@ mod describe;
 mod fault;
 mod fitting;
 mod image;
+mod mesh;
+#[cfg(feature = "images")]
+mod opened;
 mod record;
 mod setting;
 mod spacing;
@@ -16,9 +19,12 @@ pub use code::{Code, Language};
 pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, describe};
 pub use fault::{Excess, Fault, FaultKind};
 pub use fitting::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
-#[cfg(feature = "images")]
-pub use image::ImageSource;
 pub use image::{ImageFacts, ImageInfo, ImagePromise, LabelFacts};
+#[cfg(all(feature = "images", feature = "points"))]
+pub use mesh::OpenedMesh;
+pub use mesh::{MeshInfo, MeshPart, MeshScan};
+#[cfg(feature = "images")]
+pub use opened::OpenedSource;
 pub use record::{FileRecord, FileRequest};
 pub use setting::{
     Choice, Condition, Setting, SettingGroup, SettingKind, SettingScale, SettingValue, settings,
@@ -33,7 +39,7 @@ use crate::field::model::ModelInfo;
 use crate::field::rbf::{Pull, RbfData, RbfField, pulled_box};
 use crate::field::{Combined, Field};
 use crate::math::Bounds;
-use crate::run::{Error, Measured, Report, Run, Sample, Start, Warning};
+use crate::run::{Error, Measured, MeshAnswer, Report, Run, Sample, Start, Warning};
 use crate::sampler::{FollowError, Settings, SettingsError, Spacing};
 use core::ops::Deref;
 use fitting::Fitting;
@@ -72,6 +78,8 @@ pub struct FieldAnswer {
     pub model: Option<ModelInfo>,
     /// The image, if the field is a surface of one.
     pub image: Option<ImageInfo>,
+    /// The triangle mesh, if the field is the surface of one.
+    pub mesh: Option<MeshInfo>,
     /// Gallery surface, if the formula is still its own.
     pub surface: Option<&'static str>,
     /// Text of the formula; empty if there is none.
@@ -110,9 +118,9 @@ pub enum Source {
         /// The formula whose operand the model is, if one is sampled in its place.
         within: Option<ModelFormula>,
     },
-    /// The surface of an image.
+    /// The surface of an image or a triangle mesh.
     #[cfg(feature = "images")]
-    Image(Box<ImageSource>),
+    Opened(Box<OpenedSource>),
     /// The field of a function of the program.
     Function(Arc<dyn Field>),
 }
@@ -153,7 +161,7 @@ impl Deref for Source {
             Self::Points { within: Some(formula), .. } => &*formula.field,
             Self::Points { field, .. } => field,
             #[cfg(feature = "images")]
-            Self::Image(image) => image.field(),
+            Self::Opened(opened) => opened.field(),
             Self::Function(field) => &**field,
         }
     }
@@ -180,8 +188,12 @@ pub struct Session {
     made: Option<FileRecord>,
     /// Whether the box of the present run is the one that a search for it finds.
     is_box_found: bool,
-    /// The settings of the last start.
+    /// The settings of the last start, and its spacing by a formula.
     started: Option<Settings>,
+    spaced: Option<SpacingText>,
+    /// How far the joined mesh is from the one that was opened.
+    #[cfg(all(feature = "images", feature = "points"))]
+    comparison: mesh::Comparison,
 }
 
 impl Default for Session {
@@ -208,6 +220,9 @@ impl Session {
             made: None,
             is_box_found: false,
             started: None,
+            spaced: None,
+            #[cfg(all(feature = "images", feature = "points"))]
+            comparison: mesh::Comparison::None,
         }
     }
 
@@ -227,6 +242,7 @@ impl Session {
         let answer = FieldAnswer {
             model: None,
             image: None,
+            mesh: None,
             surface: self.surface.map(|surface| surface.id),
             formula: String::new(),
             parameters: Vec::new(),
@@ -260,7 +276,7 @@ impl Session {
                 }
             }
             #[cfg(feature = "images")]
-            Source::Image(image) => image.answer(answer),
+            Source::Opened(opened) => opened.answer(answer),
             Source::Function(_) => answer,
         }
     }
@@ -277,7 +293,7 @@ impl Session {
         #[cfg(feature = "images")]
         if request.surface.is_none()
             && request.formula.is_none()
-            && let Some(answer) = self.change_image(request)
+            && let Some(answer) = self.change_opened(request)
         {
             return answer;
         }
@@ -543,6 +559,7 @@ impl Session {
         self.made = self.beginning(settings);
         self.is_box_found = self.fitting.is_fitted && !self.fitting.is_grown;
         self.started = Some(*settings);
+        self.spaced = self.spacing.clone();
         self.run.set_spacing(self.next_spacing());
         self.run.begin(settings)
     }
@@ -556,7 +573,8 @@ impl Session {
     ///
     /// If they cannot follow: a run has to start.
     pub fn follow(&mut self, settings: &Settings, is_closed: bool) -> Result<(), FollowError> {
-        if !self.fitting.is_settled || self.started != Some(*settings) {
+        let is_same = self.started == Some(*settings) && self.spaced == self.spacing;
+        if !self.fitting.is_settled || !is_same {
             return Err(FollowError::NotCovered);
         }
         self.run.follow_field(is_closed)?;
@@ -582,7 +600,7 @@ impl Session {
             Source::Points { .. } => true,
             // Beyond the border of an image a larger box finds nothing.
             #[cfg(feature = "images")]
-            Source::Image(_) => !self.fitting.is_given,
+            Source::Opened(opened) => opened.is_bordered() && !self.fitting.is_given,
             Source::Function(_) => false,
         };
         if has_own_box || has_no_cause {
@@ -595,6 +613,15 @@ impl Session {
             report.warnings.extend(differs);
         }
         report
+    }
+
+    /// [`Run::join`], after which [`Session::compare`] has another mesh to compare.
+    pub fn join(&mut self, budget: u32) -> Option<MeshAnswer> {
+        #[cfg(all(feature = "images", feature = "points"))]
+        if self.run.mesh().is_none() {
+            self.comparison = mesh::Comparison::None;
+        }
+        self.run.join(budget)
     }
 
     /// Measures the particles at once: [`Session::measure`].
@@ -627,7 +654,7 @@ impl Session {
         drop(reporting);
         if self.run.measured().opening.is_some() {
             // Only the field can say which of the gaps are surface.
-            while self.run.join(SLICES).is_none() {
+            while self.join(SLICES).is_none() {
                 tell(1.0)?;
             }
             report = self.run.reported();

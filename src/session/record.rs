@@ -85,7 +85,7 @@ impl Session {
         Some(record)
     }
 
-    /// The record of a run that starts now; none where an image or a function of the
+    /// The record of a run that starts now; none where a file or a function of the
     /// program gives the surface, or a function the spacing, which no record can hold.
     pub(super) fn beginning(&self, settings: &Settings) -> Option<FileRecord> {
         if self.spacing_function.is_some() {
@@ -101,7 +101,7 @@ impl Session {
                 (text, parameters, Some(info.name.clone()), field.pulls().to_vec())
             }
             #[cfg(feature = "images")]
-            Source::Image(_) => return None,
+            Source::Opened(_) => return None,
             Source::Function(_) => return None,
         };
         // A map that is collected at once is sorted, which brings a stable sort of 3 kB.

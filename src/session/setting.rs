@@ -137,6 +137,8 @@ pub enum SettingKind {
     Integer,
     /// Numbers, or texts of formulas in x, y and z.
     Formula,
+    /// Texts of formulas in x, y and z, empty for none.
+    Text,
     /// A few named values.
     Choice,
 }
@@ -267,6 +269,7 @@ const BY_COUNT: Condition = when("size_mode", "count");
 const BY_FRONT: Condition = when("method", "front");
 const BY_CHORD: Condition = when("radius_law", "chord_error");
 const BY_CURVATURE: Condition = Condition { equal: false, ..BY_CHORD };
+const UNSPACED: Condition = when("spacing", "");
 
 /// Declares the values of a choice: variant, value in JSON, name for a person.
 macro_rules! choices {
@@ -296,6 +299,25 @@ choices!(GAPS of GapPolicy: Fill "fill" "Fill", Leave "leave" "Leave");
 #[must_use]
 pub fn settings() -> Vec<Setting> {
     with_values(&Settings::DEFAULT)
+}
+
+/// Every setting, and beside them the [spacing](super::SpacingText), which is a text of its own.
+#[must_use]
+pub(super) fn with_spacing() -> Vec<Setting> {
+    let mut all = settings();
+    let spacing = choice(
+        "spacing",
+        SettingValue::Choice(""),
+        "Spacing",
+        "Distance between neighbours as a formula of x, y, z and the parameters, such as 0.02 + 0.1 hypot(x, y). With a count it gives the proportions; adaptive particles keep to the smaller one.",
+        &[],
+    );
+    for radius in all.iter_mut().filter(|setting| setting.name == "radius_share") {
+        radius.when = &[UNIFORM, BY_RADIUS, UNSPACED];
+    }
+    let place = all.iter().position(|setting| setting.name == "radius_law").unwrap_or(all.len());
+    all.insert(place, Setting { kind: SettingKind::Text, ..spacing });
+    all
 }
 
 /// Every setting, with the value that `run` has in the place of the default.

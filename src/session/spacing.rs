@@ -85,9 +85,19 @@ impl Session {
     /// `budget` slices of joining the mesh if the value takes areas; nothing before it is there.
     pub fn add_value(&mut self, name: &str, value: &Value, budget: u32) -> Option<Result<(), ValueError>> {
         if value.needs_mesh() && self.run.mesh().is_none() {
-            self.run.join(budget)?;
+            self.join(budget)?;
         }
         Some(self.run.add_value(name, value))
+    }
+
+    /// Whether the present surface can have a spacing by this formula.
+    ///
+    /// # Errors
+    ///
+    /// If the formula has a mistake.
+    pub fn check_spacing(&self, formula: &str) -> Result<(), Fault> {
+        let text = SpacingText { formula: formula.to_owned(), ..SpacingText::default() };
+        text.spacing(self.own_parameters()).map(drop)
     }
 
     /// The value of a formula, in which the parameters of the present formula have their values.
@@ -109,7 +119,7 @@ impl Session {
             Source::Formula(field) => field.parameters(),
             Source::Points { within: Some(formula), .. } => &formula.parameters,
             #[cfg(feature = "images")]
-            Source::Image(image) => image.formula_parameters(),
+            Source::Opened(opened) => opened.formula_parameters(),
             Source::Points { .. } | Source::Function(_) => &[],
         }
     }

@@ -21,3 +21,18 @@ export function flag(name, value) {
   if (typeof value !== 'boolean') throw new InputError(`${name}: true or false, not ${shown(value)}.`);
   return value;
 }
+
+/**
+ * Three numbers for each of some points, in double precision.
+ * @param {string} name @param {unknown} value
+ */
+export function vectors(name, value) {
+  const isArray = Array.isArray(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView));
+  const rows = Array.isArray(value) && Array.isArray(value[0]) ? value.flat() : value;
+  const all = isArray ? Float64Array.from(/** @type {ArrayLike<number>} */ (rows), Number) : null;
+  if (all === null || all.length === 0 || all.length % 3 !== 0)
+    throw new InputError(`${name}: an array of numbers, x, y and z of each point, or one of [x, y, z].`);
+  const wrong = all.findIndex((v) => !Number.isFinite(v));
+  if (wrong >= 0) throw new InputError(`${name}[${wrong}]: a number, not ${shown(all[wrong])}.`);
+  return all;
+}

@@ -149,7 +149,7 @@ class Sample {
     this.#line = client.line;
     this.#id = id;
     this.#how = how;
-    const { count, points, normals, radii, levels, parents, report, bounds, parameters, values, image, digest } = value;
+    const { count, points, normals, radii, levels, parents, report, bounds, parameters, values, digest } = value;
     /** Number of particles. */
     this.count = count;
     this.points = points;
@@ -162,7 +162,9 @@ class Sample {
     this.bounds = bounds;
     this.params = Object.fromEntries(parameters.map((p) => [p.name, p.value]));
     this.values = values;
-    this.image = image;
+    this.image = value.image;
+    this.original = value.original;
+    this.change = value.change;
     this.digest = digest;
   }
 
@@ -196,10 +198,10 @@ class Sample {
    */
   async moved(params, options = {}) {
     this.#check('moved');
-    const { formula, cloud, image } = this.#how.request;
-    if (image ? formula !== undefined : formula === undefined || cloud)
+    const { formula, cloud, given } = this.#how.request;
+    if (given ? formula !== undefined : formula === undefined || cloud)
       throw new InputError(
-        'moved(): it is for a formula or an image by itself, not for a function or points. Sample again.',
+        'moved(): it is for a formula, an image or a mesh by itself, not for a function or points. Sample again.',
       );
     const parameters = { ...this.params, ...paramsOf(params, Object.keys(this.params)) };
     const how = { ...this.#how, ...checkedCalls(options) };

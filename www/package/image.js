@@ -1,9 +1,9 @@
-/** Checks an image and what is chosen of it. @module */
+/** Checks an image, and what is chosen of it or of a mesh. @module */
 import { flag, number, shown } from './checks.js';
 import { InputError } from './errors.js';
 
 /**
- * @import { ImageFile } from '../src/engine/images/types.js'
+ * @import { GivenFile } from '../src/engine/files/types.js'
  * @import { Options } from './index.js'
  * @import { SentField, SentVoxels } from './protocol.js'
  */
@@ -57,14 +57,14 @@ function rowsOf({ spacing, origin, affine }) {
 }
 
 /** A file as it is sent. @param {unknown} content @returns {Blob | null} */
-function blobOf(content) {
+export function blobOf(content) {
   if (content instanceof Blob) return content;
   return content instanceof ArrayBuffer || ArrayBuffer.isView(content)
     ? new Blob([/** @type {ArrayBuffer} */ (content)])
     : null;
 }
 
-/** @param {unknown} beside @returns {ImageFile['beside']} */
+/** @param {unknown} beside @returns {GivenFile['beside']} */
 function othersOf(beside) {
   if (beside === undefined) return [];
   const list = Array.isArray(beside) ? beside : [beside];
@@ -76,7 +76,7 @@ function othersOf(beside) {
 
 /**
  * An array of voxels, or a file.
- * @param {Given} given @returns {SentVoxels | ImageFile}
+ * @param {Given} given @returns {SentVoxels | GivenFile}
  */
 export function imageOf(given) {
   const { image, size, name } = given;
@@ -89,7 +89,7 @@ export function imageOf(given) {
     if (misplaced) throw new InputError(`${misplaced}: for an array of voxels with its size. A file has its own.`);
     const file = blobOf(image);
     if (!file) throw new InputError(`image: a File, a Blob, or the bytes of a file, not ${shown(image)}.`);
-    return { name: called, file, beside: othersOf(given.beside) };
+    return { as: 'image', name: called, file, beside: othersOf(given.beside) };
   }
   const type = TYPES.find(([Class]) => image instanceof Class)?.[1];
   if (!type) throw new InputError(`image: with a size it is a typed array of voxels, not ${shown(image)}.`);
@@ -102,20 +102,42 @@ export function imageOf(given) {
   return { name: called, type, size: sizes, rows: rowsOf(given), voxels };
 }
 
+/** The options that choose a surface, and of what. @type {Record<string, ('image' | 'mesh')[]>} */
+const CHOICES = {
+  iso: ['image'],
+  label: ['image'],
+  darkInside: ['image'],
+  edges: ['mesh'],
+  smooth: ['image', 'mesh'],
+};
+
+/** The angle of edges that stay sharp in the core, where 0 is none. @param {unknown} edges */
+function angleOf(edges) {
+  if (edges === 'none') return 0;
+  return number('edges', edges, (v) => v >= 1 && v <= 180, "an angle from 1 to 180 degrees, 'auto' or 'none'");
+}
+
 /**
- * What is chosen of an image, by the names of the core.
- * @param {Options} options @param {boolean} isOfImage
+ * What is chosen of an image or a mesh, by the names of the core.
+ * @param {Options} options @param {'image' | 'mesh' | null} kind
  * @returns {SentField['parameters']}
  */
-export function valuesOf({ iso, label, smooth, darkInside }, isOfImage) {
-  const [given] = Object.entries({ iso, label, smooth, darkInside }).find(([, value]) => value !== undefined) ?? [];
-  if (given && !isOfImage) throw new InputError(`${given}: for an image.`);
+export function valuesOf({ iso, label, smooth, darkInside, edges }, kind) {
+  for (const [name, value] of Object.entries({ iso, label, smooth, darkInside, edges })) {
+    if (value !== undefined && !(kind && CHOICES[name].includes(kind)))
+      throw new InputError(
+        `${name}: for ${CHOICES[name].map((of) => (of === 'image' ? 'an image' : 'a mesh')).join(' or ')}.`,
+      );
+  }
   if (iso !== undefined && label !== undefined) throw new InputError('iso, label: one of the two, not both.');
   /** @type {SentField['parameters']} */
   const values = {};
   if (iso !== undefined) values.iso = number('iso', iso, () => true, 'a number');
   if (label !== undefined) values.label = number('label', label, Number.isInteger, 'a whole number');
-  if (smooth !== undefined) values.smooth = number('smooth', smooth, (v) => v >= 0 && v <= 100, 'from 0 to 100 voxels');
+  const [widest, unit] = kind === 'mesh' ? [10, 'cells'] : [100, 'voxels'];
+  if (smooth !== undefined)
+    values.smooth = number('smooth', smooth, (v) => v >= 0 && v <= widest, `from 0 to ${widest} ${unit}`);
   if (darkInside !== undefined && flag('darkInside', darkInside)) values.dark = 1;
+  if (edges !== undefined && edges !== 'auto') values.edges = angleOf(edges);
   return values;
 }

@@ -1,6 +1,6 @@
 // What the package `marching-particles` gives a program.
 /// <reference lib="esnext.disposable" />
-import type { ImageInfo, Report } from '../src/engine/core-types.js';
+import type { ImageInfo, MeshChange, MeshInfo, Report } from '../src/engine/core-types.js';
 
 export interface Bounds {
   min: [number, number, number];
@@ -36,7 +36,7 @@ export interface Options {
   /** of points: whether their surface ends at their border, as it does without it, or goes on */
   beyondPoints?: 'cut' | 'kept';
   /**
-   * of points or an image: a formula that names their surface `model`, as an operand of max, min,
+   * of points, an image or a mesh: a formula that names their surface `model`, as an operand of max, min,
    * smin, smax or abs, or with a number that is added: `max(model, z)` cuts it
    */
   formula?: string;
@@ -51,11 +51,17 @@ export interface Options {
   label?: number;
   /**
    * of an image: width of a Gaussian in voxels, 0 for none. Without it from 0.7 to 2 or 0, by the
-   * noise that is measured and the rounding of whole numbers; over the distances from a label 1
+   * noise that is measured and the rounding of whole numbers; over the distances from a label 1. Of
+   * a mesh: that in cells of the grid of a scan, up to 10, for which the mesh is taken then
    */
   smooth?: number;
   /** of an image: whether the darker voxels are inside */
   darkInside?: boolean;
+  /**
+   * of a mesh: the angle in degrees from which on an edge stays sharp; `auto`, which is chosen
+   * without it, keeps those of 30° if they form curves on a closed mesh, `none` rounds all
+   */
+  edges?: number | 'auto' | 'none';
   /** whether particles are small where the surface bends and large where it is flat */
   adaptive?: boolean;
   /** how the radius follows from the curvature; `chord_error` without it */
@@ -101,7 +107,7 @@ export interface Options {
   signal?: AbortSignal;
   onProgress?: (progress: Progress) => void;
 }
-export type { ImageInfo, Report };
+export type { ImageInfo, MeshChange, MeshInfo, Report };
 export type Warning = Report['warnings'][number];
 export interface Mesh {
   /**
@@ -135,12 +141,20 @@ export interface Sample {
   readonly report: Report | null;
   readonly warnings: Warning[];
   readonly bounds: Bounds;
-  /** values of the names in the formula; of an image `iso` and `smooth`, as they were chosen */
+  /** values of the names in the formula; of an image `iso` and `smooth`, of a mesh
+   * `edges` or `smooth`, as they were chosen */
   readonly params: Record<string, number>;
   /** numbers at the rows of the columns, by the names of the option `values` */
   readonly values: Record<string, Float32Array>;
   /** of an image: what is known of it, and what was chosen */
   readonly image: ImageInfo | null;
+  /** of a mesh: what it had, what was mended, and what it was taken for */
+  readonly original: MeshInfo | null;
+  /**
+   * of a mesh by itself: how far the new one is from it, with volume and area before and after;
+   * null with `measure: false`
+   */
+  readonly change: MeshChange | null;
   readonly digest: string;
   /**
    * joins the particles to triangles; with `weld` those at a crease or a seam share a row, and have
@@ -153,7 +167,8 @@ export interface Sample {
    */
   toFile(format: Format, how?: { mesh?: boolean }): Promise<Uint8Array<ArrayBuffer>>;
   /**
-   * the particles on the surface of other parameters, or of another `iso` of an image; they leave
+   * the particles on the surface of other parameters, or of another
+   * `iso` of an image; they leave
    * this sample, whose columns stay,
    * and are gone where there is no such surface or the signal ends it
    */
@@ -221,15 +236,27 @@ export interface ImageArray {
   name?: string;
 }
 /**
+ * A triangle mesh, which is sampled anew: a file (STL, OBJ, PLY or OFF, whichever its content says),
+ * or arrays of three coordinates for each vertex and three vertices for each face.
+ */
+export interface MeshSource {
+  mesh:
+    | Blob
+    | ArrayBuffer
+    | Uint8Array
+    | { points: Numbers; faces: Uint32Array | number[] | [number, number, number][] };
+  name?: string;
+}
+/**
  * What is sampled: a formula such as `x^2 + y^2 + z^2 = a`; a function f(x, y, z), negative inside
  * and NaN where it has no value, of a point or of many at once; the pieces of such a function;
- * points; or a three-dimensional image.
+ * points; a three-dimensional image; or a triangle mesh.
  */
-export type Field = string | OfPlace | Batch | Pieces | Points | ImageFile | ImageArray;
+export type Field = string | OfPlace | Batch | Pieces | Points | ImageFile | ImageArray | MeshSource;
 
 /**
- * Covers the surface f = 0 with evenly spaced particles. Formulas, points and images are sampled in
- * a worker; a function is called in the thread that it belongs to, in slices of some milliseconds
+ * Covers the surface f = 0 with evenly spaced particles. Formulas, points, images and meshes are
+ * sampled in a worker; a function is called in the thread that it belongs to, in slices of some milliseconds
  * between which the page draws.
  */
 export function sample(field: Field, options?: Options): Promise<Sample>;

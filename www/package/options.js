@@ -3,9 +3,10 @@
  *
  * @module
  */
-import { choice, flag, number, shown } from './checks.js';
+import { choice, flag, number, shown, vectors } from './checks.js';
 import { InputError } from './errors.js';
 import { imageOf, isImage, valuesOf } from './image.js';
+import { isMesh, meshOf } from './mesh.js';
 
 /**
  * @import { Batch, OfPlace, Options, Pieces } from './index.js'
@@ -114,6 +115,7 @@ const KNOWN = [
   'label',
   'smooth',
   'darkInside',
+  'edges',
   'measure',
   'signal',
   'onProgress',
@@ -167,21 +169,6 @@ export function checkedCalls({ signal, onProgress }) {
   return { signal, onProgress };
 }
 
-/**
- * Three numbers for each of some points, in double precision.
- * @param {string} name @param {unknown} value
- */
-function vectors(name, value) {
-  const isArray = Array.isArray(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView));
-  const rows = Array.isArray(value) && Array.isArray(value[0]) ? value.flat() : value;
-  const all = isArray ? Float64Array.from(/** @type {ArrayLike<number>} */ (rows), Number) : null;
-  if (all === null || all.length === 0 || all.length % 3 !== 0)
-    throw new InputError(`${name}: an array of numbers, x, y and z of each point, or one of [x, y, z].`);
-  const wrong = all.findIndex((v) => !Number.isFinite(v));
-  if (wrong >= 0) throw new InputError(`${name}[${wrong}]: a number, not ${shown(all[wrong])}.`);
-  return all;
-}
-
 /** @param {{points: unknown, normals?: unknown}} given */
 function cloudOf({ points, normals }) {
   const cloud = {
@@ -197,7 +184,7 @@ function cloudOf({ points, normals }) {
 
 const FIELD =
   "a formula such as 'x^2 + y^2 + z^2 = 1', a function (x, y, z) => number, {batch(xyz, out)}, {label, pieces}, " +
-  '{points, normals} or {image}, a file or an array of voxels';
+  '{points, normals}, {image} of a file or an array of voxels, or {mesh} of a file or {points, faces}';
 
 /** @param {{label?: unknown, pieces?: unknown}} given @returns {Pieces} */
 function piecesOf({ label, pieces }) {
@@ -210,7 +197,7 @@ function piecesOf({ label, pieces }) {
   return { label: /** @type {Pieces['label']} */ (label), pieces };
 }
 
-/** @param {unknown} field @returns {Pick<SentField, 'formula' | 'cloud' | 'program' | 'image'>} */
+/** @param {unknown} field @returns {Pick<SentField, 'formula' | 'cloud' | 'program' | 'given'>} */
 function fieldOf(field) {
   if (typeof field === 'string') return { formula: field };
   if (typeof field === 'function')
@@ -219,18 +206,19 @@ function fieldOf(field) {
   if (typeof given.batch === 'function') return { program: /** @type {Batch} */ (given) };
   if (given.pieces !== undefined || given.label !== undefined) return { program: piecesOf(given) };
   if (given.points !== undefined) return { cloud: cloudOf({ ...given, points: given.points }) };
-  if (isImage(given)) return { image: imageOf(given) };
+  if (isImage(given)) return { given: imageOf(given) };
+  if (isMesh(given)) return { given: meshOf(given) };
   throw new InputError(`field: ${FIELD}, not ${shown(typeof field)}.`);
 }
 
 /**
- * The formula in which the surface of points or of an image is an operand.
- * @param {unknown} formula @param {{cloud?: unknown, image?: unknown}} what
+ * The formula in which the surface of points, an image or a mesh is an operand.
+ * @param {unknown} formula @param {{cloud?: unknown, given?: unknown}} what
  */
-function modelFormula(formula, { cloud, image }) {
-  if (cloud === undefined && image === undefined)
+function modelFormula(formula, { cloud, given }) {
+  if (cloud === undefined && given === undefined)
     throw new InputError(
-      'formula: for points or an image, whose surface it names model. Else the formula is the field.',
+      'formula: for points, an image or a mesh, whose surface it names model. Else the formula is the field.',
     );
   if (typeof formula === 'string') return { formula };
   throw new InputError(`formula: a text such as 'max(model, z)', not ${shown(formula)}.`);
@@ -242,6 +230,7 @@ function modelFormula(formula, { cloud, image }) {
  */
 export function checked(field, options) {
   const what = fieldOf(field);
+  const kind = what.given ? (isImage(/** @type {object} */ (field)) ? 'image' : 'mesh') : null;
   if (typeof options !== 'object' || options === null)
     throw new InputError(`options: an object, not ${shown(options)}.`);
   const unknown = Object.keys(options).find((name) => !KNOWN.includes(name));
@@ -260,11 +249,11 @@ export function checked(field, options) {
     throw new InputError(`${ofFormula}: for a formula by itself.`);
   if (formula !== undefined) Object.assign(what, modelFormula(formula, what));
   if (params !== undefined && what.formula === undefined)
-    throw new InputError('params: a formula has parameters, a function, points or an image have none.');
+    throw new InputError('params: a formula has parameters, a function, points, an image or a mesh have none.');
   /** @type {SentField} */
   const request = {
     ...what,
-    parameters: { ...(params === undefined ? {} : paramsOf(params)), ...valuesOf(options, what.image !== undefined) },
+    parameters: { ...(params === undefined ? {} : paramsOf(params)), ...valuesOf(options, kind) },
     ...(bounds === undefined ? {} : { bounds: boundsOf(bounds) }),
   };
   const functions = { ...(isFunction(spacing) ? { spacing } : {}), values: functionsOf(values) };

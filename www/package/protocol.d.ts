@@ -1,6 +1,14 @@
 // Messages between the program and the sampler, which is in a worker or in the thread of the program.
-import type { Bounds, FieldRequest, ImageInfo, Parameter, Report } from '../src/engine/core-types.js';
-import type { ImageFile } from '../src/engine/images/types.js';
+import type {
+  Bounds,
+  FieldRequest,
+  ImageInfo,
+  MeshChange,
+  MeshInfo,
+  Parameter,
+  Report,
+} from '../src/engine/core-types.js';
+import type { GivenFile } from '../src/engine/files/types.js';
 import type { Batch, OfPlace, Pieces, Progress } from './index.js';
 
 /** Settings of the core by their names there; `lengths` take the places of shares. */
@@ -30,13 +38,13 @@ export type Asked =
 /** What is said besides: `stop` ends a request, `free` gives a sample up. */
 export type Said = { type: 'stop'; id: number } | { type: 'free'; id: number };
 /**
- * A formula; points or an image, with or without a formula whose operand their surface is; or a
+ * A formula; points, an image or a mesh, with or without a formula whose operand their surface is; or a
  * function of the program, which is sent in its own thread alone.
  */
 export type SentField = Pick<Partial<FieldRequest>, 'formula' | 'bounds'> & {
   parameters: Record<string, number>;
   cloud?: Cloud;
-  image?: ImageFile | SentVoxels;
+  given?: GivenFile | SentVoxels | SentFaces;
   program?: OfPlace | Batch | Pieces;
 };
 /** Functions of place; those of the program are sent in its own thread alone. */
@@ -46,6 +54,8 @@ export interface SentFunctions {
 }
 /** The bytes of an array of voxels of a type of the core, and their affine map, row by row. */
 export type SentVoxels = { name: string; type: string; size: number[]; rows: number[]; voxels: Uint8Array };
+/** The coordinates of vertices and the vertices of faces, three each. */
+export type SentFaces = { name: string; points: Float64Array; faces: Uint32Array };
 /** Points, and their normals if they are known, three numbers each. */
 export interface Cloud {
   points: Float64Array;
@@ -65,6 +75,8 @@ export interface Made {
   parameters: Parameter[];
   values: Record<string, Float32Array>;
   image: ImageInfo | null;
+  original: MeshInfo | null;
+  change: MeshChange | null;
   digest: string;
 }
 export interface Answered {

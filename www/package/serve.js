@@ -6,7 +6,7 @@
  */
 import { nextBudget } from '../src/engine/bundle/budget.js';
 import { hasSimd } from '../src/engine/bundle/load.js';
-import { openImage } from '../src/engine/images/open.js';
+import { openGiven } from '../src/engine/files/open.js';
 import { csv, ply } from '../src/engine/share/exports.js';
 import loadCore, { Core } from '../src/wasm/core/core.js';
 import loadPoints from '../src/wasm/points/points.js';
@@ -24,8 +24,9 @@ import { Program } from './program.js';
 /** First budget of a loop, in units or slices of the core. */
 const FIRST_BUDGET = 64;
 const PROGRESS_MS = 50;
-/** What is chosen of an image, by the names of the core. */
+/** What is chosen of an image and of a mesh, by the names of the core. */
 const OF_IMAGES = ['iso', 'label', 'smooth', 'dark'];
+const OF_MESHES = ['edges', 'smooth'];
 /** Largest memory of a run and its report: half of what a browser gives a module. */
 const MEMORY_MB = 2048;
 const WITHOUT_SIMD =
@@ -47,7 +48,7 @@ function refusalOf({ kind, message, start, end, suggestion, choices }) {
   // A setting that is out of its range begins its sentence.
   const named = message.replace(/^([a-z_]+) is /, (_, setting) => `The option ${optionOf(setting)} is `);
   if (
-    ['request', 'settings', 'too_many', 'box', 'points', 'image'].includes(kind) ||
+    ['request', 'settings', 'too_many', 'box', 'points', 'image', 'mesh', 'no_faces', 'no_solid'].includes(kind) ||
     (kind === 'value' && start === end)
   )
     return new Refusal('InputError', named);
@@ -221,13 +222,13 @@ export function serve({ post, load }) {
    * Gives a core its field.
    * @param {SentField} field @param {{id: number, core: Core}} of
    */
-  async function taken({ program, cloud, image, ...request }, of) {
+  async function taken({ program, cloud, given, ...request }, of) {
     const { core } = of;
     if (program) {
       const called = held(program, core);
       return core.set_function(called.call, request, called.labels);
     }
-    if (image) return takenImage(image, request, of);
+    if (given) return takenGiven(given, request, of);
     if (!cloud) return core.set_field(request);
     await loaded('points', loadPoints);
     const fit = await fitted(cloud, (slice) => inSlices(of, slice));
@@ -236,18 +237,21 @@ export function serve({ post, load }) {
   }
 
   /**
-   * Gives a core the surface of an image.
-   * @param {NonNullable<SentField['image']>} image @param {Omit<SentField, 'image'>} request
+   * Gives a core the surface of an image or a mesh.
+   * @param {NonNullable<SentField['given']>} given @param {Omit<SentField, 'given'>} request
    * @param {{id: number, core: Core}} of
    */
-  async function takenImage(image, request, { id, core }) {
-    if ('voxels' in image) {
-      const { name, type, size, rows, voxels } = image;
+  async function takenGiven(given, request, { id, core }) {
+    if ('faces' in given) {
+      const fault = core.open_faces(given.name, given.points, given.faces);
+      if (fault) throw refusalOf(fault);
+    } else if ('voxels' in given) {
+      const { name, type, size, rows, voxels } = given;
       const opened = core.open_voxels(name, type, new Uint32Array(size), new Float64Array(rows), voxels);
       if (!opened.ok) throw refusalOf(opened.error);
     } else {
       const fraction = (/** @type {number} */ share) => ({ phase: 'reading', particles: 0, fraction: 0.1 * share });
-      const opened = await openImage(core, image, {
+      const opened = await openGiven(core, given, {
         tell: (_, share) => post({ id, progress: fraction(share) }),
         isOver: () => asked.get(id) === true,
         mostBytes: MEMORY_MB * 1e6,
@@ -255,9 +259,9 @@ export function serve({ post, load }) {
       if (opened && !opened.ok) throw new Refusal('InputError', opened.message);
     }
     if (asked.get(id)) throw new Refusal('AbortError', 'The sampling was aborted.');
-    const answer = core.set_image(request);
-    // The field has a copy of its own, which shares the voxels.
-    core.close_image();
+    const answer = core.set_opened(request);
+    // The field has a copy of its own, which shares voxels and faces.
+    core.close_opened();
     return answer;
   }
 
@@ -280,7 +284,9 @@ export function serve({ post, load }) {
       if (fault) throw refusalOf(fault);
     }
     const isKnown = (/** @type {string} */ name) =>
-      answer.parameters.some((p) => p.name === name) || (answer.image !== null && OF_IMAGES.includes(name));
+      answer.parameters.some((p) => p.name === name) ||
+      (answer.image !== null && OF_IMAGES.includes(name)) ||
+      (answer.mesh !== null && OF_MESHES.includes(name));
     const unknown = Object.keys(field.parameters).find((name) => !isKnown(name));
     if (unknown !== undefined) throw new Refusal('InputError', `The formula has no parameter “${unknown}” (params).`);
     if (message.type === 'sample') checkEffects(core, message);
@@ -305,6 +311,9 @@ export function serve({ post, load }) {
       const fault = await inSlices(of, (budget) => core.add_value(name, taken, budget));
       if (fault) throw refusalOf(fault);
     }
+    const isRemeshed = measure && answer.mesh !== null && box.formula === '';
+    if (isRemeshed) await inSlices(of, (budget) => core.join(budget));
+    const change = isRemeshed ? await inSlices(of, (budget) => core.compare(budget)) : null;
     const columns = Object.keys(values).map((name) => [name, core.added_value(name)]);
     return columnsOf(core, {
       count: particles,
@@ -312,6 +321,8 @@ export function serve({ post, load }) {
       bounds: box.bounds,
       parameters: box.parameters,
       image: box.image,
+      original: box.mesh,
+      change,
       values: Object.fromEntries(columns),
     });
   }
@@ -410,7 +421,7 @@ function weld(indices, firstRows) {
 
 /**
  * The columns of the particles, whose buffers are given away, so that there is no second copy.
- * @param {Core} core @param {Pick<Made, 'count' | 'report' | 'bounds' | 'parameters' | 'image' | 'values'>} about
+ * @param {Core} core @param {Pick<Made, 'count' | 'report' | 'bounds' | 'parameters' | 'image' | 'original' | 'change' | 'values'>} about
  * @returns {[Made, ArrayBufferLike[]]}
  */
 function columnsOf(core, about) {

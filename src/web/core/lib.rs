@@ -11,9 +11,9 @@ use marching_particles::particles::Particles;
 use marching_particles::sampler::{Sampling, Spacing};
 use marching_particles::session::{
     Asked, Fault, FaultKind, FieldRequest, FileRecord, FileRequest, ImageFacts, ImagePromise, Language,
-    Lengths, Session, SolidSettings, SpacingText, describe,
+    Lengths, OpenedMesh, Session, SolidSettings, SpacingText, describe,
 };
-use marching_particles::{Image, Value, VoxelType};
+use marching_particles::{Image, TriangleMesh, Value, VoxelType};
 use marching_particles_values::{answer, read, to_js};
 use std::sync::Arc;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -21,6 +21,9 @@ use wasm_bindgen::{JsCast, JsValue};
 
 /// The member of the settings that holds lengths in the places of shares.
 const LENGTHS: &str = "lengths";
+
+/// The member of the settings that holds the formula of the spacing, empty for none.
+const SPACING: &str = "spacing";
 
 /// That a function of JavaScript has failed; who called the core knows why.
 const THROWN: &str = "the function has thrown";
@@ -38,6 +41,7 @@ const TYPES: &str = r"import type {
   ImageFacts,
   ImagePromise,
   MeshAnswer,
+  MeshChange,
   Progress,
   FileRecord,
   Measured,
@@ -52,9 +56,15 @@ const TYPES: &str = r"import type {
 #[wasm_bindgen]
 pub struct Core {
     session: Session,
-    /// The image that was opened last, with its name. The field keeps its own copy, which shares
-    /// the voxels.
-    image: Option<(String, Image)>,
+    /// The file that was opened last, with its name. The field keeps its own copy, which shares
+    /// voxels and faces.
+    opened: Option<(String, Opened)>,
+}
+
+/// What a file or an array has given.
+enum Opened {
+    Image(Image),
+    Mesh(OpenedMesh),
 }
 
 #[wasm_bindgen]
@@ -64,13 +74,13 @@ impl Core {
     #[expect(clippy::new_without_default, reason = "a constructor for JavaScript")]
     pub fn new() -> Self {
         console_error_panic_hook::set_once();
-        Self { session: Session::new(), image: None }
+        Self { session: Session::new(), opened: None }
     }
 
     /// A session whose first formula is that of no surface of the gallery, whatever its text.
     pub fn without_surface() -> Self {
         console_error_panic_hook::set_once();
-        Self { session: Session::without_surface(), image: None }
+        Self { session: Session::without_surface(), opened: None }
     }
 
     /// The description of all settings, surfaces and figures: `Description`.
@@ -96,9 +106,19 @@ impl Core {
         number(text).ok()
     }
 
-    /// Why the present surface cannot have the thickness of this text; nothing if it can.
-    pub fn thickness_fault(&self, text: &str) -> Option<String> {
-        self.session.check_thickness(&text.into()).err().map(|fault| fault.message)
+    /// What is wrong with the formula of a `thickness`, a `spacing` or a `value` on the present
+    /// surface; nothing if it is right.
+    pub fn text_fault(
+        &self,
+        #[wasm_bindgen(unchecked_param_type = "'thickness' | 'spacing' | 'value'")] what: &str,
+        text: &str,
+    ) -> Option<String> {
+        let checked = match what {
+            "thickness" => self.session.check_thickness(&text.into()),
+            "spacing" => self.session.check_spacing(text),
+            _ => self.session.value(text).map(drop),
+        };
+        checked.err().map(|fault| fault.message)
     }
 
     /// Refuses runs that need more than about `megabytes` with their report.
@@ -132,7 +152,7 @@ impl Core {
         answer(outline.map(|outline| ImagePromise::of(outline.as_ref())))
     }
 
-    /// Opens a file of an image, for [`Core::set_image`]: an `Answer` with `ImageFacts`. `beside`
+    /// Opens a file of an image, for [`Core::set_opened`]: an `Answer` with `ImageFacts`. `beside`
     /// gives the bytes of a file beside it by its name. After an error the last good image stays.
     #[wasm_bindgen(unchecked_return_type = "Answer<ImageFacts, Fault>")]
     pub fn open_image(
@@ -168,29 +188,52 @@ impl Core {
 
     fn opened(&mut self, name: String, image: Image) -> ImageFacts {
         let facts = ImageFacts::of(&image);
-        self.image = Some((name, image));
+        self.opened = Some((name, Opened::Image(image)));
         facts
     }
 
-    /// Forgets the image that was opened last. The present field keeps its own.
-    pub fn close_image(&mut self) {
-        self.image = None;
+    /// Opens a file of a triangle mesh, for [`Core::set_opened`]. Returns why it cannot be, else
+    /// null. After an error the file before it stays open.
+    #[wasm_bindgen(unchecked_return_type = "Fault | null")]
+    pub fn open_mesh(&mut self, name: String, bytes: Vec<u8>) -> JsValue {
+        let mesh = OpenedMesh::read(&name, bytes);
+        self.opened_mesh(name, mesh)
     }
 
-    /// Changes the field to a surface of the image that was opened last: of a `FieldRequest` the
-    /// parameters `iso`, `label`, `smooth` and `dark`, the box, and a formula with the surface as
-    /// an operand count; to an `Answer` with `FieldAnswer`. After an error the last good field
-    /// stays.
+    /// Opens a triangle mesh of arrays: the coordinates of its vertices, three each, and the
+    /// vertices of its faces, three each. Returns why it cannot be, else null.
+    #[wasm_bindgen(unchecked_return_type = "Fault | null")]
+    pub fn open_faces(&mut self, name: String, points: &[f64], faces: &[u32]) -> JsValue {
+        let points = points.as_chunks().0.iter().copied().map(DVec3::from_array).collect();
+        let mesh = TriangleMesh::new(points, faces.as_chunks().0.to_vec())
+            .map_err(|error| Fault::new(FaultKind::Mesh, &error))
+            .and_then(|mesh| OpenedMesh::new(&mesh));
+        self.opened_mesh(name, mesh)
+    }
+
+    fn opened_mesh(&mut self, name: String, mesh: Result<OpenedMesh, Fault>) -> JsValue {
+        to_js(&mesh.map(|mesh| self.opened = Some((name, Opened::Mesh(mesh)))).err())
+    }
+
+    /// Forgets the file that was opened last. The present field keeps its own.
+    pub fn close_opened(&mut self) {
+        self.opened = None;
+    }
+
+    /// Changes the field to a surface of the file that was opened last: of a `FieldRequest` the
+    /// parameters that choose it count, of an image `iso`, `label`, `smooth` and `dark` and of a
+    /// mesh `edges` and `smooth`, the box, and a formula with the surface as an operand; to an
+    /// `Answer` with `FieldAnswer`. After an error the last good field stays.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
-    pub fn set_image(
+    pub fn set_opened(
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "Partial<FieldRequest>")] request: JsValue,
     ) -> JsValue {
-        answer(read::<FieldRequest>(request, FaultKind::Request).and_then(|request| {
-            let opened = self.image.as_ref();
-            let (name, image) =
-                opened.ok_or_else(|| Fault::new(FaultKind::Image, &"no image has been opened"))?;
-            self.session.set_image(image, name, &request)
+        let request = read::<FieldRequest>(request, FaultKind::Request);
+        answer(request.and_then(|request| match &self.opened {
+            Some((name, Opened::Image(image))) => self.session.set_image(image, name, &request),
+            Some((name, Opened::Mesh(mesh))) => self.session.set_mesh(mesh, name, &request),
+            None => Err(Fault::new(FaultKind::Request, &"no file has been opened")),
         }))
     }
 
@@ -523,7 +566,15 @@ impl Core {
     /// complete, nothing before.
     #[wasm_bindgen(unchecked_return_type = "MeshAnswer | undefined")]
     pub fn join(&mut self, budget: u32) -> Option<JsValue> {
-        self.session.run.join(budget).map(|answer| to_js(&answer))
+        self.session.join(budget).map(|answer| to_js(&answer))
+    }
+
+    /// How far the joined mesh is from the one that was opened, up to `budget` slices of the work:
+    /// `MeshChange` once it is known, undefined before; null where the surface is not that of a
+    /// mesh by itself.
+    #[wasm_bindgen(unchecked_return_type = "MeshChange | null | undefined")]
+    pub fn compare(&mut self, budget: u32) -> JsValue {
+        self.session.compare(budget).map_or(JsValue::UNDEFINED, |change| to_js(&change))
     }
 
     /// The triangles of the mesh, three rows each, counter-clockwise round their normals; none
@@ -582,7 +633,12 @@ impl Core {
         let lengths = js_sys::Reflect::get(&of_run, &LENGTHS.into()).unwrap_or_default();
         let lengths =
             if lengths.is_undefined() { Lengths::default() } else { read(lengths, FaultKind::Settings)? };
-        for name in SolidSettings::NAMES.into_iter().chain([LENGTHS]) {
+        if let Some(formula) = js_sys::Reflect::get(&of_run, &SPACING.into()).unwrap_or_default().as_string()
+        {
+            let spacing = SpacingText { formula, ..SpacingText::default() };
+            self.session.space(Some(spacing).filter(|spacing| !spacing.formula.is_empty()))?;
+        }
+        for name in SolidSettings::NAMES.into_iter().chain([LENGTHS, SPACING]) {
             // Nothing is deleted where it is not there; a copy can be changed.
             let _ = js_sys::Reflect::delete_property(&of_run, &name.into());
         }

@@ -96,6 +96,8 @@ export class Columns {
      */
     this.curvature = new Float32Array(0);
     this.curved = 0;
+    /** The value by which the particles are coloured; null before it is known. @type {Float32Array | null} */
+    this.value = null;
     /**
      * Positions before each relaxation step, the first as they were placed. Of many particles only those are kept.
      * Empty before a relaxation has ended. They stay until the next run begins, also while no level is shown: nothing
@@ -170,6 +172,7 @@ export class Columns {
   /** Drops the figures of the report, the mesh and the record, which no longer describe the particles. */
   forget() {
     for (const name of MEASURED) this[name] = null;
+    this.value = null;
     this.mesh = null;
     this.record = null;
   }
@@ -278,6 +281,11 @@ export class Columns {
     if (figures.valence.length !== this.count) return;
     const known = MEASURED.filter((name) => figures[name].length === this.count);
     Object.assign(this, Object.fromEntries(known.map((name) => [name, figures[name]])));
+  }
+
+  /** Writes a value of each particle; one of another number of particles is ignored. @param {Float32Array} values */
+  writeValue(values) {
+    this.value = values.length === this.count ? values : null;
   }
 
   /** Writes newer slot fates of particles from `from` on. @param {number} from @param {Uint32Array} slots */

@@ -56,7 +56,7 @@ export type Colour = {
 };
 
 /** The quantity that colours the particles. */
-export type ColourMode = "level" | "fate" | "valence" | "nearest" | "energy" | "residual" | "radius" | "curvature" | "component" | "normal" | "plain";
+export type ColourMode = "level" | "fate" | "valence" | "nearest" | "energy" | "residual" | "radius" | "curvature" | "component" | "normal" | "value" | "plain";
 
 /** A column of PLY and CSV files, here and on the page. */
 export type Column = {
@@ -170,7 +170,7 @@ export type Fault = {
 };
 
 /** Kind of the error with which a command is refused. */
-export type FaultKind = "request" | "settings" | "thickness" | "spacing" | "value" | "too_many" | "unknown_surface" | "box" | "points" | "image" | FormulaErrorKind;
+export type FaultKind = "request" | "settings" | "thickness" | "spacing" | "value" | "too_many" | "unknown_surface" | "box" | "points" | "image" | "mesh" | "no_faces" | "no_solid" | FormulaErrorKind;
 
 /** The field as it now is. */
 export type FieldAnswer = {
@@ -178,6 +178,8 @@ export type FieldAnswer = {
   model: ModelInfo | null,
   /** The image, if the field is a surface of one. */
   image: ImageInfo | null,
+  /** The triangle mesh, if the field is the surface of one. */
+  mesh: MeshInfo | null,
   /** Gallery surface, if the formula is still its own. */
   surface: string | null,
   /** Text of the formula; empty if there is none. */
@@ -999,6 +1001,23 @@ export type MeshAnswer = {
   chips: Array<number>,
 };
 
+/** The comparison of a mesh with the one that was sampled from it. */
+export type MeshChange = {
+  /** Diagonal of the box of the old mesh. */
+  diagonal: number,
+  /** Distances of points of the old mesh from the new one. */
+  to_new: MeshDistances,
+  /** Distances of points of the new mesh from the old one. */
+  to_old: MeshDistances,
+  /** Volume of the old and of the new mesh; that of an open one depends on the origin. */
+  volume: [number, number],
+  /** Area of the old and of the new mesh. */
+  area: [number, number],
+  /** Largest distance of the sharp edges of the old mesh from the new one; none without such
+  * edges. */
+  edges: number | null,
+};
+
 /** A connected part of a mesh. */
 export type MeshComponent = {
   /** Number of triangles. */
@@ -1009,6 +1028,62 @@ export type MeshComponent = {
   open_edges: number,
   /** Place of its body among those of the mesh. */
   body: number,
+};
+
+/** Distances of points from a surface, in the units of the mesh. */
+export type MeshDistances = {
+  /** Their mean. */
+  mean: number,
+  /** The distance that 99 % of them do not exceed. */
+  most: number,
+  /** The largest. */
+  largest: number,
+};
+
+/** The triangle mesh that is sampled anew, and what was made of it. */
+export type MeshInfo = {
+  /** Name of the file or the array. */
+  name: string,
+  /** Number of vertices, as it was mended. */
+  vertices: number,
+  /** Number of faces, as it was mended. */
+  faces: number,
+  /** Number of pieces that are not joined by edges of two faces. */
+  pieces: number,
+  /** Number of edges with one face, those of holes. */
+  border_edges: number,
+  /** Number of edges with more than two faces. */
+  fan_edges: number,
+  /** What was mended, in words. */
+  mended: Array<string>,
+  /** What the reader has left out, in sentences. */
+  notes: Array<string>,
+  /** The smooth patches, if it was taken for a part with sharp edges. */
+  part: MeshPart | null,
+  /** The grid, if it was taken for a scan. */
+  scan: MeshScan | null,
+};
+
+/** Smooth patches between sharp edges. */
+export type MeshPart = {
+  /** Number of patches. */
+  patches: number,
+  /** Edges of the mesh at which two patches meet. */
+  edges: number,
+  /** Vertices at which three or more of these meet. */
+  corners: number,
+  /** Sharp edges that fade out within a patch, and are rounded. */
+  faded: number,
+};
+
+/** The distance from a mesh on a grid. */
+export type MeshScan = {
+  /** Voxels along each axis. */
+  size: [number, number, number],
+  /** Width of a cell. */
+  cell: number,
+  /** Width of the Gaussian in cells. */
+  smooth: number,
 };
 
 /** A built-in model. */
@@ -1343,7 +1418,7 @@ export type Setting = {
 export type SettingGroup = "Box" | "Sampling" | "Advanced";
 
 /** Type of the values of a setting. */
-export type SettingKind = "number" | "integer" | "formula" | "choice";
+export type SettingKind = "number" | "integer" | "formula" | "text" | "choice";
 
 /** Scale of a slider. */
 export type SettingScale = "linear" | "log";

@@ -74,8 +74,8 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
     lessonSurface() {
       const field = store.field.value;
       if (!field) return null;
-      const { model, image, formula, parameters, bounds } = field;
-      if (image) return null;
+      const { model, image, mesh, formula, parameters, bounds } = field;
+      if (image || mesh) return null;
       if (!model) return { formula, parameters, bounds };
       const solved = scheduler.loader.client.get(scheduler.loader.key());
       return solved ? { system: solved.field, pulls: store.state.value.pulls, bounds } : null;

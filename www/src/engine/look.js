@@ -69,6 +69,7 @@ export function keepLook({ store, viewer, scheduler: { loader, sampling } }) {
         viewer.set(now);
         sampling.client.wish('curvature', now.colour === 'curvature');
         sampling.client.wish('mesh', now.draw === 'mesh');
+        sampling.client.wishValue(now.colour === 'value' ? store.state.value.view.value : '');
       });
     }),
     () => system.removeEventListener('change', follow),

@@ -33,7 +33,8 @@ export function createPicture({ host, store, columns, first }) {
     {
       ...deviceEvents(store, () => void viewer.keeper.retry()),
       onLegend(legend) {
-        store.legend.value = legend;
+        const { colour, value } = store.state.peek().view;
+        store.legend.value = colour === 'value' ? { ...legend, title: value } : legend;
       },
       onReveal(reveal) {
         store.reveal.value = reveal;

@@ -43,11 +43,11 @@ export const isBareModel = (field) => Boolean(field?.model) && field?.formula ==
 
 /**
  * Whether a surface can be grabbed: the surface of a formula by its parameters, a model by pulls.
- * What a formula makes of a model has places that are not the model's. The surface of an image cannot be.
+ * What a formula makes of a model has places that are not the model's. The surface of an image or a mesh cannot be.
  * @param {FieldOk | null} field
  */
 export const canGrab = (field) =>
-  field?.model ? isBareModel(field) : !field?.image && Boolean(field?.parameters.length);
+  field?.model ? isBareModel(field) : !field?.image && !field?.mesh && Boolean(field?.parameters.length);
 
 /** Where the place of a pull comes to. @param {Pull} pull @returns {Vec3} */
 export const endOf = ({ at, by }) => along(at, by, 1);

@@ -37,8 +37,8 @@ export class Scheduler {
       store,
       spawn: spawnSolver,
       sample: (kind) => this.resample({ kind }),
-      openImage: (image, onProgress) => this.sampling.client.openImage(image, onProgress),
-      stopImage: () => this.sampling.client.stopImage(),
+      openGiven: (file, onProgress) => this.sampling.client.openFile(file, onProgress),
+      stopOpening: () => this.sampling.client.stopOpening(),
     });
     this.sampling = new Sampler({
       store,

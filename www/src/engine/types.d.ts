@@ -55,6 +55,9 @@ export type FileRequest = import('./core-types.js').FileRequest;
 export type FileRecord = import('./core-types.js').FileRecord;
 /** The counts and the topology of a mesh. */
 export type MeshAnswer = import('./core-types.js').MeshAnswer;
+export type MeshInfo = import('./core-types.js').MeshInfo;
+/** How far a new mesh is from the one that it was sampled from. */
+export type MeshChange = import('./core-types.js').MeshChange;
 export type LessonEvent = import('./core-types.js').LessonEvent;
 export type LessonIterate = import('./core-types.js').LessonIterate;
 export type LessonChapter = import('./core-types.js').LessonChapter;
@@ -346,15 +349,23 @@ export interface EngineSignals {
   model: ReadonlySignal<ModelInfo | null>;
   /** of the image that was opened last; null before */
   image: ReadonlySignal<ImageFacts | null>;
+  /** what the mesh file that was opened last is taken for; null if the last file was of another kind */
+  taken: ReadonlySignal<'surface' | 'points' | null>;
+  /** how far the new mesh is from the one that was opened; null before it is known */
+  change: ReadonlySignal<MeshChange | null>;
+  /** what is wrong with the formula of the value by which the particles are coloured; null if nothing is */
+  valueFault: ReadonlySignal<string | null>;
 }
 export interface EngineCommands {
   /** a gallery surface, a built-in model, or {@link FILE_SURFACE} to return to the file opened last */
   setSurface: (id: string) => void;
   /**
-   * samples the points or the image of a file, whose voxels may be in a file beside it; resolves once it is sampled,
-   * refused or cancelled
+   * samples the surface of a triangle mesh, the image or the points of a file. The voxels of an image may be in a file
+   * beside it. Resolves once it is sampled, refused or cancelled.
    */
   openFile: (file: File, beside?: File[]) => Promise<void>;
+  /** takes the mesh file that was opened last for its surface, or for points */
+  takeFileFor: (what: 'surface' | 'points') => Promise<void>;
   /** fits another number of the points of the present model or file */
   setCentres: (count: number) => void;
   /** cancels the model or file that is loading */
@@ -367,8 +378,8 @@ export interface EngineCommands {
   setFormula: (text: string, options?: { typing?: boolean; whole?: boolean }) => void;
   /** `live` during a drag; call once more without it at the end */
   setParameter: (name: string, value: number, options?: { live?: boolean }) => void;
-  /** samples another label of an image, or its grey values, as a new surface: its parameters `label` and `dark` */
-  chooseOfImage: (parameters: Record<string, number>) => void;
+  /** samples what else is chosen of an image or a mesh, as a new surface: by its parameters */
+  chooseOfFile: (parameters: Record<string, number>) => void;
   /** restores the value of the gallery or of the declaration */
   resetParameter: (name: string) => void;
   /**
@@ -384,8 +395,8 @@ export interface EngineCommands {
   declareParameter: (name: string) => void;
   /** the number that a text stands for in the language of formulas, such as `pi/2`; null for any other text */
   readNumber: (text: string) => Promise<number | null>;
-  /** why the present surface cannot have the thickness of this formula; null if it can */
-  thicknessFault: (text: string) => Promise<string | null>;
+  /** what is wrong with the formula of a thickness or a spacing on the present surface; null if nothing is */
+  textFault: (what: 'thickness' | 'spacing', text: string) => Promise<string | null>;
   /** `enlarges`: nobody has set this box, so the camera fits it and the next formula ends it */
   setBounds: (bounds: Bounds | null, options?: { live?: boolean; enlarges?: boolean }) => void;
   /** whether the box was enlarged by a press, around an `endless` surface or another; reads the state */

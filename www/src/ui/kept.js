@@ -36,6 +36,12 @@ export function keptOf(engine) {
       end: 'End the thickness',
       act: () => engine.resetSetting('thickness'),
     });
+  if (settings.spacing)
+    kept.push({
+      text: `Spacing ${settings.spacing}`,
+      end: 'End the spacing',
+      act: () => engine.resetSetting('spacing'),
+    });
   if (settings.box_faces !== undefined)
     kept.push({
       text: 'Closed by the box',

@@ -1,5 +1,7 @@
 /** The links to the learn page, which carry the surface of the picture over, and a particle to be explained there. */
+
 import { NO_PARENT } from '../engine/core-numbers.js';
+import { givenOf } from '../engine/given.js';
 import { triple } from '../engine/vector.js';
 import { explain } from './explain.js';
 import { packCarried, packParticle } from './surface-link.js';
@@ -23,10 +25,9 @@ export function bindLearnLink(link, engine) {
   };
   for (const type of ['pointerdown', 'focus', 'click']) link.addEventListener(type, write);
   explain(link, () => {
-    // A model from points and an image are too large for a link.
-    const field = engine.field.peek();
-    const held = field?.model ? 'a model from points' : field?.image ? 'an image' : null;
-    const on = held === null ? 'this surface' : `an ellipsoid: a link cannot hold ${held}`;
+    // What files hold is too large for a link.
+    const given = givenOf(engine.field.peek());
+    const on = given ? `an ellipsoid: a link cannot hold the ${given.holds} of ${given.name}` : 'this surface';
     return { title: 'The lesson', text: `The paper’s idea in one sitting, with figures on ${on}.` };
   });
 }

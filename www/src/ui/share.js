@@ -1,20 +1,20 @@
 /** Copies a link or exports a file. */
+
 import { FILE_SURFACE } from '../engine/constants.js';
+import { givenOf } from '../engine/given.js';
 
 /**
  * @import { Engine, FileRequest, Language, MeshFormat, ParticleFormat } from '../engine/types.js'
  * @import { Toast } from './types.js'
  */
 
-/** The name of the file that is open. @param {Engine} engine */
-const nameOf = ({ field }) => (field.peek()?.model ?? field.peek()?.image)?.name ?? 'a file';
-
 /** @param {Engine} engine @param {Toast} toast */
 export async function copyLink(engine, toast) {
   try {
     const url = await linkTo(engine);
     if (engine.state.peek().surface === FILE_SURFACE) {
-      const held = `A link cannot hold the ${engine.field.peek()?.image ? 'voxels' : 'points'} of ${nameOf(engine)}`;
+      const { name, holds } = givenOf(engine.field.peek()) ?? { name: 'a file', holds: 'points' };
+      const held = `A link cannot hold the ${holds} of ${name}`;
       const text = `${held}: it shows the standard surface with these settings. Send the file along.`;
       toast({ id: 'share-file', kind: 'info', text });
     }

@@ -8,11 +8,15 @@ import { open, turn, until } from './engine.js';
 /** @import { SettingInfo } from '../../src/engine/types.js' */
 
 /** A value that a setting does not have of itself; a length without ends is a tenth. @param {SettingInfo} info */
-const otherOf = ({ choices, default: own, min, max }) =>
-  choices?.length ? choices.find(({ value }) => value !== own)?.value : ((own === max ? min : max) ?? 0.1);
+const otherOf = ({ kind, choices, default: own, min, max }) =>
+  kind === 'text'
+    ? '0.1 + 0.02z'
+    : choices?.length
+      ? choices.find(({ value }) => value !== own)?.value
+      : ((own === max ? min : max) ?? 0.1);
 
 /** What belongs to the surface it was chosen for. Every other setting is of the way of sampling, and stays. */
-const OF_SURFACE = ['beyond_points', 'box_cell', 'box_faces', 'box_mode', 'thickness'];
+const OF_SURFACE = ['beyond_points', 'box_cell', 'box_faces', 'box_mode', 'spacing', 'thickness'];
 
 test('of all settings, those of a surface end with it, and a changed formula keeps them', async () => {
   const p = await open();
@@ -45,7 +49,13 @@ test('what of a surface stays with a changed formula is told, with the button th
   expect(keptOf(engine)).toEqual([]);
   engine.setPlane({ normal: [1, 0, 0], offset: 0 });
   engine.setBounds({ min: [-1, -1, -1], max: [1, 1, 0.2] });
-  const chosen = { box_cell: 'periodic', box_faces: 'closed', box_mode: 'fixed', thickness: 0.1 };
+  const chosen = {
+    box_cell: 'periodic',
+    box_faces: 'closed',
+    box_mode: 'fixed',
+    spacing: '0.1 + 0.02z',
+    thickness: 0.1,
+  };
   // Where a model ends is no matter of a formula.
   expect(['beyond_points', ...Object.keys(chosen)]).toEqual(OF_SURFACE);
   for (const [name, value] of Object.entries(chosen)) engine.setSetting(name, value);
@@ -53,6 +63,7 @@ test('what of a surface stays with a changed formula is told, with the button th
   expect(keptOf(engine).map(({ text }) => text.replace(/,.*/, ''))).toEqual([
     'Cut at x = 0',
     'Thickness 0.1',
+    'Spacing 0.1 + 0.02z',
     'Closed by the box',
     'Opposite faces alike',
     'Box set by hand',

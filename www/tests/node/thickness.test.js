@@ -15,8 +15,8 @@ test('a thickness is a number or a formula of the present surface', async () => 
     ['0.3 + 0.03z', 0.2, 0, undefined, undefined],
   );
   expect(validSetting(description, 'radius_share', '0.3 + z')).toBeUndefined();
-  expect(await engine.thicknessFault('0.3 + 0.03z + 0.1t')).toBeNull();
-  expect(await engine.thicknessFault('0.3 + 0.03q')).toContain('Thickness: The formula has no parameter `q`');
+  expect(await engine.textFault('thickness', '0.3 + 0.03z + 0.1t')).toBeNull();
+  expect(await engine.textFault('thickness', '0.3 + 0.03q')).toContain('Thickness: The formula has no parameter `q`');
   await p.set({ settings: { ...settings, thickness: '1 + 0.1z', box_faces: 'closed' } });
   expect(engine.columns.record?.solid.thickness).toBe('1 + 0.1z');
   expect(keptOf(engine)[0].text).toBe('Thickness 1 + 0.1z');

@@ -145,6 +145,83 @@ describe('an image', () => {
   });
 });
 
+describe('a mesh', () => {
+  const points = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => [k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1]);
+  const squares = [
+    [0, 2, 3, 1],
+    [4, 5, 7, 6],
+    [0, 1, 5, 4],
+    [2, 6, 7, 3],
+    [0, 4, 6, 2],
+    [1, 3, 7, 5],
+  ];
+  const faces = squares.flatMap(([a, b, c, d]) => [
+    [a, b, c],
+    [a, c, d],
+  ]);
+  const cube = /** @type {any} */ ({ points, faces });
+  const off = ['OFF', '8 6 0', ...points.map((p) => p.join(' ')), ...squares.map((f) => `4 ${f.join(' ')}`)].join('\n');
+
+  test('of arrays is sampled anew with its edges, and what has become of it is told', async () => {
+    const sample = await made.sample({ mesh: cube, name: 'cube' }, { count: 2000 });
+    expect(sample.original).toMatchObject({
+      name: 'cube',
+      faces: 12,
+      vertices: 8,
+      part: { patches: 6, edges: 12, corners: 8, faded: 0 },
+      scan: null,
+    });
+    expect(sample.change?.volume[1]).toBeCloseTo(8, 3);
+    expect(sample.change?.area[1]).toBeCloseTo(24, 3);
+    expect(sample.change?.to_new.largest).toBeLessThan(1e-3);
+    expect(sample.change?.edges).toBeLessThan(1e-3);
+    // Every particle is on a face of the cube.
+    for (let i = 0; i < sample.points.length; i += 3)
+      expect(Math.max(...sample.points.slice(i, i + 3).map(Math.abs))).toBeCloseTo(1, 4);
+    expect((await sample.mesh()).volume).toBeCloseTo(8, 3);
+  });
+
+  test('of a file is that of its arrays, in a blob, a buffer or its bytes', async () => {
+    const { digest } = await made.sample({ mesh: cube }, { count: 1000 });
+    const file = new Blob([off]);
+    const buffer = await file.arrayBuffer();
+    for (const mesh of [file, buffer, new Uint8Array(buffer)])
+      expect((await made.sample({ mesh }, { count: 1000 })).digest).toBe(digest);
+  });
+
+  test('is a scan where no edges are kept, and an operand in a formula, of which nothing is compared', async () => {
+    const round = await made.sample({ mesh: cube }, { count: 1000, edges: 'none', smooth: 2 });
+    expect(round.original).toMatchObject({ part: null, scan: { smooth: 2 } });
+    expect(round.params).toEqual({ smooth: 2 });
+    expect(round.change?.edges).toBe(null);
+    const half = await made.sample({ mesh: cube }, { count: 1000, formula: 'max(model, z)' });
+    expect(Math.max(...half.points.filter((_, k) => k % 3 === 2))).toBeCloseTo(0, 4);
+    expect(half.change).toBe(null);
+    expect((await made.sample({ mesh: cube }, { count: 500, measure: false })).change).toBe(null);
+  });
+
+  test('is refused with what is wrong', async () => {
+    for (const [field, options, words] of /** @type {[any, any, RegExp][]} */ ([
+      [{ mesh: 'part.stl' }, {}, /\{points, faces\}, a File/],
+      [{ mesh: { points, faces: [[0, 1, 8]] } }, {}, /faces\[2\]: the index of one of 8 vertices/],
+      [{ mesh: { points, faces: [0, 1] } }, {}, /three vertices for each/],
+      [{ mesh: { points, faces: faces.slice(0, 2) } }, {}, /encloses no volume/],
+      [{ mesh: { points, faces: faces.slice(2) } }, { edges: 30 }, /edges are kept of closed meshes/i],
+      [{ mesh: new TextEncoder().encode('OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0') }, {}, /no faces, only points/i],
+      [{ mesh: cube }, { edges: 0 }, /from 1 to 180 degrees/],
+      [{ mesh: cube }, { smooth: 11 }, /from 0 to 10 cells/],
+      [{ mesh: cube }, { edges: 30, smooth: 1 }, /not both/i],
+      [{ mesh: cube }, { iso: 1 }, /iso: for an image/],
+      ['x', { edges: 30 }, /edges: for a mesh/],
+      ['x', { smooth: 1 }, /smooth: for an image or a mesh/],
+    ]))
+      await expect(made.sample(field, options)).rejects.toMatchObject({
+        name: 'InputError',
+        message: expect.stringMatching(words),
+      });
+  });
+});
+
 test('a cell of a sheet is a closed solid whose opposite faces match', async () => {
   const bounds = /** @type {const} */ ({ min: [-3, -3, -3], max: [3, 3, 3] });
   const gyroid = 'sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)';
@@ -546,7 +623,7 @@ describe('what is wrong has a name and says what to do', () => {
     ['InputError', 'points[4]: a number, not NaN', { points: [1, 2, 3, 4, NaN, 6] }, {}],
     ['InputError', 'normals: one for each point, not 1 for 2', { points: [1, 2, 3, 4, 5, 6], normals: [0, 0, 1] }, {}],
     ['InputError', 'points lie on a straight', { points: [0, 0, 0, 1, 0, 0] }, {}],
-    ['InputError', 'a function, points or an image have none', () => 1, { params: { a: 1 } }],
+    ['InputError', 'a function, points, an image or a mesh have none', () => 1, { params: { a: 1 } }],
     ['InputError', 'formula: for points', SPHERE, { formula: 'max(model, z)' }],
     ['InputError', 'formula: a text', { points: [1, 2, 3] }, { formula: 3 }],
     ['InputError', 'The option radius has no effect with adaptive: true', SPHERE, { radius: 0.01, adaptive: true }],

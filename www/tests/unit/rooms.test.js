@@ -12,6 +12,7 @@ const ENGINE_FACE = [
   'engine/constants',
   'engine/vector',
   'engine/pulls',
+  'engine/given',
   'engine/columns',
   'engine/core-numbers',
   'engine/scans',
@@ -33,6 +34,7 @@ const MAY_USE = {
   'engine/scans': [],
   'engine/vector': ['engine/types'],
   'engine/pulls': ['engine/types', 'engine/vector'],
+  'engine/given': ['engine/types'],
   'engine/types': ['engine/columns', 'engine/core-types', 'engine/lesson', 'engine/share/view'],
   'engine/columns': ['engine/types', 'engine/core-numbers', 'engine/vector'],
   'engine/store': ['engine/types', 'engine/share'],
@@ -62,15 +64,15 @@ const MAY_USE = {
   'engine/bundle': [],
   // The lesson runs beside the sampler and knows nothing of it.
   'engine/lesson': ['engine/core-types', 'engine/bundle'],
-  // Files of images, opened in the core: in the worker, and in that of the package.
-  'engine/images': ['engine/types', 'engine/core-types', 'engine/bundle'],
+  // Files of images and meshes, opened in the core: in the worker, and in that of the package.
+  'engine/files': ['engine/types', 'engine/core-types', 'engine/bundle'],
   'engine/points': [
     'engine/types',
     'engine/constants',
     'engine/store',
     'engine/share',
     'engine/bundle',
-    'engine/images',
+    'engine/files',
     'engine/scans',
   ],
   'engine/sampling': [
@@ -80,7 +82,7 @@ const MAY_USE = {
     'engine/store',
     'engine/share',
     'engine/bundle',
-    'engine/images',
+    'engine/files',
     'engine/points/types',
   ],
   'engine/commands': [

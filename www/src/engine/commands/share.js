@@ -10,7 +10,7 @@ import { description } from '../store.js';
 
 /**
  * @import { Parts } from '../parts.js'
- * @import { EngineCommands, MeshFormat } from '../types.js'
+ * @import { Columns, EngineCommands, MeshFormat } from '../types.js'
  */
 
 /** Largest width or height of a saved picture. */
@@ -75,8 +75,14 @@ export function shareCommands({ store, columns, picture: { viewer }, scheduler, 
         if (!record) throw new Error('There is no record of these particles.');
         return json(record);
       }
-      const all = description(store).columns;
-      return format === 'csv' ? csv(columns, all) : ply(columns, all, record);
+      const all = [...description(store).columns];
+      /** @type {Columns & {values?: Record<string, Float32Array>}} */
+      const exported = Object.create(columns);
+      if (columns.value) {
+        all.push(/** @type {typeof all[number]} */ ({ name: 'value', kind: 'float' }));
+        exported.values = { value: columns.value };
+      }
+      return format === 'csv' ? csv(exported, all) : ply(exported, all, record);
     },
     code: (language) => scheduler.sampling.client.code(language),
     async exportMesh(format, options) {

@@ -28,12 +28,12 @@ import { change, changeView, description, showAll } from '../store.js';
  */
 
 /**
- * @typedef {Pick<EngineCommands, 'setSurface' | 'openFile' | 'setCentres' | 'cancelLoading' | 'setFormula' |
- *   'restore'>} SurfaceCommands
+ * @typedef {Pick<EngineCommands, 'setSurface' | 'openFile' | 'takeFileFor' | 'setCentres' | 'cancelLoading' |
+ *   'setFormula' | 'restore'>} SurfaceCommands
  */
 /**
- * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'chooseOfImage' | 'pull' | 'setPulls' |
- *   'declareParameter' | 'readNumber' | 'thicknessFault' | 'setBounds' | 'enlargement' | 'setPlane' | 'fitBox' |
+ * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'chooseOfFile' | 'pull' | 'setPulls' |
+ *   'declareParameter' | 'readNumber' | 'textFault' | 'setBounds' | 'enlargement' | 'setPlane' | 'fitBox' |
  *   'setSetting' | 'resetSetting'>} InputCommands
  */
 
@@ -120,6 +120,10 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
       scheduler.forgetLater();
       return scheduler.loader.openFile(file, beside);
     },
+    takeFileFor(what) {
+      scheduler.forgetLater();
+      return scheduler.loader.takeFor(what);
+    },
     setCentres(count) {
       const centres = validCentres(count, description(store), state.value.surface);
       if (centres === undefined || centres === state.value.centres) return;
@@ -179,7 +183,7 @@ export function inputCommands({ store, scheduler, framing }) {
       if (!about || !isName(about, name) || !Number.isFinite(value)) return;
       resample(live, { parameters: { ...state.value.parameters, [name]: value } });
     },
-    chooseOfImage(parameters) {
+    chooseOfFile(parameters) {
       change(store, { parameters });
       scheduler.resample({ kind: 'new' });
     },
@@ -207,7 +211,7 @@ export function inputCommands({ store, scheduler, framing }) {
       if (text.trim() !== '' && Number.isFinite(plain)) return plain;
       return scheduler.sampling.client.number(text);
     },
-    thicknessFault: (text) => scheduler.sampling.client.thicknessFault(text),
+    textFault: (what, text) => scheduler.sampling.client.textFault(what, text),
     setBounds(bounds, { live = false, enlarges = false } = {}) {
       const valid = bounds === null ? null : validBounds(bounds, description(store).limits);
       if (valid === undefined) return;

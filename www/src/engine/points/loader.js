@@ -1,18 +1,18 @@
 /**
- * Loads models and files and samples them once they are solved, or opened if they are images. The state may name a
- * built-in model before it is solved; if solving fails, the state returns to the previous surface. A file enters the
- * state only after that.
+ * Loads models and files and samples them once they are solved, or opened if they are images or meshes. The state may
+ * name a built-in model before it is solved; if solving fails, the state returns to the previous surface. A file enters
+ * the state only after that.
  *
  * @module
  */
 import { batch } from '@preact/signals-core';
-import { FILE_SURFACE, IMAGE_TYPES } from '../constants.js';
+import { FILE_SURFACE, IMAGE_TYPES, MESH_TYPES } from '../constants.js';
 import { scanOf } from '../scans.js';
 import { defaultState, emptyState, freshShape, fromPoints, modelOf } from '../share/state.js';
 import { PointsClient } from './client.js';
 
 /**
- * @import { KeyedImage, Opened } from '../images/types.js'
+ * @import { KeyedFile, Opened } from '../files/types.js'
  * @import { ImageFacts, SampleKind, Shape } from '../types.js'
  * @import { Ending } from './client.js'
  * @import { LoaderOptions, Refusal, Wanted } from './types.js'
@@ -21,17 +21,21 @@ import { PointsClient } from './client.js';
 /** Key of a solved model. @param {string} points  of the model or the file @param {number | null} centres */
 const keyOf = (points, centres) => (centres === null ? points : `${points}, ${centres} centres`);
 
+/** Where there is no worker that opens files. @type {NonNullable<LoaderOptions['openGiven']>} */
+const NO_OPENER = () => Promise.resolve({ ok: false, kind: 'no_faces', message: 'there is no opener' });
+
 /** An image with more different values is taken for one of grey values at first. */
 const MOST_BODIES = 32;
 
-/** Whether the name of a file is that of an image. @param {string} name */
-const isImageName = (name) => IMAGE_TYPES.split(',').some((type) => name.toLowerCase().endsWith(type));
+/** Whether the name of a file ends with one of these types. @param {string} name @param {string} types */
+const isOf = (name, types) => types.split(',').some((type) => name.toLowerCase().endsWith(type));
 
 /**
- * The parameters with which the surface of an image begins: of labels that of the largest body, else none.
- * @param {ImageFacts} facts @returns {Shape['parameters']}
+ * The parameters with which the surface of a file begins: of labels in an image that of the largest body, else none.
+ * @param {ImageFacts | null} facts @returns {Shape['parameters']}
  */
-function beginningOf({ labels }) {
+function beginningOf(facts) {
+  const labels = facts?.labels ?? [];
   if (labels.length === 0 || labels.length > MOST_BODIES) return {};
   const bodies = labels.filter(({ value }) => value !== 0);
   return { label: bodies.reduce((largest, other) => (other.voxels > largest.voxels ? other : largest)).value };
@@ -40,13 +44,16 @@ function beginningOf({ labels }) {
 export class ModelLoader {
   #store;
   #sample;
-  #openImage;
-  #stopImage;
+  #openGiven;
+  #stopOpening;
 
   /** The file opened last, and the beginning of the keys of its models. @type {{file: File, key: string} | null} */
   #opened;
-  /** The images that were opened, by their keys. @type {Map<string, {image: KeyedImage, facts: ImageFacts}>} */
-  #images = new Map();
+  /**
+   * The images and meshes that were opened, by their keys.
+   * @type {Map<string, {file: KeyedFile, facts: ImageFacts | null}>}
+   */
+  #given = new Map();
   #files;
 
   /** The surface that was sampled last. @type {Shape | null} */
@@ -56,11 +63,11 @@ export class ModelLoader {
   #orderId;
 
   /** @param {LoaderOptions} options */
-  constructor({ store, spawn, sample, openImage = () => Promise.resolve(null), stopImage = () => {} }) {
+  constructor({ store, spawn, sample, openGiven = NO_OPENER, stopOpening = () => {} }) {
     this.#store = store;
     this.#sample = sample;
-    this.#openImage = openImage;
-    this.#stopImage = stopImage;
+    this.#openGiven = openGiven;
+    this.#stopOpening = stopOpening;
     this.client = new PointsClient({
       spawn,
       onProgress: ({ label, fraction }) => this.#tell(label, fraction),
@@ -82,7 +89,7 @@ export class ModelLoader {
     const { surface, centres } = this.#store.state.value;
     if (!fromPoints(this.#store.description.value, surface)) return undefined;
     const own = surface === FILE_SURFACE ? (this.#opened?.key ?? '') : surface;
-    return this.#images.has(own) || scanOf(own) ? own : keyOf(own, centres);
+    return this.#given.has(own) || scanOf(own) ? own : keyOf(own, centres);
   }
 
   /** Returns whether the state's surface can be sampled now. */
@@ -91,14 +98,14 @@ export class ModelLoader {
     return key === undefined || this.solved(key) !== undefined;
   }
 
-  /** Returns the solved model under this key, or the opened image. @param {string} key */
+  /** Returns the solved model under this key, or the opened file. @param {string} key */
   solved(key) {
-    return this.#images.get(key) ?? this.client.get(key);
+    return this.#given.get(key) ?? this.client.get(key);
   }
 
   /** The parameters with which the file opened last begins. @returns {Shape['parameters']} */
   beginning() {
-    const known = this.#images.get(this.#opened?.key ?? '');
+    const known = this.#given.get(this.#opened?.key ?? '');
     return known ? beginningOf(known.facts) : {};
   }
 
@@ -106,7 +113,7 @@ export class ModelLoader {
   settled() {
     const { v: _, view: __, ...shape } = this.#store.state.value;
     this.#last = shape;
-    this.#store.image.value = this.#images.get(this.key() ?? '')?.facts ?? null;
+    this.#store.image.value = this.#given.get(this.key() ?? '')?.facts ?? null;
   }
 
   /** Returns the state; while its model is loading, the state with the previous surface. */
@@ -149,18 +156,43 @@ export class ModelLoader {
     const scan = scanOf(surface);
     if (scan) return { id: surface, name: scan.name, order: null };
     if (model) return { id: surface, name: model.name, order: { model: surface, centres } };
-    if (surface !== FILE_SURFACE || !this.#opened || this.#images.has(this.#opened.key)) return null;
+    if (surface !== FILE_SURFACE || !this.#opened || this.#given.has(this.#opened.key)) return null;
     const { file } = this.#opened;
     return { id: surface, name: file.name, order: { file, centres } };
   }
 
   /** @param {File} file @param {File[]} [beside]  one of which may hold the voxels of an image */
   async openFile(file, beside = []) {
-    if (isImageName(file.name)) return this.#openImageFile(file, beside);
+    if (isOf(file.name, IMAGE_TYPES)) {
+      await this.#openFor('image', file, { beside });
+      return;
+    }
+    const why = isOf(file.name, MESH_TYPES) ? await this.#openFor('mesh', file, { elsePoints: true }) : null;
+    if (why === undefined) return;
+    await this.#openPoints(file, null);
+    if (why && why.kind !== 'no_faces' && this.#store.loadingError.value === null)
+      this.#store.notice.value = {
+        id: 'taken',
+        kind: 'info',
+        text: `${file.name} was taken for points: ${why.message}`,
+      };
+  }
+
+  /** Takes the mesh file that was opened last for its surface, or for points. @param {'surface' | 'points'} what */
+  async takeFor(what) {
+    const file = this.#opened?.file;
+    if (!file || this.#store.taken.value === what) return;
+    if (what === 'points') await this.#openPoints(file, 'points');
+    else await this.#openFor('mesh', file);
+  }
+
+  /** @param {File} file @param {'points' | null} taken  whether it could be taken for a surface, too */
+  async #openPoints(file, taken) {
     // Without a core the solver alone refuses what is too large.
     const most = this.#store.description.value?.limits.file_bytes ?? Number.POSITIVE_INFINITY;
     if (file.size > most) {
       const mb = (/** @type {number} */ bytes) => Math.round(bytes / 1e6).toLocaleString('en');
+      this.#store.loading.value = null;
       this.#refused(FILE_SURFACE, file.name, {
         kind: 'too_large',
         message: `the file has ${mb(file.size)} MB; up to ${mb(most)} MB are read`,
@@ -173,45 +205,58 @@ export class ModelLoader {
     const load = () => this.client.load(keyOf(key, null), { file, centres: null });
     await this.#order({ id: FILE_SURFACE, name: file.name }, keyOf(key, null), load, () => {
       this.#opened = { file, key };
+      this.#store.taken.value = taken;
       const { value: now } = state;
       state.value = { ...now, ...freshShape(this.#store.description.value, now.settings, FILE_SURFACE) };
       this.#sample('new');
     });
   }
 
-  /** @param {File} file @param {File[]} beside */
-  async #openImageFile(file, beside) {
+  /**
+   * Opens a file as an image or a mesh and samples its surface. With `elsePoints` it returns why a mesh has no surface,
+   * and does not tell it.
+   * @param {KeyedFile['as']} as @param {File} file @param {{beside?: File[], elsePoints?: boolean}} [options]
+   * @returns {Promise<Refusal | undefined>}
+   */
+  async #openFor(as, file, { beside = [], elsePoints = false } = {}) {
     this.cancel();
     this.#files += 1;
     const others = beside.map((other) => ({ name: other.name, file: other }));
-    const image = { key: `file ${this.#files}`, name: file.name, file, beside: others };
-    await this.#order(
-      { id: FILE_SURFACE, name: file.name },
-      image.key,
-      () => this.#open(image),
-      () => {
-        this.#opened = { file, key: image.key };
-        const { state, description } = this.#store;
-        const { value: now } = state;
-        const fresh = freshShape(description.value, now.settings, FILE_SURFACE);
-        state.value = { ...now, ...fresh, parameters: this.beginning() };
-        this.#sample('new');
-      },
-    );
+    const given = { as, key: `file ${this.#files}`, name: file.name, file, beside: others };
+    /** @type {Refusal | undefined} */
+    let refused;
+    const load = async () => {
+      const ending = await this.#open(given);
+      if (!elsePoints || !('refusal' in ending)) return ending;
+      refused = ending.refusal;
+      return { goesOn: /** @type {const} */ (true) };
+    };
+    const order = this.#order({ id: FILE_SURFACE, name: file.name }, given.key, load, () => {
+      this.#opened = { file, key: given.key };
+      const { state, description, taken } = this.#store;
+      taken.value = as === 'mesh' ? 'surface' : null;
+      const { value: now } = state;
+      const fresh = freshShape(description.value, now.settings, FILE_SURFACE);
+      state.value = { ...now, ...fresh, parameters: this.beginning() };
+      this.#sample('new');
+    });
+    const mine = this.#orderId;
+    await order;
+    return this.#orderId === mine ? refused : undefined;
   }
 
   /** Computes an image of the gallery and opens it. @param {string} key @param {Pick<Wanted, 'id' | 'name'>} scan */
   async #computed(key, { id, name }) {
-    const { scanFile } = await import('../images/scans.js');
-    return this.#open({ key, name, file: scanFile(id), beside: [] });
+    const { scanFile } = await import('../files/scans.js');
+    return this.#open({ as: 'image', key, name, file: scanFile(id), beside: [] });
   }
 
-  /** @param {KeyedImage} image @returns {Promise<Ending | { opened: Opened }>} */
-  async #open(image) {
-    const opened = await this.#openImage(image, (label, fraction) => this.#tell(label, fraction));
+  /** @param {KeyedFile} file @returns {Promise<Ending | { opened: Opened }>} */
+  async #open(file) {
+    const opened = await this.#openGiven(file, (label, fraction) => this.#tell(label, fraction));
     if (!opened) return { givenUp: true };
-    if (!opened.ok) return { refusal: { kind: 'image', message: opened.message } };
-    this.#images.set(image.key, { image, facts: opened.facts });
+    if (!opened.ok) return { refusal: { kind: opened.kind, message: opened.message } };
+    this.#given.set(file.key, { file, facts: opened.facts });
     return { opened };
   }
 
@@ -223,8 +268,8 @@ export class ModelLoader {
 
   /**
    * @param {Pick<Wanted, 'id' | 'name'>} wanted @param {string} key
-   * @param {() => Promise<Ending | { opened: Opened }>} load
-   * @param {() => void} done  called once the model is solved, or the image is open
+   * @param {() => Promise<Ending | { opened: Opened } | { goesOn: true }>} load  may end with another order to follow
+   * @param {() => void} done  called once the model is solved, or the file is open
    * @returns whether it is
    */
   async #order({ id, name }, key, load, done) {
@@ -241,11 +286,11 @@ export class ModelLoader {
     this.orderKey = '';
     // A batch, so that no effect runs between the end of the loading and the start of the run.
     batch(() => {
-      loading.value = null;
+      if (!('goesOn' in outcome)) loading.value = null;
       if ('solved' in outcome || 'opened' in outcome) done();
       else if ('refusal' in outcome) this.#refused(id, name, outcome.refusal);
     });
-    return !('refusal' in outcome || 'givenUp' in outcome);
+    return 'solved' in outcome || 'opened' in outcome;
   }
 
   /** @param {string} id @param {string} name @param {Refusal} refusal */
@@ -258,6 +303,6 @@ export class ModelLoader {
   /** Gives up the current order. */
   cancel() {
     this.client.giveUp();
-    this.#stopImage();
+    this.#stopOpening();
   }
 }

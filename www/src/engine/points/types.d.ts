@@ -2,7 +2,7 @@
 // handles one model or file and is then terminated, which releases the memory that a large file takes. Termination is
 // also how an order is cancelled.
 import type { Timers } from '../bundle/types.js';
-import type { KeyedImage, Opened } from '../images/types.js';
+import type { KeyedFile, Opened } from '../files/types.js';
 import type { Store } from '../store.js';
 import type { Bounds, ModelInfo, PointsAnswer, SampleKind, SolvedAnswer } from '../types.js';
 
@@ -44,7 +44,7 @@ export interface LoaderOptions {
   spawn: () => WorkerLike;
   /** samples the present state */
   sample: (kind?: SampleKind) => void;
-  /** opens the file of an image in the sampler's worker */
-  openImage?: (image: KeyedImage, onProgress: (label: string, fraction: number) => void) => Promise<Opened>;
-  stopImage?: () => void;
+  /** opens the file of an image or a mesh in the sampler's worker */
+  openGiven?: (file: KeyedFile, onProgress: (label: string, fraction: number) => void) => Promise<Opened>;
+  stopOpening?: () => void;
 }

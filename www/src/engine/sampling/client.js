@@ -8,7 +8,7 @@ import { Requests } from '../bundle/requests.js';
 import { Supervisor } from './supervisor.js';
 
 /**
- * @import { KeyedImage, Opened } from '../images/types.js'
+ * @import { KeyedFile, Opened } from '../files/types.js'
  * @import { FileRequest, Language } from '../types.js'
  * @import { ClientEvents, Clock, FromWorker, ToWorker, WorkerLike } from './types.js'
  */
@@ -19,16 +19,19 @@ export class SamplingClient {
   #onMessage;
   #onLoadFailed;
 
-  /** Whether the page shows the curvature and a mesh. A new worker is told again. */
-  #wishes = { curvature: false, mesh: false };
+  /**
+   * Whether the page shows the curvature and a mesh, and the formula of the value that it shows. A new worker is told
+   * again.
+   */
+  #wishes = { curvature: false, mesh: false, value: '' };
   /** The files that are being written. */
   #files = new Requests();
-  /** The texts that are being read as numbers or thicknesses, and the programs that are being written. */
+  /** The texts that are being read as numbers or checked, and the programs that are being written. */
   #texts = new Requests();
-  /** The image that is being opened, and what hears of its progress. */
-  #images = new Requests();
+  /** The file that is being opened, and what hears of its progress. */
+  #opening = new Requests();
   /** @type {(label: string, fraction: number) => void} */
-  #onImage = () => {};
+  #onOpening = () => {};
   #isBusy = false;
 
   /** @param {ClientEvents & {spawn: () => WorkerLike, clock?: Clock}} options */
@@ -84,6 +87,13 @@ export class SamplingClient {
     this.post({ type: what, on });
   }
 
+  /** Asks for the value of a formula while it is shown; for none with an empty text. @param {string} text */
+  wishValue(text) {
+    if (text === this.#wishes.value) return;
+    this.#wishes.value = text;
+    this.post({ type: 'value', text });
+  }
+
   /**
    * Returns the mesh of the particles that the worker holds, as a file.
    * @param {Partial<FileRequest>} file
@@ -124,38 +134,38 @@ export class SamplingClient {
   }
 
   /**
-   * Returns why the present surface cannot have a thickness that is given as a formula; null if it can, and without a
-   * worker.
-   * @param {string} text
+   * Returns what is wrong with the formula of a thickness or a spacing on the present surface; null if nothing is, and
+   * without a worker.
+   * @param {'thickness' | 'spacing'} what @param {string} text
    * @returns {Promise<string | null>}
    */
-  thicknessFault(text) {
+  textFault(what, text) {
     if (!this.isThere) return Promise.resolve(null);
-    return this.#texts.make((request) => this.post({ type: 'thickness', request, text })).catch(() => null);
+    return this.#texts.make((request) => this.post({ type: 'fault', request, what, text })).catch(() => null);
   }
 
   /**
-   * Opens the file of an image in the worker. Resolves with null if that is stopped, or the worker is gone.
-   * @param {KeyedImage} image @param {(label: string, fraction: number) => void} onProgress
+   * Opens the file of an image or a mesh in the worker. Resolves with null if that is stopped, or the worker is gone.
+   * @param {KeyedFile} file @param {(label: string, fraction: number) => void} onProgress
    * @returns {Promise<Opened>}
    */
-  openImage(image, onProgress) {
-    if (!this.isThere) return Promise.resolve({ ok: false, message: 'the sampler is not running' });
-    this.#onImage = onProgress;
-    return this.#images.make((request) => this.post({ type: 'image', request, image })).catch(() => null);
+  openFile(file, onProgress) {
+    if (!this.isThere) return Promise.resolve({ ok: false, kind: file.as, message: 'the sampler is not running' });
+    this.#onOpening = onProgress;
+    return this.#opening.make((request) => this.post({ type: 'open', request, file })).catch(() => null);
   }
 
-  /** Gives up the image that is being opened: at once here, and in the worker as soon as it listens. */
-  stopImage() {
-    if (this.#images.count === 0) return;
-    this.post({ type: 'image_stop' });
-    this.#images.refuseAll(lost());
+  /** Gives up the file that is being opened: at once here, and in the worker as soon as it listens. */
+  stopOpening() {
+    if (this.#opening.count === 0) return;
+    this.post({ type: 'open_stop' });
+    this.#opening.refuseAll(lost());
   }
 
   /** Gives up all files and texts, because the worker is gone. */
   forgetFiles() {
     this.#texts.refuseAll(lost());
-    this.#images.refuseAll(lost());
+    this.#opening.refuseAll(lost());
     this.#files.refuseAll(lost());
     this.#attend();
   }
@@ -178,6 +188,7 @@ export class SamplingClient {
         this.#attend();
         for (const what of /** @type {const} */ (['curvature', 'mesh']))
           if (this.#wishes[what]) this.post({ type: what, on: true });
+        if (this.#wishes.value) this.post({ type: 'value', text: this.#wishes.value });
         return this.#onMessage(message);
       case 'failed':
         return this.#onLoadFailed(message.message);
@@ -191,12 +202,12 @@ export class SamplingClient {
         if (message.answer.ok) this.#texts.answer(message.request, message.answer.text);
         else this.#texts.refuse(message.request, new Error(message.answer.error));
         return;
-      case 'thickness':
+      case 'fault':
         return this.#texts.answer(message.request, message.fault);
-      case 'image_progress':
-        return this.#onImage(message.label, message.fraction);
-      case 'image':
-        return this.#images.answer(message.request, message.opened);
+      case 'open_progress':
+        return this.#onOpening(message.label, message.fraction);
+      case 'opened':
+        return this.#opening.answer(message.request, message.opened);
       case 'file':
         if (message.bytes) this.#files.answer(message.request, message.bytes);
         else this.#files.refuse(message.request, lost());

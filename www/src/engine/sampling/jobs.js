@@ -9,8 +9,8 @@ import { KINDS } from './kinds.js';
 
 /**
  * @import { Core } from '../../wasm/core/core.js'
- * @import { ImageKeeper } from '../images/keeper.js'
- * @import { KeyedImage } from '../images/types.js'
+ * @import { FileKeeper } from '../files/keeper.js'
+ * @import { KeyedFile } from '../files/types.js'
  * @import { FieldAnswer } from '../types.js'
  * @import { FromWorker, Job, SampleJob, ToWorker } from './types.js'
  */
@@ -22,14 +22,14 @@ import { KINDS } from './kinds.js';
 const PATIENCE_MS = 150;
 
 /**
- * What opens images in the core. `isReady` opens the one of a job if need be, and has the worker ask again.
- * @typedef {{isReady: (core: Core, image: KeyedImage) => boolean, setField: ImageKeeper['setField']}} Images
+ * What opens files in the core. `isReady` opens the one of a job if need be, and has the worker ask again.
+ * @typedef {{isReady: (core: Core, file: KeyedFile) => boolean, setField: FileKeeper['setField']}} Files
  */
-/** Where no job is of an image. @type {Images} */
-const NO_IMAGES = {
+/** Where no job is of a file. @type {Files} */
+const NO_FILES = {
   isReady: () => true,
   setField: () => {
-    throw new Error('there are no images here');
+    throw new Error('there are no files here');
   },
 };
 
@@ -38,11 +38,11 @@ const NO_IMAGES = {
 /**
  * Sets the field of a job in the core. A model is passed again for every job: it has a few kilobytes, and tracking
  * which model the core holds would cost more.
- * @param {Core} core @param {SampleJob} job @param {Images} images
+ * @param {Core} core @param {SampleJob} job @param {Files} files
  * @returns {FieldAnswer}
  */
-function setField(core, { field, points, image }, images) {
-  if (image) return images.setField(core, image, field);
+function setField(core, { field, points, file }, files) {
+  if (file) return files.setField(core, file, field);
   if (!points) return core.set_field(field);
   return core.set_points(points.field, points.info, field);
 }
@@ -63,7 +63,7 @@ export function measured(core, { request, field, placed: { positions, normals, r
 export class Jobs {
   #post;
   #nowMs;
-  #images;
+  #files;
 
   /** The latest job; its field has not been passed to the core. @type {Pending | null} */
   #waiting;
@@ -80,11 +80,11 @@ export class Jobs {
   /** When it began, and whether all its particles are on their way to the page. */
   #running = { sinceMs: 0, isSampled: false };
 
-  /** @param {(message: FromWorker) => void} post @param {() => number} nowMs @param {Images} [images] */
-  constructor(post, nowMs, images = NO_IMAGES) {
+  /** @param {(message: FromWorker) => void} post @param {() => number} nowMs @param {Files} [files] */
+  constructor(post, nowMs, files = NO_FILES) {
     this.#post = post;
     this.#nowMs = nowMs;
-    this.#images = images;
+    this.#files = files;
     this.#waiting = null;
     this.#accepted = null;
     /** The job that runs. @type {Job | null} */
@@ -155,10 +155,10 @@ export class Jobs {
     const next = this.#waiting;
     if (!next || this.#isPatient(next.job)) return;
     const { job } = next;
-    if (job.kind !== 'relax' && job.image && !this.#images.isReady(core, job.image)) return;
+    if (job.kind !== 'relax' && job.file && !this.#files.isReady(core, job.file)) return;
     this.#waiting = null;
     if (job.kind !== 'relax') {
-      const answer = setField(core, job, this.#images);
+      const answer = setField(core, job, this.#files);
       this.#post({ type: 'field', id: job.id, answer });
       if (!answer.ok) return;
     }

@@ -66,6 +66,38 @@ export async function join(core, env, tell) {
 }
 
 /**
+ * Returns how far the complete mesh is from the one that was opened, null inside where none was; or null if that is
+ * stopped, or another job replaces the particles, before it is known.
+ * @param {Pick<Core, 'compare'>} core
+ * @param {SliceEnv} env
+ */
+export const compared = (core, env) =>
+  inSlices((budget) => {
+    const change = core.compare(budget);
+    return change === undefined ? undefined : { change };
+  }, env);
+
+/** Name of the column of the value that the page shows, in files. */
+const VALUE = 'value';
+
+/**
+ * Returns the values of a formula at the particles, or what is wrong with it; or null if that is stopped, or another
+ * job replaces the particles, before they are known.
+ * @param {Pick<Core, 'add_value' | 'added_value'>} core
+ * @param {string} formula
+ * @param {SliceEnv} env
+ */
+export async function valued(core, formula, env) {
+  const added = await inSlices((budget) => {
+    const fault = core.add_value(VALUE, formula, budget);
+    return fault === undefined ? undefined : { fault };
+  }, env);
+  if (!added) return null;
+  const { fault } = added;
+  return { values: fault ? new Float32Array(0) : core.added_value(VALUE), fault: fault?.message ?? null };
+}
+
+/**
  * Returns the complete mesh as a file: its bytes, null inside if it cannot be written; or null if it is stopped, or
  * another job replaces the particles, before it is.
  * @param {Pick<Core, 'mesh_file'>} core

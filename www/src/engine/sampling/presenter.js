@@ -14,7 +14,8 @@ import { timingOf } from './pace.js';
  * @import { Store } from '../store.js'
  * @import { Columns, FieldAnswer, FieldRequest, Mesh, Progress, ToldProgress } from '../types.js'
  * @import {
- *   ColumnsMessage, DoneMessage, PastMessage, PictureLike, RecordMessage, ReportMessage, RunRequest, Ticket,
+ *   ColumnsMessage, DoneMessage, FromWorker, PastMessage, PictureLike, RecordMessage, ReportMessage, RunRequest,
+ *   Ticket,
  * } from './types.js'
  */
 
@@ -116,6 +117,7 @@ export class Presenter {
     this.#isUnfinished = true;
     store.report.value = null;
     store.mesh.value = null;
+    store.change.value = null;
     if (request.kind === 'relax') return;
     const { grows = false, fits = false, isLive = false } = KINDS[request.kind];
     this.columns.clear(request.settings.sampling === 'adaptive');
@@ -202,6 +204,20 @@ export class Presenter {
   record({ record }) {
     const { columns } = this;
     if (columns.count > 0 && !columns.stale) columns.record = record;
+  }
+
+  /** @param {Extract<FromWorker, {type: 'value'}>} message */
+  valued({ values, fault }) {
+    const { columns, store } = this;
+    columns.writeValue(values);
+    store.valueFault.value = fault;
+    store.revision.value += 1;
+    this.picture.recolour(0, columns.count);
+  }
+
+  /** @param {Extract<FromWorker, {type: 'change'}>} message */
+  compared({ change }) {
+    this.store.change.value = change;
   }
 
   /** @param {ReportMessage} message */

@@ -167,7 +167,7 @@ export class Sampler {
       settings,
       following,
       points: solved && 'field' in solved ? solved : null,
-      image: solved && 'image' in solved ? solved.image : null,
+      file: solved && 'file' in solved ? solved.file : null,
       askAbove: KINDS[kind].isUnasked ? Number.MAX_SAFE_INTEGER : Number(settings.max_particles),
     };
   }
@@ -216,6 +216,10 @@ export class Sampler {
         return this.#presenter.past(message, current);
       case 'done':
         return this.#ended(message, current);
+      case 'value':
+        return this.#presenter.valued(message);
+      case 'change':
+        return this.#presenter.compared(message);
       case 'record':
         return this.#presenter.record(message);
       case 'report':

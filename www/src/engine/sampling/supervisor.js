@@ -109,7 +109,7 @@ export class Supervisor {
     }
     this.#heard();
     // The core reads and filters an image in one go, which takes seconds for a large one.
-    if (message.type === 'filtering' || message.type === 'image_progress')
+    if (message.type === 'filtering' || message.type === 'open_progress')
       this.#deadline = this.#clock.now() + LOADING_MS;
     if (message.type === 'failed') {
       this.#drop();

@@ -1,7 +1,7 @@
 // Messages between the page and the sampler's worker, and the record of the runs.
 
 import type { Timers, WorkerEnv } from '../bundle/types.js';
-import type { KeyedImage, Opened } from '../images/types.js';
+import type { KeyedFile, Opened } from '../files/types.js';
 import type { Solved } from '../points/types.js';
 import type { Store } from '../store.js';
 import type {
@@ -20,6 +20,7 @@ import type {
   FileRequest,
   Language,
   Measures,
+  MeshChange,
   Report,
   SampleKind,
   Seconds,
@@ -32,14 +33,14 @@ export type Mesh = import('../types.js').Mesh;
  * Samples the field from the start, in the way of its kind (see `kinds.js`). The particles may follow the surface
  * instead in the settings of `following`; with `isClosed` they are then neither born nor die. A job with more than
  * `askAbove` expected particles is returned without running. `points` is the solved model that `field` names,
- * and `image` the image.
+ * and `file` the file of an image or a mesh.
  */
 export interface SampleJob {
   kind: SampleKind;
   id: number;
   field: FieldRequest;
   points: Pick<Solved, 'field' | 'info'> | null;
-  image?: KeyedImage | null;
+  file?: KeyedFile | null;
   settings: Settings;
   following: Settings[];
   isClosed?: boolean;
@@ -53,11 +54,12 @@ export type Job = SampleJob | RelaxJob;
  * (see `jobs.js`). If the field is refused, the running job continues. `stop` ends every job sent before it.
  * `curvature` says whether the page shows the curvature. If so, it is sent with the other columns, and at once for the
  * particles that the worker holds. `mesh` says whether the page draws a mesh. If so, it is made at the end of every
- * run, and sent with the last columns. `export` asks for the mesh as a file, once no job is left. `number` asks for
- * the number that a text without names stands for, `code` for the program that makes the particles. `measure` measures
- * particles that the sampler has not placed: a worker that is asked has no jobs. `image` opens the file of an image,
- * which `image_stop` gives up. The first message is `core`, or
- * `no_core` if the core could not be loaded.
+ * run, and sent with the last columns. `value` is the formula of the value that the page shows, empty for none. It is
+ * sent after each run, and for the particles that the worker holds. `export` asks for the mesh as a file, once no job
+ * is left. `number` asks for the number that a text without names stands for, `code` for the program that makes the
+ * particles, `fault` for what is wrong with a formula of the settings. `measure` measures particles that the sampler
+ * has not placed: a worker that is asked has no jobs. `open` opens the file of an image or a mesh, which `open_stop`
+ * gives up. The first message is `core`, or `no_core` if the core could not be loaded.
  */
 export type ToWorker =
   | { type: 'core'; module: WebAssembly.Module }
@@ -68,10 +70,11 @@ export type ToWorker =
   | { type: 'export'; request: number; file: Partial<FileRequest> }
   | { type: 'number'; request: number; text: string }
   | { type: 'code'; request: number; language: Language }
-  | { type: 'thickness'; request: number; text: string }
+  | { type: 'value'; text: string }
+  | { type: 'fault'; request: number; what: 'thickness' | 'spacing'; text: string }
   | { type: 'measure'; request: number; field: Partial<FieldRequest>; placed: PlacedColumns; isAdaptive: boolean }
-  | { type: 'image'; request: number; image: KeyedImage }
-  | { type: 'image_stop' }
+  | { type: 'open'; request: number; file: KeyedFile }
+  | { type: 'open_stop' }
   | { type: 'stop' }
   | { type: 'drawn'; id: number };
 /** Particles that the sampler has not placed: vectors of three floats. */
@@ -122,7 +125,8 @@ export type FromWorker =
   | { type: 'beat' }
   | { type: 'number'; request: number; value: number | null }
   | { type: 'code'; request: number; answer: CodeAnswer }
-  | { type: 'thickness'; request: number; fault: string | null }
+  | { type: 'fault'; request: number; fault: string | null }
+  | { type: 'value'; id: number; values: Float32Array; fault: string | null }
   | { type: 'field'; id: number; answer: FieldAnswer }
   | { type: 'dropped'; id: number }
   | { type: 'box'; id: number; answer: FieldOk }
@@ -135,8 +139,9 @@ export type FromWorker =
   | ReportMessage
   | { type: 'file'; request: number; bytes: Uint8Array<ArrayBuffer> | null }
   | { type: 'filtering' }
-  | { type: 'image_progress'; request: number; label: string; fraction: number }
-  | { type: 'image'; request: number; opened: Opened }
+  | { type: 'open_progress'; request: number; label: string; fraction: number }
+  | { type: 'opened'; request: number; opened: Opened }
+  | { type: 'change'; id: number; change: MeshChange }
   | { type: 'measured'; request: number; measures: PlacedMeasures }
   | { type: 'measured'; request: number; error: FieldFault }
   | { type: 'crashed'; id: number; message: string; stack: string };
@@ -271,7 +276,7 @@ export interface SamplerOptions {
   /** returns the full run of the present state */
   whole: () => SampleRequest;
   /** returns the solved model that a field names */
-  solved?: (key: string) => Solved | { image: KeyedImage } | undefined;
+  solved?: (key: string) => Solved | { file: KeyedFile } | undefined;
   clock?: Clock;
 }
 export interface SupervisorOptions {

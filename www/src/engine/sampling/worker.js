@@ -6,10 +6,10 @@
  */
 import init, { Core } from '../../wasm/core/core.js';
 import { crashWords } from '../bundle/crash.js';
-import { ImageKeeper } from '../images/keeper.js';
+import { FileKeeper } from '../files/keeper.js';
 import { curvatureColumn, meshColumn, runJob } from './job.js';
 import { Jobs, measured } from './jobs.js';
-import { join, write } from './joining.js';
+import { compared, join, valued, write } from './joining.js';
 import { BEAT_MS } from './protocol.js';
 
 /**
@@ -18,8 +18,8 @@ import { BEAT_MS } from './protocol.js';
 
 /** Largest memory of a run and its report. Browsers end pages that use much more, on phones much earlier. */
 const MEMORY_MB = { desk: 512, phone: 256 };
-/** Largest memory of an image while it is read and filtered. */
-const IMAGE_MB = { desk: 1600, phone: 400 };
+/** Largest memory of a file while it is read and made to a field. */
+const FILE_MB = { desk: 1600, phone: 400 };
 
 /** @param {Navigator & {userAgentData?: {mobile: boolean}, deviceMemory?: number}} device */
 const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) =>
@@ -29,21 +29,24 @@ const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) =>
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
 
 const device = onPhone(navigator) ? 'phone' : 'desk';
-const images = new ImageKeeper(IMAGE_MB[device] * 1e6, () => post({ type: 'filtering' }));
-/** Continues once the image of a job is open. @param {unknown} [error] */
+const opener = new FileKeeper(FILE_MB[device] * 1e6, () => post({ type: 'filtering' }));
+/** Continues once the file of a job is open. @param {unknown} [error] */
 const opened = (error) => {
   if (error) crashed(0, error);
   else void pump();
 };
 const jobs = new Jobs(post, () => performance.now(), {
-  isReady: (ours, image) => images.isReady(ours, image, opened),
-  setField: (ours, image, field) => images.setField(ours, image, field),
+  isReady: (ours, file) => opener.isReady(ours, file, opened),
+  setField: (ours, file, field) => opener.setField(ours, file, field),
 });
 /** Number of column messages that the page has not drawn yet. */
 let undrawn = 0;
 /** Whether the page shows the curvature, and whether it draws a mesh. */
 let curvature = false;
 let mesh = false;
+/** The formula of the value that the page shows, and of which run it has been sent, with which formula. */
+let value = '';
+let sentValue = '';
 /** Files that the page waits for. @type {Extract<ToWorker, {type: 'export'}>[]} */
 const files = [];
 /** Particles of others that wait to be measured. @type {Extract<ToWorker, {type: 'measure'}>[]} */
@@ -71,6 +74,8 @@ const pause = () =>
 /** @type {Core | null} */
 let core = null;
 const memory = { held: 0, meshed: 0, gaveUp: false };
+/** Whether the particles are of a mesh that was opened, and of which run they have been compared with it. */
+const remesh = { isIt: false, compared: 0 };
 
 /** @param {Core} ours @returns {Env} */
 const surroundings = (ours) => ({
@@ -97,6 +102,7 @@ async function pump() {
       const job = jobs.take(ours);
       if (job) {
         undrawn = 0;
+        if (job.kind !== 'relax') remesh.isIt = job.file?.as === 'mesh';
         await runJob(ours, job, surroundings(ours), memory);
       } else if (!(await serve(ours))) {
         break;
@@ -110,7 +116,8 @@ async function pump() {
 }
 
 /**
- * Measures what others have placed, or makes the mesh or a file that the page has asked for since the last job.
+ * Measures what others have placed, makes the value, the mesh or a file that the page has asked for since the last job,
+ * or compares the mesh with the one that was opened.
  * @param {Core} ours
  * @returns whether there was anything to do
  */
@@ -121,14 +128,29 @@ async function serve(ours) {
     return true;
   }
   const { held } = memory;
+  const wantedValue = value && held > 0 ? `${held} ${value}` : '';
+  if (wantedValue && wantedValue !== sentValue) {
+    const found = await valued(ours, value, surroundings(ours));
+    if (!found) return true;
+    sentValue = wantedValue;
+    post({ type: 'value', id: held, ...found }, [found.values.buffer]);
+    return true;
+  }
   const isDrawn = mesh && held > 0 && memory.meshed !== held;
-  if (!isDrawn && files.length === 0) return false;
+  const isCompared = remesh.isIt && held > 0 && remesh.compared !== held;
+  if (!isDrawn && !isCompared && files.length === 0) return false;
   const made = held > 0 ? await join(ours, surroundings(ours)) : null;
   // A job that has come meanwhile goes first.
   if (held > 0 && !made) return true;
   if (made && isDrawn) {
     memory.meshed = held;
     post(...meshColumn(ours, held, made));
+  }
+  if (made && isCompared) {
+    const found = await compared(ours, surroundings(ours));
+    if (!found) return true;
+    remesh.compared = held;
+    if (found.change) post({ type: 'change', id: held, change: found.change });
   }
   const [wanted] = files;
   if (wanted) {
@@ -184,14 +206,18 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
     case 'code':
       if (core) post({ type: 'code', request: data.request, answer: core.code(data.language) });
       break;
-    case 'thickness':
-      post({ type: 'thickness', request: data.request, fault: core?.thickness_fault(data.text) ?? null });
+    case 'value':
+      value = data.text;
+      void pump();
       break;
-    case 'image':
+    case 'fault':
+      post({ type: 'fault', request: data.request, fault: core?.text_fault(data.what, data.text) ?? null });
+      break;
+    case 'open':
       void open(data);
       break;
-    case 'image_stop':
-      images.stop();
+    case 'open_stop':
+      opener.stop();
       break;
     case 'measure':
       placed.push(data);
@@ -207,13 +233,18 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
   }
 };
 
-/** Opens the file of an image for the page. @param {Extract<ToWorker, {type: 'image'}>} question */
-async function open({ request, image }) {
-  if (!core) return post({ type: 'image', request, opened: { ok: false, message: 'the sampler is not there yet' } });
+/** Opens a file for the page. @param {Extract<ToWorker, {type: 'open'}>} question */
+async function open({ request, file }) {
+  if (!core)
+    return post({
+      type: 'opened',
+      request,
+      opened: { ok: false, kind: file.as, message: 'the sampler is not there yet' },
+    });
   try {
     const tell = (/** @type {string} */ label, /** @type {number} */ fraction) =>
-      post({ type: 'image_progress', request, label, fraction });
-    post({ type: 'image', request, opened: await images.open(core, image, tell) });
+      post({ type: 'open_progress', request, label, fraction });
+    post({ type: 'opened', request, opened: await opener.open(core, file, tell) });
   } catch (error) {
     crashed(0, error);
   }

@@ -75,13 +75,14 @@ export function completeSettings(description, settings) {
 }
 
 /**
- * Returns the settings that stay when another surface is chosen: those of the box are of one surface.
+ * Returns the settings that stay when another surface is chosen: those of the box and formulas are of one surface.
  * @param {Description} description
  * @param {Settings} settings
  * @returns {Settings}
  */
 export function lastingSettings({ settings: known }, settings) {
-  const lasts = (/** @type {string} */ name) => known.some((info) => info.name === name && info.group !== 'Box');
+  const lasts = (/** @type {string} */ name) =>
+    known.some((info) => info.name === name && info.group !== 'Box' && info.kind !== 'text');
   return Object.fromEntries(Object.entries(settings).filter(([name]) => lasts(name)));
 }
 
@@ -376,6 +377,8 @@ export function validSetting(description, name, value) {
   if (!info) return undefined;
   if (info.kind === 'choice')
     return info.choices?.some((c) => c.value === value) ? /** @type {string} */ (value) : undefined;
+  if (info.kind === 'text')
+    return typeof value === 'string' && value.length <= description.limits.formula_bytes ? value.trim() : undefined;
   if (info.kind === 'formula' && typeof value === 'string')
     return value.trim() !== '' && value.length <= description.limits.formula_bytes ? value : undefined;
   const v = within(value, info.min, info.max);

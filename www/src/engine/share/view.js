@@ -18,6 +18,8 @@ import { integers, isRecord, vec3, within } from './valid.js';
 const LARGEST_SINGLE = 3e38;
 /** Upper limit for generation levels, relaxation steps and events in a state; no run reaches it. */
 const LAST_LEVEL = 1e6;
+/** Longest formula of a value. */
+const LONGEST_VALUE = 2000;
 /** Largest index of a particle in a state; no run reaches it. */
 const LAST_PARTICLE = 2 ** 32 - 1;
 
@@ -63,6 +65,12 @@ function validCamera(raw) {
 
 export const VIEW = {
   colour: choice('colour', /** @type {ColourMode[]} */ (Object.keys(COLOURINGS))),
+  /** The formula of the value by which the particles are coloured. @type {Option<string>} */
+  value: {
+    home: () => 'k_1 k_2',
+    words: 'formula of the colours',
+    valid: (raw) => (typeof raw === 'string' && raw.trim() !== '' && raw.length <= LONGEST_VALUE ? raw : undefined),
+  },
   /** Disc radius as a share of the repulsion radius: see {@link DISC_SIZE}. @type {Option<number>} */
   size: {
     home: () => DISC_SIZE.initial,

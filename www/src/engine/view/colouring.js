@@ -127,18 +127,40 @@ function radiusRange({ count, radii }) {
   return count > 0 ? [low, high] : null;
 }
 
-/** ± the 95 % quantile of the absolute mean curvature. @param {Columns} columns @returns {[number, number] | null} */
-function curvatureRange(columns) {
-  const step = Math.ceil(columns.curved / CURVATURE_SAMPLES);
+/**
+ * ± the 95 % quantile of absolute values.
+ * @param {number} count @param {(i: number) => number} valueAt @returns {[number, number] | null}
+ */
+function evenRange(count, valueAt) {
+  const step = Math.ceil(count / CURVATURE_SAMPLES);
   const sizes = [];
-  for (let i = 0; i < columns.curved; i += step) {
-    const size = Math.abs(meanCurvature(columns, i));
+  for (let i = 0; i < count; i += step) {
+    const size = Math.abs(valueAt(i));
     if (size < Infinity) sizes.push(size);
   }
   if (sizes.length === 0) return null;
   sizes.sort((a, b) => a - b);
   const most = sizes[Math.floor(CURVATURE_QUANTILE * (sizes.length - 1))];
   return [-most, most];
+}
+
+/** @param {Columns} columns */
+const curvatureRange = (columns) => evenRange(columns.curved, (i) => meanCurvature(columns, i));
+
+/**
+ * The smallest and the largest value; of values of both signs an even range around 0.
+ * @param {Columns} columns @returns {[number, number] | null}
+ */
+function valueRange({ value }) {
+  if (!value) return null;
+  let [low, high] = [Infinity, -Infinity];
+  for (const v of value) {
+    if (!Number.isFinite(v)) continue;
+    low = Math.min(low, v);
+    high = Math.max(high, v);
+  }
+  if (low > high) return null;
+  return low < 0 && high > 0 ? evenRange(value.length, (i) => value[i]) : [low, high];
 }
 
 /** The labels of that class where the surface has edges, and where it has seams. */
@@ -280,6 +302,25 @@ export const COLOURINGS = {
       colours: hexes(palette.diverging),
       pending: range === null || columns.curved < columns.count,
     }),
+  },
+  value: {
+    range: valueRange,
+    colour({ palette, columns: { value }, range }) {
+      if (!range || !value) return null;
+      const [low, high] = range;
+      const colours = low < 0 && high > 0 ? palette.diverging : palette.sequential;
+      return (i) => (Number.isNaN(value[i]) ? palette.plain : onRamp(colours, value[i], low, high));
+    },
+    legend({ palette, range }) {
+      const isDiverging = range !== null && range[0] < 0 && range[1] > 0;
+      return {
+        title: 'A formula',
+        kind: isDiverging ? 'diverging' : 'sequential',
+        range: range ?? undefined,
+        ...(isDiverging ? { mark: 0 } : {}),
+        colours: hexes(isDiverging ? palette.diverging : palette.sequential),
+      };
+    },
   },
   component: {
     colour: ({ palette, columns: { component } }) =>

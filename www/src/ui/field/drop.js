@@ -1,6 +1,6 @@
 /** Opens a file that is dropped anywhere on the page, and shows a hint while a file is dragged over it. */
 import { h } from '../dom.js';
-import { carriesFiles, filesOf, IMAGE_FORMATS, ofFiles } from './files.js';
+import { carriesFiles, filesOf, IMAGE_FORMATS, MESH_FORMATS, ofFiles } from './files.js';
 
 /**
  * @import { Engine } from '../../engine/types.js'
@@ -19,8 +19,9 @@ export function mountDrop(engine, toast) {
       'div',
       { class: 'drop-text' },
       h('strong', null, 'Drop to sample its surface'),
-      h('span', { class: 'quiet' }, () => filesOf(engine)),
-      h('span', { class: 'quiet' }, `or an image: ${IMAGE_FORMATS}`),
+      h('span', { class: 'quiet' }, `A mesh: ${MESH_FORMATS}`),
+      h('span', { class: 'quiet' }, () => `Points: ${filesOf(engine)}`),
+      h('span', { class: 'quiet' }, `An image: ${IMAGE_FORMATS}`),
     ),
   );
   document.body.append(target);

@@ -11,6 +11,8 @@ const FORMATS = FILE_TYPES.split(',')
 /** @param {string[]} words */
 const listOf = (words) => (words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} or ${words.at(-1)}`);
 
+/** The formats of triangle meshes. */
+export const MESH_FORMATS = 'STL, OBJ, PLY or OFF';
 /** The formats of three-dimensional images. */
 export const IMAGE_FORMATS = 'NIfTI, NRRD, NPY, MetaImage, cube or TIFF';
 /** Extensions of headers of images, whose voxels may be in a file beside them. */
@@ -39,6 +41,8 @@ export const carriesFiles = (transfer) => transfer?.types.includes('Files') ?? f
 const ADVICE = {
   too_large: 'Thin the points out, or save fewer decimals.',
   image: 'Choose another file, or convert it.',
+  mesh: 'Mend it in another program, or open it as points.',
+  no_solid: 'Points can be sampled without a volume.',
   unreadable: 'Check that the file is still there and may be read.',
   crashed: 'The page is not harmed. Try another file; the report is worth sending with this one.',
   silent: 'Try fewer points.',

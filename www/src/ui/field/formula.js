@@ -1,6 +1,8 @@
 /** The formula: its editor, the description of an error with possible repairs, and the formula as mathematics. */
+
 import { computed } from '@preact/signals-core';
 import { MODEL } from '../../engine/constants.js';
+import { givenOf } from '../../engine/given.js';
 import { button } from '../button.js';
 import { fill, h, live, marked, uniqueId } from '../dom.js';
 import { mathElement, mathLines } from '../mathml.js';
@@ -110,7 +112,7 @@ class FormulaInput {
   #names() {
     const field = this.#engine.field.peek();
     const names = field?.parameters.map(({ name }) => name) ?? [];
-    return field?.model || field?.image ? [MODEL, ...names] : names;
+    return givenOf(field) ? [MODEL, ...names] : names;
   }
 
   /** Replaces the text area by the full editor, on the first focus. If it cannot load, the text area stays. */

@@ -2,15 +2,17 @@
  * The gallery: one picture per surface, as radio buttons, in groups of which one is shown. The last group holds the
  * models from points and the file opened last. A search looks through all groups.
  */
+
 import { batch, computed, signal } from '@preact/signals-core';
 import { FILE_SURFACE, FILE_TYPES, IMAGE_TYPES } from '../../engine/constants.js';
+import { givenOf } from '../../engine/given.js';
 import { SCANS } from '../../engine/scans.js';
 import { button } from '../button.js';
 import { h, live } from '../dom.js';
 import { explain } from '../explain.js';
 import { icon } from '../icons.js';
 import { createSelect } from '../select.js';
-import { filesOf, IMAGE_FORMATS, ofFiles } from './files.js';
+import { filesOf, IMAGE_FORMATS, MESH_FORMATS, ofFiles } from './files.js';
 
 /**
  * @import { Description, Engine, ReadonlySignal, Signal } from '../../engine/types.js'
@@ -142,8 +144,7 @@ function pictured(engine, finding, group, entry) {
 function createFileTile(engine, finding) {
   let last = '';
   const file = computed(() => {
-    if (engine.field.value?.surface === FILE_SURFACE)
-      last = (engine.field.value.model ?? engine.field.value.image)?.name ?? 'File';
+    if (engine.field.value?.surface === FILE_SURFACE) last = givenOf(engine.field.value)?.name ?? 'File';
     return last;
   });
   return () => {
@@ -247,8 +248,8 @@ function createOpen(engine) {
   });
   const opener = button({ class: 'open-file', press: () => chooser.click() }, 'Open file…');
   explain(opener, () => ({
-    title: 'A file of points, or an image',
-    text: `${filesOf(engine)}: points with normals, points alone, or a mesh. ${IMAGE_FORMATS}: a three-dimensional image. It stays on this device. It can also be dropped anywhere on the page.`,
+    title: 'A mesh, points or an image',
+    text: `${MESH_FORMATS}: a triangle mesh, which is sampled anew. ${filesOf(engine)}: points. ${IMAGE_FORMATS}: a three-dimensional image. It stays on this device. It can also be dropped anywhere on the page.`,
   }));
   return [opener, chooser];
 }

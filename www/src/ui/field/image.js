@@ -27,9 +27,9 @@ export function createImage(engine, description) {
     { class: 'section image', hidden: () => !info.value },
     head,
     h('p', { class: 'quiet' }, () => facts.value && voxelsOf(facts.value)),
-    h('div', { class: 'image-of', hidden: () => labels.value.length === 0 }, createKind(engine, labels)),
+    h('div', { class: 'chosen', hidden: () => labels.value.length === 0 }, createKind(engine, labels)),
     createLabels(engine, labels, info),
-    h('div', { class: 'image-of', hidden: () => info.value?.label !== null }, createSide(engine)),
+    h('div', { class: 'chosen', hidden: () => info.value?.label !== null }, createSide(engine)),
     h('p', { class: 'quiet' }, () => info.value && filteredOf(info.value)),
     h('ul', { class: 'warnings', hidden: () => notes.value.length === 0 }, () => notes.value.map(createWarning)),
   );
@@ -54,7 +54,7 @@ function createKind(engine, labels) {
       { value: 'iso', label: 'Iso value' },
     ],
     value: () => (engine.state.value.parameters.label === undefined ? 'iso' : 'label'),
-    change: (value) => engine.chooseOfImage(value === 'label' ? { label: largest() } : {}),
+    change: (value) => engine.chooseOfFile(value === 'label' ? { label: largest() } : {}),
   });
 }
 
@@ -77,7 +77,7 @@ function createLabels(engine, labels, info) {
             type: 'radio',
             name: group,
             prop: { checked: () => engine.state.value.parameters.label === value },
-            on: { change: () => engine.chooseOfImage({ ...kept(engine), label: value }) },
+            on: { change: () => engine.chooseOfFile({ ...kept(engine), label: value }) },
           }),
           h('span', null, formatSignificant(value, 6)),
           h('span', { class: 'quiet' }, value === 0 ? 'background, ' : '', plural(voxels, 'voxel')),
@@ -103,7 +103,7 @@ function createSide(engine) {
     value: () => (engine.state.value.parameters.dark ? 'dark' : 'bright'),
     change: (value) => {
       const { dark: _, ...others } = engine.state.peek().parameters;
-      engine.chooseOfImage(value === 'dark' ? { ...others, dark: 1 } : others);
+      engine.chooseOfFile(value === 'dark' ? { ...others, dark: 1 } : others);
     },
   });
 }

@@ -10,6 +10,7 @@ import { formatCount } from '../format.js';
 import { createSlider } from '../slider.js';
 import { createWarning } from '../warning.js';
 import { factsOf, fittedOf, plainOf } from './facts.js';
+import { createTaken } from './taken.js';
 import { createWayBack } from './way-back.js';
 
 /** @import { Description, Engine, ModelInfo, ReadonlySignal } from '../../engine/types.js' */
@@ -26,6 +27,7 @@ export function createModel(engine, description) {
     'div',
     { class: 'section model', hidden: () => !model.value },
     head,
+    createTaken(engine),
     h('p', { class: 'quiet' }, () => model.value && plainOf(model.value)),
     h(
       'details',

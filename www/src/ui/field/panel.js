@@ -7,6 +7,7 @@ import { createFormula } from './formula.js';
 import { createGallery } from './gallery.js';
 import { createImage } from './image.js';
 import { createLoading } from './loading.js';
+import { createMesh } from './mesh.js';
 import { createModel } from './model.js';
 import { createParameters } from './parameters.js';
 import { createSolid } from './solid.js';
@@ -29,6 +30,7 @@ export function mountField(body, engine, description, shared) {
     createFormula(engine, description, shared.replace),
     createModel(engine, description),
     createImage(engine, description),
+    createMesh(engine, description),
     createParameters(engine, shared),
     createGallery(engine, description, shared.replace),
     ...createLoading(engine),
@@ -53,7 +55,7 @@ function createStory(engine, description) {
     return storyOf(
       description,
       field ? field.surface : engine.state.value.surface,
-      field?.model ?? field?.image ?? null,
+      field?.model ?? field?.image ?? field?.mesh ?? null,
     );
   });
   return h('div', { class: 'section story' }, () => {

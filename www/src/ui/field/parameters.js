@@ -76,10 +76,11 @@ function grabbing(engine, pins) {
   }));
 }
 
-/** The names of the sliders that were moved: what is chosen of an image besides stays. @param {Engine} engine */
+/** The names of the sliders that were moved: what is chosen of a file besides stays. @param {Engine} engine */
 const changedOf = ({ state, field }) =>
   Object.keys(state.value.parameters).filter(
-    (name) => !field.value?.image || field.value.parameters.some((parameter) => parameter.name === name),
+    (name) =>
+      !(field.value?.image || field.value?.mesh) || field.value.parameters.some((parameter) => parameter.name === name),
   );
 
 /** @param {Engine} engine */

@@ -69,7 +69,7 @@ export function createSolid(engine, { settings }, print) {
       wrong.value = `A wall of ${formatSignificant(wallMm)} mm does not fit a part of ${formatSignificant(print.sizeMm.value)} mm.`;
       return;
     }
-    if (number === null) wrong.value = (await engine.thicknessFault(text)) ?? '';
+    if (number === null) wrong.value = (await engine.textFault('thickness', text)) ?? '';
     else wrong.value = number < 0 ? NEGATIVE : '';
     if (wrong.value !== '') return;
     if (number === 0) engine.resetSetting(THICKNESS);
@@ -95,7 +95,8 @@ export function createSolid(engine, { settings }, print) {
       class: 'section solid',
       role: 'group',
       'aria-label': 'Solid',
-      hidden: () => engine.field.value?.model?.beyond_share === 0 || Boolean(engine.field.value?.image),
+      hidden: () =>
+        engine.field.value?.model?.beyond_share === 0 || Boolean(engine.field.value?.image || engine.field.value?.mesh),
     },
     h(
       'div',

@@ -3,12 +3,12 @@ import { FILE_SURFACE } from '../../engine/constants.js';
 import { scanOf } from '../../engine/scans.js';
 import { plural } from '../format.js';
 
-/** @import { Description, ImageInfo, ModelInfo } from '../../engine/types.js' */
+/** @import { Description, ImageInfo, MeshInfo, ModelInfo } from '../../engine/types.js' */
 
 /**
  * @param {Description} description
  * @param {string | null} id null for a formula that is not in the gallery
- * @param {ModelInfo | ImageInfo | null} info of a surface from points or of an image
+ * @param {ModelInfo | ImageInfo | MeshInfo | null} info of a surface from points, of an image or of a mesh
  */
 export function storyOf(description, id, info) {
   const model = description.models.find((entry) => entry.id === id);
@@ -19,6 +19,8 @@ export function storyOf(description, id, info) {
     const what = info.label === null ? 'on which the image has one value' : 'around one label of the image';
     return { name: info.name, facts: '', text: `The surface ${what}.`, credit: '' };
   }
+  if (info && 'faces' in info)
+    return { name: info.name, facts: '', text: 'The surface of this mesh, sampled anew.', credit: '' };
   if (id === FILE_SURFACE) {
     return {
       name: info?.name ?? 'File',

@@ -1,4 +1,5 @@
 /** The button that returns from the surface of a file or a model to the formula before it. */
+import { givenOf } from '../../engine/given.js';
 import { button } from '../button.js';
 import { live } from '../dom.js';
 
@@ -16,7 +17,7 @@ export function createWayBack(engine, description, section) {
     const { v: _, view: __, ...shape } = engine.state.value;
     const field = engine.field.value;
     const isFormula = description.surfaces.some(({ id }) => id === shape.surface);
-    if (isFormula && !field?.model && !field?.image) left = shape;
+    if (isFormula && !givenOf(field)) left = shape;
   });
   const press = () => {
     if (left) engine.restore({ ...left, settings: engine.state.peek().settings });

@@ -3,7 +3,9 @@
  * a file, and how that
  * is saved.
  */
+
 import { computed, signal } from '@preact/signals-core';
+import { givenOf } from '../../engine/given.js';
 import { button } from '../button.js';
 import { h, live, uniqueId } from '../dom.js';
 import { formatCount, formatSignificant, plural } from '../format.js';
@@ -49,7 +51,7 @@ const UNITS = ['', 'mm', 'cm', 'm', 'in'];
 const AXES = ['z', 'y', 'x'];
 
 /** Whether the surface is none of a formula. @param {Engine} engine */
-const isOfFile = ({ field: { value: field } }) => Boolean(field?.model || field?.image);
+const isOfFile = ({ field: { value: field } }) => givenOf(field) !== null;
 
 /**
  * @param {Engine} engine

@@ -1,4 +1,5 @@
 /** Draws the legend and a caption on a picture of the surface. */
+import { givenOf } from '../../engine/given.js';
 import { formatCount, formatSignificant, plural } from '../format.js';
 
 /**
@@ -122,7 +123,7 @@ export function captionOf(engine) {
   const field = engine.field.peek();
   const about = engine.description.peek();
   const entry = about?.surfaces.find(({ id }) => id === field?.surface);
-  const name = field?.model?.name ?? field?.image?.name ?? entry?.name ?? 'f(x, y, z) = 0';
+  const name = givenOf(field)?.name ?? entry?.name ?? 'f(x, y, z) = 0';
   const { particles } = engine.progress.peek();
   const formula = field?.formula.replace(/\s+/g, ' ') ?? '';
   const values = (field?.parameters ?? []).map(({ name, value }) => `${name} = ${formatSignificant(value)}`);
@@ -130,7 +131,7 @@ export function captionOf(engine) {
     `${name} · ${plural(particles, 'particle')}`,
     formula.length > 0 && formula.length <= LONGEST_FORMULA
       ? [formula, ...values].join(', ')
-      : field?.image
+      : field?.image || field?.mesh
         ? values.join(', ')
         : '',
     field?.model?.credit ?? '',

@@ -1,4 +1,5 @@
 /** Puts picture, formula and figures on a clean sheet, and prints it. */
+import { givenOf } from '../../engine/given.js';
 import { isBareModel } from '../../engine/pulls.js';
 import { h } from '../dom.js';
 import { formatSignificant } from '../format.js';
@@ -47,7 +48,9 @@ async function createSheet(engine) {
     { class: 'sheet' },
     h('h1', null, title),
     picture,
-    isBareModel(engine.field.peek()) || engine.field.peek()?.image ? null : (math ?? h('p', null, formula)),
+    isBareModel(engine.field.peek()) || ['voxels', 'faces'].includes(givenOf(engine.field.peek())?.holds ?? '')
+      ? null
+      : (math ?? h('p', null, formula)),
     parameters.length ? h('p', null, parameters.join(', ')) : null,
     copyOf('.figures'),
     credit && credit !== formula ? h('p', null, credit) : null,

@@ -1,6 +1,7 @@
 /** Creates the control of one setting from the core's description. */
-import { computed } from '@preact/signals-core';
-import { h } from '../dom.js';
+import { computed, signal } from '@preact/signals-core';
+import { button } from '../button.js';
+import { h, live, marked, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, formatSignificant } from '../format.js';
 import { wantsSlider } from '../scale.js';
@@ -24,7 +25,8 @@ export function createSetting(engine, all, info) {
     info.label,
     info.unit ? h('span', { class: 'unit' }, ` ${info.unit}`) : null,
   );
-  const control = info.kind === 'choice' ? createChoice(engine, info, value) : createNumber(engine, info, value);
+  const create = { choice: createChoice, text: createText }[String(info.kind)] ?? createNumber;
+  const control = create(engine, info, value);
   const holds = computed(() => isShown(info, all, engine.state.value.settings));
   const element = h(
     'div',
@@ -42,7 +44,13 @@ export function createSetting(engine, all, info) {
 
 /** @param {SettingInfo} info */
 const kindOf = (info) =>
-  isSegmented(info) ? 'segmented' : info.kind === 'choice' ? 'choice' : wantsSlider(info) ? 'slider' : 'number';
+  isSegmented(info)
+    ? 'segmented'
+    : info.kind === 'choice' || info.kind === 'text'
+      ? info.kind
+      : wantsSlider(info)
+        ? 'slider'
+        : 'number';
 
 /**
  * @param {Engine} engine
@@ -80,4 +88,55 @@ function createNumber(engine, info, value) {
     read: engine.readNumber,
   });
   return h('div', { class: 'setting-line' }, wantsSlider(info) && slider.range, slider.box);
+}
+
+/**
+ * Creates the box of a formula, which the core checks before it is taken.
+ * @param {Engine} engine
+ * @param {SettingInfo} info
+ * @param {ReadonlySignal<number | string>} value
+ */
+function createText(engine, info, value) {
+  const wrong = signal('');
+  const told = uniqueId(info.name);
+  const box = h('input', {
+    type: 'text',
+    class: 'box formula-box',
+    placeholder: 'none',
+    autocomplete: 'off',
+    autocapitalize: 'off',
+    spellcheck: false,
+    'aria-label': info.label,
+    'aria-describedby': told,
+    'aria-invalid': () => String(wrong.value !== ''),
+    on: { change: () => void commit() },
+  });
+  async function commit() {
+    const text = box.value.trim();
+    wrong.value = text === '' ? '' : ((await engine.textFault('spacing', text)) ?? '');
+    if (wrong.value !== '') return;
+    if (text === '') engine.resetSetting(info.name);
+    else engine.setSetting(info.name, text);
+  }
+  live(box, () => {
+    box.value = String(value.value);
+    wrong.value = '';
+  });
+  const isShown = () => engine.state.value.view.colour === 'radius';
+  const colour = button(
+    {
+      class: 'plain small',
+      hidden: () => value.value === '' || isShown(),
+      press: () => engine.setView({ colour: 'radius' }),
+    },
+    'Show as colours',
+  );
+  return h(
+    'div',
+    { class: 'setting-text' },
+    h('div', { class: 'setting-line' }, box, colour),
+    h('p', { class: 'fault-line', id: told, role: 'alert', hidden: () => wrong.value === '' }, () =>
+      marked(wrong.value),
+    ),
+  );
 }

@@ -1,5 +1,6 @@
 /** Shows a card for the particle under the pointer or the tapped one. */
 
+import { givenOf } from '../../engine/given.js';
 import { clamp } from '../../engine/vector.js';
 import { button } from '../button.js';
 import { h, live, query } from '../dom.js';
@@ -19,8 +20,8 @@ const OFFSET_PX = 16;
  */
 export function mountHover(host, engine, { view, explainIt }) {
   const { hover } = engine;
-  // A link cannot hold a model from points or an image.
-  const isTold = () => !engine.field.value?.model && !engine.field.value?.image;
+  // A link cannot hold a model from points, an image or a mesh.
+  const isTold = () => givenOf(engine.field.value) === null;
   const go = (/** @type {number} */ index) => {
     if (!isTold()) return;
     engine.dismissHover();

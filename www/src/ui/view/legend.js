@@ -1,5 +1,5 @@
 /** Shows the choice of the colouring and its legend, with range and unit. */
-import { h } from '../dom.js';
+import { h, live, marked, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, formatSignificant } from '../format.js';
 import { createSelect } from '../select.js';
@@ -29,7 +29,7 @@ export function createLegend(engine, { colours }) {
     'div',
     {
       class: () => (legend()?.pending ? 'scale pending' : 'scale'),
-      hidden: () => !legend() || legend()?.kind === 'plain',
+      hidden: () => !legend() || legend()?.kind === 'plain' || (isValue(engine) && engine.valueFault.value !== null),
     },
     () => {
       const now = legend();
@@ -40,7 +40,60 @@ export function createLegend(engine, { colours }) {
     h('span', null, 'Dots: not six neighbours, but'),
     listOf(legend()?.dots),
   ]);
-  return h('div', { class: 'legend' }, select, scale, dots);
+  return h('div', { class: 'legend' }, select, createValue(engine), scale, dots);
+}
+
+/** @param {Engine} engine */
+const isValue = (engine) => engine.state.value.view.colour === 'value';
+
+/** Values that are offered, by what they mean. */
+const VALUES = [
+  ['k_1 k_2', 'Gaussian curvature'],
+  ['k_1', 'larger principal curvature'],
+  ['max(abs(k_1), abs(k_2))', 'sharpest bend'],
+  ['edge', 'distance to the nearest sharp edge'],
+  ['area', 'share of the surface'],
+  ['n_z', 'how far it faces up'],
+  ['z', 'height'],
+  ['hypot(x, y)', 'distance from the axis'],
+];
+
+/** Creates the box of the formula by which the particles are coloured. @param {Engine} engine */
+function createValue(engine) {
+  const [told, list] = [uniqueId('value'), uniqueId('values')];
+  const box = h('input', {
+    type: 'text',
+    class: 'box formula-box',
+    autocomplete: 'off',
+    autocapitalize: 'off',
+    spellcheck: false,
+    'aria-label': 'Formula of the colours',
+    'aria-describedby': told,
+    'aria-invalid': () => String(engine.valueFault.value !== null),
+    on: {
+      change: () => {
+        if (box.value.trim() === '') box.value = engine.state.peek().view.value;
+        else engine.setView({ value: box.value.trim() });
+      },
+    },
+  });
+  box.setAttribute('list', list);
+  live(box, () => {
+    box.value = engine.state.value.view.value;
+  });
+  return h(
+    'div',
+    { class: 'legend-value', hidden: () => !isValue(engine) },
+    box,
+    h(
+      'datalist',
+      { id: list },
+      VALUES.map(([value, label]) => h('option', { value }, label)),
+    ),
+    h('p', { class: 'fault-line', id: told, role: 'alert', hidden: () => engine.valueFault.value === null }, () =>
+      marked(engine.valueFault.value ?? ''),
+    ),
+  );
 }
 
 /** @param {string} colour */

@@ -11,6 +11,7 @@ import type {
     ImageFacts,
     ImagePromise,
     MeshAnswer,
+    MeshChange,
     Progress,
     FileRecord,
     Measured,
@@ -42,14 +43,20 @@ export class Core {
      */
     cancel(): Progress;
     /**
-     * Forgets the image that was opened last. The present field keeps its own.
+     * Forgets the file that was opened last. The present field keeps its own.
      */
-    close_image(): void;
+    close_opened(): void;
     /**
      * The program that makes the particles of the last run, in the language of this word (`rust`,
      * `js`, `python` or `shell`): an `Answer` with `Code`.
      */
     code(language: string): Answer<Code, string>;
+    /**
+     * How far the joined mesh is from the one that was opened, up to `budget` slices of the work:
+     * `MeshChange` once it is known, undefined before; null where the surface is not that of a
+     * mesh by itself.
+     */
+    compare(budget: number): MeshChange | null | undefined;
     /**
      * Component of each particle, 0 the largest, from the last report; 0xffffffff for none.
      */
@@ -149,10 +156,20 @@ export class Core {
      */
     number(text: string): number | undefined;
     /**
-     * Opens a file of an image, for [`Core::set_image`]: an `Answer` with `ImageFacts`. `beside`
+     * Opens a triangle mesh of arrays: the coordinates of its vertices, three each, and the
+     * vertices of its faces, three each. Returns why it cannot be, else null.
+     */
+    open_faces(name: string, points: Float64Array | number[], faces: Uint32Array | number[]): Fault | null;
+    /**
+     * Opens a file of an image, for [`Core::set_opened`]: an `Answer` with `ImageFacts`. `beside`
      * gives the bytes of a file beside it by its name. After an error the last good image stays.
      */
     open_image(name: string, bytes: Uint8Array | number[], beside: (name: string) => Uint8Array | undefined): Answer<ImageFacts, Fault>;
+    /**
+     * Opens a file of a triangle mesh, for [`Core::set_opened`]. Returns why it cannot be, else
+     * null. After an error the file before it stays open.
+     */
+    open_mesh(name: string, bytes: Uint8Array | number[]): Fault | null;
     /**
      * Opens an image of an array: the bytes of voxels of a type such as `int16`, of which the
      * index along the first axis changes fastest, and the affine map from indices to points, row
@@ -225,12 +242,12 @@ export class Core {
      */
     set_function(_function: (points: Float64Array, out: Float64Array, piece?: number) => void, request: Partial<FieldRequest>, labels?: (points: Float64Array, out: Uint32Array) => void): Answer<FieldAnswer, Fault>;
     /**
-     * Changes the field to a surface of the image that was opened last: of a `FieldRequest` the
-     * parameters `iso`, `label`, `smooth` and `dark`, the box, and a formula with the surface as
-     * an operand count; to an `Answer` with `FieldAnswer`. After an error the last good field
-     * stays.
+     * Changes the field to a surface of the file that was opened last: of a `FieldRequest` the
+     * parameters that choose it count, of an image `iso`, `label`, `smooth` and `dark` and of a
+     * mesh `edges` and `smooth`, the box, and a formula with the surface as an operand; to an
+     * `Answer` with `FieldAnswer`. After an error the last good field stays.
      */
-    set_image(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
+    set_opened(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
      * Changes the field to a model from points: the solved system as `Points.field` gives it, what
      * `Points.info` says of it, `SolvedModel`, and a `FieldRequest`, of which the box, the pulls
@@ -258,9 +275,10 @@ export class Core {
      */
     step(budget: number): Progress;
     /**
-     * Why the present surface cannot have the thickness of this text; nothing if it can.
+     * What is wrong with the formula of a `thickness`, a `spacing` or a `value` on the present
+     * surface; nothing if it is right.
      */
-    thickness_fault(text: string): string | undefined;
+    text_fault(what: 'thickness' | 'spacing' | 'value', text: string): string | undefined;
     /**
      * The triangles of the mesh, three rows each, counter-clockwise round their normals; none
      * before it is complete.

@@ -27,6 +27,7 @@ const elaborate = () => ({
   settings: { radius_share: 0.012, relax_steps: 20 },
   view: {
     colour: 'valence',
+    value: 'k_1 + n_x',
     size: 0.8,
     projection: 'orthographic',
     draw: 'mesh',

@@ -19,6 +19,7 @@ const field = (formula, bounds) => ({
   ok: true,
   model: null,
   image: null,
+  mesh: null,
   surface: null,
   formula,
   parameters: [],
@@ -141,7 +142,7 @@ export function fakeCore({
     },
     /** @param {string} text @returns {number | undefined} */
     number: (text) => (Number.isFinite(Number(text)) ? Number(text) : undefined),
-    thickness_fault: () => undefined,
+    text_fault: () => undefined,
     /** @param {Uint8Array} bytes @param {SolvedModel} about @param {Partial<FieldRequest>} request @returns {FieldAnswer} */
     set_points(bytes, { info, bounds: own }, { bounds }) {
       calls.push(`set_points ${bytes.length}`);
@@ -149,6 +150,7 @@ export function fakeCore({
         ok: true,
         model: info,
         image: null,
+        mesh: null,
         surface: null,
         formula: '',
         parameters: [],
@@ -170,10 +172,18 @@ export function fakeCore({
     },
     /** @returns {Answer<ImageFacts, FieldFault>} */
     open_voxels: () => ({ ok: true, ...facts }),
-    close_image: () => {},
+    /** @param {string} name @param {Uint8Array} bytes @returns {FieldFault | null} */
+    open_mesh(name, bytes) {
+      calls.push(`open_mesh ${name} ${bytes.length}`);
+      return name.startsWith('flat') ? { ...refused('a sheet').error, kind: 'no_solid' } : null;
+    },
+    open_faces: () => null,
+    /** @returns {any} */
+    compare: () => null,
+    close_opened: () => {},
     /** @param {Partial<FieldRequest>} request @returns {FieldAnswer} */
-    set_image({ parameters = {} }) {
-      calls.push(`set_image ${JSON.stringify(parameters)}`);
+    set_opened({ parameters = {} }) {
+      calls.push(`set_opened ${JSON.stringify(parameters)}`);
       return field('', { min: [-1, -1, -1], max: [1, 1, 1] });
     },
     /**

@@ -201,7 +201,7 @@ describe('the client', () => {
 });
 
 describe('a wish for a model', () => {
-  const make = () => {
+  const make = (/** @type {object} */ options = {}) => {
     const { workers, spawn } = scripted();
     const store = createStore();
     store.description.value = description;
@@ -210,7 +210,12 @@ describe('a wish for a model', () => {
       expect(loader.ready()).toBe(true);
       loader.settled();
     });
-    const loader = new ModelLoader({ store, spawn, sample });
+    const loader = new ModelLoader({
+      ...options,
+      store,
+      spawn,
+      sample,
+    });
     const wish = (/** @type {string} */ surface) => {
       store.state.value = { ...store.state.value, surface, formula: MODEL };
       return loader.load('grow');
@@ -289,12 +294,12 @@ describe('a wish for a model', () => {
 
   test('with another number of centres of a file solves the same file', async () => {
     const { workers, store, loader, sample } = make();
-    const opening = loader.openFile(file('cat.ply'));
+    const opening = loader.openFile(file('cat.xyz'));
     workers[0].say({ type: 'solved', solved: solved() });
     await opening;
     store.state.value = { ...store.state.value, centres: 400 };
     const loading = loader.load();
-    expect(workers[1].order).toEqual({ file: file('cat.ply'), centres: 400 });
+    expect(workers[1].order).toEqual({ file: file('cat.xyz'), centres: 400 });
     workers[1].say({ type: 'solved', solved: solved() });
     await loading;
     expect(sample).toHaveBeenCalledTimes(2);
@@ -316,38 +321,78 @@ describe('a wish for a model', () => {
 
   test('from a file enters the state when it is solved, and not before', async () => {
     const { workers, store, loader, sample } = make();
-    const opening = loader.openFile(file('cat.ply'));
+    const opening = loader.openFile(file('cat.xyz'));
     expect(store.state.value.surface).toBe('ellipsoid');
-    expect(store.loading.value).toMatchObject({ id: FILE_SURFACE, name: 'cat.ply' });
+    expect(store.loading.value).toMatchObject({ id: FILE_SURFACE, name: 'cat.xyz' });
     workers[0].say({ type: 'solved', solved: solved() });
     await opening;
     expect(store.state.value).toMatchObject({ surface: FILE_SURFACE, formula: MODEL, bounds: null });
     expect(loader.hasFile).toBe(true);
     expect(sample).toHaveBeenCalledTimes(1);
     const first = loader.key();
-    const again = loader.openFile(file('dog.ply'));
+    const again = loader.openFile(file('dog.xyz'));
     workers[1].say({ type: 'refused', kind: 'refused', message: 'line 3: NaN' });
     await again;
     expect(loader.key()).toBe(first);
-    expect(store.loadingError.value).toMatchObject({ name: 'dog.ply', message: 'line 3: NaN' });
+    expect(store.loadingError.value).toMatchObject({ name: 'dog.xyz', message: 'line 3: NaN' });
   });
 
   test('from a file that is too large is not even read', async () => {
     const { workers, store, loader } = make();
-    await loader.openFile(file('huge.ply', 2e9));
+    await loader.openFile(file('huge.xyz', 2e9));
     expect(workers).toHaveLength(0);
     expect(store.loadingError.value?.message).toMatch(/2[.,\s’]?000 MB.*50 MB/u);
+  });
+
+  test('from a mesh is its surface, or that of its points, as is asked, and points where it has none', async () => {
+    /** @type {any[]} */
+    const opened = [];
+    /** @type {any} */
+    let ending = { ok: true, facts: null };
+    const { workers, store, loader, sample } = make({
+      openGiven: async (/** @type {any} */ given) => {
+        opened.push(given.as);
+        return ending;
+      },
+    });
+    await loader.openFile(file('part.stl'));
+    expect(opened).toEqual(['mesh']);
+    expect(workers).toHaveLength(0);
+    expect(store.state.value).toMatchObject({ surface: FILE_SURFACE, formula: MODEL, parameters: {} });
+    expect(store.taken.value).toBe('surface');
+    expect(loader.solved(loader.key() ?? '')).toMatchObject({ file: { as: 'mesh', name: 'part.stl' } });
+
+    const asPoints = loader.takeFor('points');
+    expect(workers[0].order).toEqual({ file: file('part.stl'), centres: null });
+    workers[0].say({ type: 'solved', solved: solved() });
+    await asPoints;
+    expect(store.taken.value).toBe('points');
+    await loader.takeFor('surface');
+    expect(store.taken.value).toBe('surface');
+    expect(sample).toHaveBeenCalledTimes(3);
+
+    ending = { ok: false, kind: 'no_solid', message: 'the mesh is a sheet' };
+    const sheet = loader.openFile(file('leaf.obj'));
+    await settle();
+    workers[1].say({ type: 'solved', solved: solved() });
+    await sheet;
+    expect(store.taken.value).toBe(null);
+    expect(store.notice.value).toMatchObject({
+      kind: 'info',
+      text: 'leaf.obj was taken for points: the mesh is a sheet',
+    });
+    expect(store.loadingError.value).toBe(null);
   });
 
   test('gives way to a file, and the state does not stay at what never came', async () => {
     const { workers, store, loader, sample, wish } = make();
     loader.settled();
     const loading = wish('bunny');
-    const opening = loader.openFile(file('cat.ply'));
+    const opening = loader.openFile(file('cat.xyz'));
     await loading;
     await settle();
     expect(store.state.value.surface).toBe('ellipsoid');
-    expect(store.loading.value?.name).toBe('cat.ply');
+    expect(store.loading.value?.name).toBe('cat.xyz');
     workers[1].say({ type: 'solved', solved: solved() });
     await opening;
     expect(store.state.value.surface).toBe(FILE_SURFACE);

@@ -1,19 +1,21 @@
-/** Files of images on their way into the core, and the jobs that are of them. */
+/** Files of images and meshes on their way into the core, and the jobs that are of them. */
 import { createHash } from 'node:crypto';
 import { describe, expect, test } from 'vitest';
-import { ImageKeeper } from '../../../src/engine/images/keeper.js';
-import { openImage } from '../../../src/engine/images/open.js';
-import { scanFile } from '../../../src/engine/images/scans.js';
+import { FileKeeper } from '../../../src/engine/files/keeper.js';
+import { openGiven } from '../../../src/engine/files/open.js';
+import { scanFile } from '../../../src/engine/files/scans.js';
 import { Jobs } from '../../../src/engine/sampling/jobs.js';
 import { SCANS } from '../../../src/engine/scans.js';
 import { ofFiles } from '../../../src/ui/field/files.js';
 import { barsOf, filteredOf, voxelsOf } from '../../../src/ui/field/image-words.js';
+import { changeOf, facesOf, madeOf, mendedOf } from '../../../src/ui/field/mesh-words.js';
 import { fakeCore } from './fake-core.js';
 
 const ROOM = 1e9;
 
 /** @param {string} name @param {string} [text] */
 const imageOf = (name, text = 'voxels') => ({
+  as: /** @type {const} */ ('image'),
   key: name,
   name,
   file: new Blob([text]),
@@ -29,7 +31,7 @@ describe('a file of an image', () => {
     /** @type {[string, number][]} */
     const told = [];
     const tell = (/** @type {string} */ label, /** @type {number} */ share) => void told.push([label, share]);
-    const opened = await openImage(core, imageOf('a.nii'), { tell, isOver: () => false, mostBytes: ROOM });
+    const opened = await openGiven(core, imageOf('a.nii'), { tell, isOver: () => false, mostBytes: ROOM });
     expect(opened).toMatchObject({ ok: true, facts: { otsu: 3 } });
     expect(core.calls).toEqual(['open_image a.nii 6']);
     expect(told[1]).toEqual(['Reading 2 × 2 × 2 voxels of uint8, about 1 MB of memory', 0]);
@@ -39,8 +41,8 @@ describe('a file of an image', () => {
   test('is refused by its header, and by its memory, before it is read', async () => {
     const core = coreOf(fakeCore());
     const env = { tell: () => {}, isOver: () => false, mostBytes: ROOM };
-    expect(await openImage(core, imageOf('a.bad'), env)).toEqual({ ok: false, message: 'no image' });
-    const large = await openImage(core, imageOf('a.nii'), { ...env, mostBytes: 71 });
+    expect(await openGiven(core, imageOf('a.bad'), env)).toEqual({ ok: false, kind: 'image', message: 'no image' });
+    const large = await openGiven(core, imageOf('a.nii'), { ...env, mostBytes: 71 });
     expect(large).toMatchObject({ ok: false, message: expect.stringContaining('2 × 2 × 2 voxels takes about 1 MB') });
     expect(core.calls).toEqual([]);
   });
@@ -48,7 +50,7 @@ describe('a file of an image', () => {
   test('is given up without reaching the core', async () => {
     const core = coreOf(fakeCore());
     const env = { tell: () => {}, isOver: () => true, mostBytes: ROOM };
-    expect(await openImage(core, imageOf('a.nii'), env)).toBe(null);
+    expect(await openGiven(core, imageOf('a.nii'), env)).toBe(null);
     expect(core.calls).toEqual([]);
   });
 
@@ -60,13 +62,64 @@ describe('a file of an image', () => {
   });
 });
 
+describe('a file of a mesh', () => {
+  const env = { tell: () => {}, isOver: () => false, mostBytes: ROOM };
+  const meshOf = (/** @type {string} */ name) => ({ ...imageOf(name, 'faces'), as: /** @type {const} */ ('mesh') });
+
+  test('is opened as one, and refused by kind if it encloses nothing', async () => {
+    const core = coreOf(fakeCore());
+    expect(await openGiven(core, meshOf('a.stl'), env)).toEqual({ ok: true, facts: null });
+    expect(core.calls).toEqual(['open_mesh a.stl 5']);
+    expect(await openGiven(core, meshOf('flat.stl'), env)).toEqual({ ok: false, kind: 'no_solid', message: 'a sheet' });
+  });
+
+  test('is refused before it is read if its memory is not there', async () => {
+    const core = coreOf(fakeCore());
+    const large = await openGiven(core, meshOf('a.stl'), { ...env, mostBytes: 10 });
+    expect(large).toMatchObject({ ok: false, kind: 'mesh', message: expect.stringContaining('simplify it first') });
+    expect(core.calls).toEqual([]);
+  });
+
+  test('is told in words, and so is what has become of it', () => {
+    const info = /** @type {any} */ ({
+      faces: 1200,
+      vertices: 600,
+      pieces: 1,
+      border_edges: 8,
+      fan_edges: 0,
+      mended: ['3 vertices merged', '1 face turned'],
+      part: { patches: 6, edges: 12, corners: 8, faded: 1 },
+      scan: null,
+    });
+    expect(facesOf(info)).toBe(
+      '1,200 faces with 600 vertices in 1 piece. Holes with 8 edges at their borders are closed smoothly.',
+    );
+    expect(mendedOf(info)).toBe('Mended: 3 vertices merged, 1 face turned.');
+    expect(mendedOf({ ...info, mended: [] })).toBe('');
+    expect(madeOf(info)).toContain('6 patches between 12 sharp edges of the mesh and 8 corners. 1 sharp edge');
+    const scan = { size: [96, 64, 1200], cell: 0.0125, smooth: 0.7 };
+    expect(madeOf({ ...info, part: null, scan })).toBe(
+      'A scan, without sharp edges: its distance on a grid of 96 × 64 × 1,200 cells of 0.0125, smoothed by a Gaussian of 0.7 cells.',
+    );
+    const far = { mean: 0.001, most: 0.004, largest: 0.01 };
+    const rows = changeOf({ diagonal: 10, to_new: far, to_old: far, edges: null, volume: [8, 7.92], area: [24, 24] });
+    expect(rows.map(({ label }) => label)).toEqual(['Old to new', 'New to old', 'Volume', 'Area']);
+    expect(rows[0]).toMatchObject({
+      value: 'up to 0.01 (0.1% of the diagonal)',
+      help: expect.stringContaining('The mean is 0.001, and 99\u202f% are below 0.004.'),
+    });
+    expect(rows[2].value).toBe('8 → 7.92 (−1%)');
+    expect(rows[3].value).toBe('24 → 24 (the same)');
+  });
+});
+
 describe('a job of an image', () => {
   const job = (/** @type {number} */ id, /** @type {string} */ name) =>
-    /** @type {any} */ ({ kind: 'new', id, field: { parameters: { iso: id } }, settings: {}, image: imageOf(name) });
+    /** @type {any} */ ({ kind: 'new', id, field: { parameters: { iso: id } }, settings: {}, file: imageOf(name) });
 
   test('waits until the core has its image, also after another one', async () => {
     const core = coreOf(fakeCore());
-    const keeper = new ImageKeeper(ROOM);
+    const keeper = new FileKeeper(ROOM);
     /** @type {any[]} */
     const posted = [];
     /** @type {() => void} */
@@ -75,8 +128,8 @@ describe('a job of an image', () => {
       (message) => void posted.push(message),
       () => 0,
       {
-        isReady: (ours, image) => keeper.isReady(ours, image, () => ready()),
-        setField: (ours, image, field) => keeper.setField(ours, image, field),
+        isReady: (ours, file) => keeper.isReady(ours, file, () => ready()),
+        setField: (ours, file, field) => keeper.setField(ours, file, field),
       },
     );
     for (const [id, name] of /** @type {[number, string][]} */ ([
@@ -93,7 +146,7 @@ describe('a job of an image', () => {
       expect(jobs.take(core)?.id).toBe(id);
     }
     expect(core.calls.filter((/** @type {string} */ call) => call.startsWith('open'))).toHaveLength(3);
-    expect(core.calls.at(-1)).toBe('set_image {"iso":3}');
+    expect(core.calls.at(-1)).toBe('set_opened {"iso":3}');
     expect(posted.map(({ type, id }) => `${type} ${id}`)).toEqual(['field 1', 'field 2', 'field 3']);
     // The image is still there for the next one.
     jobs.add(job(4, 'a.nii'));
@@ -102,7 +155,7 @@ describe('a job of an image', () => {
 
   test('is refused if its file is none any more', async () => {
     const core = coreOf(fakeCore());
-    const keeper = new ImageKeeper(ROOM);
+    const keeper = new FileKeeper(ROOM);
     const image = imageOf('a.bad');
     await new Promise((done) => {
       expect(keeper.isReady(core, image, done)).toBe(false);

@@ -1,0 +1,356 @@
+//! The surface of a triangle mesh as the field of a session, and how far a new mesh is from it.
+
+use serde::Serialize;
+
+/// The triangle mesh that is sampled anew, and what was made of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct MeshInfo {
+    /// Name of the file or the array.
+    pub name: String,
+    /// Number of vertices, as it was mended.
+    pub vertices: usize,
+    /// Number of faces, as it was mended.
+    pub faces: usize,
+    /// Number of pieces that are not joined by edges of two faces.
+    pub pieces: usize,
+    /// Number of edges with one face, those of holes.
+    pub border_edges: usize,
+    /// Number of edges with more than two faces.
+    pub fan_edges: usize,
+    /// What was mended, in words.
+    pub mended: Vec<String>,
+    /// What the reader has left out, in sentences.
+    pub notes: Vec<String>,
+    /// The smooth patches, if it was taken for a part with sharp edges.
+    pub part: Option<MeshPart>,
+    /// The grid, if it was taken for a scan.
+    pub scan: Option<MeshScan>,
+}
+
+/// Smooth patches between sharp edges.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct MeshPart {
+    /// Number of patches.
+    pub patches: usize,
+    /// Edges of the mesh at which two patches meet.
+    pub edges: usize,
+    /// Vertices at which three or more of these meet.
+    pub corners: usize,
+    /// Sharp edges that fade out within a patch, and are rounded.
+    pub faded: usize,
+}
+
+/// The distance from a mesh on a grid.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct MeshScan {
+    /// Voxels along each axis.
+    pub size: [usize; 3],
+    /// Width of a cell.
+    pub cell: f64,
+    /// Width of the Gaussian in cells.
+    pub smooth: f64,
+}
+
+#[cfg(all(feature = "images", feature = "points"))]
+pub use with_meshes::OpenedMesh;
+#[cfg(all(feature = "images", feature = "points"))]
+pub(super) use with_meshes::{Comparison, MeshSurface};
+
+#[cfg(all(feature = "images", feature = "points"))]
+mod with_meshes {
+    use super::super::opened::Surface;
+    use super::super::{FieldAnswer, FieldRequest, Session, Source};
+    use super::{MeshInfo, MeshPart, MeshScan};
+    use crate::export::{MeshBuffers, Vertices};
+    use crate::field::formula::Parameter;
+    use crate::remesh::{
+        DEFAULT_EDGE_ANGLE, MeshChange, MeshEdges, MeshError, MeshField, MeshKind, MeshSolid, TriangleMesh,
+    };
+    use crate::session::{Fault, FaultKind};
+    use crate::slices::{self, Work};
+    use std::collections::BTreeMap;
+    use std::sync::Arc;
+
+    /// The names of a choice among the parameters of a request.
+    const NAMES: [&str; 2] = ["edges", "smooth"];
+    /// Largest angle on the slider of edges, in degrees, and largest width on that of the Gaussian.
+    const MOST: [f64; 2] = [90.0, 10.0];
+
+    /// A triangle mesh that was opened, mended once for whatever is chosen of it.
+    #[derive(Clone, Debug)]
+    pub struct OpenedMesh {
+        solid: MeshSolid,
+        notes: Arc<[String]>,
+    }
+
+    impl OpenedMesh {
+        /// Mends a mesh.
+        ///
+        /// # Errors
+        ///
+        /// [`FaultKind::Mesh`] or [`FaultKind::NoSolid`].
+        pub fn new(mesh: &TriangleMesh) -> Result<Self, Fault> {
+            let solid = mesh.solid().map_err(|error| fault_of(&error))?;
+            Ok(Self { solid, notes: mesh.notes().into() })
+        }
+
+        /// Reads and mends the mesh of a file: see [`TriangleMesh::read`].
+        ///
+        /// # Errors
+        ///
+        /// [`FaultKind::Mesh`], [`FaultKind::NoFaces`] or [`FaultKind::NoSolid`].
+        pub fn read(name: &str, bytes: Vec<u8>) -> Result<Self, Fault> {
+            Self::new(&TriangleMesh::read(name, bytes).map_err(|error| fault_of(&error))?)
+        }
+
+        pub(in super::super) fn is_same(&self, other: &Self) -> bool {
+            self.solid.is_same(&other.solid)
+        }
+    }
+
+    /// The error without the names that it has in other programs.
+    fn fault_of(error: &MeshError) -> Fault {
+        let kind = match error {
+            MeshError::NoFaces => FaultKind::NoFaces,
+            MeshError::Sheet { .. } => FaultKind::NoSolid,
+            _ => FaultKind::Mesh,
+        };
+        let text = error.to_string();
+        let plain = match (text.find(" (--"), text.find('`')) {
+            (Some(from), Some(_)) => match text[from..].find(')') {
+                Some(to) => format!("{}{}", &text[..from], &text[from + to + 1..]),
+                None => text,
+            },
+            _ => text,
+        };
+        Fault::new(kind, &plain)
+    }
+
+    /// The surface of a mesh.
+    #[derive(Clone)]
+    pub(in super::super) struct MeshSurface {
+        pub(in super::super) mesh: OpenedMesh,
+        pub(in super::super) field: MeshField,
+        edges: MeshEdges,
+        smooth: Option<f64>,
+    }
+
+    impl MeshSurface {
+        /// The values by name that make the choice.
+        pub(in super::super) fn choice(&self) -> impl Iterator<Item = (&'static str, f64)> {
+            let angle = match self.edges {
+                MeshEdges::Auto => None,
+                MeshEdges::Angle(angle) => Some(angle),
+                MeshEdges::Rounded => Some(0.0),
+            };
+            let values = [angle, self.smooth];
+            NAMES.into_iter().zip(values).filter_map(|(name, value)| Some((name, value?)))
+        }
+
+        /// The slider of the surface: that of the angle of edges of a part, and that of the
+        /// Gaussian over a scan.
+        pub(in super::super) fn parameters(&self) -> Vec<Parameter> {
+            let slider = |k: usize, label: &'static str, value: f64, min, step| Parameter {
+                name: NAMES[k].into(),
+                label: label.into(),
+                value,
+                min,
+                max: MOST[k].max(value),
+                step,
+            };
+            vec![match (self.field.kind(), self.edges) {
+                (MeshKind::Scan { smooth, .. }, _) => slider(1, "Smoothing", smooth, 0.0, 0.1),
+                (_, MeshEdges::Angle(angle)) => slider(0, "Edges from", angle, 1.0, 1.0),
+                _ => slider(0, "Edges from", DEFAULT_EDGE_ANGLE, 1.0, 1.0),
+            }]
+        }
+    }
+
+    impl MeshInfo {
+        pub(in super::super) fn of(name: &str, surface: &MeshSurface) -> Self {
+            let solid = &surface.mesh.solid;
+            let (part, scan) = match surface.field.kind() {
+                MeshKind::Parts { patches, edges, corners, faded } => {
+                    (Some(MeshPart { patches, edges, corners, faded }), None)
+                }
+                MeshKind::Scan { size, cell, smooth } => (None, Some(MeshScan { size, cell, smooth })),
+            };
+            Self {
+                name: name.to_owned(),
+                vertices: solid.mesh().vertices().len(),
+                faces: solid.mesh().faces().len(),
+                pieces: solid.pieces(),
+                border_edges: solid.border_edges(),
+                fan_edges: solid.fan_edges(),
+                mended: solid.repairs().words(),
+                notes: surface.mesh.notes.to_vec(),
+                part,
+                scan,
+            }
+        }
+    }
+
+    /// The choice that values by name make: an angle of 0 keeps no edges.
+    fn choice_of(values: &BTreeMap<String, f64>) -> (MeshEdges, Option<f64>) {
+        let [edges, smooth] = NAMES.map(|name| values.get(name).copied());
+        let edges = match edges {
+            None => MeshEdges::Auto,
+            Some(0.0) => MeshEdges::Rounded,
+            Some(angle) => MeshEdges::Angle(angle),
+        };
+        (edges, smooth)
+    }
+
+    /// The comparison of the new mesh with the old one.
+    pub(in super::super) enum Comparison {
+        None,
+        Measuring(Work<'static, MeshChange>),
+        Known(MeshChange),
+    }
+
+    impl Session {
+        /// Changes the field to the surface of a triangle mesh. Of the parameters of the request
+        /// `edges` is the angle in degrees from which on an edge stays sharp, 0 for none, and
+        /// `smooth` the width of the Gaussian over a scan: see [`MeshSolid::field`]. Formula and
+        /// box are those of [`Session::set_image`], as is the change of the choice.
+        ///
+        /// # Errors
+        ///
+        /// If the choice has no surface, the formula has a mistake or the box is not one; nothing
+        /// is changed then.
+        pub fn set_mesh(
+            &mut self,
+            mesh: &OpenedMesh,
+            name: &str,
+            request: &FieldRequest,
+        ) -> Result<FieldAnswer, Fault> {
+            let (edges, smooth) = choice_of(&request.parameters);
+            self.set_opened(name, request, |before| match before {
+                Some(Surface::Mesh(before))
+                    if before.mesh.is_same(mesh) && (before.edges, before.smooth) == (edges, smooth) =>
+                {
+                    Ok(Surface::Mesh(before.clone()))
+                }
+                _ => {
+                    let field = mesh.solid.field(edges, smooth).map_err(|error| fault_of(&error))?;
+                    Ok(Surface::Mesh(MeshSurface { mesh: mesh.clone(), field, edges, smooth }))
+                }
+            })
+        }
+
+        /// How far the mesh that [`Session::join`] has made is from the one that was opened, up to
+        /// `budget` slices of the work; nothing before it is known. Nothing inside where the
+        /// surface is not that of a mesh by itself, or no mesh has been joined.
+        pub fn compare(&mut self, budget: u32) -> Option<Option<MeshChange>> {
+            if self.run.mesh().is_none() {
+                self.comparison = Comparison::None;
+            }
+            if let (Comparison::None, Source::Opened(opened)) = (&self.comparison, self.run.field())
+                && let (Some(Surface::Mesh(surface)), Some(mesh)) = (opened.alone(), self.run.mesh())
+            {
+                let new = MeshBuffers::new(mesh, self.run.particles(), Vertices::Joined);
+                let work = surface.field.clone().compared(new.positions, new.triangles);
+                self.comparison = Comparison::Measuring(Box::pin(work));
+            }
+            if let Comparison::Measuring(work) = &mut self.comparison {
+                self.comparison = Comparison::Known(slices::advance(work.as_mut(), budget)?);
+            }
+            Some(match &self.comparison {
+                Comparison::Known(change) => Some(*change),
+                _ => None,
+            })
+        }
+    }
+}
+
+#[cfg(all(test, feature = "images", feature = "points"))]
+mod tests {
+    use super::{MeshPart, OpenedMesh};
+    use crate::TriangleMesh;
+    use crate::sampler::{Phase, Settings};
+    use crate::session::{FaultKind, FieldRequest, Session};
+    use std::collections::BTreeMap;
+
+    /// A cube of the side 2 as an OFF file of six squares, the first of which may be missing.
+    fn cube(is_open: bool) -> Vec<u8> {
+        let corners =
+            (0..8).map(|k| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { "-1" } else { "1" }.to_owned()));
+        let corners: Vec<String> = corners.map(|corner| corner.join(" ")).collect();
+        let faces = ["0 2 3 1", "4 5 7 6", "0 1 5 4", "2 6 7 3", "0 4 6 2", "1 3 7 5"];
+        let faces = &faces[usize::from(is_open)..];
+        let rows: Vec<String> = faces.iter().map(|face| format!("4 {face}")).collect();
+        format!("OFF\n8 {} 0\n{}\n{}\n", faces.len(), corners.join("\n"), rows.join("\n")).into_bytes()
+    }
+
+    fn request(values: &[(&str, f64)]) -> FieldRequest {
+        let parameters: BTreeMap<String, f64> =
+            values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
+        FieldRequest { parameters, ..FieldRequest::default() }
+    }
+
+    fn run(session: &mut Session) {
+        session.start(&Settings::with_count(1_000)).expect("a run");
+        while session.run.step(10_000).phase != Phase::Done {}
+    }
+
+    #[test]
+    fn a_cube_is_sampled_anew_with_its_edges() {
+        let mut session = Session::new();
+        let mesh = OpenedMesh::read("cube.off", cube(false)).expect("a mesh");
+        let answer = session.set_mesh(&mesh, "cube.off", &request(&[])).expect("a field");
+        let info = answer.mesh.expect("a mesh");
+        assert_eq!(info.part, Some(MeshPart { patches: 6, edges: 12, corners: 8, faded: 0 }));
+        assert_eq!((info.faces, info.vertices, info.pieces), (12, 8, 1));
+        assert_eq!(answer.parameters[0].name, "edges");
+        // Nothing is compared before there is a new mesh.
+        assert_eq!(session.compare(u32::MAX), Some(None));
+        run(&mut session);
+        session.join(u32::MAX).expect("a mesh");
+        let change = session.compare(u32::MAX).flatten().expect("a comparison");
+        assert!((change.volume[0] - 8.0).abs() < 1e-9 && (change.volume[1] - 8.0).abs() < 1e-4, "{change:?}");
+        assert!((change.area[1] - 24.0).abs() < 1e-4, "{change:?}");
+        assert!(change.to_new.largest < 1e-4 && change.edges.is_some_and(|far| far < 1e-4), "{change:?}");
+        // Another run has another mesh.
+        run(&mut session);
+        assert_eq!(session.compare(u32::MAX), Some(None));
+    }
+
+    #[test]
+    fn another_choice_gives_what_opening_with_it_gives() {
+        let mesh = OpenedMesh::read("cube.off", cube(false)).expect("a mesh");
+        let (mut moved, mut fresh) = (Session::new(), Session::new());
+        moved.set_mesh(&mesh, "cube.off", &request(&[])).expect("a field");
+        run(&mut moved);
+        let first = moved.run.particles().digest();
+        let answer = moved.set_field(&request(&[("smooth", 2.0)])).expect("a field");
+        assert!(answer.mesh.is_some_and(|mesh| mesh.scan.is_some_and(|scan| scan.smooth == 2.0)));
+        run(&mut moved);
+        fresh.set_mesh(&mesh, "cube.off", &request(&[("smooth", 2.0)])).expect("a field");
+        run(&mut fresh);
+        assert_ne!(moved.run.particles().digest(), first);
+        assert_eq!(moved.run.particles().digest(), fresh.run.particles().digest());
+    }
+
+    #[test]
+    fn what_is_no_solid_is_told_apart_and_the_surface_before_it_stays() {
+        let points = b"OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n".to_vec();
+        assert_eq!(OpenedMesh::read("p.off", points).expect_err("no faces").kind, FaultKind::NoFaces);
+        let sheet =
+            TriangleMesh::new(vec![glam::DVec3::ZERO, glam::DVec3::X, glam::DVec3::Y], vec![[0, 1, 2]]);
+        let fault = OpenedMesh::new(&sheet.expect("a mesh")).expect_err("a sheet");
+        assert_eq!(fault.kind, FaultKind::NoSolid);
+        assert!(!fault.message.contains("--") && fault.message.ends_with("to its points"), "{fault}");
+
+        let mut session = Session::new();
+        let mesh = OpenedMesh::read("open.off", cube(true)).expect("a mesh");
+        session.set_mesh(&mesh, "open.off", &request(&[])).expect("a field");
+        for values in [&[("edges", 30.0)][..], &[("smooth", -1.0)], &[("edges", 500.0)]] {
+            let fault = session.set_mesh(&mesh, "open.off", &request(values)).expect_err("refused");
+            assert_eq!(fault.kind, FaultKind::Mesh, "{fault}");
+            assert!(session.answer().mesh.is_some_and(|mesh| mesh.scan.is_some()));
+        }
+    }
+}

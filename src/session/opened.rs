@@ -1,0 +1,196 @@
+//! Surfaces of files that a session has opened, images and triangle meshes, as its field.
+
+use super::{FieldAnswer, FieldRequest, ImageInfo, ModelFormula, Session, Source, check_box, image};
+#[cfg(feature = "points")]
+use super::{MeshInfo, mesh::MeshSurface};
+use crate::extent::FALLBACK;
+use crate::field::Field;
+use crate::field::formula::Parameter;
+use crate::image::ImageSurface;
+use crate::session::Fault;
+use std::sync::Arc;
+
+/// The surface of a file, with what was chosen of it.
+#[derive(Clone)]
+#[expect(clippy::large_enum_variant, reason = "there is one in a session")]
+pub(super) enum Surface {
+    /// Of an image.
+    Image(ImageSurface),
+    /// Of a triangle mesh.
+    #[cfg(feature = "points")]
+    Mesh(MeshSurface),
+}
+
+impl Surface {
+    fn field(&self) -> &(dyn Field + 'static) {
+        match self {
+            Self::Image(surface) => surface.field(),
+            #[cfg(feature = "points")]
+            Self::Mesh(surface) => &surface.field,
+        }
+    }
+
+    fn shared(&self) -> Arc<dyn Field> {
+        match self {
+            Self::Image(surface) => Arc::new(surface.field().clone()),
+            #[cfg(feature = "points")]
+            Self::Mesh(surface) => Arc::new(surface.field.clone()),
+        }
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        match self {
+            Self::Image(surface) => image::parameters(surface),
+            #[cfg(feature = "points")]
+            Self::Mesh(surface) => surface.parameters(),
+        }
+    }
+
+    /// The values by name that make the choice.
+    fn choice(&self) -> Vec<(&'static str, f64)> {
+        match self {
+            Self::Image(surface) => image::choice(surface).collect(),
+            #[cfg(feature = "points")]
+            Self::Mesh(surface) => surface.choice().collect(),
+        }
+    }
+
+    /// Whether both are of one file.
+    fn is_of_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Image(surface), Self::Image(other)) => surface.is_of(other.image()),
+            #[cfg(feature = "points")]
+            (Self::Mesh(surface), Self::Mesh(other)) => surface.mesh.is_same(&other.mesh),
+            #[cfg(feature = "points")]
+            _ => false,
+        }
+    }
+}
+
+/// The surface of a file, as a session samples it.
+#[derive(Clone)]
+pub struct OpenedSource {
+    name: String,
+    surface: Surface,
+    /// The formula whose operand the surface is, if one is sampled in its place.
+    within: Option<ModelFormula>,
+}
+
+impl OpenedSource {
+    /// What is sampled.
+    pub(super) fn field(&self) -> &(dyn Field + 'static) {
+        match &self.within {
+            Some(formula) => &*formula.field,
+            None => self.surface.field(),
+        }
+    }
+
+    /// The same, shared.
+    pub(super) fn shared(&self) -> Arc<dyn Field> {
+        match &self.within {
+            Some(formula) => Arc::new(formula.field.clone()),
+            None => self.surface.shared(),
+        }
+    }
+
+    /// The surface, if it is sampled by itself.
+    #[cfg(feature = "points")]
+    pub(super) fn alone(&self) -> Option<&Surface> {
+        self.within.is_none().then_some(&self.surface)
+    }
+
+    /// Whether nothing is known beyond the border of the file.
+    pub(super) fn is_bordered(&self) -> bool {
+        matches!(self.surface, Surface::Image(_))
+    }
+
+    /// The parameters of the formula, if there is one.
+    pub(super) fn formula_parameters(&self) -> &[Parameter] {
+        self.within.as_ref().map_or(&[], |formula| &formula.parameters)
+    }
+
+    /// The description of the field.
+    pub(super) fn answer(&self, answer: FieldAnswer) -> FieldAnswer {
+        let mut parameters = self.surface.parameters();
+        let answer = match &self.surface {
+            Surface::Image(surface) => {
+                FieldAnswer { image: Some(ImageInfo::of(&self.name, surface)), ..answer }
+            }
+            #[cfg(feature = "points")]
+            Surface::Mesh(surface) => FieldAnswer { mesh: Some(MeshInfo::of(&self.name, surface)), ..answer },
+        };
+        let Some(formula) = &self.within else { return FieldAnswer { parameters, ..answer } };
+        let own: Vec<&str> = self.surface.choice().into_iter().map(|(name, _)| name).collect();
+        let is_other =
+            |p: &&Parameter| !own.contains(&&*p.name) && parameters.iter().all(|known| known.name != p.name);
+        let others: Vec<Parameter> = formula.parameters.iter().filter(is_other).cloned().collect();
+        parameters.extend(others);
+        FieldAnswer {
+            formula: formula.text.clone(),
+            parameters,
+            auto: formula.auto.clone(),
+            mathml: Some(formula.mathml.clone()),
+            ..answer
+        }
+    }
+}
+
+impl Session {
+    /// Changes the field to the surface that `chosen` makes, given the one before it, with the
+    /// formula and the box of a request.
+    pub(super) fn set_opened(
+        &mut self,
+        name: &str,
+        request: &FieldRequest,
+        chosen: impl FnOnce(Option<&Surface>) -> Result<Surface, Fault>,
+    ) -> Result<FieldAnswer, Fault> {
+        let own = request.bounds.unwrap_or(FALLBACK);
+        check_box(&own)?;
+        let before = match self.run.field() {
+            Source::Opened(before) => Some(&**before),
+            _ => None,
+        };
+        let surface = chosen(before.map(|before| &before.surface))?;
+        let within = match &request.formula {
+            Some(text) => Some(Self::model_formula(text, &surface.shared(), request)?),
+            None => None,
+        };
+        // Whether the file is the same, and whether its surface is, too.
+        let is_kept =
+            before.is_some_and(|before| before.surface.is_of_same(&surface) && before.within == within);
+        let is_same = is_kept && before.is_some_and(|before| before.surface.choice() == surface.choice());
+        let is_open = request.bounds.is_none();
+        let keeps_box = is_kept && is_open && self.fitting.is_fitted;
+        let source = Source::Opened(Box::new(OpenedSource { name: name.to_owned(), surface, within }));
+        self.run.set_field(source, is_same);
+        self.surface = None;
+        self.declared.clear();
+        if !is_same {
+            self.fitting.restart();
+        }
+        if !keeps_box {
+            self.fitting.discard();
+            self.fitting.is_given = !is_open;
+            (self.own, self.clip, self.reach) = (own, own, None);
+            self.run.set_bounds(own, None);
+        }
+        Ok(self.answer())
+    }
+
+    /// Changes what is sampled of the present file: values that the request does not name stay.
+    /// None if the field is of something else.
+    pub(super) fn change_opened(&mut self, request: &FieldRequest) -> Option<Result<FieldAnswer, Fault>> {
+        let Source::Opened(present) = self.run.field() else { return None };
+        let (surface, name) = (present.surface.clone(), present.name.clone());
+        let mut request = request.clone();
+        for (name, value) in surface.choice() {
+            request.parameters.entry(name.to_owned()).or_insert(value);
+        }
+        request.bounds = request.bounds.or(self.fitting.is_given.then_some(self.own));
+        Some(match surface {
+            Surface::Image(surface) => self.set_image(surface.image(), &name, &request),
+            #[cfg(feature = "points")]
+            Surface::Mesh(surface) => self.set_mesh(&surface.mesh, &name, &request),
+        })
+    }
+}

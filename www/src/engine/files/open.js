@@ -1,0 +1,125 @@
+/**
+ * Reads the file of an image or a triangle mesh and opens it in the core. What the header of an image promises is
+ * known, and its memory is held to a limit, before the rest is read. For the sampler's worker and for the package.
+ *
+ * @module
+ */
+import { words } from '../bundle/load.js';
+
+/**
+ * @import { Core } from '../../wasm/core/core.js'
+ * @import { FaultKind, ImagePromise } from '../core-types.js'
+ * @import { GivenFile, Opened, OpenEnv } from './types.js'
+ */
+
+/** Of a file so much is enough for its header. */
+const START_BYTES = 1 << 20;
+/** Share of the work that is done once the file is read. The rest is the core's. */
+const READ_SHARE = 0.7;
+/**
+ * Memory that a mesh takes while it is read, mended and sampled, over that of its file: a triangle has 50 bytes in a
+ * binary STL file and some 600 in the trees and tables of the core.
+ */
+const MESH_FACTOR = 15;
+
+/** Ends the reading with a message for the user. */
+class Refusal extends Error {
+  /** @param {FaultKind} kind @param {string} message */
+  constructor(kind, message) {
+    super(message);
+    this.kind = kind;
+  }
+}
+
+const megabytes = (/** @type {number} */ bytes) => Math.max(1, Math.round(bytes / 1e6)).toLocaleString('en');
+
+/**
+ * Says what the header of a file promises.
+ * @param {ImagePromise} promise
+ */
+function promised({ size, voxel_type, memory }) {
+  if (!size) return 'Reading';
+  return `Reading ${size.join(' × ')} voxels of ${voxel_type}, about ${megabytes(memory)} MB of memory`;
+}
+
+/**
+ * Reads a file to its end, or returns null if that is to stop.
+ * @param {Blob} file @param {(share: number) => void} tell @param {() => boolean} isOver
+ */
+async function bytesOf(file, tell, isOver) {
+  const bytes = new Uint8Array(file.size);
+  const reader = file.stream().getReader();
+  for (let at = 0; ; ) {
+    const { done, value } = await reader.read();
+    if (isOver()) {
+      void reader.cancel();
+      return null;
+    }
+    if (done) return bytes.subarray(0, at);
+    bytes.set(value, at);
+    at += value.length;
+    tell(at / file.size);
+  }
+}
+
+/**
+ * Opens a file in the core, whose file it is then. Returns null if that was to stop.
+ * @param {Core} core @param {GivenFile} given @param {OpenEnv} env
+ * @returns {Promise<Opened>}
+ */
+export async function openGiven(core, given, env) {
+  try {
+    return given.as === 'mesh' ? await openedMesh(core, given, env) : await openedImage(core, given, env);
+  } catch (error) {
+    if (error instanceof WebAssembly.RuntimeError) throw error;
+    if (error instanceof Refusal) return { ok: false, kind: error.kind, message: error.message };
+    return { ok: false, kind: given.as, message: `the file cannot be read: ${words(error)}` };
+  }
+}
+
+/** @param {Core} core @param {GivenFile} given @param {OpenEnv} env @returns {Promise<Opened>} */
+async function openedMesh(core, { name, file }, { tell, isOver, mostBytes }) {
+  const needed = MESH_FACTOR * file.size;
+  if (needed > mostBytes)
+    throw new Refusal(
+      'mesh',
+      `a mesh of ${megabytes(file.size)} MB takes about ${megabytes(needed)} MB of memory, and there are ` +
+        `${megabytes(mostBytes)} MB here; simplify it first, or use the command line`,
+    );
+  const label = `Reading, about ${megabytes(needed)} MB of memory`;
+  tell(label, 0);
+  const bytes = await bytesOf(file, (share) => tell(label, READ_SHARE * share), isOver);
+  if (!bytes) return null;
+  tell('Mending the mesh', READ_SHARE);
+  const fault = core.open_mesh(name, bytes);
+  if (fault) throw new Refusal(fault.kind, fault.message);
+  return { ok: true, facts: null };
+}
+
+/** @param {Core} core @param {GivenFile} given @param {OpenEnv} env @returns {Promise<Opened>} */
+async function openedImage(core, { name, file, beside }, { tell, isOver, mostBytes }) {
+  tell('Reading', 0);
+  const start = new Uint8Array(await file.slice(0, START_BYTES).arrayBuffer());
+  const promise = core.image_promise(name, start);
+  if (!promise.ok) throw new Refusal('image', promise.error.message);
+  if (promise.memory > mostBytes)
+    throw new Refusal(
+      'image',
+      `the image of ${promise.size?.join(' × ')} voxels takes about ${megabytes(promise.memory)} MB of memory, and ` +
+        `there are ${megabytes(mostBytes)} MB here; cut out the part that matters, or keep every second voxel`,
+    );
+  const label = promised(promise);
+  tell(label, 0);
+  /** @type {Map<string, Uint8Array>} */
+  const others = new Map();
+  for (const other of beside) {
+    if (isOver()) return null;
+    others.set(other.name, new Uint8Array(await other.file.arrayBuffer()));
+  }
+  const bytes = await bytesOf(file, (share) => tell(label, READ_SHARE * share), isOver);
+  if (!bytes) return null;
+  const answer = core.open_image(name, bytes, (wanted) => others.get(wanted));
+  if (!answer.ok) throw new Refusal('image', answer.error.message);
+  const { ok: _, ...facts } = answer;
+  return { ok: true, facts };
+}

@@ -1,0 +1,19 @@
+/**
+ * What a file has given a field.
+ *
+ * @module
+ */
+
+/** @import { FieldOk } from './types.js' */
+
+/**
+ * The name of the model, image or mesh whose surface is sampled, and what a file of it holds; null for a formula.
+ * @param {FieldOk | null} field
+ * @returns {{name: string, holds: 'points' | 'voxels' | 'faces'} | null}
+ */
+export function givenOf(field) {
+  if (field?.model) return { name: field.model.name, holds: 'points' };
+  if (field?.image) return { name: field.image.name, holds: 'voxels' };
+  if (field?.mesh) return { name: field.mesh.name, holds: 'faces' };
+  return null;
+}

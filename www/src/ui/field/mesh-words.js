@@ -1,0 +1,75 @@
+/** Describes a triangle mesh that is sampled anew in words, and how far the new mesh is from it. */
+import { formatCount, formatShare, formatSignificant, plural } from '../format.js';
+
+/** @import { MeshChange, MeshInfo } from '../../engine/types.js' */
+
+/** Says what a mesh is made of. @param {MeshInfo} info */
+export function facesOf({ faces, vertices, pieces, border_edges, fan_edges }) {
+  const parts = [
+    `${plural(faces, 'face')} with ${plural(vertices, 'vertex', 'vertices')} in ${plural(pieces, 'piece')}.`,
+  ];
+  if (border_edges > 0) parts.push(`Holes with ${plural(border_edges, 'edge')} at their borders are closed smoothly.`);
+  if (fan_edges > 0)
+    parts.push(`${plural(fan_edges, 'edge')} with more than two faces: inside is where faces wind around.`);
+  return parts.join(' ');
+}
+
+/** Says what was mended; empty if nothing was. @param {MeshInfo} info */
+export const mendedOf = ({ mended }) => (mended.length > 0 ? `Mended: ${mended.join(', ')}.` : '');
+
+/** Says what the mesh was taken for. @param {MeshInfo} info */
+export function madeOf({ part, scan }) {
+  if (part) {
+    const faded = part.faded > 0 ? ` ${plural(part.faded, 'sharp edge')} that end within a patch will be rounded.` : '';
+    const { patches, edges, corners } = part;
+    return `A part with edges: ${plural(patches, 'patch', 'patches')} between ${plural(edges, 'sharp edge')} of the mesh and ${plural(corners, 'corner')}.${faded}`;
+  }
+  if (!scan) return '';
+  const { size, cell, smooth } = scan;
+  const blur = smooth > 0 ? `, smoothed by a Gaussian of ${formatSignificant(smooth, 2)} cells` : '';
+  return `A scan, without sharp edges: its distance on a grid of ${size.map(formatCount).join(' × ')} cells of ${formatSignificant(cell)}${blur}.`;
+}
+
+/** Share of the diagonal up to which a distance is one of rounding. */
+const ROUNDING = 1e-9;
+
+/**
+ * The rows that say how far the new mesh is from the old one, with what they mean.
+ * @param {MeshChange} change
+ */
+export function changeOf({ diagonal, to_new, to_old, edges, volume, area }) {
+  const far = (/** @type {number} */ largest) =>
+    largest < ROUNDING * diagonal
+      ? 'none but rounding'
+      : `up to ${formatSignificant(largest)} (${formatShare(largest / diagonal, 4)} of the diagonal)`;
+  const both = (/** @type {[number, number]} */ [old, now]) => {
+    const by = formatShare(Math.abs(now / old - 1), 3);
+    const change = by === formatShare(0, 3) ? 'the same' : `${now < old ? '−' : '+'}${by}`;
+    return `${formatSignificant(old)} → ${formatSignificant(now)} (${change})`;
+  };
+  const more = (/** @type {MeshChange['to_new']} */ { mean, most }) =>
+    `The mean is ${formatSignificant(mean)}, and 99\u202f% are below ${formatSignificant(most)}.`;
+  return [
+    {
+      label: 'Old to new',
+      value: far(to_new.largest),
+      help: `Distances of points of the old mesh from the new one. ${more(to_new)}`,
+    },
+    {
+      label: 'New to old',
+      value: far(to_old.largest),
+      help: `Distances of points of the new mesh from the old one. ${more(to_old)}`,
+    },
+    ...(edges === null
+      ? []
+      : [
+          {
+            label: 'Edges moved',
+            value: far(edges),
+            help: 'Largest distance of the sharp edges of the old mesh from the new one.',
+          },
+        ]),
+    { label: 'Volume', value: both(volume), help: 'Of the old and of the new mesh.' },
+    { label: 'Area', value: both(area), help: 'Of the old and of the new mesh.' },
+  ];
+}
