@@ -51,12 +51,12 @@ Examples:
 /// The particles that the report measures.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum ReportKind {
-    /// Nothing: no figures of quality, no components and Euler number of the sample, no warnings
-    /// that come from these, and no columns valence, nearest and residual in the files
+    /// Nothing: no quality figures, no components and Euler number, no warnings based on them, and
+    /// no columns valence, nearest and residual in the files
     None,
     /// The particles
     Short,
-    /// The particles and, for comparison, those of the front before its relaxation
+    /// The particles, and for comparison the front before its relaxation
     Full,
 }
 
@@ -100,9 +100,9 @@ Example:
 const SWEEP_LONG: &str = "\
 Move a surface by a parameter, and write the particles that follow it to numbered files.
 
-The particles of the first frame are those of `sample`. From frame to frame they are brought to the new surface; they die where they \
-crowd, and are born where it tears, grows or comes into the box. A particle keeps its number, the column `identity` of ply and csv, as long \
-as it lives. Where the surface moves too far for that, has sharp edges or is gone, a new run begins: give more frames.
+The particles of the first frame are those of `sample`. In each frame they move to the new surface; crowded ones are removed, and new ones \
+appear where the surface tears, grows or enters the box. A particle keeps its number, the column `identity` of ply and csv, as long as it \
+exists. If the surface moves too far in one frame, has sharp edges or vanishes, a new run begins: give more frames.
 
 Example:
   marching-particles sweep --formula \"x^4 + y^4 + z^4 - 5(x^2 + y^2 + z^2) + q\" --sweep q=11..14 --frames 90 --count 8000 --out frames";
@@ -117,15 +117,14 @@ pub(crate) struct SweepArguments {
     #[arg(long, value_name = "NAME=FROM..TO", value_parser = sweep, allow_hyphen_values = true, help_heading = "Surface")]
     pub(crate) sweep: Sweep,
 
-    /// Steps from the first to the last value: there is one more file
+    /// Number of steps from the first to the last value; one more file is written
     #[arg(long, value_name = "N", default_value_t = 120, value_parser = frames, help_heading = "Surface")]
     pub(crate) frames: u32,
 
     #[command(flatten)]
     pub(crate) sampling: SamplingOptions,
 
-    /// Directory for the files, which is made if it is not there; files of the same names are
-    /// replaced
+    /// Directory for the files; created if it does not exist. Files of the same names are replaced
     #[arg(long, value_name = "DIRECTORY", help_heading = "Output")]
     pub(crate) out: PathBuf,
 
@@ -133,7 +132,7 @@ pub(crate) struct SweepArguments {
     #[arg(long, value_name = "WORD", value_parser = one_of(&Format::ALL), default_value = "ply", help_heading = "Output")]
     pub(crate) format: (&'static str, Format),
 
-    /// Print nothing but errors, and show no progress bar (there is none without a terminal)
+    /// Print only errors, and show no progress bar
     #[arg(long, short, help_heading = "Output")]
     pub(crate) quiet: bool,
 }
@@ -149,8 +148,8 @@ pub(crate) struct Sweep {
 const SAMPLE_LONG: &str = "\
 Sample a surface, write it to files and say how good it is.
 
-Name a surface, give a formula, a file of points, with or without normals, a triangle mesh, or a three-dimensional image. Say how fine: by the radius of the particles (neighbours sit two radii apart) or by \
-their number. Without --out and --mesh nothing is written, only measured.";
+Name a surface, or give a formula, a file of points, a triangle mesh or a three-dimensional image. Say how fine: by the radius of the \
+particles (neighbours are two radii apart), by the distance between neighbours, or by their number. Without --out and --mesh nothing is written, only measured.";
 
 const SAMPLE_AFTER: &str = "\
 Formulas:
@@ -192,19 +191,19 @@ Exit codes:
 /// Arguments of `sample`.
 #[derive(Debug, Args)]
 pub(crate) struct SampleArguments {
-    /// Make again what a PLY, OBJ, GLB or 3MF file holds that this program or its page has written:
-    /// its surface, box and settings. A CSV file has its record beside it, in a file whose name
-    /// goes on with .json. What else is given takes the place of the file's; with another surface,
-    /// its settings alone are taken
+    /// Repeat the run that a PLY, OBJ, GLB or 3MF file was saved from, by this program or its page:
+    /// surface, box and settings. For a CSV file they are in a file of the same name with .json
+    /// appended. Options given beside --like override those of the file; with another surface, only
+    /// the settings are taken from it
     #[arg(long, value_name = "FILE", help_heading = "Surface")]
     pub(crate) like: Option<PathBuf>,
 
     #[command(flatten)]
     pub(crate) surface: SurfaceArguments,
 
-    /// Share of the box of --closed that the sheet leaves empty, by the volume of the mesh: 70% or
-    /// 0.7. Finds the thickness; a --thickness by a formula is scaled. Corrected by up to two more
-    /// runs. For formulas
+    /// Choose the thickness of the sheet so that it leaves this share of the box of --closed empty,
+    /// measured by the volume of the mesh: 70% or 0.7. Takes up to two more runs. A --thickness by
+    /// a formula is scaled. For formulas
     #[arg(long, value_name = "SHARE%", value_parser = porosity, requires = "closed", conflicts_with_all = ["points", "image", "mesh_in"], help_heading = "Surface")]
     pub(crate) porosity: Option<f64>,
 
@@ -212,97 +211,98 @@ pub(crate) struct SampleArguments {
     pub(crate) sampling: SamplingOptions,
 
     /// Distance between neighbours, twice the radius: a length, a share of the box diagonal, or a
-    /// formula of x, y, z and the parameters, such as "0.02 + 0.1 hypot(x, y)". Sizes then change
-    /// by --grading at most; a note says where that is less than the formula asks. With --adaptive
-    /// the smaller size is taken; with --count the formula gives the ratio of the sizes
+    /// formula of x, y, z and the parameters, such as "0.02 + 0.1 hypot(x, y)". --grading limits
+    /// how fast sizes change; a note says where particles lie closer than the formula asks for this
+    /// reason. With --adaptive the smaller size counts; with --count the formula gives the
+    /// proportions of the sizes
     #[arg(
         long, value_name = "LENGTH|FORMULA", value_parser = spacing, allow_hyphen_values = true,
         conflicts_with = "radius_share", help_heading = "Sampling"
     )]
     pub(crate) spacing: Option<SpacingOption>,
 
-    /// Smallest distance between neighbours, for a formula of --spacing that is smaller somewhere,
-    /// or not above 0
+    /// Smallest distance between neighbours: replaces smaller, zero and negative values of
+    /// --spacing
     #[arg(long, value_name = "LENGTH", value_parser = units, requires = "spacing", help_heading = "Sampling")]
     pub(crate) spacing_min: Option<f64>,
 
-    /// Largest distance between neighbours, for a formula of --spacing that is larger somewhere
+    /// Largest distance between neighbours: replaces larger values of --spacing
     #[arg(long, value_name = "LENGTH", value_parser = units, requires = "spacing", help_heading = "Sampling")]
     pub(crate) spacing_max: Option<f64>,
 
-    /// File to write; its extension is its format: ply (position, normal, radius, level, parent,
-    /// valence, distance to the nearest particle, residual, and whether a singular point is near),
-    /// csv (the same, and what it was made from in a file of JSON beside it), xyz or npy (position,
+    /// File of the particles, in the format of its extension: ply (position, normal, radius, level,
+    /// parent, valence, distance to the nearest particle, residual, and whether a singular point is
+    /// near), csv (the same; a .json file of the same name holds the record), xyz or npy (position,
     /// normal). Normals follow the gradient of f: they point inward where f is larger inside. May
-    /// be given again; replaces what is there
+    /// be repeated; existing files are replaced
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) out: Vec<PathBuf>,
 
-    /// Column of numbers at the particles for the files, NAME=FORMULA: a formula of x, y, z, the
-    /// normal n_x, n_y, n_z, the principal curvatures k_1 >= k_2 and the direction d_x, d_y, d_z of
-    /// k_1, radius, level, area (the share of the surface, of the mesh around the particle), edge
-    /// (the distance to the nearest sharp edge) and the parameters, such as "H=(k_1+k_2)/2". ply
-    /// and csv name it, npy has it after the normal, glb as the attribute _NAME in capitals. May be
-    /// given again
+    /// Add a column to the files, NAME=FORMULA, such as "H=(k_1+k_2)/2": a formula of x, y, z, the
+    /// normal n_x, n_y, n_z, the principal curvatures k_1 >= k_2, the direction d_x, d_y, d_z of
+    /// k_1, radius, level, area (the part of the mesh area that belongs to the particle), edge (the
+    /// distance to the nearest sharp edge) and the parameters. ply and csv name the column, npy has
+    /// it after the normal, glb as the attribute _NAME in capitals. May be repeated
     #[arg(
         long = "value", value_name = "NAME=FORMULA", value_parser = value, allow_hyphen_values = true,
         help_heading = "Output"
     )]
     pub(crate) values: Vec<(String, String)>,
 
-    /// File for the triangle mesh over the particles; its extension is its format: glb (with
-    /// normals, generation levels as colours), 3mf (with its unit), stl, obj or ply (with normals).
-    /// Closed surfaces face outward. May be given again; replaces what is there. The method is
+    /// File of the triangle mesh, in the format of its extension: glb (with normals, and generation
+    /// levels as colours), 3mf (with its unit), stl, obj or ply (with normals). Closed surfaces
+    /// face outward. May be repeated; existing files are replaced. The mesh is sampled by --method
     /// refined, whose triangles are better, unless --method, --relax or a file of --like chooses
+    /// another
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) mesh: Vec<PathBuf>,
 
-    /// Format of what goes to standard output, whose name in --out or --mesh is `-`. The report
-    /// then goes to standard error
+    /// Format of what is written to standard output, with `-` as the name in --out or --mesh. The
+    /// report then goes to standard error
     #[arg(long, value_name = "WORD", value_parser = file_formats(), help_heading = "Output")]
     pub(crate) format: Option<String>,
 
-    /// Vertices of the files of --mesh on sharp edges, where the sides have normals of their own:
-    /// in glb, obj and ply. stl and 3mf have no normals
+    /// Vertices on sharp edges in glb, obj and ply files of --mesh: one, or one for each side with
+    /// its own normal. stl and 3mf have no normals
     #[arg(long, value_name = "WORD", value_parser = vertices(), default_value = "joined", help_heading = "Output")]
     pub(crate) vertices: Vertices,
 
-    /// Length of a unit of the formula in the files of --mesh, in the unit of --unit
+    /// Length of one unit of the formula in the files of --mesh, measured in --unit
     #[arg(long, value_name = "NUMBER", value_parser = scale, default_value_t = 1.0, help_heading = "Output")]
     pub(crate) scale: f64,
 
-    /// Unit of the files of --mesh: 3mf names it, and glb is in metres, to which lengths are
-    /// converted. Without it numbers stay what they are: metres in glb, millimetres in 3mf
+    /// Unit of the files of --mesh: 3mf names it, and glb is converted to metres. Without it
+    /// numbers are written as they are: metres in glb, millimetres in 3mf
     #[arg(long, value_name = "WORD", value_parser = one_of(&Unit::ALL), help_heading = "Output")]
     pub(crate) unit: Option<(&'static str, Unit)>,
 
-    /// Longest side of the mesh in the files of --mesh, such as 40mm, 4cm or 1.5in; millimetres
-    /// without a unit. Takes the place of --scale and --unit
+    /// Longest side of the mesh in the files of --mesh, such as 40mm, 4cm or 1.5in; without a unit
+    /// in millimetres. Replaces --scale and --unit
     #[arg(
         long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true,
         conflicts_with_all = ["scale", "unit"], help_heading = "Output"
     )]
     pub(crate) size: Option<Length>,
 
-    /// Thickness of the sheet as it is in the files of --mesh, such as 2mm, in place of
-    /// --thickness: with --size, for which up to two more runs correct it, or with --scale and
-    /// --unit
+    /// Thickness of the sheet in the files of --mesh, such as 2mm, instead of --thickness. Needs
+    /// --size, which takes up to two more runs to meet it, or --scale and --unit
     #[arg(
         long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true,
         conflicts_with_all = ["thickness", "porosity", "points", "image", "mesh_in", "print"], help_heading = "Output"
     )]
     pub(crate) wall: Option<Length>,
 
-    /// Leave out of the files of --mesh all parts but the largest, by their areas; the walls of its
+    /// Write only the largest part of the mesh, by area, to the files of --mesh; the walls of its
     /// hollows belong to it
     #[arg(long, help_heading = "Output")]
     pub(crate) largest_part: bool,
 
-    /// Axis of the formula that points up in the files of --mesh: along z there, but in glb along y
+    /// Axis of the formula that points up in the files of --mesh: becomes the z axis, in glb the y
+    /// axis
     #[arg(long, value_name = "AXIS", value_parser = one_of(&UpAxis::ALL), default_value = "z", help_heading = "Output")]
     pub(crate) up: (&'static str, UpAxis),
 
-    /// The particles that the report measures, which can take longer than sampling
+    /// What the report measures; measuring can take longer than sampling
     #[arg(long, value_name = "WORD", value_enum, default_value_t = ReportKind::Short, help_heading = "Output")]
     pub(crate) report: ReportKind,
 
@@ -310,14 +310,13 @@ pub(crate) struct SampleArguments {
     #[arg(long, help_heading = "Output")]
     pub(crate) json: bool,
 
-    /// Print the program that makes these particles, in place of making them: on the library in
-    /// Rust, on the package for npm (js), on the Python package, or as a command (shell). No file
-    /// is written; --mesh chooses the method as usual. For formulas
+    /// Print a program that makes these particles instead of sampling them: in Rust, for the
+    /// package for npm (js), for the Python package, or as a command (shell). No file is written;
+    /// --mesh chooses the method as usual. For formulas
     #[arg(long, value_name = "LANGUAGE", value_parser = one_of(&Language::ALL), conflicts_with_all = ["json", "porosity", "image", "mesh_in"], help_heading = "Output")]
     pub(crate) print: Option<(&'static str, Language)>,
 
-    /// Print nothing but errors, and the line of --json; show no progress bar (there is none
-    /// without a terminal)
+    /// Print only errors and the line of --json, and show no progress bar
     #[arg(long, short, help_heading = "Output")]
     pub(crate) quiet: bool,
 }
@@ -325,99 +324,99 @@ pub(crate) struct SampleArguments {
 /// Arguments that choose the surface.
 #[derive(Debug, Args)]
 pub(crate) struct SurfaceArguments {
-    /// Named surface (see `surfaces`); the first one of them by default
+    /// Named surface; `surfaces` lists them [default: the first one]
     #[arg(long, value_name = "ID", help_heading = "Surface")]
     pub(crate) surface: Option<String>,
 
-    /// Formula of the surface; with --surface, it replaces the formula of that surface. Beside
-    /// --points, --mesh-in or a model, `model` stands for their function, as an operand of max,
-    /// min, smin, smax or abs, or with a number that is added: "max(model, z)" cuts it
+    /// Formula of the surface. With --surface it replaces the formula of that surface. With
+    /// --points, --mesh-in or a model, `model` in the formula is their function, as an operand of
+    /// max, min, smin, smax or abs, or with a number added: "max(model, z)" cuts it
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true, help_heading = "Surface")]
     pub(crate) formula: Option<String>,
 
-    /// File of points or of a mesh: PLY, OBJ, STL, OFF, PCD, or text with a point a line (XYZ, PTS,
-    /// CSV), up to 50 MB; `-` is standard input. A smooth surface is fitted to all of them. Normals
-    /// come from the file, else from its faces, else they are estimated
+    /// File of points or of a mesh: PLY, OBJ, STL, OFF, PCD, or text with one point on a line (XYZ,
+    /// PTS, CSV), up to 50 MB; `-` is standard input. A smooth surface is fitted to all of them.
+    /// Normals come from the file, else from its faces, else they are estimated
     #[arg(long, value_name = "FILE", conflicts_with = "surface", help_heading = "Surface")]
     pub(crate) points: Option<PathBuf>,
 
     /// File of a three-dimensional image: NIfTI (.nii, .nii.gz, .hdr), NRRD, NumPy (.npy),
-    /// MetaImage (.mha, .mhd), Gaussian cube or a stack of TIFF pictures. The surface is that on
-    /// which its voxels have the value --iso. Coordinates are those of the file: millimetres in
-    /// medical images
+    /// MetaImage (.mha, .mhd), Gaussian cube or a stack of TIFF pictures. The surface lies where
+    /// the image has the value --iso. Coordinates are those of the file: millimetres in medical
+    /// images
     #[arg(
         long, value_name = "FILE", help_heading = "Surface",
         conflicts_with_all = ["surface", "formula", "points", "mesh_in", "parameters", "closed", "thickness"]
     )]
     pub(crate) image: Option<PathBuf>,
 
-    /// Value of the voxels of --image on the surface, between its darkest and its brightest one. By
-    /// default it separates dark from bright voxels best, by Otsu's method
+    /// Value of --image on the surface, between its darkest and its brightest voxel [default: the
+    /// value of Otsu's method, which separates dark from bright voxels best]
     #[arg(long, value_name = "NUMBER", value_parser = number, requires = "image", allow_hyphen_values = true, help_heading = "Surface")]
     pub(crate) iso: Option<f64>,
 
-    /// Label whose boundary is the surface, for an --image in which whole numbers say to which body
-    /// a voxel belongs
+    /// Label whose boundary is sampled, for an --image whose voxels are whole numbers that name
+    /// bodies
     #[arg(long, value_name = "NUMBER", value_parser = number, requires = "image", conflicts_with = "iso", help_heading = "Surface")]
     pub(crate) label: Option<f64>,
 
-    /// Width of a Gaussian in voxels, in the plane of the slices: over the voxels of --image,
-    /// against noise and rounding [default: by what is measured, 0 or from 0.7 to 2], or over the
-    /// distances from --label, against steps [default: 1]
+    /// Width in voxels of a Gaussian filter, in the plane of the slices: over the voxels of
+    /// --image, against noise and rounding [default: by the measured noise, 0 or 0.7 to 2], or over
+    /// the distances from --label, against steps [default: 1]
     #[arg(long, value_name = "VOXELS", value_parser = number, requires = "image", help_heading = "Surface")]
     pub(crate) smooth: Option<f64>,
 
-    /// Take the darker voxels of --image as inside, instead of the brighter ones
+    /// Take the darker voxels of --image as the inside, instead of the brighter ones
     #[arg(long, requires = "image", help_heading = "Surface")]
     pub(crate) dark_inside: bool,
 
-    /// What --image is if it has no header that is known: the numbers of voxels along x, y and z,
-    /// their type, and, where need be, `big` for the other byte order and how many bytes come
-    /// before the voxels: 256x256x128,uint16,big,skip=512
+    /// Layout of --image if it has no known header: the numbers of voxels along x, y and z, their
+    /// type, and if needed `big` for big-endian numbers and the bytes to skip before the voxels:
+    /// 256x256x128,uint16,big,skip=512
     #[arg(long, value_name = "FORM", value_parser = raw, requires = "image", help_heading = "Surface")]
     pub(crate) raw: Option<RawVoxels>,
 
-    /// Distances between the voxels of --image along its axes, in place of those in the file
+    /// Distances between the voxels of --image along its axes, instead of those in the file
     #[arg(long, value_name = "XxYxZ", value_parser = voxel_size, requires = "image", help_heading = "Surface")]
     pub(crate) voxel_size: Option<VoxelSize>,
 
-    /// File of a triangle mesh that is sampled anew: STL, OBJ, PLY or OFF; `-` is standard input.
-    /// Its sharp edges stay, holes are closed, and the report says how far the new mesh is from it.
-    /// With --formula it is an operand by the name `model`
+    /// File of a triangle mesh to sample anew: STL, OBJ, PLY or OFF; `-` is standard input. Sharp
+    /// edges are kept, holes are closed, and the report says how far the new mesh is from the old
+    /// one. With --formula the mesh is an operand named `model`
     #[arg(
         long, value_name = "FILE", help_heading = "Surface",
         conflicts_with_all = ["surface", "points", "image", "closed", "thickness"]
     )]
     pub(crate) mesh_in: Option<PathBuf>,
 
-    /// Which edges of --mesh-in stay sharp: those whose faces meet at this angle or more, in
-    /// degrees; `none` rounds all; `auto` is 30, and `none` for scans, smooth shapes and meshes
+    /// Angle in degrees between the faces at an edge of --mesh-in from which on the edge stays
+    /// sharp; `none` rounds all edges; `auto` is 30, but `none` for scans, smooth shapes and meshes
     /// with holes [default: auto]
     #[arg(long, value_name = "DEGREES|auto|none", value_parser = mesh_edges, requires = "mesh_in", help_heading = "Surface")]
     pub(crate) mesh_edges: Option<MeshEdges>,
 
-    /// Take --mesh-in for a scan, and smooth it by a Gaussian of this width, in cells of the grid
-    /// that it is put on, 0 to 10 [default: by the noise that is measured, from 0.7 to 3]
+    /// Take --mesh-in for a scan, and smooth it by a Gaussian filter of this width, in cells of the
+    /// grid of distances, 0 to 10 [default: by the measured noise, 0.7 to 3]
     #[arg(long, value_name = "CELLS", value_parser = number, requires = "mesh_in", help_heading = "Surface")]
     pub(crate) mesh_smooth: Option<f64>,
 
-    /// Centres of the surface among the points of --points or of a model, 100 to 800: more follow
-    /// finer details and take longer [default: 200]
+    /// How many of the points of --points or of a model the surface is built around, 100 to 800:
+    /// more follow finer details and take longer [default: 200]
     #[arg(long, value_name = "N", help_heading = "Surface", value_parser = centres)]
     pub(crate) centres: Option<u32>,
 
-    /// Where the surface of --points ends: `cut` at the border of the points, where it would go on
-    /// beyond them; `kept` goes on. Gaps of a few spacings of the points are bridged [default: cut]
+    /// Whether the surface of --points is `cut` at the border of the points, or `kept` as far as it
+    /// continues beyond them. Gaps of a few spacings of the points are bridged [default: cut]
     #[arg(long, value_name = "WORD", value_parser = beyond_points, help_heading = "Surface")]
     pub(crate) beyond_points: Option<BeyondPoints>,
 
-    /// Value of a parameter; once for each
+    /// Value of a parameter; repeat it for each parameter
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter, help_heading = "Surface")]
     pub(crate) parameters: Vec<(String, f64)>,
 
-    /// Box to sample in: `fit` for one around the surface of a formula, found up to ±10,000, in
-    /// which what goes on for ever is cut; `fixed` for a surface's own, ±2 for a formula; or H for
-    /// -H..H on each axis, three half-widths, or the two corners (six numbers), separated by
+    /// Box to sample in: `fit` for one around the surface of a formula, searched up to ±10,000,
+    /// which cuts surfaces without end; `fixed` for the box of a named surface, ±2 for a formula; H
+    /// for -H..H on each axis; three half-widths; or two corners as six numbers separated by
     /// commas. A named surface keeps its own box [default: fit]
     #[arg(
         long = "box", value_name = "fit|fixed|NUMBERS", value_parser = choice_of_box, allow_hyphen_values = true,
@@ -425,14 +424,14 @@ pub(crate) struct SurfaceArguments {
     )]
     pub(crate) bounds: Option<BoxChoice>,
 
-    /// Close with the faces of the box what they cut: the solid f ≤ 0 in the box, whose edges are
-    /// sharp. For formulas
+    /// Close what the box cuts with the faces of the box: the solid f ≤ 0 in the box, with sharp
+    /// edges. For formulas
     #[arg(long, conflicts_with = "points", help_heading = "Surface")]
     pub(crate) closed: bool,
 
-    /// Give opposite faces of the box of --closed the same particles and triangles, bit for bit but
-    /// for the shift, along every axis on which it is a whole number of periods wide. Without
-    /// --box, it is one period wide. The column `periodic` of ply and csv has the pairs
+    /// Give opposite faces of the box of --closed the same particles and triangles, up to the shift
+    /// and to the last bit, along every axis on which the box is a whole number of periods wide.
+    /// Without --box it is one period wide. The column `periodic` of ply and csv has the pairs
     #[arg(long, requires = "closed", help_heading = "Surface")]
     pub(crate) periodic: bool,
 
@@ -444,9 +443,9 @@ pub(crate) struct SurfaceArguments {
     #[arg(skip)]
     pub(crate) pulls: Vec<Pull>,
 
-    /// Sheet of this thickness around the surface, |f| ≤ T/2 |∇f|, in place of the surface: a
-    /// number, or a formula of x, y, z and the parameters, such as "0.1 + 0.05z". There is no sheet
-    /// where it is negative. For formulas
+    /// Sample a sheet of this thickness around the surface, |f| ≤ T/2 |∇f|, instead of the surface:
+    /// a number, or a formula of x, y, z and the parameters, such as "0.1 + 0.05z". Where it is
+    /// negative there is no sheet. For formulas
     #[arg(
         long, value_name = "T", conflicts_with = "points", value_parser = thickness, allow_hyphen_values = true,
         help_heading = "Surface"

@@ -333,14 +333,14 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
             "box_mode",
             BoxMode::default(),
             "Box",
-            "Fit: around the surface of a formula, with 5 % to spare; what goes on for ever is cut. Fixed: as it is.",
+            "Fit: around the surface of a formula, with 5 % to spare; surfaces without end are cut. Fixed: as it is.",
             BOXES,
         )),
         of_box(choice(
             "box_faces",
             BoxFaces::default(),
             "Faces",
-            "Closed: the faces of the box close what they cut, the solid f ≤ 0 in the box, with sharp edges. Of formulas.",
+            "Closed: the faces of the box close what they cut. This gives the solid f ≤ 0 in the box, with sharp edges. For formulas.",
             FACES,
         )),
         Setting {
@@ -349,7 +349,7 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
                 "box_cell",
                 BoxCell::default(),
                 "Cell",
-                "Periodic: opposite faces have the same particles and triangles, bit for bit but for the shift, along every axis on which the box is a whole number of periods wide. Of closed solids.",
+                "Periodic: opposite faces have the same particles and triangles, up to the shift and to the last bit, along every axis on which the box is a whole number of periods wide. For closed solids.",
                 CELLS,
             ))
         },
@@ -362,14 +362,14 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
                 "thickness",
                 0.0,
                 "Thickness",
-                "Thickness t of a sheet that is sampled in place of the surface, |f| ≤ t/2 |∇f|, in the units of x, y and z; 0 for the surface itself. A formula such as 0.1 + 0.05z makes it vary. Of formulas.",
+                "Thickness t of a sheet around the surface, |f| ≤ t/2 |∇f|, which is sampled instead, in the units of x, y and z; 0 for the surface itself. A formula such as 0.1 + 0.05z makes it vary. For formulas.",
             ))
         },
         of_box(choice(
             "beyond_points",
             BeyondPoints::default(),
             "Beyond points",
-            "Cut off: the surface ends at the border of its points, and bridges gaps of a few spacings. Kept: it goes on. Of models from points.",
+            "Cut off: the surface ends at the border of its points, and bridges gaps of a few spacings. Kept: it continues. For models from points.",
             ENDS,
         )),
         choice(
