@@ -10,6 +10,7 @@ import { describeFault } from './fault.js';
 import { openFunctions } from './functions.js';
 import { meantBy } from './meant.js';
 import { createTextarea } from './textarea.js';
+import { kindOf } from './unchanging.js';
 
 /**
  * @import { Description, Engine, MathNode } from '../../engine/types.js'
@@ -256,15 +257,23 @@ function createPreview(engine) {
     if (preview.clientWidth !== width) fit();
     width = preview.clientWidth;
   }).observe(preview);
-  const unchanging = h('p', { class: 'quiet unchanging' }, () => unchangingOf(engine));
-  return [last, h('div', { class: 'code-shown' }, preview, unchanging)];
+  return [last, h('div', { class: 'code-shown' }, preview, createUnchanging(engine))];
 }
 
-/** Says which coordinates a formula does without, and what surface that makes. @param {Engine} engine */
-function unchangingOf({ field, fieldError, empty }) {
-  const { periods, model } = field.value ?? {};
-  if (!periods || model || fieldError.value || empty.value) return '';
-  const without = ['x', 'y', 'z'].filter((_, k) => periods[k] === 0);
-  if (without.length === 1) return `No ${without[0]}: a cylinder`;
-  return without.length === 2 ? `No ${without.join(', ')}: planes` : '';
+/**
+ * Creates the line that says which coordinates a formula does without, and what surface that makes.
+ * @param {Engine} engine
+ */
+function createUnchanging(engine) {
+  // While particles are on their way, what they were last is said.
+  let kind = '';
+  return h('p', { class: 'quiet unchanging' }, () => {
+    const { field, fieldError, empty, busy, report, columns } = engine;
+    const { periods, model } = field.value ?? {};
+    if (!periods || model || fieldError.value || empty.value) return '';
+    const without = ['x', 'y', 'z'].filter((_, k) => periods[k] === 0);
+    if (without.length === 0 || without.length === 3) return '';
+    if (report.value && !busy.value) kind = kindOf(columns);
+    return `No ${without.join(', ')}${kind && `: ${kind}`}`;
+  });
 }
