@@ -1,6 +1,6 @@
 /**
  * Draws the pictures of the documents with the program itself, from the built site:
- * `npm run pictures:readme`.
+ * `npm run pictures:readme`, or only some by `npm run pictures:readme -- http://localhost:4517/ page levels`.
  *
  * Writes into docs/images, each with a light and a dark ground: page (the whole page), sizes
  * (adaptive sampling and models from points), meshes (refined runs as meshes), solids (sharp
@@ -103,7 +103,9 @@ const LEVEL_SETTINGS = { radius_share: 0.0075, seed: 3 };
 const LEVELS = [10, 17, 25, 34];
 const LEVEL_CAMERA = { yaw: 0.62, pitch: 0.72, fit: true };
 
-const base = process.argv[2] ?? 'http://localhost:4517/';
+const [base = 'http://localhost:4517/', ...wanted] = process.argv.slice(2);
+/** @param {string} name */
+const isWanted = (name) => wanted.length === 0 || wanted.includes(name);
 const folder = fileURLToPath(new URL('../../docs/images/', import.meta.url));
 await mkdir(folder, { recursive: true });
 const browser = await launch();
@@ -140,7 +142,7 @@ async function webp(pngs, quality, columns = pngs.length) {
   return new Uint8Array(bytes);
 }
 
-for (const theme of /** @type {const} */ (['light', 'dark'])) {
+for (const theme of isWanted('page') ? /** @type {const} */ (['light', 'dark']) : []) {
   const page = await browser.newPage({ viewport: PAGE_PX, deviceScaleFactor: PAGE_SCALE, colorScheme: theme });
   await page.goto(`${base}?backend=webgl2`);
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
@@ -172,6 +174,7 @@ const onlyThePicture = (page) =>
  * @param {number} [columns]  surfaces in a row
  */
 async function strip(name, states, columns) {
+  if (!isWanted(name)) return;
   for (const theme of /** @type {const} */ (['light', 'dark'])) {
     const page = await browser.newPage({ viewport: LEVEL_PX, deviceScaleFactor: LEVEL_SCALE, colorScheme: theme });
     await page.goto(`${base}?backend=webgl2`);
@@ -273,6 +276,7 @@ async function ellipsoidIsPulled(page) {
  *   brings it to a share of the film
  */
 async function film(name, scenes) {
+  if (!isWanted(name)) return;
   for (const theme of /** @type {const} */ (['light', 'dark'])) {
     /** @type {Buffer[][]} */
     const taken = [];
