@@ -201,9 +201,9 @@ pub(crate) struct SampleArguments {
     #[command(flatten)]
     pub(crate) surface: SurfaceArguments,
 
-    /// Choose the thickness of the sheet so that it leaves this share of the box of --closed empty,
-    /// measured by the volume of the mesh: 70% or 0.7. Takes up to two more runs. A --thickness by
-    /// a formula is scaled. For formulas
+    /// Choose the thickness of the sheet so that it leaves this share of the box empty, measured by
+    /// the volume of the mesh: 70% or 0.7. Needs --closed and takes up to two more runs. A
+    /// --thickness by a formula is scaled. For formulas
     #[arg(long, value_name = "SHARE%", value_parser = porosity, requires = "closed", conflicts_with_all = ["points", "image", "mesh_in"], help_heading = "Surface")]
     pub(crate) porosity: Option<f64>,
 
@@ -297,8 +297,7 @@ pub(crate) struct SampleArguments {
     #[arg(long, help_heading = "Output")]
     pub(crate) largest_part: bool,
 
-    /// Axis of the formula that points up in the files of --mesh: becomes the z axis, in glb the y
-    /// axis
+    /// Axis of the formula that points up. It is written as z in the files of --mesh, in glb as y
     #[arg(long, value_name = "AXIS", value_parser = one_of(&UpAxis::ALL), default_value = "z", help_heading = "Output")]
     pub(crate) up: (&'static str, UpAxis),
 
@@ -389,9 +388,9 @@ pub(crate) struct SurfaceArguments {
     )]
     pub(crate) mesh_in: Option<PathBuf>,
 
-    /// Angle in degrees between the faces at an edge of --mesh-in from which on the edge stays
-    /// sharp; `none` rounds all edges; `auto` is 30, but `none` for scans, smooth shapes and meshes
-    /// with holes [default: auto]
+    /// Keep an edge of --mesh-in sharp if the normals of its faces differ by at least this angle,
+    /// in degrees; `none` rounds all edges; `auto` is 30, but `none` for scans, smooth shapes and
+    /// meshes with holes [default: auto]
     #[arg(long, value_name = "DEGREES|auto|none", value_parser = mesh_edges, requires = "mesh_in", help_heading = "Surface")]
     pub(crate) mesh_edges: Option<MeshEdges>,
 
@@ -400,8 +399,8 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, value_name = "CELLS", value_parser = number, requires = "mesh_in", help_heading = "Surface")]
     pub(crate) mesh_smooth: Option<f64>,
 
-    /// How many of the points of --points or of a model the surface is built around, 100 to 800:
-    /// more follow finer details and take longer [default: 200]
+    /// Number of points, 100 to 800, that are centres of the fit to --points or to a model: more
+    /// reproduce finer details and take longer [default: 200]
     #[arg(long, value_name = "N", help_heading = "Surface", value_parser = centres)]
     pub(crate) centres: Option<u32>,
 
@@ -414,10 +413,10 @@ pub(crate) struct SurfaceArguments {
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter, help_heading = "Surface")]
     pub(crate) parameters: Vec<(String, f64)>,
 
-    /// Box to sample in: `fit` for one around the surface of a formula, searched up to ±10,000,
-    /// which cuts surfaces without end; `fixed` for the box of a named surface, ±2 for a formula; H
-    /// for -H..H on each axis; three half-widths; or two corners as six numbers separated by
-    /// commas. A named surface keeps its own box [default: fit]
+    /// Box to sample in: `fit` for one around the surface of a formula, which is searched for up to
+    /// ±10,000; surfaces without end are cut. `fixed` for the box of a named surface, ±2 for a
+    /// formula; H for -H..H on each axis; three half-widths; or two corners as six numbers
+    /// separated by commas. A named surface keeps its own box [default: fit]
     #[arg(
         long = "box", value_name = "fit|fixed|NUMBERS", value_parser = choice_of_box, allow_hyphen_values = true,
         help_heading = "Surface"
