@@ -25,7 +25,7 @@ const ROOMS: [Room; 6] = [
             ("extent", &["math", "slices", "field"]),
             // Three-dimensional images and their files: fields like any other.
             ("image", &["math", "field"]),
-            // From a file to a field. The core that samples is built without it.
+            // From a file to a field.
             ("pointcloud", &["math", "field", "spatial", "topology", "slices"]),
             // From a triangle mesh to a field. Its files are read as those of points are, and a
             // scan becomes an image.
@@ -61,7 +61,10 @@ const ROOMS: [Room; 6] = [
                     "export",
                 ],
             ),
-            ("session", &["math", "slices", "field", "extent", "image", "sampler", "run", "export"]),
+            (
+                "session",
+                &["math", "slices", "field", "extent", "image", "remesh", "sampler", "run", "export"],
+            ),
             // The paper written for reading, and the oracle of the fast fronts: it knows nothing of
             // them.
             ("paper", &["math", "field", "differential", "particles"]),

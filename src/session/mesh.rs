@@ -269,7 +269,7 @@ mod with_meshes {
 #[cfg(all(test, feature = "images", feature = "points"))]
 mod tests {
     use super::{MeshPart, OpenedMesh};
-    use crate::TriangleMesh;
+    use crate::remesh::TriangleMesh;
     use crate::sampler::{Phase, Settings};
     use crate::session::{FaultKind, FieldRequest, Session};
     use std::collections::BTreeMap;

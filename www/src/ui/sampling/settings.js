@@ -11,13 +11,16 @@ const BOX = 'Box';
 /** Largest number of letters in a segmented control. */
 const SEGMENTED_LETTERS = 24;
 
+/** Whether a setting is behind the button: the box of a formula needs room. @param {SettingInfo} info */
+const isAdvanced = ({ group, kind }) => group === ADVANCED || kind === 'text';
+
 /** @param {SettingInfo[]} settings */
 export function arrange(settings) {
   const rest = settings.filter(({ name, group }) => name !== KIND && group !== BOX);
   return {
     kind: settings.find(({ name }) => name === KIND) ?? null,
-    plain: rest.filter(({ group }) => group !== ADVANCED),
-    advanced: rest.filter(({ group }) => group === ADVANCED),
+    plain: rest.filter((info) => !isAdvanced(info)),
+    advanced: rest.filter(isAdvanced),
   };
 }
 

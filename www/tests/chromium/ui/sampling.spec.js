@@ -21,6 +21,8 @@ test('the settings', async ({ page }) => {
       await setting.hover();
       await expect(page.locator('#explain')).toContainText(help.slice(0, 40));
     }
+    // The explanation of the last one may lie over the button.
+    await page.mouse.move(0, 0);
     await page.getByRole('button', { name: 'Advanced' }).click();
   });
 

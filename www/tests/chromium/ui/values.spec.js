@@ -35,6 +35,7 @@ test('particles are coloured by a formula, and spaced by one, which links and un
   });
 
   await test.step('a formula spaces them, and a mistake is told', async () => {
+    await page.getByRole('button', { name: 'Advanced' }).click();
     const box = page.getByRole('textbox', { name: 'Spacing' });
     await box.fill('0.06 + 0.1 q');
     await box.press('Enter');
