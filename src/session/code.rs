@@ -321,8 +321,10 @@ impl Program<'_> {
         if settings.seed != 0 {
             given.push(("seed", settings.seed.to_string()));
         }
-        // The packages have room for what is asked for.
-        for setting in self.others().into_iter().filter(|setting| setting.name != "max_particles") {
+        // The packages have room for the count that is asked for.
+        let is_needed =
+            |setting: &Setting| setting.name != "max_particles" || settings.size_mode != SizeMode::Count;
+        for setting in self.others().into_iter().filter(is_needed) {
             let value = match setting.default {
                 SettingValue::Number(share) if setting.is_share() => quoted(&percent_text(share), quote),
                 SettingValue::Number(number) => shortest_text(number),

@@ -113,11 +113,6 @@ export class ParticleUpload {
     return this.dirty.empty && this.#recoloured.empty;
   }
 
-  /** Whether the device has all colours, and the ends of the ramp are those of the particles. */
-  get isColoured() {
-    return this.#recoloured.empty;
-  }
-
   /**
    * Uploads what has changed, or the first part of it.
    * @param {Renderer} renderer

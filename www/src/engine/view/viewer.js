@@ -466,10 +466,8 @@ export class Viewer {
       if (this.camera.state !== before) this.frames.ask();
       return 'part';
     }
-    // What was recoloured while a picture was painted in parts waits for the next one.
-    if (!this.upload.isColoured) this.frames.ask();
     // Without particles the colours have no range; the legend before stays.
-    else if (this.due.legend && this.columns.count > 0) this.#tellLegend();
+    if (this.due.legend && this.columns.count > 0) this.#tellLegend();
     const revealing = this.#tellReveal(nowS);
     const dimming = this.dimmer.moving(nowS);
     if (dimming) this.due.style = true;
