@@ -19,7 +19,7 @@ use crate::project::Project;
 ///
 /// A budget is an alarm against accidents, not a goal. A change that needs more raises it in a
 /// commit of its own, which says why; no code is contorted to stay under one.
-const FIRST_PAINT_BUDGET_KB: f64 = 98.0;
+const FIRST_PAINT_BUDGET_KB: f64 = 102.0;
 
 /// The largest gzip size, in kB, of what the lesson's page shows before any WebAssembly; its
 /// figures come to life after that.
@@ -30,8 +30,9 @@ const LESSON_PAGE_BUDGET_KB: f64 = 51.0;
 fn budget_kb(bundle: Bundle) -> f64 {
     match bundle {
         // A tenth of it are images: their readers, the spline and the unpacking of gzip. The core
-        // samples them, and no other module could hold their voxels without a second copy.
-        Bundle::Core => 1150.0,
+        // samples them, and no other module could hold their voxels without a second copy. A
+        // twelfth are triangle meshes, for the same reason.
+        Bundle::Core => 1260.0,
         // A fifth of it are edges of fields and solids of two fields, which every field can have.
         Bundle::Points => 255.0,
         Bundle::Lesson => 290.0,
