@@ -4,6 +4,7 @@
 //! solid to that folder, with its function at random points and at the nodes of a grid. `python
 //! benches/black_boxes.py FOLDER` then judges the meshes by these, with NumPy alone. A second
 //! argument is a part of the names of the solids to take.
+#![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 #[path = "../tests/it/black_box_table.rs"]
 mod black_box_table;
