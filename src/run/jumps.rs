@@ -35,10 +35,12 @@ impl RunState {
     pub(super) fn ends(&self, field: &dyn Field) -> Ends {
         let mut ends = Ends::default();
         let Some(opening) = &self.measuring.measured.opening else { return ends };
-        let (field, reach) = (&mut *self.evaluator(field), 2.0 * self.sampler.radius());
+        let (frame, reach) = (self.evaluator(field).frame(), 2.0 * self.sampler.radius());
+        // Not its pieces, which need not be right where they leave an end.
+        let f = |p: DVec3| field.value(frame.place(p));
         let step = opening.places.len().div_ceil(LOOKED_AT);
         for place in opening.places.iter().step_by(step).map(|place| place.as_dvec3()) {
-            let kind = if jumps_near(field, place, reach) { &mut ends.at_jump } else { &mut ends.others };
+            let kind = if jumps_near(&f, place, reach) { &mut ends.at_jump } else { &mut ends.others };
             kind.get_or_insert(place);
         }
         ends
@@ -46,19 +48,19 @@ impl RunState {
 }
 
 /// Whether f jumps from one sign to the other within about `reach` of a place.
-pub(super) fn jumps_near(field: &mut dyn Evaluator, place: DVec3, reach: f64) -> bool {
+pub(super) fn jumps_near(f: &dyn Fn(DVec3) -> f64, place: DVec3, reach: f64) -> bool {
     let node = |k: usize| {
         let [x, y, z] = [k % SIDE, k / SIDE % SIDE, k / (SIDE * SIDE)].map(|step| step as f64 - 1.0);
         place + reach * DVec3::new(x, y, z)
     };
     let ends: [(DVec3, f64); SIDE * SIDE * SIDE] = core::array::from_fn(|k| {
         let p = node(k);
-        (p, field.value_and_gradient(p).0)
+        (p, f(p))
     });
     (0..ends.len()).any(|k| {
         [1, SIDE, SIDE * SIDE].into_iter().any(|step| {
             let is_last = k / step % SIDE == SIDE - 1;
-            !is_last && is_jump(field, ends[k], ends[k + step])
+            !is_last && is_jump(f, ends[k], ends[k + step])
         })
     })
 }
@@ -75,7 +77,7 @@ pub(super) fn breaks_in(field: &mut dyn Evaluator, place: DVec3, reach: f64) -> 
 }
 
 /// Whether f jumps from one sign to the other between two places, which are given with its values.
-fn is_jump(field: &mut dyn Evaluator, mut a: (DVec3, f64), mut b: (DVec3, f64)) -> bool {
+fn is_jump(f: &dyn Fn(DVec3) -> f64, mut a: (DVec3, f64), mut b: (DVec3, f64)) -> bool {
     let is_negative = |(_, value): (DVec3, f64)| value < 0.0;
     let change = |a: (DVec3, f64), b: (DVec3, f64)| (a.1 - b.1).abs();
     let whole = change(a, b);
@@ -84,7 +86,7 @@ fn is_jump(field: &mut dyn Evaluator, mut a: (DVec3, f64), mut b: (DVec3, f64)) 
     }
     for _ in 0..HALVINGS {
         let p = 0.5 * (a.0 + b.0);
-        let middle = (p, field.value_and_gradient(p).0);
+        let middle = (p, f(p));
         if is_negative(middle) == is_negative(a) {
             a = middle;
         } else {
@@ -98,8 +100,8 @@ fn is_jump(field: &mut dyn Evaluator, mut a: (DVec3, f64), mut b: (DVec3, f64)) 
 #[cfg(test)]
 mod tests {
     use super::jumps_near;
+    use crate::field::Field;
     use crate::field::formula::Formula;
-    use crate::field::{Field, Frame};
     use glam::DVec3;
 
     #[test]
@@ -119,8 +121,7 @@ mod tests {
             ("x^2 + y^2 + z^2 + 1", false),
         ] {
             let field = Formula::parse(formula).expect("a formula");
-            let mut evaluator = field.evaluator(Frame::default());
-            assert_eq!(jumps_near(&mut *evaluator, DVec3::ZERO, 0.1), jumps, "{formula}");
+            assert_eq!(jumps_near(&|p| field.value(p), DVec3::ZERO, 0.1), jumps, "{formula}");
         }
     }
 }

@@ -661,7 +661,8 @@ impl fmt::Display for Warning {
                 write!(
                     f,
                     "The particles leave gaps in the surface: choose a smaller radius. Their triangles have {found}, first near {}, so \
-                     that components and Euler number may be wrong. Where the surface has an edge, a tip or an end, no radius helps.",
+                     that components and Euler number may be wrong. Where the surface has an edge, a tip or an end, no radius helps. \
+                     An edge that was not found in the values of a function can be stated, by its pieces or by a union of bodies.",
                     place_text(*position, *length)
                 )
             }

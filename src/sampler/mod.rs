@@ -277,7 +277,7 @@ impl Sampler {
 
     /// The places of the surface where f has no gradient, as far as they are known.
     pub(crate) fn singular_places(&self) -> Vec<SingularPlace> {
-        let mut places = singular::places(self.components.singular());
+        let mut places = singular::places(self.components.singular(), spacing(&self.bounds));
         let passed = self.creases.passed.map(|position| SingularPlace {
             position,
             kind: SingularKind::Crossing,
@@ -467,7 +467,7 @@ impl Sampler {
         /// a tip where f has a gradient they are the sharpest. More make the search on a much bent
         /// surface take longer.
         const MOST: usize = 16;
-        for place in singular::places(&near.points) {
+        for place in singular::places(&near.points, spacing) {
             if place.kind == SingularKind::Point {
                 self.tips.extend(Tip::at(probe, patch, place.position, spacing));
             }

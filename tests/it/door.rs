@@ -189,6 +189,9 @@ fn what_a_heart_always_does_is_a_note() {
     let sample = sample(heart, &Settings::with_count(6000)).unwrap();
     let warnings = &sample.report().warnings;
     assert!(warnings.iter().any(|warning| warning.code() == "children"), "{warnings:?}");
+    // It has two tips, and around it a curve where the gradient vanishes although it is smooth.
+    assert!(warnings.iter().all(|warning| warning.code() != "rims"), "{warnings:?}");
+    assert_eq!(sample.report().proof.singular_points, Some(3), "{warnings:?}");
     assert!(warnings.iter().all(|warning| warning.severity() == Severity::Note), "{warnings:?}");
 }
 

@@ -7,6 +7,7 @@ mod settings;
 
 mod adaptive;
 mod black_box;
+mod black_box_table;
 mod borders;
 mod box_fit;
 mod branches;

@@ -42,6 +42,8 @@ struct Wall {
     other: Taylor,
     /// See [`Site::sign`].
     sign: f64,
+    /// See [`Side::is_flush`](super::table::Side::is_flush), of the piece and of the one beyond.
+    is_flush: [bool; 2],
 }
 
 impl Wall {
@@ -56,6 +58,7 @@ impl Wall {
             own: table.vertices[own.end as usize],
             other: table.vertices[other.end as usize],
             sign: site.sign,
+            is_flush: [own.is_flush, other.is_flush],
         })
     }
 
@@ -63,6 +66,9 @@ impl Wall {
     /// into the region.
     fn depth(&self, p: DVec3) -> (f64, DVec3) {
         let [(f, u), (g, v)] = [self.own.slope(p), self.other.slope(p)];
+        // Where bodies touch along the sheet of the piece beyond, its negative gives f on the other
+        // side of it.
+        let (f, u) = if self.is_flush[1] && f * self.sign > 0.0 { (-f, -u) } else { (f, u) };
         let slope = (u - v) * self.sign;
         let length = slope.length();
         ((f - g) * self.sign / length, slope / length)
@@ -152,6 +158,27 @@ impl EdgeTable {
             p += step;
         }
         beside
+    }
+
+    /// Whether the sheet of a piece at a place is no surface, since the piece has ended before it
+    /// and f [is zero all the same](super::table::Side::is_flush). The pieces around the place are
+    /// given with their values there.
+    fn is_in_flush(&self, label: u32, p: DVec3, pieces: &[(u32, Jet)]) -> bool {
+        let is_flush = |site: &Site| site.sides.iter().any(|side| side.label == label && side.is_flush);
+        if !self.sites_near(p).any(is_flush) {
+            return false;
+        }
+        let value = |label: u32| pieces.iter().find(|piece| piece.0 == label).map(|piece| piece.1.value);
+        let walls = self.walls(label, p);
+        Self::bounding(&walls, p).into_iter().any(|(k, depth, _)| {
+            let Wall { is_flush: [is_flush, _], beyond, sign, .. } = walls[k];
+            // The polynomials of a wall are not exact enough beside it.
+            let depth = match value(label).zip(value(beyond)) {
+                Some((own, other)) => (own - other) * sign,
+                None => depth,
+            };
+            is_flush && depth < 0.0
+        })
     }
 
     /// Whether differences at a place could reach over an edge.
@@ -266,9 +293,13 @@ impl<'a> EdgedEvaluator<'a> {
             _ => {}
         }
         let whole = self.field.value(p);
-        let mut best = (f64::INFINITY, labels[0].0);
-        for (label, _) in labels {
-            let jet = self.piece_jet(label, p, whole);
+        let pieces: Vec<(u32, Jet)> =
+            labels.into_iter().map(|(label, _)| (label, self.piece_jet(label, p, whole))).collect();
+        let mut best = (f64::INFINITY, pieces[0].0);
+        for &(label, jet) in &pieces {
+            if self.table.is_in_flush(label, p, &pieces) {
+                continue;
+            }
             let slope = jet.gradient.length();
             let off = if jet.value == whole { 0.0 } else { (jet.value - whole).abs() / slope };
             if off < best.0 - SAME * self.table.size {

@@ -1,7 +1,9 @@
 //! The result of the search: vertices and sites with their labels, and look-ups by place.
 
-use super::sampled::Taylor;
+use super::cells::Cells;
+use super::sampled::{Sampled, Taylor};
 use super::search::{ALIKE_NEAR, RawSite, Search};
+use crate::math::newton::step_to_surface;
 use crate::math::{Bounds, Forest, NONE};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -15,6 +17,9 @@ const NEAR: f64 = 2.0;
 const BESIDE: f64 = 0.1;
 /// Smallest distance from an edge, in steps, at which differences do not reach over it.
 const MARGIN: f64 = 5.0;
+/// Largest error of the polynomials beside an edge on the way between neighbouring sites, as a
+/// share of the size of the box: a fifth of the margin.
+pub(super) const AGREE: f64 = 1e-5;
 
 /// One of the two pieces that meet at a site.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +28,10 @@ pub(super) struct Side {
     pub(super) label: u32,
     /// The vertex of the piece at which the search ended, the nearest to the site.
     pub(super) end: u32,
+    /// Whether f is zero on the sheet of the piece beyond the site, too, without changing its sign,
+    /// as in the face along which two bodies touch. Its value does not tell there that the piece
+    /// has ended.
+    pub(super) is_flush: bool,
 }
 
 /// A point of an edge.
@@ -68,10 +77,10 @@ impl EdgeTable {
         let (cell, size) = (search.cell, search.f.size);
         let step = BESIDE * search.f.step;
         let (margin, clear) = (MARGIN * step, MARGIN * search.f.step);
-        let Search { vertices, sites: raw, .. } = search;
+        let Search { vertices, sites: raw, .. } = &search;
         let mut sites = Vec::new();
         for site in raw {
-            let mut sides = site.ends.map(|end| Side { label: label[end as usize], end });
+            let mut sides = site.ends.map(|end| Side { label: label[end as usize], end, is_flush: false });
             // Beside an edge that fades out both sides are one piece.
             if sides.iter().any(|side| side.label == NONE) || sides[0].label == sides[1].label {
                 continue;
@@ -85,6 +94,10 @@ impl EdgeTable {
             });
             let towards = of_first.abs() >= of_second.abs();
             let sign = if towards { -of_first.signum() } else { -of_second.signum() };
+            for k in [0, 1] {
+                let [own, other] = [sides[k], sides[1 - k]].map(|side| &vertices[side.end as usize]);
+                sides[k].is_flush = goes_on_flush(search.f, own, other, site.position);
+            }
             sites.push(Site { position: site.position, sides, sign });
         }
         if sites.is_empty() {
@@ -93,6 +106,7 @@ impl EdgeTable {
         let count = label.iter().filter(|&&label| label != NONE).max().map_or(0, |last| last + 1);
         let by_cell = Cells::new(cell, vertices.iter().map(|vertex| vertex.p));
         let sites_by_cell = Cells::new(NEAR * cell, sites.iter().map(|site| site.position));
+        let vertices = search.vertices;
         Some(Self { vertices, label, sites, count, size, step, margin, clear, cell, by_cell, sites_by_cell })
     }
 
@@ -236,24 +250,31 @@ pub(super) fn close_places(search: &Search<'_>) -> Vec<DVec3> {
     kept
 }
 
+/// Whether f is zero on the sheet of a piece beyond a site, too, without changing its sign. `other`
+/// is the piece that gives f there otherwise.
+fn goes_on_flush(f: &Sampled<'_>, own: &Taylor, other: &Taylor, site: DVec3) -> bool {
+    /// Distance from the site, as a share of the size of the box: at an angle of two degrees f is
+    /// still far above the error of the polynomials.
+    const BEYOND: f64 = 3e-4;
+    /// Share of the value of the other piece below which f counts as zero. Larger: a third piece
+    /// beside a corner is taken for that.
+    const ZERO: f64 = 1e-3;
+    let [u, v] = [own, other].map(|piece| piece.slope(site).1);
+    let Some(way) = u.cross(u.cross(v)).try_normalize() else { return false };
+    let way = if way.dot(own.p - site) > 0.0 { -way } else { way };
+    let mut p = site + way * (BEYOND * f.size);
+    for _ in 0..2 {
+        p -= step_to_surface(own.slope(p));
+    }
+    let aside = u.normalize_or_zero() * (0.1 * BEYOND * f.size);
+    f.value(p).abs() <= ZERO * other.slope(p).0.abs() && f.value(p + aside) * f.value(p - aside) > 0.0
+}
+
 /// The label of each vertex. Vertices that are joined, directly or by others, have the same one;
 /// the labels are numbered in the order of their first vertices.
 fn labels(search: &Search<'_>) -> Vec<u32> {
     let vertices = &search.vertices;
-    let mut forest = Forest::new(vertices.len());
-    search.joined.iter().for_each(|&[a, b]| forest.join(a, b));
-    // No link leads to the vertices beside edges of a strip thinner than a cell, or from a closer
-    // look to the rest: they are joined with neighbours whose jets agree.
-    let cells = Cells::new(search.cell, vertices.iter().map(|vertex| vertex.p));
-    for a in search.inserted as u32..vertices.len() as u32 {
-        for b in cells.around(vertices[a as usize].p) {
-            let is_next = search.distance(a, b) <= 1.5 * search.cell;
-            let are_apart = b < a && is_next && forest.find(a) != forest.find(b);
-            if are_apart && search.residual(a, b) <= ALIKE_NEAR {
-                forest.join(a, b);
-            }
-        }
-    }
+    let mut forest = joined(search);
     let mut size = vec![0_usize; vertices.len()];
     (0..vertices.len() as u32).for_each(|k| size[forest.find(k) as usize] += 1);
     let (mut number, mut next) = (vec![NONE; vertices.len()], 0);
@@ -269,70 +290,78 @@ fn labels(search: &Search<'_>) -> Vec<u32> {
     label
 }
 
-/// Indices of points, sorted by the cell in which each lies.
-#[derive(Debug)]
-struct Cells {
-    lo: DVec3,
-    side: f64,
-    count: [usize; 3],
-    /// The first of the points of each cell.
-    start: Vec<u32>,
-    points: Vec<u32>,
-}
-
-impl Cells {
-    fn new(side: f64, points: impl Iterator<Item = DVec3> + Clone) -> Self {
-        let around = Bounds::around(points.clone());
-        let count = (around.size() / side).floor().to_array().map(|cells| cells as usize + 1);
-        let mut cells = Self { lo: around.lo(), side, count, start: Vec::new(), points: Vec::new() };
-        let mut own: Vec<(usize, u32)> =
-            points.zip(0..).map(|(p, k)| (cells.index(cells.cell(p).map(|x| x as usize)), k)).collect();
-        own.sort_unstable();
-        let mut next = own.iter().peekable();
-        for cell in 0..=count.into_iter().product() {
-            cells.start.push(cells.points.len() as u32);
-            while let Some(&(_, k)) = next.next_if(|(of, _)| *of == cell) {
-                cells.points.push(k);
+/// The sets of vertices that are joined. Where the angle of an edge vanishes at a point, pieces on
+/// both sides of it look like one there: pairs that would join what meets at an edge elsewhere are
+/// left out, if they are beside an edge. Elsewhere the edge fades out, and both sides are one
+/// piece.
+fn joined(search: &Search<'_>) -> Forest {
+    let vertices = &search.vertices;
+    let mut sets =
+        Sets { forest: Forest::new(vertices.len()), across: BTreeMap::new(), left_out: Vec::new() };
+    for site in &search.sites {
+        for [from, to] in [site.ends, [site.ends[1], site.ends[0]]] {
+            sets.across.entry(from).or_default().push(to);
+        }
+    }
+    // What is beside edges comes first, so that a set knows what is across them.
+    sets.join_all(search, search.beside.clone());
+    sets.join_all(search, search.joined.clone());
+    // No link leads to the vertices beside edges of a strip thinner than a cell, or from a closer
+    // look to the rest: they are joined with neighbours whose jets agree.
+    let cells = Cells::new(search.cell, vertices.iter().map(|vertex| vertex.p));
+    let mut near = Vec::new();
+    for a in search.inserted as u32..vertices.len() as u32 {
+        for b in cells.around(vertices[a as usize].p) {
+            let is_next = b < a && search.distance(a, b) <= 1.5 * search.cell;
+            let are_apart = is_next && sets.forest.find(a) != sets.forest.find(b);
+            if are_apart && search.residual(a, b) <= ALIKE_NEAR {
+                near.push([a, b]);
             }
         }
-        cells
     }
-
-    /// The cell of a place, which may lie outside.
-    fn cell(&self, p: DVec3) -> [i64; 3] {
-        ((p - self.lo) / self.side).floor().to_array().map(|x| x as i64)
+    sets.join_all(search, near);
+    let sites = Cells::new(search.cell, search.sites.iter().map(|site| site.position));
+    for [a, b] in sets.left_out {
+        let place = vertices[a as usize].p.midpoint(vertices[b as usize].p);
+        let mut near = sites.around(place).map(|k| search.sites[k as usize].position);
+        if near.all(|site| site.distance(place) > search.cell) {
+            sets.forest.join(a, b);
+        }
     }
+    sets.forest
+}
 
-    fn index(&self, [x, y, z]: [usize; 3]) -> usize {
-        (z * self.count[1] + y) * self.count[0] + x
-    }
+/// Sets of vertices, of which some must not be joined.
+struct Sets {
+    forest: Forest,
+    /// For each set, by its least vertex, the vertices that are across an edge from one of its own.
+    across: BTreeMap<u32, Vec<u32>>,
+    /// Pairs that were not joined.
+    left_out: Vec<[u32; 2]>,
+}
 
-    /// The points in the cells of a range along each axis.
-    fn between(&self, lo: [i64; 3], hi: [i64; 3]) -> impl Iterator<Item = u32> + '_ {
-        let range = |axis: usize| {
-            let last = self.count[axis] as i64 - 1;
-            lo[axis].max(0) as usize..(hi[axis].min(last) + 1).max(0) as usize
-        };
-        let (xs, ys) = (range(0), range(1));
-        let rows = range(2).flat_map(move |z| ys.clone().map(move |y| [y, z]));
-        let ranges = rows.filter(move |_| xs.start < xs.end).map({
-            let (first, end) = (range(0).start, range(0).end);
-            move |[y, z]| {
-                let [first, last] = [first, end - 1].map(|x| self.index([x, y, z]));
-                self.start[first] as usize..self.start[last + 1] as usize
+impl Sets {
+    /// Joins pairs of vertices, the likeliest first.
+    fn join_all(&mut self, search: &Search<'_>, pairs: Vec<[u32; 2]>) {
+        let mut ranked: Vec<_> =
+            pairs.into_iter().map(|pair| (search.residual(pair[0], pair[1]), pair)).collect();
+        ranked.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        for (_, pair) in ranked {
+            let [a, b] = pair.map(|k| self.forest.find(k));
+            if a == b {
+                continue;
             }
-        });
-        ranges.flat_map(|range| self.points[range].iter().copied())
-    }
-
-    /// The points in the cell of a place and in those around it.
-    fn around(&self, p: DVec3) -> impl Iterator<Item = u32> + '_ {
-        let cell = self.cell(p);
-        self.between(cell.map(|x| x.saturating_sub(1)), cell.map(|x| x.saturating_add(1)))
-    }
-
-    /// The points in the cells of a box.
-    fn within(&self, bounds: &Bounds) -> impl Iterator<Item = u32> + '_ {
-        self.between(self.cell(bounds.lo()), self.cell(bounds.hi()))
+            let [of_a, of_b] = [a, b].map(|k| self.across.get(&k).map_or(0, Vec::len));
+            let [few, other] = if of_a <= of_b { [a, b] } else { [b, a] };
+            let Self { forest, across, .. } = self;
+            if across.get(&few).is_some_and(|own| own.iter().any(|&k| forest.find(k) == other)) {
+                self.left_out.push(pair);
+                continue;
+            }
+            forest.join(a, b);
+            if let Some(moved) = across.remove(&a.max(b)) {
+                across.entry(a.min(b)).or_default().extend(moved);
+            }
+        }
     }
 }

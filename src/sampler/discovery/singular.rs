@@ -99,10 +99,10 @@ pub(crate) struct Singular {
 
 impl Singular {
     /// Whether two points belong to one place: they are the same one, or on one curve, found by
-    /// searches that overlap.
-    fn is_linked(&self, other: &Self) -> bool {
+    /// searches that overlap, but for the part of a search farther than `farthest`.
+    fn is_linked(&self, other: &Self, farthest: f64) -> bool {
         let share = if self.is_alone { SAME } else { 2.0 };
-        let most = share * self.reach.min(other.reach);
+        let most = share * self.reach.min(other.reach).min(farthest);
         self.is_alone == other.is_alone && self.position.distance_squared(other.position) <= most * most
     }
 }
@@ -247,7 +247,7 @@ pub(crate) fn near_survey(
             tried.push(p);
             let new = singular_point(field, p, reach)
                 .filter(|point| point.is_zero && bounds.holds(point.position))
-                .filter(|point| !(point.is_alone && found.iter().any(|other| point.is_linked(other))));
+                .filter(|point| !(point.is_alone && found.iter().any(|other| point.is_linked(other, reach))));
             found.extend(new);
             let is_far = |other: DVec3| other.distance_squared(p) > reach * reach;
             let is_new = bends.iter().all(|bend| is_far(bend.position))
@@ -353,10 +353,14 @@ fn may_be_zero(field: &mut dyn Evaluator, p: DVec3) -> bool {
 }
 
 /// The places at which these points are: isolated points, and groups of the others that are linked.
-pub(crate) fn places(points: &[Singular]) -> Vec<SingularPlace> {
+/// `spacing` is that of the grid of the survey, which meets every curve on the surface: of two
+/// points that a farther search has found, others lie on the way from one to the other if they are
+/// on one curve.
+pub(crate) fn places(points: &[Singular], spacing: f64) -> Vec<SingularPlace> {
+    let farthest = NEAR * spacing;
     let mut groups = Forest::new(points.len());
     for (i, point) in (0..).zip(points) {
-        (0..i).filter(|&j| points[j as usize].is_linked(point)).for_each(|j| groups.join(i, j));
+        (0..i).filter(|&j| points[j as usize].is_linked(point, farthest)).for_each(|j| groups.join(i, j));
     }
     let mut places = Vec::new();
     for (first, point) in (0..).zip(points) {
@@ -526,6 +530,26 @@ mod tests {
     use super::*;
     use crate::field::formula::Formula;
     use crate::field::{Field, Frame};
+
+    #[test]
+    fn searches_from_afar_make_no_curve_of_a_tip() {
+        let singular = |position: DVec3, reach: f64| Singular {
+            position,
+            reach,
+            is_zero: true,
+            is_alone: false,
+            has_two_signs: false,
+            is_flat: false,
+        };
+        let on_circle = |k: u32| {
+            let (sine, cosine) = libm::sincos(TAU * f64::from(k) / 64.0);
+            DVec3::new(cosine, sine, 0.0)
+        };
+        let mut points: Vec<Singular> = (0..64).map(|k| singular(on_circle(k), 0.1)).collect();
+        points.extend([singular(on_circle(3), 0.8), singular(DVec3::Z, 0.1), singular(DVec3::Z, 0.8)]);
+        let kinds: Vec<SingularKind> = places(&points, 0.06).iter().map(|place| place.kind).collect();
+        assert_eq!(kinds, [SingularKind::Curve, SingularKind::Point]);
+    }
 
     #[test]
     fn boxes_without_an_extremum_are_told_by_the_gradient_of_either_sign_or_by_a_saddle() {
