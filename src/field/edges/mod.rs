@@ -11,7 +11,6 @@
 //!    *site*: a point of an edge, with a jet on either side.
 //! 3. *Closer looks*. Around corners, and where the search was inconclusive, it is repeated on a
 //!    grid three times as fine.
-//!    Along edges beside which the surface bends much, sites are added between others.
 //! 4. *Labels* ([`table`]). All vertices that are joined, directly or by others, have one label.
 //! 5. *Pieces* ([`evaluator`]). Within its region a piece is f. Beyond an edge it is the Taylor
 //!    polynomial around a place a little within.
@@ -85,7 +84,6 @@ async fn find(field: &dyn Field, bounds: &Bounds) -> Option<EdgeTable> {
     if places.len() <= MOST_CLOSE {
         search.look_closely(&places).await;
     }
-    search.fill_edges(table::AGREE * sampled.size).await;
     EdgeTable::new(search)
 }
 

@@ -1,10 +1,9 @@
 //! The search for edges. It joins neighbouring vertices whose jets agree. Where they disagree it
 //! narrows the way between them, down to the point at which one piece gives way to another.
 
-use super::cells::Cells;
 use super::grid::Grid;
 use super::sampled::{Bracket, Sampled, Taylor};
-use crate::math::newton::{step_to_corner, step_to_curve};
+use crate::math::newton::step_to_corner;
 use crate::math::{Bounds, NONE, SHARP};
 use crate::slices::{HEAVY, pause};
 use glam::DVec3;
@@ -38,8 +37,6 @@ const CLOSER: f64 = 3.0;
 const MOST_STEPS: u32 = 60;
 /// Maximum number of evaluations that find the surface half-way between two vertices.
 const MOST_EVALUATIONS: u32 = 40;
-/// Maximum number of times that the way between neighbouring points of an edge is halved.
-const MOST_FILLED: u32 = 2;
 /// Maximum depth of searches within a search: the part of a way that is left aside may have an edge
 /// of its own, as in a strip thinner than a cell.
 const DEEPEST: u32 = 3;
@@ -116,93 +113,6 @@ impl<'a> Search<'a> {
                 }
             }
         }
-    }
-
-    /// Adds points of edges between neighbouring ones, until the polynomials beside them agree on
-    /// the way from one to the next to within `most`: where a piece bends much, those beside one
-    /// point do not tell where the edge runs half a cell on.
-    pub(super) async fn fill_edges(&mut self, most: f64) {
-        if self.sites.is_empty() {
-            return;
-        }
-        let cells = Cells::new(self.cell, self.sites.iter().map(|site| site.position));
-        let mut open: Vec<([RawSite; 2], u32)> = Vec::new();
-        for (k, site) in (0..).zip(&self.sites) {
-            let along = self.slopes(site).map(|(_, slope)| slope);
-            let along = along[0].cross(along[1]).normalize_or_zero();
-            for way in [along, -along] {
-                let next = cells.around(site.position).filter_map(|j| {
-                    let next = self.following(site, &self.sites[j as usize], way)?;
-                    Some((site.position.distance(next.position), j, next))
-                });
-                let next = next.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-                open.extend(next.filter(|&(_, j, _)| j > k).map(|(.., next)| ([*site, next], 0)));
-            }
-        }
-        while let Some(([from, to], depth)) = open.pop() {
-            pause().await;
-            let Some(between) = self.site_between(&from, &to, most) else { continue };
-            self.sites.push(between);
-            if depth < MOST_FILLED {
-                open.extend([([from, between], depth + 1), ([between, to], depth + 1)]);
-            }
-        }
-    }
-
-    /// The polynomials beside a point of an edge, there.
-    fn slopes(&self, site: &RawSite) -> [(f64, DVec3); 2] {
-        site.ends.map(|end| self.vertices[end as usize].slope(site.position))
-    }
-
-    /// Another point, with its sides in the order of those of `site`, if both are on one edge and
-    /// it follows within a cell in this direction.
-    fn following(&self, site: &RawSite, other: &RawSite, way: DVec3) -> Option<RawSite> {
-        /// Cosine of the largest turn of an edge, and of a piece beside it.
-        const MOST_TURN: f64 = 0.8;
-        let chord = other.position - site.position;
-        if chord.length() > self.cell || chord.dot(way) <= MOST_TURN * chord.length() {
-            return None;
-        }
-        let [own, others] = [site, other].map(|site| self.slopes(site).map(|(_, u)| u.normalize_or_zero()));
-        let turns =
-            [[0, 1], [1, 0]].map(|order| (0..2).map(|k| own[k].dot(others[order[k]])).fold(1.0, f64::min));
-        let is_swapped = turns[1] > turns[0];
-        let ends = if is_swapped { [other.ends[1], other.ends[0]] } else { other.ends };
-        (turns[usize::from(is_swapped)] >= MOST_TURN).then_some(RawSite { position: other.position, ends })
-    }
-
-    /// The point of an edge between two others; none if it is as they predict, or cannot be found.
-    fn site_between(&mut self, from: &RawSite, to: &RawSite, most: f64) -> Option<RawSite> {
-        let at = |k: usize, p: DVec3| {
-            let [(f, u), (g, v)] = [from, to].map(|site| self.vertices[site.ends[k] as usize].slope(p));
-            (0.5 * (f + g), 0.5 * (u + v), (f - g).abs() / u.length())
-        };
-        let mut p = from.position.midpoint(to.position);
-        if (0..2).all(|k| at(k, p).2 <= most) {
-            return None;
-        }
-        for _ in 0..3 {
-            p -= step_to_curve([0, 1].map(|k| (at(k, p).0, at(k, p).1))).0;
-        }
-        let gap = from.position.distance(to.position);
-        let [u, v] = [0, 1].map(|k| at(k, p).1);
-        let along = u.cross(v).normalize_or_zero();
-        let mut ends = [0; 2];
-        for (k, normal) in [u, v].into_iter().enumerate() {
-            let end = from.ends[k];
-            let aside = normal.cross(along).normalize_or_zero();
-            let side = (self.vertices[end as usize].p - from.position).dot(aside).signum();
-            let place = p + aside * (side * BESIDE * gap);
-            let new = self.on_piece(end, place, BESIDE * gap)?;
-            ends[k] = self.add(new);
-            self.beside.push([end, ends[k]]);
-        }
-        let known = self.sites.len();
-        self.look(ends[0], ends[1], DEEPEST);
-        let found = (self.sites.len() > known).then(|| self.sites.pop()).flatten()?;
-        // The search may have taken the sides in the other order.
-        let is_near = found.position.distance(p) <= 2.0 * BESIDE * gap;
-        is_near.then_some(found)
     }
 
     fn add(&mut self, vertex: Taylor) -> u32 {
@@ -335,14 +245,7 @@ impl<'a> Search<'a> {
         let normal = vertex.slope(place).1.normalize_or_zero();
         let way = vertex.p - place;
         let way = (way - normal * way.dot(normal)).try_normalize()?;
-        self.on_piece(k, place + way * distance, distance)
-    }
-
-    /// A new vertex near a place on the piece of another one, at a distance from an edge; none if
-    /// another piece gives f there.
-    fn on_piece(&self, k: u32, place: DVec3, distance: f64) -> Option<Taylor> {
-        let vertex = &self.vertices[k as usize];
-        let mut p = place;
+        let mut p = place + way * distance;
         for _ in 0..3 {
             let (_, slope) = vertex.slope(p);
             p -= slope * (self.f.value(p) / slope.length_squared());

@@ -17,9 +17,6 @@ const NEAR: f64 = 2.0;
 const BESIDE: f64 = 0.1;
 /// Smallest distance from an edge, in steps, at which differences do not reach over it.
 const MARGIN: f64 = 5.0;
-/// Largest error of the polynomials beside an edge on the way between neighbouring sites, as a
-/// share of the size of the box: a fifth of the margin.
-pub(super) const AGREE: f64 = 1e-5;
 
 /// One of the two pieces that meet at a site.
 #[derive(Clone, Copy, Debug)]
