@@ -45,24 +45,27 @@ fn sampled_by_shell(script: &str) -> String {
     let run = Command::new("sh").args(["-e", "-c", script]).env("PATH", path).output().expect("a shell");
     assert!(run.status.success(), "{script}{}", String::from_utf8_lossy(&run.stderr));
     let report = String::from_utf8(run.stdout).expect("text");
-    let digests = report.lines().filter_map(|line| line.strip_prefix("digest "));
-    digests.last().unwrap_or_else(|| panic!("{script} prints no digest")).to_owned()
+    let mut digests = report.lines().filter_map(|line| line.strip_prefix("digest "));
+    digests.next_back().unwrap_or_else(|| panic!("{script} prints no digest")).to_owned()
 }
 
-/// The program that a test has compiled, with the sample that it makes.
+/// A program that makes a sample.
+type Program = fn() -> Result<Sample, Box<dyn Error>>;
+
+/// A program of the cookbook as it is compiled, and its text.
 macro_rules! program {
     ($particles:ident: $($line:tt)*) => {{
         let run = || -> Result<Sample, Box<dyn Error>> {
             $($line)*
             Ok($particles)
         };
-        (run as fn() -> Result<Sample, Box<dyn Error>>, stringify!($($line)*))
+        (run as Program, stringify!($($line)*))
     }};
 }
 
 /// The programs in Rust, in the order of the tasks.
 #[rustfmt::skip]
-fn programs() -> Vec<(fn() -> Result<Sample, Box<dyn Error>>, &'static str)> {
+fn programs() -> Vec<(Program, &'static str)> {
     vec![
         program! { particles:
             use marching_particles::{Formula, Settings, sample};
