@@ -32,7 +32,7 @@ fn budget_kb(bundle: Bundle) -> f64 {
         // A tenth of it are images: their readers, the spline and the unpacking of gzip. The core
         // samples them, and no other module could hold their voxels without a second copy. A
         // twelfth are triangle meshes, for the same reason.
-        Bundle::Core => 1260.0,
+        Bundle::Core => 1280.0,
         // A fifth of it are edges of fields and solids of two fields, which every field can have.
         Bundle::Points => 255.0,
         Bundle::Lesson => 290.0,
