@@ -18,6 +18,7 @@ use super::voxels::{Layout, VoxelType, Voxels};
 use super::{Image, ImageError, Placement};
 use core::fmt::{self, Display, Formatter};
 use glam::{DMat3, DVec3};
+use header::{quoted, wrong};
 use zip::Unpacked;
 
 /// Largest size of the voxels of a file, in bytes: 1024³ voxels of 16 bits.
@@ -302,6 +303,10 @@ fn image(header: Header, file: Unpacked, beside: Beside) -> Result<Image, ImageR
     let (mut file, mut first) = match source {
         Source::Here(first) => (file, first),
         Source::Beside(name) => {
+            if name.contains(char::is_control) {
+                let message = format!("{} has control characters; correct it", quoted(&name));
+                return Err(wrong(format, "name of the data file", message));
+            }
             let bytes = beside(&name).map_err(|message| {
                 // A name from a file is shown, and may hold anything.
                 let name = name.escape_debug().take(80).collect();

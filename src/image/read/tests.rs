@@ -164,6 +164,10 @@ fn a_header_names_the_file_beside_it() {
     assert_eq!(image.expect("an image").range(), [-20.0, 190.0]);
     let missing = read(bytes).expect_err("refused");
     assert!(matches!(missing, ImageReadError::Beside { format: ImageFormat::Nifti, .. }), "{missing}");
+    let garbled = b"ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\nElementType = MET_SHORT\nElementDataFile = a\0b.raw\n";
+    let refused = Image::read("scan.mhd", garbled.to_vec(), |name| panic!("{name} is asked for"));
+    let message = refused.expect_err("a name with a control character").to_string();
+    assert!(message.contains("control characters") && !message.contains('\0'), "{message}");
 }
 
 #[test]
