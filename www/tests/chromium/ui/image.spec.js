@@ -127,7 +127,7 @@ test('labels are listed with their sizes, and a link asks for the file', async (
 
 test('the computed images of the gallery are sampled, and a link holds what is chosen of them', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900, hash: COARSE });
-  await page.getByRole('button', { name: 'Scans', exact: true }).click();
+  await page.getByRole('combobox', { name: 'Group of surfaces' }).selectOption('Scans');
   for (const [id, name] of [
     ['scan-bodies', 'Two bodies'],
     ['scan-benzene', 'Benzene density'],
