@@ -44,6 +44,9 @@ const dropped = async (
   await drag(page, 'drop', file);
 };
 
+/** The menu of the gallery's groups. @param {Page} page */
+const groups = (page) => page.getByRole('combobox', { name: 'Group of surfaces' });
+
 test('files: dropped, chosen, refused, given up', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900, hash: COARSE });
   await test.step('a file dragged over the page is shown where it may be dropped, with the formats and the limit', async () => {
@@ -163,7 +166,7 @@ test('a model is sampled, tells of its points, and one press leads back to the f
   const [model] = await page.evaluate(
     () => /** @type {any} */ (window).marchingParticles.engine.description.value.models,
   );
-  await page.getByRole('button', { name: 'Points', exact: true }).click();
+  await groups(page).selectOption('Points');
   await page.locator(`.tile[data-surface="${model.id}"]`).click();
   await expect(page.locator('.story')).toContainText(model.name);
   await settled(page);
@@ -262,7 +265,7 @@ test('a formula cuts a model and keeps it as long as it names it', { tag: '@all'
 
 test('a link holds the formula of a model of the gallery', { tag: '@all' }, async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
-  await page.getByRole('button', { name: 'Points', exact: true }).click();
+  await groups(page).selectOption('Points');
   await page.locator('.tile[data-surface="bunny"]').click();
   await settled(page);
   await typeFormula(page, 'max(model, x - 0.1)');
@@ -286,10 +289,10 @@ test('a file and the number of its points', { tag: '@all' }, async ({ page }) =>
     const { quality } = await report(page);
     expect(quality.area / (4 * Math.PI)).toBeCloseTo(1, 1);
     await expect(page.locator('.model .facts')).toContainText('given');
-    await page.getByRole('button', { name: 'Closed', exact: true }).click();
+    await groups(page).selectOption('Closed');
     await page.locator('.tile[data-surface="torus"]').click();
     await settled(page);
-    await page.getByRole('button', { name: 'Points', exact: true }).click();
+    await groups(page).selectOption('Points');
     await page.locator('.tile[data-surface="file"]').click();
     await settled(page);
     await expect(page.getByRole('heading', { name: 'ball.ply' })).toBeVisible();
@@ -320,7 +323,7 @@ test('a file and the number of its points', { tag: '@all' }, async ({ page }) =>
     await expect(fitted).toContainText('f is fitted to 900 points, with 350 as centres');
     await settled(page);
     // Of a model there are no more than it has, and a link holds the number.
-    await page.getByRole('button', { name: 'Points', exact: true }).click();
+    await groups(page).selectOption('Points');
     await page.locator('.tile[data-surface="bunny"]').click();
     await expect(fitted).toContainText('f interpolates all 200 points');
     await settled(page);
