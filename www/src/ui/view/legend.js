@@ -1,4 +1,5 @@
 /** Shows the choice of the colouring and its legend, with range and unit. */
+import { computed } from '@preact/signals-core';
 import { h, live, marked, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, formatSignificant } from '../format.js';
@@ -78,8 +79,10 @@ function createValue(engine) {
     },
   });
   box.setAttribute('list', list);
+  // Other changes of the state leave what is being typed.
+  const value = computed(() => engine.state.value.view.value);
   live(box, () => {
-    box.value = engine.state.value.view.value;
+    box.value = value.value;
   });
   return h(
     'div',
