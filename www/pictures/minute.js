@@ -75,7 +75,7 @@ async function scenes(page, shoot) {
   await shoot(600);
 
   await page.getByRole('button', { name: 'Make a mesh' }).first().click();
-  await page.getByText('Closed · 1 part').first().waitFor();
+  await page.getByText('Closed · 1 part').filter({ visible: true }).first().waitFor();
   await page.waitForTimeout(1500);
   await shoot(2500);
 }
