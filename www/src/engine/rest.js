@@ -37,12 +37,13 @@ export const atRest = (engine) =>
   engine.progress.value.phase === 'done';
 
 /**
- * Resolves with the report once the sampler is at rest and the picture is up to date.
+ * Resolves with the report once the sampler is at rest and the picture is up to date. A surface that follows a slider
+ * has no report: it is waited for until the slider is let go.
  * @param {Engine} engine
  */
 export async function settled(engine) {
   const drawable = () => engine.reveal.value === null && engine.backend.value !== 'starting';
-  const report = await once(engine, () => atRest(engine) && drawable());
+  const report = await once(engine, () => atRest(engine) && !engine.progress.value.live && drawable());
   await engine.debug.still();
   return report;
 }

@@ -35,14 +35,16 @@ export function inviteToDrag(engine) {
     hasGrown ||= engine.reveal.value !== null;
     const [first] = engine.field.value?.parameters ?? [];
     if (!hasGrown || !has.value || !first || Object.keys(engine.state.value.parameters).length > 0) return;
-    queueMicrotask(() => end());
-    setTimeout(() => {
+    const timer = setTimeout(() => {
+      end();
       // Whoever has touched anything needs no invitation.
       if (was.peek() || names.peek()[0] !== first.name) return;
       was.value = true;
       invited.value = first.name;
       move(engine, first);
     }, PAUSE_MS);
+    // A run in the pause has the pause begin again.
+    return () => clearTimeout(timer);
   });
   const touch = () => {
     for (const type of ['pointerdown', 'keydown', 'wheel']) removeEventListener(type, touch, true);
