@@ -168,9 +168,11 @@ fn is_double(particles: &Particles) -> bool {
 /// The place of a particle in the coordinates of the formula.
 fn coordinates(particles: &Particles, i: usize) -> [CellValue; 3] {
     if is_double(particles) {
-        particles.place(i).to_array().map(CellValue::Double)
+        let p = particles.place(i);
+        [CellValue::Double(p.x), CellValue::Double(p.y), CellValue::Double(p.z)]
     } else {
-        particles.local[i].to_array().map(CellValue::Float)
+        let p = particles.local[i];
+        [CellValue::Float(p.x), CellValue::Float(p.y), CellValue::Float(p.z)]
     }
 }
 

@@ -1,7 +1,7 @@
 //! Linked lists of points by cell, which are made in one pass and take little memory. The points
 //! stay in their columns; the lists hold their indices.
 
-use super::coordinate;
+use super::cell;
 use crate::math::NONE;
 use glam::Vec3;
 
@@ -44,7 +44,7 @@ impl Chains {
     /// may have it.
     pub(crate) fn insert(&mut self, layer: usize, point: Vec3, index: u32) {
         let inverse_side = self.inverse_side[layer];
-        let [x, y, z] = point.to_array().map(|c| coordinate(c * inverse_side));
+        let [x, y, z] = cell(point * inverse_side);
         let head = self.head_of(layer, x, y, z);
         self.next[index as usize] = self.head[head as usize];
         self.head[head as usize] = index;
@@ -60,10 +60,10 @@ impl Chains {
         meant: impl Fn(u32) -> bool,
     ) -> impl Iterator<Item = u32> {
         let inverse_side = self.inverse_side[layer];
-        let cell = move |point: Vec3| point.to_array().map(|c| coordinate(c * inverse_side));
-        let [x, y, z] = cell(place);
+        let [x, y, z] = cell(place * inverse_side);
         let list = self.list(self.head_of(layer, x, y, z));
-        list.filter(move |&index| meant(index) && cell(points[index as usize]) == [x, y, z])
+        let is_beside = move |p: Vec3| cell(p * inverse_side) == [x, y, z];
+        list.filter(move |&index| meant(index) && is_beside(points[index as usize]))
     }
 
     /// Visits every point that was added to layer k within `reach[k]` of the box from `lo` to `hi`,
@@ -77,8 +77,7 @@ impl Chains {
         let mut wanted = core::mem::take(&mut self.wanted);
         wanted.clear();
         for (layer, (&inverse_side, reach)) in self.inverse_side.iter().zip(reach).enumerate() {
-            let lo = (lo - reach).to_array().map(|c| coordinate(c * inverse_side));
-            let hi = (hi + reach).to_array().map(|c| coordinate(c * inverse_side));
+            let (lo, hi) = (cell((lo - reach) * inverse_side), cell((hi + reach) * inverse_side));
             for z in lo[2]..=hi[2] {
                 for y in lo[1]..=hi[1] {
                     for x in lo[0]..=hi[0] {

@@ -145,9 +145,9 @@ impl CellGrid {
         self.blocks.reserve_exact((points / POINTS_PER_BLOCK).saturating_sub(self.blocks.len()));
     }
 
-    /// Returns the cell coordinate of `x`.
-    fn coordinate(&self, x: f32) -> u32 {
-        coordinate(x * self.inverse_cell)
+    /// Returns the coordinates of the cell of a point.
+    fn cell(&self, point: Vec3) -> [u32; 3] {
+        cell(point * self.inverse_cell)
     }
 
     /// Inserts a point and returns its handle. Queries return `index`.
@@ -193,7 +193,7 @@ impl CellGrid {
         let (b, lane) = (place.0 as usize / LANES, place.0 as usize % LANES);
         let block = &mut self.blocks[b];
         let old = Vec3::new(block.x.0[lane], block.y.0[lane], block.z.0[lane]);
-        let same_cell = [0, 1, 2].iter().all(|&k| self.coordinate(old[k]) == self.coordinate(point[k]));
+        let same_cell = self.cell(old) == self.cell(point);
         if same_cell {
             let block = &mut self.blocks[b];
             block.x.0[lane] = point.x;
@@ -217,8 +217,7 @@ impl CellGrid {
     /// order depends only on the history of insertions.
     pub fn gather_more(&self, centre: Vec3, radius: f32, found: &mut Vec<Neighbour>) {
         let mut hits = Hits { len: 0, places: [0; 8 * LANES] };
-        let lo = (centre - radius).to_array().map(|x| self.coordinate(x));
-        let hi = (centre + radius).to_array().map(|x| self.coordinate(x));
+        let (lo, hi) = (self.cell(centre - radius), self.cell(centre + radius));
         for bz in lo[2] >> 1..=hi[2] >> 1 {
             let in_z = in_range(bz, lo[2], hi[2], [0b0000_1111, 0b1111_0000]);
             for by in lo[1] >> 1..=hi[1] >> 1 {
@@ -281,7 +280,7 @@ impl CellGrid {
     }
 
     fn cell_of(&self, point: Vec3) -> (u64, usize) {
-        let [x, y, z] = point.to_array().map(|c| self.coordinate(c));
+        let [x, y, z] = self.cell(point);
         (key(x >> 1, y >> 1, z >> 1), (x & 1 | (y & 1) << 1 | (z & 1) << 2) as usize)
     }
 
@@ -327,6 +326,12 @@ impl CellGrid {
             self.table[slot] = brick;
         }
     }
+}
+
+/// The integers nearest to the coordinates of a point.
+#[inline]
+fn cell(point: Vec3) -> [u32; 3] {
+    [coordinate(point.x), coordinate(point.y), coordinate(point.z)]
 }
 
 /// The integer nearest to `x`, offset so that it is not negative: non-decreasing in `x`.

@@ -111,9 +111,13 @@ fn binary(
 /// Computes sine and cosine together.
 fn sine_cosine(registers: &RegisterCells<'_>, i: &Instruction) {
     for ((sine, cosine), a) in registers.get(i.out).iter().zip(registers.get(i.b)).zip(registers.get(i.a)) {
-        let pairs = a.get().0.map(functions::sin_cos);
-        sine.set(Lanes(pairs.map(|(sine, _)| sine)));
-        cosine.set(Lanes(pairs.map(|(_, cosine)| cosine)));
+        let mut results = [Lanes::default(); 2];
+        let [sines, cosines] = &mut results;
+        for ((sine, cosine), angle) in sines.0.iter_mut().zip(&mut cosines.0).zip(a.get().0) {
+            (*sine, *cosine) = functions::sin_cos(angle);
+        }
+        sine.set(results[0]);
+        cosine.set(results[1]);
     }
 }
 
@@ -147,20 +151,20 @@ fn execute(i: &Instruction, uniforms: &[f32], registers: &RegisterCells<'_>) {
         Op::Unary(operation) => execute_unary(operation, i, registers),
         Op::SineCosine => sine_cosine(registers, i),
         Op::Binary(operation) => {
-            let [out, a, b] = [i.out, i.a, i.b].map(|operand| registers.get(operand));
-            binary(operation, out, a.iter().map(Cell::get), b.iter().map(Cell::get));
+            let (a, b) = (registers.get(i.a), registers.get(i.b));
+            binary(operation, registers.get(i.out), a.iter().map(Cell::get), b.iter().map(Cell::get));
         }
         Op::Uniform(Binary::Pow) if let Some(n) = small_integer(uniforms[i.b as usize]) => {
             unary(registers, i, |a| integer_power(a, n));
         }
         Op::Uniform(operation) => {
-            let [out, a] = [i.out, i.a].map(|operand| registers.get(operand));
-            binary(operation, out, a.iter().map(Cell::get), repeat(u(i.b)));
+            let a = registers.get(i.a).iter().map(Cell::get);
+            binary(operation, registers.get(i.out), a, repeat(u(i.b)));
         }
         Op::If(at_most) => {
-            let [a, b, c] = [i.a, i.b, i.c].map(|operand| registers.get(operand));
+            let (a, b, c) = (registers.get(i.a), registers.get(i.b), registers.get(i.c));
             for (k, out) in registers.get(i.out).iter().enumerate() {
-                let [a, b, c] = [a, b, c].map(|operand| operand[k].get().0);
+                let (a, b, c) = (a[k].get().0, b[k].get().0, c[k].get().0);
                 let value = |k: usize| {
                     let (below, above) = (a[k] <= b[k], a[k] > b[k]);
                     match if at_most { (below, above) } else { (above, below) } {

@@ -156,13 +156,14 @@ impl Evaluator for FormulaEvaluator<'_> {
             return;
         }
         let (value, gradient) = (&mut value[..points.len()], &mut gradient[..points.len()]);
-        eval::run(&compiled.gradient_program, &mut self.registers, points, |first, results: [&Lanes; 4]| {
+        let store = |first: usize, [f, x, y, z]: [&Lanes; 4]| {
             let slots = value[first..].iter_mut().zip(&mut gradient[first..]);
             for (k, (value, gradient)) in slots.take(LANES).enumerate() {
-                let [f, x, y, z] = results.map(|lanes| lanes.0[k] * frame.scale);
-                (*value, *gradient) = (f, Vec3::new(x, y, z));
+                *value = f.0[k] * frame.scale;
+                *gradient = Vec3::new(x.0[k], y.0[k], z.0[k]) * frame.scale;
             }
-        });
+        };
+        eval::run(&compiled.gradient_program, &mut self.registers, points, store);
     }
 
     fn hessians(

@@ -163,18 +163,10 @@ impl HalfEdges {
 
     /// The neighbours of `v`, counter-clockwise.
     #[inline]
-    pub fn neighbours(&self, v: u32) -> impl Iterator<Item = u32> + '_ {
-        let mut around = self.around(v);
-        let mut last = NONE;
-        core::iter::from_fn(move || {
-            if let Some(h) = around.next() {
-                last = previous(h);
-                return Some(self.target(h));
-            }
-            // Behind the last face of an open fan.
-            let end = core::mem::replace(&mut last, NONE);
-            (end != NONE && self.twin(end) == NONE).then(|| self.origin(end))
-        })
+    pub fn neighbours(&self, v: u32) -> Neighbours<'_> {
+        let first = self.outgoing(v);
+        let vertex = if first == NONE { NONE } else { self.target(first) };
+        Neighbours { mesh: self, first, at: first, vertex }
     }
 
     /// Number of neighbours of `v`.
@@ -249,6 +241,38 @@ impl Iterator for Around<'_> {
         }
         let left = self.mesh.twin(previous(here));
         self.at = if left == self.first { NONE } else { left };
+        Some(here)
+    }
+}
+
+/// The neighbours of a vertex: see [`HalfEdges::neighbours`].
+#[derive(Clone, Debug)]
+pub struct Neighbours<'a> {
+    mesh: &'a HalfEdges,
+    first: u32,
+    /// The half-edge whose face has the next neighbour but one.
+    at: u32,
+    /// The next neighbour.
+    vertex: u32,
+}
+
+impl Iterator for Neighbours<'_> {
+    type Item = u32;
+
+    #[inline]
+    fn next(&mut self) -> Option<u32> {
+        let here = self.vertex;
+        if here == NONE {
+            return None;
+        }
+        self.vertex = NONE;
+        if self.at != NONE {
+            let across = previous(self.at);
+            self.at = self.mesh.twin(across);
+            if self.at != self.first {
+                self.vertex = self.mesh.origin(across);
+            }
+        }
         Some(here)
     }
 }

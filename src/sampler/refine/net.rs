@@ -430,12 +430,6 @@ impl Net {
         }
     }
 
-    /// Outward unit normal between two particles.
-    fn normal_between(&self, a: u32, b: u32) -> Vec3 {
-        let [n, m] = self.normals(a, b);
-        (n + m).normalize_or(n)
-    }
-
     /// The normals at two neighbours. At a tip there is none: along a ray of a cone it is
     /// everywhere that of the other end.
     fn normals(&self, a: u32, b: u32) -> [Vec3; 2] {
@@ -444,17 +438,25 @@ impl Net {
     }
 
     /// The middle of the edge between two particles, lifted to the circle through them with their
-    /// normals.
-    pub(super) fn middle(&self, a: u32, b: u32) -> Vec3 {
-        let [p, q] = [a, b].map(|v| self.position[v as usize]);
+    /// normals, and the outward unit normal there.
+    #[inline]
+    fn lifted(&self, a: u32, b: u32) -> (Vec3, Vec3) {
+        let (p, q) = (self.position[a as usize], self.position[b as usize]);
         let [n, m] = self.normals(a, b);
-        let turn = m - n;
-        (p + q) * 0.5 + self.normal_between(a, b) * (0.125 * (q - p).dot(turn))
+        let (normal, turn) = ((n + m).normalize_or(n), m - n);
+        ((p + q) * 0.5 + normal * (0.125 * (q - p).dot(turn)), normal)
+    }
+
+    /// The middle of the edge between two particles, [lifted](Self::lifted).
+    #[inline]
+    pub(super) fn middle(&self, a: u32, b: u32) -> Vec3 {
+        self.lifted(a, b).0
     }
 
     /// The site of a particle that halves the edge between two others.
     pub(super) fn halfway(&self, a: u32, b: u32) -> Site {
-        Site::smooth(self.middle(a, b), self.normal_between(a, b), self.planes_between(a, b))
+        let (position, normal) = self.lifted(a, b);
+        Site::smooth(position, normal, self.planes_between(a, b))
     }
 
     /// Whether a particle stays where it is, with the normal that it has: creases end there, or it

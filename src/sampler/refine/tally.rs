@@ -36,14 +36,15 @@ impl Tally {
     pub(super) fn measure(&mut self, net: &Net, faces: Range<u32>) {
         self.border += net.border_of(faces.clone());
         let twice = |[a, b, c]: [Vec3; 3]| f64::from((b - a).cross(c - a).length());
-        for face in faces.filter_map(|f| net.mesh.face(f)) {
-            let p = face.map(|v| net.position[v as usize]);
-            let m = [0, 1, 2].map(|k| net.middle(face[k], face[(k + 1) % 3]));
-            let area = twice(p);
+        for [a, b, c] in faces.filter_map(|f| net.mesh.face(f)) {
+            let at = |v: u32| net.position[v as usize];
+            let (p, q, r) = (at(a), at(b), at(c));
+            let (pq, qr, rp) = (net.middle(a, b), net.middle(b, c), net.middle(c, a));
+            let area = twice([p, q, r]);
             self.coarse += area;
-            self.fine += twice(m) + (0..3).map(|k| twice([p[k], m[k], m[(k + 2) % 3]])).sum::<f64>();
+            self.fine += twice([pq, qr, rp]) + (twice([p, pq, rp]) + twice([q, qr, pq]) + twice([r, rp, qr]));
             if net.is_graded() {
-                let size = f64::from(face.map(|v| net.size_of(v)).iter().sum::<f32>()) / 3.0;
+                let size = f64::from(net.size_of(a) + net.size_of(b) + net.size_of(c)) / 3.0;
                 self.cells += 2.0 * area / (SQRT_3 * size * size);
             }
         }

@@ -150,14 +150,13 @@ impl PairBatch {
 
     /// Evaluates the law for the first `count` pairs.
     fn evaluate<L: Repulsion>(&mut self, law: &L, count: usize) {
-        for first in (0..MOST_PAIRS).step_by(4).take_while(|&first| first < count) {
-            let [a, b, c, d] = [0, 1, 2, 3].map(|k| self.offset[first + k]);
+        let pairs = self.offset.as_chunks().0.iter().zip(self.mean.as_chunks().0);
+        let results = self.weight.as_chunks_mut().0.iter_mut().zip(self.energy.as_chunks_mut().0);
+        for ((&[a, b, c, d], &mean), (weight, energy)) in pairs.zip(results).take(count.div_ceil(4)) {
             let lanes = Mat4::from_cols(a, b, c, d).transpose();
             let (x, y, z) = (lanes.x_axis, lanes.y_axis, lanes.z_axis);
-            let mean = Vec4::from_slice(&self.mean[first..first + 4]);
-            let (weight, energy) = law.pairs(x * x + y * y + z * z, mean);
-            weight.write_to_slice(&mut self.weight[first..first + 4]);
-            energy.write_to_slice(&mut self.energy[first..first + 4]);
+            let of_four = law.pairs(x * x + y * y + z * z, Vec4::from_array(mean));
+            (*weight, *energy) = (of_four.0.to_array(), of_four.1.to_array());
         }
     }
 

@@ -106,7 +106,7 @@ impl ParentFrame {
 
     /// Angle between two children that touch each other, at two angles.
     fn between(&self, one: f32, other: f32) -> f32 {
-        let [(x, y), (z, w)] = [one, other].map(|angle| (cos(angle), sin(angle)));
+        let (x, y, z, w) = (cos(one), sin(one), cos(other), sin(other));
         let (r, q) = (self.child_radius(x, y), self.child_radius(z, w));
         let (d, e) = (self.radius + r, self.radius + q);
         let (s, t) = (self.dip(x, y, d), self.dip(z, w, e));
@@ -411,7 +411,7 @@ impl ParentRing {
     /// the largest radius that the slope `grading` allows beside those whose radius is exact. A
     /// predicted one may be far too small: a limit by it would be handed on from child to child.
     pub(crate) fn limits(&self, offset: Vec3, radius: f32, share: f32, grading: f32) -> (f32, f32) {
-        let [ox, oy, oz] = offset.to_array().map(Lanes::splat);
+        let (ox, oy, oz) = (Lanes::splat(offset.x), Lanes::splat(offset.y), Lanes::splat(offset.z));
         let mut room = Lanes::splat(f32::INFINITY);
         let mut largest = Lanes::splat(f32::INFINITY);
         for chunk in &self.chunks[..self.len.div_ceil(LANES)] {

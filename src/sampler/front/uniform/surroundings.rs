@@ -56,7 +56,10 @@ impl Surroundings {
     }
 
     fn chunks(&self) -> impl Iterator<Item = [Vec4; 7]> {
-        self.chunks[..self.len.div_ceil(CHUNK)].iter().map(|chunk| chunk.map(Vec4::from_array))
+        let lanes = Vec4::from_array;
+        self.chunks[..self.len.div_ceil(CHUNK)].iter().map(move |&[x, y, z, mx, my, mz, tells]| {
+            [lanes(x), lanes(y), lanes(z), lanes(mx), lanes(my), lanes(mz), lanes(tells)]
+        })
     }
 
     /// Whether any of the particles is [doubtful](crate::sampler::sheet::SheetRule::is_doubtful)
