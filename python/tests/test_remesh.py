@@ -21,6 +21,24 @@ def test_box_keeps_its_edges(tmp_path):
         assert np.abs(beyond.max(axis=1)).max() < 1e-6, "each vertex lies on a face"
 
 
+def test_scene_of_a_glb_is_read_as_its_nodes_place_it(tmp_path):
+    scene = trimesh.Scene()
+    turn = trimesh.transformations.rotation_matrix(0.7, (1, 2, 3))
+    move = trimesh.transformations.translation_matrix((4, 5, 6))
+    scene.add_geometry(trimesh.creation.box((1, 2, 3)), transform=move @ turn)
+    mirror = np.diag([-2.0, 2.0, 2.0, 1.0])
+    scene.add_geometry(trimesh.creation.box((1, 1, 1)), transform=mirror)
+    path = tmp_path / "scene.glb"
+    scene.export(path)
+    sample = mp.remesh(path, count=4000)
+    # The y axis of glTF points up, and z does here.
+    expected = scene.to_geometry().apply_transform([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+    new = sample.to_trimesh()
+    assert new.is_watertight and new.body_count == 2
+    assert new.volume == pytest.approx(14, rel=1e-6)
+    assert new.bounds == pytest.approx(expected.bounds, abs=1e-5)
+
+
 def test_spacing_is_that_of_the_neighbours():
     sample = mp.remesh(trimesh.creation.box((1, 1, 1)), spacing=0.05)
     new = sample.to_trimesh()

@@ -333,9 +333,9 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true, help_heading = "Surface")]
     pub(crate) formula: Option<String>,
 
-    /// File of points or of a mesh: PLY, OBJ, STL, OFF, PCD, or text with one point on a line (XYZ,
-    /// PTS, CSV), up to 50 MB; `-` is standard input. A smooth surface is fitted to all of them.
-    /// Normals come from the file, else from its faces, else they are estimated
+    /// File of points or of a mesh: PLY, OBJ, STL, OFF, GLB, PCD, or text with one point on a line
+    /// (XYZ, PTS, CSV), up to 50 MB; `-` is standard input. A smooth surface is fitted to all of
+    /// them. Normals come from the file, else from its faces, else they are estimated
     #[arg(long, value_name = "FILE", conflicts_with = "surface", help_heading = "Surface")]
     pub(crate) points: Option<PathBuf>,
 
@@ -379,9 +379,9 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, value_name = "XxYxZ", value_parser = voxel_size, requires = "image", help_heading = "Surface")]
     pub(crate) voxel_size: Option<VoxelSize>,
 
-    /// File of a triangle mesh to sample anew: STL, OBJ, PLY or OFF; `-` is standard input. Sharp
-    /// edges are kept, holes are closed, and the report says how far the new mesh is from the old
-    /// one. With --formula the mesh is an operand named `model`
+    /// File of a triangle mesh to sample anew: STL, OBJ, PLY, OFF or GLB; `-` is standard input.
+    /// Sharp edges are kept, holes are closed, and the report says how far the new mesh is from the
+    /// old one. With --formula the mesh is an operand named `model`
     #[arg(
         long, value_name = "FILE", help_heading = "Surface",
         conflicts_with_all = ["surface", "points", "image", "closed", "thickness"]

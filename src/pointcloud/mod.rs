@@ -23,11 +23,11 @@ use fit::Fit;
 use glam::DVec3;
 use job::{Job, JobError};
 
-/// Fits a surface to the points of a file: PLY, OBJ, STL, OFF, PCD, or text with a point a line
-/// (XYZ, PTS, CSV), as the content says, and where that leaves it open the `name`. A function with
-/// as many `centres`, a number of [`CENTRES`](crate::CENTRES), is fitted to all of them: noise is
-/// smoothed as cross-validation tells. Normals come from the file, else from its faces, else they
-/// are estimated. Large faces are given more points, so that the surface follows them.
+/// Fits a surface to the points of a file: PLY, OBJ, STL, OFF, GLB, PCD, or text with a point a
+/// line (XYZ, PTS, CSV), as the content says, and where that leaves it open the `name`. A function
+/// with as many `centres`, a number of [`CENTRES`](crate::CENTRES), is fitted to all of them: noise
+/// is smoothed as cross-validation tells. Normals come from the file, else from its faces, else
+/// they are estimated. Large faces are given more points, so that the surface follows them.
 ///
 /// # Errors
 ///

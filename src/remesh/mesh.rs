@@ -58,8 +58,8 @@ impl TriangleMesh {
         Ok(Self { vertices, faces, notes: Vec::new() })
     }
 
-    /// The mesh of a file: STL, OBJ, PLY or OFF, as the content says. Polygons are divided into
-    /// triangles from their first corner.
+    /// The mesh of a file: STL, OBJ, PLY, OFF or GLB, as the content says. Polygons are divided
+    /// into triangles from their first corner.
     ///
     /// # Errors
     ///

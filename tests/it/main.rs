@@ -34,6 +34,7 @@ mod formula_properties;
 mod front;
 mod fuzz;
 mod gallery;
+mod glb;
 mod golden;
 mod graded;
 mod grip;

@@ -9,7 +9,9 @@ use marching_particles::mesh::triangulation::{Triangulation, triangulate};
 use marching_particles::particles::Particles;
 use marching_particles::quality;
 use marching_particles::sampler::Settings;
-use marching_particles::{Bodies, Body, Formula, Inside, MeshBuffers, Sample, Topology, Warning, sample};
+use marching_particles::{
+    Bodies, Body, Formula, Inside, MeshBuffers, Sample, Topology, TriangleMesh, Warning, sample,
+};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
@@ -130,6 +132,11 @@ fn glb_holds_triangles_normals_and_levels() {
         assert_eq!(vectors(attribute("POSITION")), particles.local);
         assert_eq!(vectors(attribute("NORMAL")), particles.normal);
         assert_eq!(triples(column(&document, buffer, &primitive["indices"])), mesh.triangles);
+        let read = TriangleMesh::read("a.glb", bytes.clone()).expect("what was written");
+        assert_eq!(read.faces(), mesh.triangles);
+        for (p, &q) in read.vertices().iter().zip(&particles.local) {
+            assert!(p.distance(particles.origin + q.as_dvec3()) < 1e-12, "{id}: {p}");
+        }
         let levels: Vec<f32> = particles.level.iter().map(|&level| level as f32).collect();
         assert_eq!(floats(attribute("_LEVEL")), levels);
         // Each level has a colour, from blue at the seed to sand at the last one.

@@ -497,13 +497,13 @@ fn files_of_other_formats_and_sizes_are_refused_with_advice() {
         (b"PK\x03\x04rest", "this is a ZIP archive"),
         (
             b"\x1f\x8b\x08",
-            "this is a gzip archive, and what is read is PLY, OBJ, STL, OFF, PCD and text with a point a line (XYZ, PTS, CSV); unpack it",
+            "this is a gzip archive, and what is read is PLY, OBJ, STL, OFF, GLB, PCD and text with a point a line (XYZ, PTS, CSV); unpack it",
         ),
         (
             b"\x93NUMPY\x01\x00",
             "save one of points as text, a row a line, as XYZ; the command line reads a volume (--image)",
         ),
-        (b"glTF\x02\x00", "this is a binary glTF file"),
+        (b"{\"asset\":{\"version\":\"2.0\"}}", "this is JSON (glTF is such)"),
         (b"\xff\xfe1\x00 \x00", "this is text in UTF-16"),
         (b"\x00\x01\x02\x03", "this is a binary file of no known kind"),
     ] {
@@ -524,7 +524,8 @@ fn files_of_other_formats_and_sizes_are_refused_with_advice() {
 }
 
 /// First bytes that select each of the readers.
-const BEGINNINGS: [&str; 13] = [
+const BEGINNINGS: [&str; 14] = [
+    "glTF\x02\0\0\0\0\0\0\0",
     "OFF\n2 1 0\n0 0 0\n1 0 0\n",
     "# .PCD v0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA ascii\n",
     "VERSION 0.7\nFIELDS _ x y z normal_x\nSIZE 1 4 4 8 4\nTYPE U F F F F\nCOUNT 3 1 1 1 2\nWIDTH 2\nHEIGHT 1\nDATA binary\n",

@@ -236,8 +236,8 @@ export interface ImageArray {
   name?: string;
 }
 /**
- * A triangle mesh, which is sampled anew: a file (STL, OBJ, PLY or OFF, whichever its content says),
- * or arrays of three coordinates for each vertex and three vertices for each face.
+ * A triangle mesh, which is sampled anew: a file (STL, OBJ, PLY, OFF or GLB, whichever its content
+ * says), or arrays of three coordinates for each vertex and three vertices for each face.
  */
 export interface MeshSource {
   mesh:

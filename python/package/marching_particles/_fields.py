@@ -73,8 +73,8 @@ def fit_points(points, normals=None, *, centres=200, beyond_points="cut"):
 
     Args:
         points: Array (n, 3), in any unit of length; or a mesh of trimesh or PyVista, or the path of
-            a file of points or of a mesh: PLY, OBJ, STL, OFF, PCD, XYZ, PTS or CSV. A mesh gives
-            its vertices and normals.
+            a file of points or of a mesh: PLY, OBJ, STL, OFF, GLB, PCD, XYZ, PTS or CSV. A mesh
+            gives its vertices and normals.
         normals: Array (n, 3) of outward normals of any length; without it they are estimated.
         centres: Number of radial functions, 100 to 800. The time grows with its cube.
         beyond_points: ``"cut"``: the surface ends at the border of the points, and bridges gaps of

@@ -22,7 +22,7 @@ class TriangleMesh(Field):
     and doubled ones dropped, and faces turned to agree.
 
     Args:
-        mesh: The path of a file, STL, OBJ, PLY or OFF; a mesh of trimesh or PyVista; or a pair
+        mesh: The path of a file, STL, OBJ, PLY, OFF or GLB; a mesh of trimesh or PyVista; or a pair
             ``(vertices, faces)`` of arrays (n, 3) and (m, 3), in any unit of length, with faces
             counter-clockwise seen from outside.
         edges: ``"auto"``; the angle between faces from which on an edge stays sharp, in degrees, 1

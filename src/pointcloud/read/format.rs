@@ -1,7 +1,7 @@
 //! Detection of a file's format by its content.
 
 use super::input::words;
-use super::{ReadError, off, pcd, xyz};
+use super::{ReadError, glb, off, pcd, xyz};
 use core::fmt;
 
 /// File format that can be read.
@@ -19,6 +19,8 @@ pub enum InputFormat {
     Off,
     /// Point cloud data of the Point Cloud Library, as text, binary or compressed.
     Pcd,
+    /// Binary glTF.
+    Glb,
     /// Text with one point per line.
     Xyz,
 }
@@ -31,6 +33,7 @@ impl fmt::Display for InputFormat {
             Self::StlText | Self::StlBinary => "STL",
             Self::Off => "OFF",
             Self::Pcd => "PCD",
+            Self::Glb => "GLB",
             Self::Xyz => "XYZ",
         })
     }
@@ -40,8 +43,9 @@ impl InputFormat {
     /// Extension of `name`, if it is that of another format.
     pub(super) fn contradicting_extension(self, name: &str) -> Option<&'static str> {
         let extension = extension(name);
-        let known =
-            ["ply", "obj", "stl", "off", "pcd", "xyz"].into_iter().find(|known| *known == extension)?;
+        let known = ["ply", "obj", "stl", "off", "pcd", "glb", "xyz"]
+            .into_iter()
+            .find(|known| *known == extension)?;
         (!self.to_string().eq_ignore_ascii_case(known)).then_some(known)
     }
 }
@@ -64,8 +68,7 @@ const CONVERT: &str = "open it in a mesh program such as MeshLab or Blender and 
 const CHOOSE: &str = "choose a file of points or of a mesh";
 
 /// First bytes of other formats, with their name and an advice for the user.
-const KNOWN: [(&[u8], &str, &str); 17] = [
-    (b"glTF", "a binary glTF file", CONVERT),
+const KNOWN: [(&[u8], &str, &str); 16] = [
     (b"LASF", "a LAS point cloud", CONVERT),
     (b"ASTM-E57", "an E57 point cloud", CONVERT),
     (b"Kaydara FBX", "an FBX file", CONVERT),
@@ -106,6 +109,9 @@ pub(super) fn sniff(name: &str, bytes: &[u8]) -> Result<InputFormat, ReadError> 
     }
     if pcd::begins_with(bytes) {
         return Ok(InputFormat::Pcd);
+    }
+    if bytes.starts_with(glb::MAGIC) {
+        return Ok(InputFormat::Glb);
     }
     let first = bytes.split(|&byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or_default();
     if let [word, b"BINARY"] = words(first).take(3).collect::<Vec<_>>()[..]
@@ -158,7 +164,7 @@ fn of_text(name: &str, bytes: &[u8]) -> Result<InputFormat, ReadError> {
         return unknown("an XML or HTML document", CHOOSE);
     }
     if line.starts_with(b"{") {
-        return unknown("JSON (glTF is such)", CONVERT);
+        return unknown("JSON (glTF is such)", "export glTF as one binary file, .glb");
     }
     // If the first line may be faulty, the error of its reader helps more than "no known kind".
     match extension(name).as_str() {

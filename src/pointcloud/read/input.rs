@@ -63,6 +63,11 @@ impl<'a> Input<'a> {
         }
     }
 
+    /// The remaining bytes.
+    pub(super) fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.at..]
+    }
+
     /// Number of remaining bytes.
     pub(super) fn remaining(&self) -> usize {
         self.bytes.len() - self.at

@@ -1,11 +1,12 @@
-//! Reader of files of points and meshes: PLY, OBJ, STL, OFF, PCD, and text with a point a line,
-//! detected by content.
+//! Reader of files of points and meshes: PLY, OBJ, STL, OFF, GLB, PCD, and text with a point a
+//! line, detected by content.
 //!
 //! A file is read in slices of work, and the caller can show progress. Its content is not trusted:
 //! the counts in a header are compared with the size of the file before memory is allocated, and an
 //! error states its location.
 
 mod format;
+mod glb;
 mod input;
 mod mesh;
 mod obj;
@@ -41,7 +42,7 @@ pub enum ReadError {
     },
     /// The file has none of the known formats.
     #[error(
-        "this is {found}, and what is read is PLY, OBJ, STL, OFF, PCD and text with a point a line (XYZ, PTS, CSV); {advice}"
+        "this is {found}, and what is read is PLY, OBJ, STL, OFF, GLB, PCD and text with a point a line (XYZ, PTS, CSV); {advice}"
     )]
     Unknown {
         /// Name of the format that the content seems to have.
@@ -83,6 +84,14 @@ pub enum ReadError {
         needed: u64,
         /// Number of bytes after the header.
         left: u64,
+    },
+    /// A part of a glTF document is wrong.
+    #[error("{member}: {message}")]
+    Member {
+        /// Name of the part in the document, as `accessors[3]`.
+        member: String,
+        /// The error in words.
+        message: String,
     },
     /// There is not enough memory for the file.
     #[error("there is not enough memory for this file; keep fewer points, for example every tenth")]
@@ -180,6 +189,7 @@ impl Reader {
             InputFormat::StlBinary => stl::read_binary(&mut input, &mut mesh).await,
             InputFormat::Off => off::read(&mut input, &mut mesh).await,
             InputFormat::Pcd => pcd::read(&mut input, &mut mesh).await,
+            InputFormat::Glb => glb::read(&mut input, &mut mesh).await,
             InputFormat::Xyz => xyz::read(&mut input, &mut mesh).await,
         }?;
         mesh.leave_out_undefined()?;

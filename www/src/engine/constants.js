@@ -24,8 +24,8 @@ export const MOST_PARAMETERS = 64;
 /** Largest number of pulls on a surface. */
 export const MOST_PULLS = 32;
 /** File extensions of points that `openFile` reads, for the `accept` attribute of a file chooser. */
-export const FILE_TYPES = '.ply,.obj,.stl,.off,.pcd,.xyz,.pts,.csv,.txt,.asc';
+export const FILE_TYPES = '.ply,.obj,.stl,.off,.glb,.pcd,.xyz,.pts,.csv,.txt,.asc';
 /** Those of triangle meshes, which may hold points alone. */
-export const MESH_TYPES = '.stl,.obj,.ply,.off';
+export const MESH_TYPES = '.stl,.obj,.ply,.off,.glb';
 /** Those of three-dimensional images, and of the files beside their headers. */
 export const IMAGE_TYPES = '.nii,.nii.gz,.gz,.hdr,.img,.nrrd,.nhdr,.npy,.mha,.mhd,.raw,.zraw,.cube,.cub,.tif,.tiff';
