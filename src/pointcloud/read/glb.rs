@@ -8,7 +8,7 @@ use super::ReadError;
 use super::input::{COMPONENTS, Input};
 use super::mesh::FileMesh;
 use glam::{DMat4, DQuat, DVec3};
-use serde::Deserialize;
+use tinyjson::JsonValue;
 
 /// Bytes with which a file begins.
 pub(super) const MAGIC: &[u8] = b"glTF";
@@ -21,102 +21,105 @@ const UNREAD: [(&str, &str); 3] = [
 ];
 
 /// Numbers of the specification: the topologies of primitives.
-const POINTS: u32 = 0;
-const TRIANGLES: u32 = 4;
-const TRIANGLE_STRIP: u32 = 5;
-const TRIANGLE_FAN: u32 = 6;
+const POINTS: usize = 0;
+const TRIANGLES: usize = 4;
+const TRIANGLE_STRIP: usize = 5;
+const TRIANGLE_FAN: usize = 6;
 
-/// The parts of the JSON document that are read.
-#[derive(Deserialize, Default)]
-#[serde(default, rename_all = "camelCase")]
-struct Document {
-    scene: Option<usize>,
-    scenes: Vec<Scene>,
-    nodes: Vec<Node>,
-    meshes: Vec<Mesh>,
-    accessors: Vec<Accessor>,
-    buffer_views: Vec<BufferView>,
-    buffers: Vec<Buffer>,
-    extensions_required: Vec<String>,
-}
+/// Deepest nesting of the JSON document: the parser calls itself for every level.
+const DEEPEST: usize = 64;
 
-#[derive(Deserialize, Default)]
-#[serde(default)]
-struct Scene {
-    nodes: Vec<usize>,
-}
-
-#[derive(Deserialize, Default)]
-#[serde(default)]
-struct Node {
-    children: Vec<usize>,
-    mesh: Option<usize>,
-    /// By columns.
-    matrix: Option<[f64; 16]>,
-    translation: Option<[f64; 3]>,
-    rotation: Option<[f64; 4]>,
-    scale: Option<[f64; 3]>,
-}
-
-#[derive(Deserialize)]
-struct Mesh {
-    primitives: Vec<Primitive>,
-}
-
-#[derive(Deserialize)]
-struct Primitive {
-    attributes: Attributes,
-    indices: Option<usize>,
-    mode: Option<u32>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "UPPERCASE")]
-struct Attributes {
-    position: Option<usize>,
-    normal: Option<usize>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-struct Accessor {
-    buffer_view: Option<usize>,
-    #[serde(default)]
-    byte_offset: usize,
-    component_type: u32,
-    #[serde(default)]
-    normalized: bool,
-    count: usize,
-    #[serde(rename = "type")]
-    kind: String,
-    sparse: Option<serde::de::IgnoredAny>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-struct BufferView {
-    buffer: usize,
-    #[serde(default)]
-    byte_offset: usize,
-    byte_length: usize,
-    byte_stride: Option<usize>,
-}
-
-#[derive(Deserialize)]
-struct Buffer {
-    uri: Option<String>,
-}
-
-impl Node {
-    fn transform(&self) -> DMat4 {
-        match self.matrix {
-            Some(matrix) => DMat4::from_cols_array(&matrix),
-            None => DMat4::from_scale_rotation_translation(
-                self.scale.map_or(DVec3::ONE, DVec3::from_array),
-                self.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q).normalize()),
-                self.translation.map_or(DVec3::ZERO, DVec3::from_array),
-            ),
+/// Deepest nesting of a JSON text.
+fn depth(text: &[u8]) -> usize {
+    let (mut depth, mut deepest, mut in_string, mut is_escaped) = (0_usize, 0, false, false);
+    for &byte in text {
+        match byte {
+            _ if is_escaped => is_escaped = false,
+            b'\\' => is_escaped = in_string,
+            b'"' => in_string = !in_string,
+            b'[' | b'{' if !in_string => depth += 1,
+            b']' | b'}' if !in_string => depth = depth.saturating_sub(1),
+            _ => {}
         }
+        deepest = deepest.max(depth);
+    }
+    deepest
+}
+
+fn wrong(name: impl Into<String>, message: impl Into<String>) -> ReadError {
+    ReadError::Member { member: name.into(), message: message.into() }
+}
+
+/// A member of the document, with its name for messages: `accessors[3].count`.
+struct Member<'d> {
+    value: &'d JsonValue,
+    name: String,
+}
+
+impl<'d> Member<'d> {
+    /// The member of an object; none if it is not there.
+    fn get(&self, key: &str) -> Option<Self> {
+        let value = self.value.get::<std::collections::HashMap<String, JsonValue>>()?.get(key)?;
+        let name = if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) };
+        Some(Self { value, name })
+    }
+
+    fn wrong(&self, message: &str) -> ReadError {
+        wrong(self.name.as_str(), message)
+    }
+
+    /// The elements of a list, which is empty if it is not there.
+    fn list(&self, key: &str) -> Result<&'d [JsonValue], ReadError> {
+        let Some(member) = self.get(key) else { return Ok(&[]) };
+        let list = member.value.get::<Vec<JsonValue>>();
+        list.map(Vec::as_slice).ok_or_else(|| member.wrong("it is not a list; export the file again"))
+    }
+
+    /// A whole number that is not negative.
+    fn whole(&self) -> Result<usize, ReadError> {
+        /// Largest whole number up to which a double holds every one.
+        const LARGEST: f64 = 9_007_199_254_740_992.0;
+        let number =
+            self.value.get::<f64>().copied().filter(|n| n.fract() == 0.0 && (0.0..=LARGEST).contains(n));
+        number
+            .map(|n| n as usize)
+            .ok_or_else(|| self.wrong("it is not a whole number; export the file again"))
+    }
+
+    fn whole_at(&self, key: &str) -> Result<Option<usize>, ReadError> {
+        self.get(key).map(|member| member.whole()).transpose()
+    }
+
+    /// A whole number that has to be there.
+    fn needed(&self, key: &str) -> Result<usize, ReadError> {
+        let missing = || self.wrong(&format!("it has no {key}; export the file again"));
+        self.whole_at(key)?.ok_or_else(missing)
+    }
+
+    fn numbers<const N: usize>(&self, key: &str) -> Result<Option<[f64; N]>, ReadError> {
+        let Some(member) = self.get(key) else { return Ok(None) };
+        let list: Vec<f64> = self.list(key)?.iter().filter_map(|number| number.get().copied()).collect();
+        let numbers = <[f64; N]>::try_from(list);
+        numbers
+            .map(Some)
+            .map_err(|_| member.wrong(&format!("it is not a list of {N} numbers; export the file again")))
+    }
+
+    /// The element of a list of the document that this number names.
+    fn named<'a>(&self, glb: &'a Glb, list: &'static str) -> Result<Member<'a>, ReadError> {
+        glb.element(list, self.whole()?, &self.name)
+    }
+
+    /// The transform of a node.
+    fn transform(&self) -> Result<DMat4, ReadError> {
+        if let Some(matrix) = self.numbers("matrix")? {
+            return Ok(DMat4::from_cols_array(&matrix));
+        }
+        Ok(DMat4::from_scale_rotation_translation(
+            self.numbers("scale")?.map_or(DVec3::ONE, DVec3::from_array),
+            self.numbers("rotation")?.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q).normalize()),
+            self.numbers("translation")?.map_or(DVec3::ZERO, DVec3::from_array),
+        ))
     }
 }
 
@@ -143,7 +146,7 @@ enum Kind {
 }
 
 impl Kind {
-    fn of(number: u32) -> Option<Self> {
+    fn of(number: usize) -> Option<Self> {
         Some(match number {
             5120 => Self::Byte,
             5121 => Self::UnsignedByte,
@@ -193,18 +196,8 @@ impl Rows<'_> {
 
 /// A document with its binary part.
 struct Glb<'a> {
-    document: Document,
+    document: JsonValue,
     binary: &'a [u8],
-}
-
-fn wrong(member: impl Into<String>, message: impl Into<String>) -> ReadError {
-    ReadError::Member { member: member.into(), message: message.into() }
-}
-
-/// An element of a list of the document, by its index there.
-fn element<'d, T>(list: &'d [T], name: &str, index: usize, by: &str) -> Result<&'d T, ReadError> {
-    list.get(index)
-        .ok_or_else(|| wrong(by, format!("it names {name}[{index}], and there are {} {name}", list.len())))
 }
 
 impl<'a> Glb<'a> {
@@ -237,87 +230,115 @@ impl<'a> Glb<'a> {
             }
             at += 8 + length;
         }
-        let document: Document = serde_json::from_slice(text)
-            .map_err(|error| wrong("JSON", format!("{error}; export it again")))?;
-        let unread = |&(extension, _): &(&str, &str)| {
-            document.extensions_required.iter().any(|required| required == extension)
-        };
-        if let Some((extension, advice)) = UNREAD.into_iter().find(unread) {
+        if depth(text) > DEEPEST {
+            let message =
+                format!("it is nested deeper than {DEEPEST} levels; export the file without extras");
+            return Err(wrong("JSON", message));
+        }
+        let text =
+            core::str::from_utf8(text).map_err(|_| wrong("JSON", "it is not UTF-8; export it again"))?;
+        let document = text.trim_end_matches(['\0', ' ']).parse();
+        let document = document
+            .map_err(|error: tinyjson::JsonParseError| wrong("JSON", format!("{error}; export it again")))?;
+        let glb = Self { document, binary };
+        let required = glb.root().list("extensionsRequired")?;
+        let is_required =
+            |name: &str| required.iter().any(|other| other.get().is_some_and(|o: &String| o == name));
+        if let Some((extension, advice)) = UNREAD.into_iter().find(|(name, _)| is_required(name)) {
             return Err(wrong("extensionsRequired", format!("{extension} is not read; {advice}")));
         }
-        Ok(Self { document, binary })
+        Ok(glb)
     }
 
-    /// The rows of an accessor, each of so many numbers.
-    fn rows(&self, index: usize, components: usize, by: &str) -> Result<Rows<'a>, ReadError> {
-        let Document { accessors, buffer_views, buffers, .. } = &self.document;
-        let accessor = element(accessors, "accessors", index, by)?;
-        let name = format!("accessors[{index}]");
+    fn root(&self) -> Member<'_> {
+        Member { value: &self.document, name: String::new() }
+    }
+
+    /// An element of a list of the document, which the member `by` names.
+    fn element(&self, list: &'static str, index: usize, by: &str) -> Result<Member<'_>, ReadError> {
+        let all = self.root().list(list)?;
+        let missing = || wrong(by, format!("it names {list}[{index}], and there are {} {list}", all.len()));
+        Ok(Member { value: all.get(index).ok_or_else(missing)?, name: format!("{list}[{index}]") })
+    }
+
+    /// The rows of the accessor that a number names, each of so many numbers.
+    fn rows(&self, number: &Member, components: usize) -> Result<Rows<'a>, ReadError> {
+        let accessor = number.named(self, "accessors")?;
         let wanted = if components == 1 { "SCALAR" } else { "VEC3" };
-        if accessor.kind != wanted {
-            return Err(wrong(name, format!("its type is not {wanted}, which {by} needs")));
+        let kind = accessor.get("type");
+        if kind.and_then(|kind| kind.value.get::<String>()).is_none_or(|kind| kind != wanted) {
+            return Err(accessor.wrong(&format!("its type is not {wanted}, which {} needs", number.name)));
         }
-        let Some(kind) = Kind::of(accessor.component_type) else {
-            return Err(wrong(
-                name,
-                format!("componentType {} is none of glTF 2.0", accessor.component_type),
-            ));
+        let number = accessor.needed("componentType")?;
+        let Some(kind) = Kind::of(number) else {
+            return Err(accessor.wrong(&format!("componentType {number} is none of glTF 2.0")));
         };
-        let (None, Some(view)) = (&accessor.sparse, accessor.buffer_view) else {
-            return Err(wrong(name, "sparse accessors are not read; export it without"));
+        let (None, Some(view)) = (accessor.get("sparse"), accessor.get("bufferView")) else {
+            return Err(accessor.wrong("sparse accessors are not read; export the file without"));
         };
-        let view = element(buffer_views, "bufferViews", view, &name)?;
-        let buffer = element(buffers, "buffers", view.buffer, &name)?;
-        if view.buffer != 0 || buffer.uri.is_some() {
-            let message = "its numbers are in another file; export the mesh as one .glb file";
-            return Err(wrong(format!("buffers[{}]", view.buffer), message));
+        let view = view.named(self, "bufferViews")?;
+        let number = view.needed("buffer")?;
+        let buffer = self.element("buffers", number, &view.name)?;
+        if number != 0 || buffer.get("uri").is_some() {
+            return Err(buffer.wrong("its numbers are in another file; export the mesh as one .glb file"));
         }
         let size = components * kind.bytes();
-        let (stride, count) = (view.byte_stride.unwrap_or(size).max(size), accessor.count);
+        let stride = view.whole_at("byteStride")?.unwrap_or(size).max(size);
+        let count = accessor.needed("count")?;
         let rows = count.checked_sub(1).map_or(Some(0), |steps| steps.checked_mul(stride)?.checked_add(size));
-        let lies_within = |bytes: &'a [u8], from: usize, length: usize| bytes.get(from..)?.get(..length);
-        let bytes = lies_within(self.binary, view.byte_offset, view.byte_length)
-            .zip(rows)
-            .and_then(|(bytes, rows)| lies_within(bytes, accessor.byte_offset, rows));
-        let Some(bytes) = bytes else {
-            let message = format!("its {count} rows do not fit into the buffer; export the file again");
-            return Err(wrong(name, message));
+        let lies_within = |bytes: &'a [u8], from: Option<usize>, length: usize| {
+            bytes.get(from.unwrap_or(0)..)?.get(..length)
         };
-        Ok(Rows { bytes, stride, count, kind, normalized: accessor.normalized })
+        let bytes = lies_within(self.binary, view.whole_at("byteOffset")?, view.needed("byteLength")?);
+        let from = accessor.whole_at("byteOffset")?;
+        let Some(bytes) = bytes.zip(rows).and_then(|(bytes, rows)| lies_within(bytes, from, rows)) else {
+            let message = format!("its {count} rows do not fit into the buffer; export the file again");
+            return Err(accessor.wrong(&message));
+        };
+        let normalized = accessor.get("normalized").is_some_and(|is| is.value.get() == Some(&true));
+        Ok(Rows { bytes, stride, count, kind, normalized })
     }
 
     /// The meshes of the scene with their transforms.
-    fn placed(&self) -> Result<Vec<(usize, DMat4)>, ReadError> {
-        let Document { scene, scenes, nodes, meshes, .. } = &self.document;
+    fn placed(&self) -> Result<Vec<(Member<'_>, DMat4)>, ReadError> {
+        let (nodes, root) = (self.root().list("nodes")?, self.root());
         // A library of meshes has no nodes.
         if nodes.is_empty() {
-            return Ok((0..meshes.len()).map(|mesh| (mesh, DMat4::IDENTITY)).collect());
+            let meshes = 0..root.list("meshes")?.len();
+            return meshes.map(|mesh| Ok((self.element("meshes", mesh, "")?, DMat4::IDENTITY))).collect();
         }
-        let mut stack: Vec<(usize, DMat4)> = if let Some(scene) = scenes.get(scene.unwrap_or(0)) {
-            scene.nodes.iter().map(|&node| (node, DMat4::IDENTITY)).collect()
-        } else {
-            let mut is_child = vec![false; nodes.len()];
-            nodes.iter().flat_map(|node| &node.children).for_each(|&child| {
-                if let Some(is_child) = is_child.get_mut(child) {
-                    *is_child = true;
-                }
-            });
-            (0..nodes.len()).filter(|&node| !is_child[node]).map(|node| (node, DMat4::IDENTITY)).collect()
+        let numbers = |member: &Member, key: &str| -> Result<Vec<usize>, ReadError> {
+            let name = format!("{}.{key}", member.name);
+            let numbers = member.list(key)?.iter();
+            numbers.map(|value| Member { value, name: name.clone() }.whole()).collect()
         };
-        stack.reverse();
+        let roots = if root.list("scenes")?.is_empty() {
+            let mut is_child = vec![false; nodes.len()];
+            for node in 0..nodes.len() {
+                for child in numbers(&self.element("nodes", node, "")?, "children")? {
+                    if let Some(is_child) = is_child.get_mut(child) {
+                        *is_child = true;
+                    }
+                }
+            }
+            (0..nodes.len()).filter(|&node| !is_child[node]).collect()
+        } else {
+            let scene = root.whole_at("scene")?.unwrap_or(0);
+            numbers(&self.element("scenes", scene, "scene")?, "nodes")?
+        };
+        let mut stack: Vec<(usize, DMat4)> =
+            roots.iter().rev().map(|&node| (node, DMat4::IDENTITY)).collect();
         let (mut placed, mut is_seen) = (Vec::new(), vec![false; nodes.len()]);
         while let Some((index, outer)) = stack.pop() {
-            let name = format!("nodes[{index}]");
-            let node = element(nodes, "nodes", index, "a scene or a node")?;
+            let node = self.element("nodes", index, "a scene or a node")?;
             if core::mem::replace(&mut is_seen[index], true) {
-                return Err(wrong(name, "two nodes, or itself, have it as a child; export the file again"));
+                return Err(node.wrong("two nodes, or itself, have it as a child; export the file again"));
             }
-            let transform = outer * node.transform();
-            if let Some(mesh) = node.mesh {
-                element(meshes, "meshes", mesh, &name)?;
-                placed.push((mesh, transform));
+            let transform = outer * node.transform()?;
+            if let Some(mesh) = node.get("mesh") {
+                placed.push((mesh.named(self, "meshes")?, transform));
             }
-            stack.extend(node.children.iter().rev().map(|&child| (child, transform)));
+            stack.extend(numbers(&node, "children")?.into_iter().rev().map(|child| (child, transform)));
         }
         Ok(placed)
     }
@@ -326,22 +347,23 @@ impl<'a> Glb<'a> {
 /// Reads the points and triangles of the scene.
 pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(), ReadError> {
     let glb = Glb::open(input.rest())?;
-    let placed = glb.placed()?;
-    // Normals count if every primitive has them.
-    let mut primitives = placed.iter().flat_map(|&(index, _)| &glb.document.meshes[index].primitives);
-    let has_normals = primitives.all(|primitive| primitive.attributes.normal.is_some());
+    let mut parts = Vec::new();
     let mut left_out = 0;
-    for (index, transform) in placed {
-        for (k, primitive) in glb.document.meshes[index].primitives.iter().enumerate() {
-            let mode = primitive.mode.unwrap_or(TRIANGLES);
-            if !matches!(mode, POINTS | TRIANGLES | TRIANGLE_STRIP | TRIANGLE_FAN) {
+    for (of_mesh, transform) in glb.placed()? {
+        for (k, value) in of_mesh.list("primitives")?.iter().enumerate() {
+            let primitive = Member { value, name: format!("{}.primitives[{k}]", of_mesh.name) };
+            let mode = primitive.whole_at("mode")?.unwrap_or(TRIANGLES);
+            if matches!(mode, POINTS | TRIANGLES | TRIANGLE_STRIP | TRIANGLE_FAN) {
+                parts.push(Part { glb: &glb, primitive, transform, mode });
+            } else {
                 left_out += 1;
-                continue;
             }
-            let name = format!("meshes[{index}].primitives[{k}]");
-            let part = Part { glb: &glb, primitive, name: &name, transform, mode };
-            part.read(input, mesh, has_normals).await?;
         }
+    }
+    // Normals count if every part has them.
+    let has_normals = parts.iter().all(|part| part.attribute("NORMAL").is_some());
+    for part in parts {
+        part.read(input, mesh, has_normals).await?;
     }
     if left_out > 0 {
         mesh.warnings.push(format!("{left_out} parts of the file that are lines were left out."));
@@ -352,30 +374,32 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
 /// A primitive in its place.
 struct Part<'a> {
     glb: &'a Glb<'a>,
-    primitive: &'a Primitive,
-    name: &'a str,
+    primitive: Member<'a>,
     transform: DMat4,
-    mode: u32,
+    mode: usize,
 }
 
 impl Part<'_> {
+    fn attribute(&self, name: &str) -> Option<Member<'_>> {
+        self.primitive.get("attributes")?.get(name)
+    }
+
     async fn read(
         &self,
         input: &mut Input<'_>,
         mesh: &mut FileMesh,
         has_normals: bool,
     ) -> Result<(), ReadError> {
-        let Self { glb, primitive, name, transform, mode } = *self;
-        let Some(position) = primitive.attributes.position else {
-            return Err(wrong(name, "it has no positions; export the file again"));
+        let Self { glb, primitive, transform, mode } = self;
+        let Some(position) = self.attribute("POSITION") else {
+            return Err(primitive.wrong("it has no positions; export the file again"));
         };
-        let positions = glb.rows(position, 3, name)?;
-        let normals = match primitive.attributes.normal.filter(|_| has_normals) {
-            Some(normal) => Some(glb.rows(normal, 3, name)?),
-            None => None,
-        };
+        let positions = glb.rows(&position, 3)?;
+        let normal = self.attribute("NORMAL").filter(|_| has_normals);
+        let normals = normal.map(|normal| glb.rows(&normal, 3)).transpose()?;
         if normals.as_ref().is_some_and(|normals| normals.count != positions.count) {
-            return Err(wrong(name, "it has another number of normals than of positions; export it again"));
+            let message = "it has another number of normals than of positions; export the file again";
+            return Err(primitive.wrong(message));
         }
         let first = u32::try_from(mesh.position.len()).map_err(|_| ReadError::Memory)?;
         // A surface that is turned inside out by a reflection has its corners the other way round.
@@ -391,29 +415,25 @@ impl Part<'_> {
             mesh.add_point(numbers, has_normals)?;
             input.end_row().await;
         }
-        if mode == POINTS {
+        if *mode == POINTS {
             return Ok(());
         }
-        let indices = match primitive.indices {
-            Some(indices) => Some(glb.rows(indices, 1, name)?),
-            None => None,
-        };
+        let indices = primitive.get("indices").map(|indices| glb.rows(&indices, 1)).transpose()?;
         let count = indices.as_ref().map_or(positions.count, |indices| indices.count);
         let corner = |k: usize| {
             let corner = indices.as_ref().map_or(k as f64, |indices| indices.number(k, 0));
             let is_there = corner >= 0.0 && corner < positions.count as f64;
             let message = || format!("index {k} is {corner}, and there are {} positions", positions.count);
-            is_there.then_some(first + corner as u32).ok_or_else(|| wrong(name, message()))
+            is_there.then_some(first + corner as u32).ok_or_else(|| primitive.wrong(&message()))
         };
-        let triangles = if mode == TRIANGLES { count / 3 } else { count.saturating_sub(2) };
+        let triangles = if *mode == TRIANGLES { count / 3 } else { count.saturating_sub(2) };
         for f in 0..triangles {
-            let corners = match mode {
+            let [a, b, c] = match *mode {
                 TRIANGLES => [3 * f, 3 * f + 1, 3 * f + 2],
                 // Every other triangle of a strip turns the other way.
                 TRIANGLE_STRIP => [f, f + 1 + f % 2, f + 2 - f % 2],
                 _ => [f + 1, f + 2, 0],
             };
-            let [a, b, c] = corners;
             let (a, b, c) = (corner(a)?, corner(b)?, corner(c)?);
             mesh.add_polygon(&if is_reflected { [a, c, b] } else { [a, b, c] })?;
             input.end_row().await;
