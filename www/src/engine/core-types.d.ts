@@ -112,7 +112,7 @@ export type Description = {
 
 /** Excess of the expected particles of a run over the limit. */
 export type Excess = {
-  /** Particles to expect. */
+  /** Expected number of particles. */
   expected: number,
   /** Largest number of particles that a run may have. */
   limit: number,
@@ -402,17 +402,17 @@ export type GivenTopology = {
   borders: number,
 };
 
-/** What has become of a surface that is to pass through points. */
+/** The result of making a surface pass through points. */
 export type Grip = {
-  /** Whether the surface passes through all points. Otherwise it has come as near as the ranges
-  * of the parameters allow. */
+  /** Whether the surface passes through all points. If not, it is as near as the ranges of the
+  * parameters allow. */
   holds: boolean,
-  /** For each point, one of the surface that is nearest to it, found down the gradient; the point
-  * itself if none is found. */
+  /** For each point, a nearby point of the surface, found down the gradient; the point itself if
+  * none is found. */
   places: Array<[number, number, number]>,
   /** The parameters that have changed, with their values. */
   changed: { [key in string]: number },
-  /** Names of the parameters that all but do not move the surface at the points. */
+  /** Names of the parameters that hardly move the surface at the points. */
   idle: Array<string>,
 };
 
@@ -965,7 +965,7 @@ export type Measures = {
   places: Places,
 };
 
-/** A formula in which every mistake of a kind is corrected. */
+/** A formula with every mistake of one kind corrected. */
 export type Mended = {
   /** The whole formula. */
   text: string,
@@ -1224,7 +1224,7 @@ export type Progress = {
   * derivative by differences ([`FnField`](crate::FnField)), and for the box, the set-up and the
   * proof, which are not counted. */
   evaluations: number,
-  /** Estimated share of the work done. It does not go back before more is asked for. */
+  /** Estimated share of the work done. It never decreases until more work is requested. */
   fraction: number,
   /** Set once the run has ended. */
   stop_reason: StopReason | null,
@@ -1233,7 +1233,7 @@ export type Progress = {
   message: string | null,
   /** Repulsion radius. */
   radius: number,
-  /** Whether particles that were there before this step have moved or gone. */
+  /** Whether particles that existed before this step have moved or been removed. */
   moved: boolean,
 };
 
