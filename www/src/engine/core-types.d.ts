@@ -112,7 +112,7 @@ export type Description = {
 
 /** Excess of the expected particles of a run over the limit. */
 export type Excess = {
-  /** Expected number of particles. */
+  /** Particles to expect. */
   expected: number,
   /** Largest number of particles that a run may have. */
   limit: number,
