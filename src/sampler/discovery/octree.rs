@@ -9,7 +9,7 @@
 //! direction on the surface goes up from it: ∂f/∂x = ∂f/∂y = 0. Where it lies inside a face x =
 //! const., q is the highest point of K in the face, and ∂f/∂y = 0; inside a face y = const.,
 //! ∂f/∂x = 0; and inside a face z = const. it is the point of the largest y there, and ∂f/∂x = 0.
-//! On an edge of the box nothing is asked. (Computing one point in every component from the
+//! On an edge of the box there is no condition. (Computing one point in every component from the
 //! critical points of a coordinate: F. Rouillier, M.-F. Roy, M. Safey El Din, "Finding at least one
 //! point in each connected component of a real algebraic set defined by a single equation", J.
 //! Complexity 16, 2000.) In each of these 1 + 6 + 12 *strata* of the box one coordinate is *up*,
@@ -51,10 +51,10 @@
 //! # What is proven
 //!
 //! If no cell is left undecided, every connected component of the surface in the box holds a
-//! witness; without a witness there is no surface. The box is enlarged by [`MARGIN`] for it, so
-//! that a surface that touches its box from inside is inside. At kinks the bounds hold the
-//! generalised gradient, for which both arguments are the same. Where f jumps, has a pole or is not
-//! defined the surface may end, and nothing is concluded from slopes.
+//! witness; without a witness there is no surface. For this the box is enlarged by [`MARGIN`], so
+//! that a surface that touches it from inside is inside. At kinks the bounds hold the generalised
+//! gradient, for which both arguments are the same. Where f jumps, has a pole or is not defined the
+//! surface may end, and nothing is concluded from slopes.
 
 use crate::field::{Bounded, Enclosure, MARGIN};
 use crate::math::{Bounds, sort_by_key};

@@ -31,7 +31,7 @@ export type Bounds = {
 
 /** A value of a setting that is a choice. */
 export type Choice = {
-  /** Value, as it stands in JSON. */
+  /** Value, as written in JSON. */
   value: string,
   /** Name for a person. */
   label: string,
@@ -112,11 +112,11 @@ export type Description = {
 
 /** Excess of the expected particles of a run over the limit. */
 export type Excess = {
-  /** Particles to expect. */
+  /** Expected number of particles. */
   expected: number,
   /** Largest number of particles that a run may have. */
   limit: number,
-  /** Factor by which all radii have to be multiplied to stay within the limit. */
+  /** Factor on all radii that keeps the run within the limit. */
   factor: number,
 };
 
@@ -157,11 +157,11 @@ export type Fault = {
   start: number,
   /** End of the mistake in the formula, in UTF-16 code units. */
   end: number,
-  /** Text that would mend the span, if there is a good guess. */
+  /** Text that would correct the span, if there is a good guess. */
   suggestion: string | null,
   /** Texts for the span, each with another meaning, where the formula has several readings. */
   choices: Array<string>,
-  /** The formula with every mistake of this kind mended, if there are several. */
+  /** The formula with every mistake of this kind corrected, if there are several. */
   mended: Mended | null,
   /** The unknown name, which could become a slider. */
   name: string | null,
@@ -188,18 +188,17 @@ export type FieldAnswer = {
   parameters: Array<Parameter>,
   /** Parameters that were not declared but found in the formula. */
   auto: Array<string>,
-  /** Clip box, whose faces close the solid where they are to; before [`Session::fit`] or a start
-  * it may be that of the formula before. */
+  /** Clip box; its faces close the solid if that is chosen. Before [`Session::fit`] or a start it
+  * may still be the previous formula's box. */
   bounds: Bounds,
-  /** Whether the surface, closed by no box, is bounded, if the box was fitted to it. */
+  /** Whether the surface, before a box closes it, is bounded, if the box was fitted to it. */
   reach: Reach | null,
-  /** Period of the surface along each axis: 0 if it does not change along it, none if it is not
-  * known to be periodic. */
+  /** Period of the surface along each axis: 0 if it does not change along it, none if no period
+  * is known. */
   periods: [number | null, number | null, number | null],
   /** The formula as MathML; none if there is no formula. */
   mathml: MathNode | null,
-  /** What has become of the surface that was to pass through the pins of the request; none
-  * without pins. */
+  /** Whether the surface passes through the pins of the request, and how; none without pins. */
   grip: Grip | null,
 };
 
@@ -207,15 +206,15 @@ export type FieldAnswer = {
 export type FieldRequest = {
   /** Identifier of a gallery surface to start from; without one, the present field is changed. */
   surface: string | null,
-  /** Text of the formula, in the place of the surface's. */
+  /** Text of the formula, which replaces the surface's own. */
   formula: string | null,
   /** Values of parameters by name. */
   parameters: { [key in string]: number },
   /** Parameters that the formula's unknown names become. */
   declare: Array<Parameter>,
-  /** Clip box. Without one it is that of the surface, or fitted (see [`Session::fit`]). */
+  /** Clip box. Without one the surface's own is used, or one is fitted (see [`Session::fit`]). */
   bounds: Bounds | null,
-  /** Points that the surface is to pass through: the parameters change for it
+  /** Points that the surface should pass through; this changes parameters
   * ([`Formula::pass_through`]). */
   pins: Array<[number, number, number]>,
   /** Pulls on the surface of a model from points, one after the other. */
@@ -323,28 +322,28 @@ export type Figures = {
   angles_above_90: number,
 };
 
-/** The record of a file, from which the same particles can be made again. Files carry it as JSON
+/** The record in a file, from which the same particles can be made again. Files store it as JSON
 * ([`export::RecordText`]). */
 export type FileRecord = {
   /** Version of the program. */
   version: string,
   /** Digest of the particles, 16 hexadecimal digits. */
   digest: string,
-  /** Link to the page in this state, where the page has made the file. */
+  /** Link to the page in this state, if the page made the file. */
   link: string | null,
   /** Gallery surface whose formula it is. */
   surface: string | null,
-  /** Model from points, in place of a formula. */
+  /** Model from points, instead of a formula. */
   model: string | null,
   /** Pulls on the surface of the model. */
   pulls: Array<Pull>,
-  /** Text of the formula; empty for a model by itself. */
+  /** Text of the formula; empty for a model alone. */
   formula: string,
   /** Values of its parameters. */
   parameters: { [key in string]: number },
   /** Box of the run. */
   bounds: Bounds,
-  /** Box whose faces close the solid, where they do. */
+  /** Box whose faces close the solid, if they do. */
   faces: Bounds | null,
   /** Settings of the solid that is made of the surface before it is sampled. */
   solid: Record<string, number | string>,
@@ -439,7 +438,7 @@ export type Hole = {
   ratio: number,
 };
 
-/** What is known of an image before its surface is chosen. */
+/** Facts about an image, before its surface is chosen. */
 export type ImageFacts = {
   /** Voxels along each axis. */
   size: [number, number, number],
@@ -456,11 +455,11 @@ export type ImageFacts = {
   /** Its labels with their numbers of voxels, the background 0 included, if its values look like
   * labels: up to 256 whole numbers. */
   labels: Array<LabelFacts>,
-  /** What the reader has decided, in sentences. */
+  /** Decisions of the reader, in sentences. */
   notes: Array<string>,
 };
 
-/** The image whose surface is sampled, and what was chosen of it. */
+/** The image whose surface is sampled, and the choices for it. */
 export type ImageInfo = {
   /** Name of the file or the array. */
   name: string,
@@ -468,29 +467,29 @@ export type ImageInfo = {
   size: [number, number, number],
   /** Smallest and largest voxel. */
   range: [number, number],
-  /** The label whose boundary is sampled, in place of an iso value. */
+  /** The label whose boundary is sampled instead of an iso value. */
   label: number | null,
-  /** The value on the surface; of a label, that of the distance from it. */
+  /** The value on the surface; for a label, the value of the distance from it. */
   iso: number,
   /** Width of the Gaussian in voxels, 0 for none. */
   smooth: number,
-  /** Whether the width was chosen for the image, and not by the user. */
+  /** Whether the width was chosen automatically, not by the user. */
   is_smooth_chosen: boolean,
   /** Standard deviation of the noise, in the values of the voxels. */
   noise: number,
   /** Whether darker voxels are inside. */
   is_dark_inside: boolean,
-  /** What was decided, in sentences. */
+  /** Decisions that were made, in sentences. */
   notes: Array<string>,
 };
 
-/** What the header of a file promises. */
+/** What the header of a file announces. */
 export type ImagePromise = {
-  /** Voxels along each axis; none if only the whole file tells. */
+  /** Voxels along each axis; none if that takes the whole file. */
   size: [number, number, number] | null,
-  /** Type of the voxels, such as `int16`; empty if only the whole file tells. */
+  /** Type of the voxels, such as `int16`; empty if that takes the whole file. */
   voxel_type: string,
-  /** Bytes of memory that reading and filtering take; 0 if only the whole file tells. */
+  /** Bytes of memory for reading and filtering; 0 if that takes the whole file. */
   memory: number,
 };
 
@@ -1040,27 +1039,27 @@ export type MeshDistances = {
   largest: number,
 };
 
-/** The triangle mesh that is sampled anew, and what was made of it. */
+/** The triangle mesh that is sampled, and what was made of it. */
 export type MeshInfo = {
   /** Name of the file or the array. */
   name: string,
-  /** Number of vertices, as it was mended. */
+  /** Number of vertices after the repairs. */
   vertices: number,
-  /** Number of faces, as it was mended. */
+  /** Number of faces after the repairs. */
   faces: number,
-  /** Number of pieces that are not joined by edges of two faces. */
+  /** Number of pieces that are not connected by edges of two faces. */
   pieces: number,
-  /** Number of edges with one face, those of holes. */
+  /** Number of edges of holes, which have one face. */
   border_edges: number,
   /** Number of edges with more than two faces. */
   fan_edges: number,
-  /** What was mended, in words. */
+  /** The repairs, in words. */
   mended: Array<string>,
-  /** What the reader has left out, in sentences. */
+  /** What the reader left out, in sentences. */
   notes: Array<string>,
-  /** The smooth patches, if it was taken for a part with sharp edges. */
+  /** The smooth patches, if it counts as a part with sharp edges. */
   part: MeshPart | null,
-  /** The grid, if it was taken for a scan. */
+  /** The grid, if it counts as a scan. */
   scan: MeshScan | null,
 };
 
@@ -1347,8 +1346,8 @@ export type ReportRow = {
   key: string,
   /** Path of the upper end, if the row is a range that begins at `key`. */
   to: string | null,
-  /** Path of the figure that replaces this one where the report has it: a figure that is relative
-  * to the lattice of one size does not apply to particles of many sizes. */
+  /** Path of the figure that replaces this one if the report has it: a figure that is relative to
+  * the lattice of one size does not apply to particles of many sizes. */
   unless: string | null,
   /** Name for a person. */
   label: string,
@@ -1360,7 +1359,7 @@ export type ReportRow = {
   digits: number,
   /** The ideal value, in words. */
   ideal: string,
-  /** Direction in which the figure gets better. */
+  /** Whether lower or higher is better. */
   better: string | null,
   /** Definition and meaning. */
   help: string,
@@ -1371,17 +1370,16 @@ export type ReportRow = {
 /** The witnessed components that hold particles, and those that do not. */
 export type Sampled = {
   /** Every witnessed component that reaches farther than this from its witness holds particles; 0
-  * if all do. None where this is not proven. */
+  * if all do. None if this is not proven. */
   above: number | null,
-  /** Number of witnessed components without a particle; none where there was no search for
-  * witnesses. A component counts twice if two of its witnesses could not be proven to be
-  * connected. */
+  /** Number of witnessed components without a particle; none without a search for witnesses. A
+  * component counts twice if two of its witnesses could not be proven to be connected. */
   missing: number | null,
   /** A witness of each component without a particle: at most 256. */
   without: Array<Unsampled>,
 };
 
-/** Method by which the first points of the connected components were found. */
+/** How the first points of the connected components were found. */
 export type Search = "proven" | "searched";
 
 /** A setting of a run. */
@@ -1410,7 +1408,8 @@ export type Setting = {
   unit: string,
   /** Values of a choice. */
   choices: Array<Choice>,
-  /** The setting has an effect, and is shown, while all of these hold; always if there is none. */
+  /** The setting has an effect, and is shown, while all of these hold; always if the list is
+  * empty. */
   when: Array<Condition>,
 };
 
@@ -1441,14 +1440,14 @@ export type SolvedModel = {
   bounds: Bounds,
 };
 
-/** A spacing by a formula, as it is written: see [`Spacing`]. A record has it beside the settings. */
+/** A spacing by a formula, as text: see [`Spacing`]. A record stores it next to the settings. */
 export type SpacingText = {
   /** Distance between neighbours, in x, y, z and the parameters of the formula whose surface is
   * sampled, such as `0.02 + 0.1 hypot(x, y)`. */
   formula: string,
-  /** Smallest distance, which is taken where the formula is below it. */
+  /** Smallest distance, used wherever the formula is below it. */
   smallest?: number,
-  /** Largest distance, which is taken where the formula is above it. */
+  /** Largest distance, used wherever the formula is above it. */
   largest?: number,
 };
 
@@ -1504,7 +1503,7 @@ export type Unsampled = {
   position: [number, number, number],
   /** Largest distance from the witness at which a point of the component was found. */
   reach: number,
-  /** Whether the component was explored no further than that, so that it may be larger. */
+  /** Whether the exploration stopped there, so that the component may be larger. */
   goes_on: boolean,
 };
 
