@@ -16,7 +16,7 @@ const RELAXATION_STEP_COST: f64 = 0.125;
 pub struct Forecast {
     /// Repulsion radius of the run.
     pub radius: f64,
-    /// Number of particles to expect.
+    /// Expected number of particles.
     pub predicted_count: u64,
     /// Estimated area of the surface in the box.
     pub area: f64,

@@ -952,9 +952,9 @@ export type Measured = "nothing" | "particles" | "front_too";
 
 /** Figures of quality of a run. */
 export type Measures = {
-  /** Quality of the present particles; none if there are none, or where they were not measured. */
+  /** Quality of the present particles; none without particles, or if they were not measured. */
   quality: Figures | null,
-  /** Quality of the particles after the front, before the relaxation; none where nothing was
+  /** Quality of the particles after the front, before the relaxation; none if nothing was
   * relaxed, or the front was not measured. */
   quality_before: Figures | null,
   /** Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of
@@ -978,12 +978,11 @@ export type MeshAnswer = {
   triangles: number,
   /** Connected components, in the order of their first particles. */
   components: Array<MeshComponent>,
-  /** Number of border loops where no manifold could be had, other than those where the surface
-  * ends. */
+  /** Number of border loops where no manifold was possible, not counting ends of the surface. */
   unfilled: number,
   /** Number of particles in no triangle. */
   left_out: number,
-  /** [Volume](Triangulation::volume) that the mesh encloses; none where it is open. */
+  /** [Volume](Triangulation::volume) that the mesh encloses; none if it is open. */
   volume: number | null,
   /** Sign of f inside of the closed parts; none if there is no closed part. All face outward in
   * files. */
@@ -991,12 +990,12 @@ export type MeshAnswer = {
   /** [Smallest angle](Triangulation::smallest_angle) of any triangle, in degrees; none without
   * triangles. */
   smallest_angle: number | null,
-  /** Border loops: rows of particles in order. Those where no manifold could be had come first,
+  /** Border loops: rows of particles in order. Those where no manifold was possible come first,
   * then the longest. */
   loops: Array<Array<number>>,
   /** The bodies, the largest first. */
   bodies: Array<Body>,
-  /** The triangles of those that are loose chips, in ascending order. */
+  /** The triangles of the bodies that are loose chips, in ascending order. */
   chips: Array<number>,
 };
 
@@ -1025,7 +1024,7 @@ export type MeshComponent = {
   euler: number,
   /** Number of edges with one triangle. */
   open_edges: number,
-  /** Place of its body among those of the mesh. */
+  /** Index of its body among the bodies of the mesh. */
   body: number,
 };
 
@@ -1255,21 +1254,21 @@ export type Reach = "bounded" | "endless" | "nowhere" | "unknown";
 export type Report = {
   /** Number of particles. */
   count: number,
-  /** Volume that the mesh encloses to which [`Run::join`] has joined the particles; none where it
-  * is open, or they were not joined. */
+  /** Volume enclosed by the mesh to which [`Run::join`] has joined the particles; none if it is
+  * open, or the particles were not joined. */
   volume: number | null,
   /** Sign of f inside of the closed parts of the surface, by that mesh if the particles were
-  * joined, else by the triangles of natural neighbours; none where no part is closed, or
-  * nothing was measured. */
+  * joined, else by the triangles of natural neighbours; none if no part is closed, or nothing
+  * was measured. */
   inside: Inside | null,
-  /** Smallest angle of the triangles of that mesh in degrees, those at its border among them;
-  * none where the particles were not joined. */
+  /** Smallest angle of the triangles of that mesh in degrees, including its border; none if the
+  * particles were not joined. */
   smallest_angle: number | null,
-  /** Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none where no
-  * faces are the same. */
+  /** Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none if no
+  * opposite faces agree. */
   pairs: number | null,
-  /** Particles with a child that fell outside of the box; of those that have followed a moving
-  * surface, with place for one there. */
+  /** Particles with a child that fell outside of the box; for particles that have followed a
+  * moving surface, with room for a child there. */
   border: number,
   /** Why particles lie at the border of the box. */
   cut: Cut | null,
@@ -1279,8 +1278,8 @@ export type Report = {
   warnings: Array<Warning>,
   /** Digest of the particles, 16 hexadecimal digits. */
   digest: string,
-  /** Repulsion radius of the run; with adaptive sampling the one at which as many particles of
-  * equal radius would cover the surface. */
+  /** Repulsion radius of the run; with adaptive sampling, the radius at which as many particles
+  * of equal size would cover the surface. */
   radius: number,
   /** Repulsion radius of the smallest particle; 0 without particles. */
   radius_min: number,
@@ -1290,7 +1289,7 @@ export type Report = {
   levels: number,
   /** Particles per generation level. */
   level_counts: Array<number>,
-  /** Fronts started: each from a seed of its own, or from creases that hang together. */
+  /** Fronts started: each from a seed of its own, or from connected creases. */
   components_seeded: number,
   /** Particles placed in gaps between fronts. */
   gaps_filled: number,
@@ -1301,36 +1300,36 @@ export type Report = {
   evaluations: number,
   /** Field evaluations of the front per particle. */
   evaluations_per_particle: number,
-  /** Times that a coarse front was refined; none where it was not, or the front stands. */
+  /** Number of refinements of a coarse front; none if it was not refined, or the front was kept. */
   refined_levels: number | null,
-  /** Energy per particle before the first relaxation step and after each; none where nothing was
+  /** Energy per particle before the first relaxation step and after each; none if nothing was
   * relaxed. */
   energy: Array<number> | null,
-  /** Number of components at this radius: those of the graph of natural neighbours of the
-  * particles. 0, and null in JSON, without particles or where they were not measured. */
+  /** Number of components at this radius, in the graph of natural neighbours of the particles. 0,
+  * and null in JSON, without particles or if they were not measured. */
   components: number | null,
-  /** Whether it is proven that there is a witness on every component of the surface, and of each
-  * witness that it is on the component of a particle or named in `sampled`. */
+  /** Whether it is proven that every component of the surface has a witness, and that every
+  * witness is on the component of a particle or named in `sampled`. */
   search: Search,
   /** The witnessed components that hold particles, and those that do not. */
   sampled: Sampled,
-  /** Cells of the box in which the proof could not decide, and witnesses of which it could not;
-  * none where no proof was attempted. */
+  /** Cells of the box and witnesses that the proof left undecided; none if no proof was
+  * attempted. */
   undecided_cells: number | null,
-  /** Places where f has no gradient on the surface, a curve of them counted as one; none where
-  * they were not looked for. */
+  /** Places where f has no gradient on the surface, a curve of them counted as one; none if they
+  * were not searched for. */
   singular_points: number | null,
   /** Curves of particles along which the surface has an edge, from corner to corner or closed;
-  * none where it has no edges. */
+  * none if it has no edges. */
   creases: number | null,
-  /** Particles at which creases meet or end; none where the surface has no edges. */
+  /** Particles at which creases meet or end; none if the surface has no edges. */
   corners: number | null,
-  /** Curves of particles along which patches of the surface meet without an edge; none where they
-  * meet nowhere so. */
+  /** Curves of particles along which patches of the surface meet without an edge; none if there
+  * are none. */
   seams: number | null,
-  /** Quality of the present particles; none if there are none, or where they were not measured. */
+  /** Quality of the present particles; none without particles, or if they were not measured. */
   quality: Figures | null,
-  /** Quality of the particles after the front, before the relaxation; none where nothing was
+  /** Quality of the particles after the front, before the relaxation; none if nothing was
   * relaxed, or the front was not measured. */
   quality_before: Figures | null,
   /** Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of
@@ -1455,7 +1454,7 @@ export type SpacingText = {
 export type Start = {
   /** Repulsion radius of the run, in the units of the field's coordinates. */
   radius: number,
-  /** Number of particles to expect. */
+  /** Expected number of particles. */
   predicted_count: number,
   /** Estimated area of the surface in the box. */
   area: number,
@@ -1528,7 +1527,7 @@ export type VerticesChoice = {
 
 /** A warning, as reports in JSON have it. */
 export type Warning = {
-  /** A name by which a program tells warnings apart. */
+  /** A name by which a program identifies the warning. */
   code: string,
   /** The severity says what the warning means for the result. */
   severity: Severity,

@@ -19,8 +19,8 @@ const BEYOND: f64 = 3.0;
 /// Twice the area of a triangle that is flat for certain, as a share of the spacing squared. With 0
 /// some surfaces are refined fewer times.
 const FLAT: f32 = 0.05;
-/// Where the front cannot grow beyond the box it ends before it, by no more than this share of the
-/// spacing. Smaller: fewer fields that end at the box are refined.
+/// A front that cannot grow beyond the box ends at most this share of the spacing before it.
+/// Smaller: fewer fields that end at the box are refined.
 const OPEN_END: f32 = 1.3;
 
 /// The box in which a coarse front of particles with this radius grows.
