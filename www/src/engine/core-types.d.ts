@@ -382,7 +382,7 @@ export type FunctionInfo = {
   help: string,
 };
 
-/** The mesh of a file, as it is. */
+/** The mesh of a file, without repairs. */
 export type GivenMesh = {
   /** Area of all faces, in the units of the file. */
   area: number,
@@ -397,7 +397,7 @@ export type GivenTopology = {
   components: number,
   /** Euler number: vertices − edges + faces. */
   euler: number,
-  /** Number of border loops, where the mesh is open. */
+  /** Number of border loops, if the mesh is open. */
   borders: number,
 };
 
@@ -1115,16 +1115,16 @@ export type ModelInfo = {
   * their distance from the surface to first order (G. Taubin, "Estimation of Planar Curves,
   * Surfaces, and Nonplanar Space Curves Defined by Implicit Equations", 1991). */
   residual_mean: number,
-  /** Residual that 95 % of them do not exceed, as a share of that diagonal. */
+  /** Residual that 95 % of the points do not exceed, as a share of that diagonal. */
   residual_95: number,
   /** Maximum residual, as a share of that diagonal. */
   residual_max: number,
-  /** Position of the point with that residual. */
+  /** Position of the point with the maximum residual. */
   farthest: [number, number, number],
   /** The mesh of the file, if it has faces. */
   mesh: GivenMesh | null,
   /** Share of the area of the fitted surface in its box that lies beyond the border of the
-  * points; 0 where there is no border. */
+  * points; 0 without a border. */
   beyond_share: number,
   /** Origin of the normals. */
   normals: NormalSource,
@@ -1239,10 +1239,10 @@ export type Progress = {
 export type Pull = {
   /** The place that is pulled, on the surface as the pulls before have left it. */
   at: [number, number, number],
-  /** The vector by which it is pulled. */
+  /** The vector of the pull. */
   by: [number, number, number],
-  /** Distance from where the place comes to, from which on nothing moves. It is at least twice
-  * the length of `by`. */
+  /** Distance from the pulled place's destination beyond which nothing moves. It is at least
+  * twice the length of `by`. */
   reach: number,
 };
 
