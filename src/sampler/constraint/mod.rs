@@ -139,8 +139,8 @@ pub struct Creases {
     /// A place on a curve that is not traced, since sheets cross there and no patch ends: three
     /// planes through one line, say.
     pub(super) passed: Option<DVec3>,
-    /// A place where branches vanish together and f vanishes only on a curve or at a point, as |x|
-    /// + |y| does.
+    /// A place where branches vanish together and f vanishes only on a curve or at a point, as
+    /// |x| + |y| does.
     pub(super) bare: Option<DVec3>,
     /// Whether there may be a crease where none was found.
     pub(super) is_open: bool,
