@@ -4,7 +4,7 @@
 /** What a command is answered: the fields of the value, or the error. */
 export type Answer<T, E> = ({ ok: true } & T) | { ok: false; error: E };
 
-/** The bodies of a mesh that a file holds. */
+/** Which bodies of a mesh a file holds. */
 export type Bodies = "all" | "without_chips" | "largest";
 
 /** A body of a mesh: a closed component with the walls of its hollows, or an open component. */
@@ -15,9 +15,9 @@ export type Body = {
   min: [number, number, number],
   /** Upper corner of the box around it. */
   max: [number, number, number],
-  /** Volume that it encloses, without that of its hollows; none if an edge of it is open. */
+  /** Volume that it encloses, without its hollows; none if it has an open edge. */
   volume: number | null,
-  /** Whether it is a loose chip: it has less than a twentieth of the area of the largest body. */
+  /** Whether it is a loose chip: its area is less than a twentieth of that of the largest body. */
   is_chip: boolean,
 };
 
@@ -259,25 +259,26 @@ export type Figures = {
   rho: number,
   /** First percentile of the nearest-neighbour distance. */
   nearest_percentile_1: number,
-  /** Pairs of points nearer than 0.75: over `ideal_spacing`, as `nearest_min`, or of natural
-  * neighbours over the sum of their wanted radii, as `overlap_min`, where those are known. A
-  * duplicate is a pair with the point that it equals. None where there are no distances. */
+  /** Pairs of points closer than 0.75: over `ideal_spacing`, as `nearest_min`, or, if wanted
+  * radii are known, of natural neighbours over the sum of theirs, as `overlap_min`. A duplicate
+  * is a pair with the point that it equals. None if there are no distances. */
   crowded: number | null,
-  /** Radius of the largest hole over `ideal_spacing`/√3, that of the perfect lattice: 1 is ideal. */
+  /** Radius of the largest hole over `ideal_spacing`/√3, the radius in the perfect lattice: 1 is
+  * ideal. */
   cover: number,
   /** Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius
-  * there, which is the mean of the wanted radii of the points around the hole. One factor
-  * scales all wanted radii so that their cells have the surface's area. 1 is ideal. With equal
-  * radii this is `cover`. */
+  * there, the mean of the wanted radii of the points around the hole. One factor scales all
+  * wanted radii so that their cells have the surface's area. 1 is ideal. With equal radii this
+  * is `cover`. */
   cover_local: number,
-  /** Mean squared distance from the surface to the nearest point over that of the perfect
+  /** Mean squared distance from the surface to the nearest point, over that in the perfect
   * lattice: 1 is ideal. */
   quantization_error: number,
-  /** Share of the surface that no disc of a point around it covers, where the discs are known:
-  * 1 - π/(2√3) = 0.093 in a lattice whose discs touch. */
+  /** Share of the surface that no disc of a point around it covers, if the discs are known: 1 -
+  * π/(2√3) = 0.093 in a lattice whose discs touch. */
   uncovered: number,
-  /** Holes wider than 1.4, as `cover`, or as `cover_local` where wanted radii are known: empty
-  * discs of which none has its middle in a wider one. None where `cover` is undefined. */
+  /** Holes wider than 1.4, as `cover` or, if wanted radii are known, as `cover_local`: empty
+  * discs whose middle lies in no wider one. None if `cover` is undefined. */
   wide_holes: number | null,
   /** Fraction of the points with exactly six natural neighbours. */
   six_neighbours: number,
@@ -302,8 +303,7 @@ export type Figures = {
   /** Fraction of the triangles (away from the border) that belong to the natural-neighbour stars
   * of all three corners. */
   agree: number,
-  /** Euler number of the kept triangles: those on which at least two of their three corners
-  * agree. */
+  /** Euler number of the kept triangles, on which at least two of their three corners agree. */
   euler: number,
   /** Number of components of the surface, by natural neighbours: components of the kept
   * triangles, and groups of points far from all of them. */
@@ -416,8 +416,8 @@ export type Grip = {
 };
 
 /** Histogram of the nearest-neighbour distances over the ideal ones: the ideal spacing, or twice
-* the particle's wanted radius where one is given. Bins are equal, and values outside fall into
-* the outermost. */
+* the particle's wanted radius if given. Bins are equal, and values outside are counted in the
+* outermost. */
 export type Histogram = {
   /** Lower end of the first bin. */
   min: number,
@@ -433,8 +433,8 @@ export type Hole = {
   position: [number, number, number],
   /** Distance to the nearest particle, in the field's units. */
   radius: number,
-  /** Radius over that of the perfect lattice or, where there are wanted radii, of the lattice
-  * with those around it. */
+  /** Radius over that in the perfect lattice or, if radii are wanted, in the lattice of those
+  * around it. */
   ratio: number,
 };
 
@@ -493,7 +493,7 @@ export type ImagePromise = {
   memory: number,
 };
 
-/** The sign of f inside of the closed parts of a surface. */
+/** The sign of f inside the closed parts of a surface. */
 export type Inside = "f < 0" | "f > 0" | "f < 0, f > 0";
 
 /** A label of an image. */
@@ -1140,7 +1140,7 @@ export type NormalSource = "given" | "from_mesh" | "estimated";
 export type Pair = {
   /** Indices of the particles, the smaller one first. */
   particles: [number, number],
-  /** Distance over the ideal spacing or, where there are wanted radii, over their sum. */
+  /** Distance over the ideal spacing or, if radii are wanted, over their sum. */
   ratio: number,
 };
 
