@@ -264,8 +264,7 @@ const STEP: f64 = 1.0 / 131_072.0;
 
 /// Length of the steps of central differences at `p`: ∛ε of its largest coordinate, or of 1 if that
 /// is smaller. It balances the truncation error, of order h², and the rounding error, of order ε/h
-/// (Press et al., "Numerical Recipes",
-/// 5.7).
+/// (Press et al., "Numerical Recipes", §5.7).
 pub(crate) fn difference_step(p: DVec3) -> f64 {
     STEP * p.abs().max_element().max(1.0)
 }

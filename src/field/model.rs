@@ -12,8 +12,7 @@ pub const CENTRES: RangeInclusive<u32> = 100..=800;
 /// Maximum size of a file of points in bytes. Fifty million bytes hold some millions of points,
 /// thousands of times more than an interpolant can have centres.
 pub const MAX_FILE_BYTES: u32 = 50_000_000;
-/// Default number of centres, as in the paper's models (
-/// 6).
+/// Default number of centres, as in the paper's models (§6).
 pub const DEFAULT_CENTRES: u32 = 200;
 
 /// Origin of the normals of a model's points.

@@ -55,6 +55,7 @@ impl Part {
 
 /// The orientation of the parts of a mesh whose triangles are counter-clockwise round the gradient
 /// of f.
+///
 /// A closed part that lies in no other one faces outward if it encloses a positive volume. Parts
 /// inside it keep their orientation relative to it: the walls of a hollow bound one solid. If f is
 /// positive inside all closed parts, the open ones are turned, too, so that the whole mesh is that

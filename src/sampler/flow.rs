@@ -1,6 +1,5 @@
 //! Particles that follow a surface while it moves, frame by frame: the idea of Witkin and Heckbert
-//! 1994 (
-//! 4), starting from the paper's fronts.
+//! 1994 (§4), starting from the paper's fronts.
 //!
 //! A frame has three parts. The particles are *transported* down the gradient onto the new surface;
 //! one that does not reach it dies. Every few frames they are *balanced*. Then they make a step of
@@ -25,8 +24,7 @@
 //!
 //! * Velocities are not integrated: a particle goes to the new surface by Newton's method, so that
 //!   it never drifts from it.
-//! * The run's radii are kept and do not adapt (their
-//! 4.3); fission is a birth in a gap.
+//! * The run's radii are kept and do not adapt (their §4.3); fission is a birth in a gap.
 
 use crate::field::Evaluator;
 use crate::math::functions::{atan2, cos, sin};

@@ -88,10 +88,8 @@ async fn grow(desk: &Desk, is_witness: bool) -> Result<(), Stopped> {
 }
 
 /// Lets a front grow level by level, until it has met itself, another one or the box everywhere
-/// (paper
-/// 4.2 to
-/// 4.4): parents predict children, these are projected onto the surface, and those that find room
-/// are the parents of the next level.
+/// (paper §4.2 to §4.4): parents predict children, these are projected onto the surface, and those
+/// that find room are the parents of the next level.
 async fn grow_levels(desk: &Desk) -> Result<(), Stopped> {
     while !desk.now(|sampler| sampler.has_closed()).await? {
         desk.until(Sampler::place_children).await?;

@@ -244,10 +244,10 @@ fn no_length(value: &f64, position: &[f64; 3], f: &mut fmt::Formatter<'_>) -> fm
 }
 
 impl Settings {
-    /// The values that `Default` gives. The radius is the smaller one of the paper (
-    /// 6). With the chord error most surfaces take about as many particles as the default count,
-    /// with the largest curvature more. On a sphere the limits of the radii give 300,000 particles
-    /// and 340. There is room for ten times the default count.
+    /// The values that `Default` gives. The radius is the smaller one of the paper (§6). With the
+    /// chord error most surfaces take about as many particles as the default count, with the
+    /// largest curvature more. On a sphere the limits of the radii give 300,000 particles and 340.
+    /// There is room for ten times the default count.
     pub const DEFAULT: Self = Self {
         bounds: None,
         radius: None,
@@ -313,10 +313,9 @@ impl Settings {
         Self { bounds: Some(bounds), ..self }
     }
 
-    /// Chooses adaptive sampling (paper
-    /// 5), in which the repulsion radius follows the curvature, and returns the settings. A radius
-    /// as a share then has no effect; a length is [refused](SettingsError::RadiusOfAdaptive) when a
-    /// run starts.
+    /// Chooses adaptive sampling (paper §5), in which the repulsion radius follows the curvature,
+    /// and returns the settings. A radius as a share then has no effect; a length is
+    /// [refused](SettingsError::RadiusOfAdaptive) when a run starts.
     #[must_use]
     pub fn adaptive(self) -> Self {
         Self { sampling: Sampling::Adaptive, ..self }

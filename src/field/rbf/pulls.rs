@@ -1,10 +1,10 @@
 //! Pulls, which draw out or push in a surface around a place and leave the rest of it.
 //!
 //! A pull by the vector b takes the surface {f = 0} to {f ∘ w = 0}, where w(x) = x − g b moves
-//! points back. The weight g = (1 − q)³ with q = |x − c|²/R² is 1 at the place c that the surface is
-//! pulled to, and 0 beyond the distance R. It has two continuous derivatives, and for |b| ≤ R/2 the
-//! map w is one to one: the slope of g is at most 1.72/R, so the surface neither tears nor meets
-//! itself. Several pulls are made one after the other.
+//! points back. The weight g = (1 − q)³ with q = |x − c|²/R² is 1 at the place c that the surface
+//! is pulled to, and 0 beyond the distance R. It has two continuous derivatives, and for |b| ≤ R/2
+//! the map w is one to one: the slope of g is at most 1.72/R, so the surface neither tears nor
+//! meets itself. Several pulls are made one after the other.
 
 use super::DataError;
 use crate::field::Jet;

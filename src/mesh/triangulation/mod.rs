@@ -3,16 +3,16 @@
 //! 1. *Stars.* The natural neighbours of every point are found in its tangent plane, among the
 //!    points of the same sheet.
 //! 2. *Agreement.* A triangle on which the stars of its three corners agree is kept. Every directed
-//!   edge then belongs to at most one triangle, and every triangle faces as its corners do.
+//!    edge then belongs to at most one triangle, and every triangle faces as its corners do.
 //! 3. *Disputes.* Four points near a circle may each prefer another diagonal, since each sees the
-//!   others in its own tangent plane. Triangles that fewer corners see are added if there is room.
+//!    others in its own tangent plane. Triangles that fewer corners see are added if there is room.
 //! 4. *Rim.* If it is known where the surface ends, triangles across those edges and beyond them
-//!   are removed. So the patches of a surface with creases are joined one by one, and together are
-//!   closed.
+//!    are removed. So the patches of a surface with creases are joined one by one, and together are
+//!    closed.
 //! 5. *Holes.* The borders of the triangles are traced, and the polygons with few edges are divided
-//!   into triangles. If that fails, a vertex is removed, which makes the hole larger and its border
-//!   simpler. If the field is known, it then decides which of the fills are surface
-//!   (`Triangulation::judged`).
+//!    into triangles. If that fails, a vertex is removed, which makes the hole larger and its
+//!    border simpler. If the field is known, it then decides which of the fills are surface
+//!    (`Triangulation::judged`).
 //! 6. *Points left out* are inserted into the triangle below them.
 //! 7. *Borders* lose vertices at which the surface touches itself.
 //!

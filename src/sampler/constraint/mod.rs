@@ -10,13 +10,14 @@
 //! instead of a crease.
 //!
 //! 1. *Search.* The field lists the small cells of the box that may hold creases. In each cell
-//!   Newton's method searches for a point on each pair of branches.
+//!    Newton's method searches for a point on each pair of branches.
 //! 2. *Trace.* From such a point the curve is traced both ways until another branch takes over, at
-//!   a corner. The other creases of the corner are traced from there. A crease that passes a corner
-//!   of others is divided there, and so are creases that touch.
+//!    a corner. The other creases of the corner are traced from there. A crease that passes a
+//!    corner of others is divided there, and so are creases that touch.
 //! 3. *Fill.* Particles are put on corners and along curves at equal distances, as many as fit
-//!   best. They stay fixed: fronts start and end at them, patch by patch. For a refinement they are
-//!   placed for all levels at once and, if creases reach the box, also at its faces and beyond.
+//!    best. They stay fixed: fronts start and end at them, patch by patch. For a refinement they
+//!    are placed for all levels at once and, if creases reach the box, also at its faces and
+//!    beyond.
 
 mod cell;
 mod cut;

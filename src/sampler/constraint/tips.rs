@@ -2,9 +2,9 @@
 //!
 //! The *link* of a point is the intersection of the surface and a small sphere around it: around a
 //! smooth point one circle, around a tip a closed curve for each *nappe*, the sheets that meet
-//! there (J. Milnor, "Singular Points of Complex Hypersurfaces",
-//! 2, 1968). The particle of a tip has a row for each nappe. On the link of each nappe, at the
-//! distance of neighbours, a ring of particles is placed, from which the front grows.
+//! there (J. Milnor, "Singular Points of Complex Hypersurfaces", §2, 1968). The particle of a tip
+//! has a row for each nappe. On the link of each nappe, at the distance of neighbours, a ring of
+//! particles is placed, from which the front grows.
 
 use super::{AT_REST, ONE_CORNER};
 use crate::math::newton::STEPS;

@@ -594,8 +594,8 @@ impl Survey {
 
     /// A point at which a random line through the box meets the surface; none if many lines miss
     /// it. It is uniformly distributed on the surface (L. A. Santaló, "Integral Geometry and
-    /// Geometric Probability",
-    /// 14.3, 1976), and moves little when the surface does, unlike a point of the survey.
+    /// Geometric Probability", §14.3, 1976), and moves little when the surface does, unlike a point
+    /// of the survey.
     pub(crate) fn on_random_line(
         &self,
         probe: &mut Probe,
