@@ -4,7 +4,7 @@
 //! A walk climbs along one direction of an axis. It takes steps in the tangent plane and returns to
 //! the surface by Newton's method, until the surface reaches no farther along its direction. If it
 //! has left the box of the grid, walks along the other directions start at its end, as an arm may
-//! bend. may bend.
+//! bend.
 
 use super::HALVES;
 use super::grid::{CELLS, Change, Changes, NODES};
@@ -131,7 +131,8 @@ fn farthest(list: &[Change], way: Vec3) -> Vec<Vec3> {
     last.filter(|(at, _)| !is_beyond(*at)).map(|(_, place)| place).take(BATCH).collect()
 }
 
-/// Takes walks to their ends; none if one leaves the largest cube or is endless.
+/// Takes walks to their ends; none if one leaves the largest cube, or is outside the box after
+/// [`STEPS`] steps.
 async fn climb(field: &mut dyn Evaluator, walks: &[Walk], within: &Bounds) -> Option<Vec<Vec3>> {
     let least = LEAST_GAIN * within.size().max_element() as f32;
     let mut under_way = Vec::new();

@@ -204,7 +204,7 @@ impl<F> Debug for Run<F> {
 
 impl<F: Field> Run<F> {
     /// Starts a run on the surface of `field`, in the box of the settings or in one that fits the
-    /// surface. surface.
+    /// surface.
     ///
     /// The start surveys the box and fixes the radius. A fitted box is found by bounds of the field
     /// if it has any, otherwise by the signs of f on grids, with some hundred thousand evaluations:

@@ -78,7 +78,7 @@ impl Meeting {
         let mut ends: [Option<Landed>; 2] = [None; 2];
         // A seam may run along the face of a cell.
         let around = Bounds::new(cell.lo() - 0.3 * cell.size(), cell.hi() + 0.4 * cell.size());
-        // Skips a cell whose corners all have the same patch.
+        // Skips a cell if the corners of the box around it all have the same patch.
         let [one, others @ ..] = around.corners().map(|corner| probe.field.label(corner));
         if others.iter().all(|&other| other == one) {
             return None;

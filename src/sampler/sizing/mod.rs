@@ -6,8 +6,7 @@
 //! not above the law at these points. So the radius grows no faster than this away from a bend, and
 //! away from a crease next to a patch so small that no point of the survey lies on it. The envelope
 //! is stored on the nodes of a grid near the surface and interpolated. Near jumps of a function of
-//! place it is too coarse: points are added there, and evaluated one by one. jumps of a function of
-//! place it is too coarse: points are added there, and asked one by one.
+//! place it is too coarse: points are added there, and evaluated one by one.
 
 mod envelope;
 mod laws;
