@@ -23,7 +23,7 @@ pub struct Body {
     pub max: [f64; 3],
     /// Volume that it encloses, without its hollows; none if it has an open edge.
     pub volume: Option<f64>,
-    /// Whether it is a loose chip: its area is less than a twentieth of that of the largest body.
+    /// Whether it is a loose chip: its area is less than a twentieth of the largest body's.
     pub is_chip: bool,
 }
 

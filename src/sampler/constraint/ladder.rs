@@ -124,8 +124,8 @@ impl CreaseLadder {
         })
     }
 
-    /// A particle of the coarse front that two creases connect directly to the same other one, so
-    /// that a mesh edge does not show on which of them it lies; none if there is none.
+    /// A particle of the coarse front, if any, that two creases connect directly to the same other
+    /// one, so that a mesh edge does not show on which of them it lies.
     pub(in super::super) fn ambiguous(&self) -> Option<u32> {
         let same = self.middles.windows(2).find(|pair| pair[0].0 == pair[1].0);
         same.map(|pair| pair[0].0[0])

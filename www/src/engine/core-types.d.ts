@@ -17,7 +17,7 @@ export type Body = {
   max: [number, number, number],
   /** Volume that it encloses, without its hollows; none if it has an open edge. */
   volume: number | null,
-  /** Whether it is a loose chip: its area is less than a twentieth of that of the largest body. */
+  /** Whether it is a loose chip: its area is less than a twentieth of the largest body's. */
   is_chip: boolean,
 };
 
