@@ -1,4 +1,4 @@
-//! The grids on which the surface of a field without useful bounds is looked for: changes of the
+//! The grids on which the surface of a field without useful bounds is searched for: changes of the
 //! sign of f between their nodes, and which of them are zeros.
 
 use crate::field::Evaluator;
@@ -6,14 +6,14 @@ use crate::math::Bounds;
 use crate::slices::pause;
 use glam::{DVec3, Vec3};
 
-/// Cells along a side of a grid: as many as those of the survey.
+/// Cells along a side of a grid, as in the survey.
 pub(crate) const CELLS: usize = 32;
-/// Where |f| is less than this share of its values at the ends of an edge, f comes to zero there;
-/// at a jump it stays as large, and at a pole it grows. Smaller: roots of a high order are missed.
+/// Where |f| is less than this share of its values at the ends of an edge, f reaches zero there; at
+/// a jump it stays as large, and at a pole it grows. Smaller: roots of a high order are missed.
 const ZERO_SHARE: f64 = 1.0 / 16.0;
 /// At a zero |f| is also less than this share of its values at the ends of a [short part](NEAR) of
 /// the edge. A jump next to a surface that is smaller than a cell fails this: f is far smaller
-/// there than at the ends of the edge, but no smaller than beside the jump.
+/// there than at the ends of the edge, but no smaller than next to the jump.
 const NEAR_SHARE: f64 = 0.5;
 /// Number of divisions of an edge that lead to the short part, 1/64 of the edge. Fewer: f may halve
 /// on the way to a jump. More: rounding errors of terms that nearly cancel may be as large as f in
@@ -28,7 +28,7 @@ const TOGETHER: usize = 8;
 /// Changes of sign that count as the surface.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Counted {
-    /// Those at which f comes to zero.
+    /// Those at which f reaches zero.
     Zeros,
     /// Jumps and poles, too.
     All,
@@ -61,11 +61,11 @@ impl Change {
     }
 }
 
-/// What a grid shows of the surface.
+/// The surface as a grid shows it.
 pub(super) struct Changes {
     /// The changes of sign, in the order of the nodes.
     pub(super) list: Vec<Change>,
-    /// The box of their cells, with a cell of room.
+    /// The box of their cells, with a margin of one cell.
     pub(super) hull: Bounds,
     /// Whether one of them lies at the faces of the grid.
     pub(super) passes: bool,
@@ -73,8 +73,8 @@ pub(super) struct Changes {
     pub(super) step: DVec3,
 }
 
-/// The changes of the sign of f between neighbouring nodes of a grid. The outermost ones on every
-/// side are among those `counted`.
+/// The changes of the sign of f between neighbouring nodes of a grid. On every side, the outermost
+/// changes are `counted` ones.
 pub(super) async fn changes(field: &mut dyn Evaluator, over: &Bounds, counted: Counted) -> Option<Changes> {
     let (lo, step) = (over.lo(), over.size() / CELLS as f64);
     let mut below = (vec![Vec3::NAN; NODES * NODES], vec![f32::NAN; NODES * NODES]);
@@ -121,7 +121,7 @@ pub(super) async fn changes(field: &mut dyn Evaluator, over: &Bounds, counted: C
     Some(Changes { list, hull, passes: first.contains(&0) || last.contains(&CELLS), step })
 }
 
-/// Drops the layers of changes at a side of the grid in which f comes to zero nowhere.
+/// Drops the layers of changes at a side of the grid in which f nowhere reaches zero.
 fn drop_jumps_at(field: &mut dyn Evaluator, list: &mut Vec<Change>, side: usize) {
     let at = |change: &Change| change.node[side / 2];
     let outermost = |list: &[Change]| {
@@ -137,7 +137,7 @@ fn drop_jumps_at(field: &mut dyn Evaluator, list: &mut Vec<Change>, side: usize)
     }
 }
 
-/// Whether f comes to zero at one of these changes of sign: a part of each edge in which the sign
+/// Whether f reaches zero at one of these changes of sign: a part of each edge in which the sign
 /// changes is divided into [`PARTS`], until single precision divides it no further.
 fn has_zero(field: &mut dyn Evaluator, changes: &[Change]) -> bool {
     const BETWEEN: usize = PARTS - 1;
@@ -167,7 +167,7 @@ fn has_zero(field: &mut dyn Evaluator, changes: &[Change]) -> bool {
             }
         }
     }
-    // The values are arsinh f. At a pole they may be infinite, at a jump f may be 0 by itself.
+    // The values are arsinh f. At a pole they may be infinite; at a jump f may happen to be 0.
     let size = |value: f32| libm::sinh(value.abs().into());
     let largest = |ends: &[(Vec3, f32); 2]| {
         let sizes = ends.map(|(_, value)| size(value)).into_iter().filter(|size| size.is_finite());

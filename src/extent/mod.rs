@@ -1,13 +1,13 @@
 //! The extent of a surface: the box that fits it.
 //!
 //! A scan of a cube by interval arithmetic finds the cells in which the surface may have an extreme
-//! along an axis, and whether it goes on through the faces of the cube. The first cube reaches to
-//! ±10⁴. Where the surface stays inside, its box is that of the extremes. Where it goes on for
-//! ever, smaller cubes follow, until it stays inside one (a sphere and a far plane), shows where
-//! its bends are, or is known to pass near the origin. What no interval decides is looked at on a
-//! grid, and parts that are thinner than its cells are followed to their ends on the surface.
+//! along an axis, and whether it continues through the faces of the cube. The first cube reaches to
+//! ±10⁴. If the surface stays inside, its box is that of the extremes. If it is endless, smaller
+//! cubes follow, until it stays inside one (a sphere and a far plane), shows where its bends are,
+//! or is known to pass near the origin. What intervals do not decide is examined on a grid, and
+//! parts that are thinner than its cells are followed to their ends on the surface.
 //!
-//! The work is counted in cells and can be left and gone on with; the result is the same to the
+//! The work is counted in cells and can be interrupted and continued; the result is the same to the
 //! last bit everywhere.
 
 mod grid;
@@ -26,36 +26,34 @@ use scan::{Effort, Scan};
 use serde::Serialize;
 
 /// Half-widths of the cubes that are searched, the largest first, each about a fifth of the one
-/// before. A surface that goes on for ever gets the smallest of them as its box, so that another
-/// choice gives it another box.
+/// before. An endless surface gets the smallest of them as its box, so that another choice gives it
+/// another box.
 pub(crate) const HALVES: [f64; 6] = [10_000.0, 2_000.0, 400.0, 80.0, 16.0, 4.0];
-/// Half-width of the box of a surface that goes on for ever and passes near the origin: that of the
-/// smallest cube that is searched. A gyroid has one and a quarter periods in it.
+/// Half-width of the box of an endless surface that passes near the origin: that of the smallest
+/// cube that is searched. A gyroid has one and a quarter periods in it.
 const USUAL_HALF: f64 = HALVES[HALVES.len() - 1];
-/// Shortest period of a surface of which that box shows not too much: four of them. Of a shorter
-/// one the box shows two.
+/// A surface with a shorter period gets a box of two periods instead: [`USUAL_HALF`] would show
+/// more than four.
 const SHORT_PERIOD: f64 = 0.5 * USUAL_HALF;
-/// The box where there is no surface, or nothing is known of it. A unit sphere fills half of its
+/// The box if there is no surface, or nothing is known of it. A unit sphere fills half of its
 /// width.
 pub const FALLBACK: Bounds = Bounds::cube(2.0);
 /// Room around the bends of an endless surface on every side, as a share of their box, so that they
-/// fill two thirds of it. A larger room shows more of how the surface goes on, and the bends
-/// smaller.
+/// fill two thirds of it. A larger room shows more of the surface beyond, and the bends smaller.
 const ROOM: f64 = 0.25;
 /// Room around a surface on every side, as a share of its box. It is three radii of a hundredth of
 /// the diagonal, so that the box is the same for all smaller particles. A larger room leaves less
 /// of the box to the surface, and a smaller one makes the box depend on the radius more often.
 const MARGIN: f64 = 0.05;
-/// Room around a surface in radii of particles: children are proposed at two radii, and one more
+/// Room around a surface in radii of particles: children are proposed at two radii, and a third one
 /// keeps them off the faces.
 const MARGIN_RADII: f64 = 3.0;
-/// The room in radii is not more than this share of the longest side: the surface fills at least
-/// half of it.
+/// Largest room by radii, as a share of the longest side: the surface fills at least half of it.
 const MOST_MARGIN: f64 = 0.5;
-/// A box that bounds leave too large gives way to one that grids show, if that is smaller than this
-/// share of it. Particles of a usual size would be as large as the surface in it.
+/// A box by bounds that is too large is replaced by one that grids show, if that is smaller than
+/// this share of it: in the larger one, particles of a usual size would be as large as the surface.
 const WASTED: f64 = 0.1;
-/// Cells visited at most for a short formula: 20 to 50 milliseconds. Fewer make the box wider.
+/// Most cells visited for a short formula: 20 to 50 milliseconds. Fewer make the box wider.
 const MOST_CELLS: usize = 32_768;
 /// Largest number of operations of a formula that may have [`MOST_CELLS`]. A longer one may have
 /// fewer cells, in inverse proportion, so that it takes as long.
@@ -66,8 +64,8 @@ const SHORT: usize = 64;
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Reach {
-    /// The surface within ±10⁴ lies in the box: by proof, or by what grids show of it where no
-    /// bounds decide, and by walks to the ends of its thin parts.
+    /// The surface within ±10⁴ lies in the box: by proof or, where bounds do not decide, by grids
+    /// and by walks to the ends of thin parts.
     Bounded,
     /// The surface continues outside the box.
     Endless,
@@ -96,8 +94,8 @@ impl Extent {
         if self.reach != Reach::Bounded {
             return self.bounds;
         }
-        /// Rounds in which room and diagonal follow each other; the room settles by a factor of ten
-        /// in each for usual radii.
+        /// Rounds in which room and diagonal are adapted to each other; the error of the room falls
+        /// by a factor of ten in each for usual radii.
         const ROUNDS: u32 = 8;
         let size = self.bounds.size();
         let most = MOST_MARGIN * size.max_element();
@@ -135,10 +133,10 @@ pub(crate) async fn find_in_slices(field: &dyn Field) -> Extent {
     }
 }
 
-/// Finds the box of a surface by the bounds of its field.
+/// Finds the box of a surface from the bounds of its field.
 async fn scanned(field: &dyn Field, bounded: &mut dyn Bounded) -> Extent {
     let cells = MOST_CELLS * SHORT / bounded.operations().max(SHORT);
-    // A plain scan that decides nothing may have visited all of its cells.
+    // A plain scan that decides nothing may have used all of its cells.
     let (mut left, mut more) = (cells, cells);
     let mut bends: Option<Bounds> = None;
     let mut before = None;
@@ -153,7 +151,7 @@ async fn scanned(field: &dyn Field, bounded: &mut dyn Bounded) -> Extent {
         if let Scan::TooLarge(hull) = found {
             let closer = scan::scan(bounded, half, Effort::Thorough, &mut more).await;
             pause().await;
-            // The surface is in both boxes. Without the other one the first still holds it.
+            // The surface is in both boxes. Without the other one, the first still holds it.
             let common = |other: Bounds| Bounds {
                 min: core::array::from_fn(|axis| hull.min[axis].max(other.min[axis])),
                 max: core::array::from_fn(|axis| hull.max[axis].min(other.max[axis])),
@@ -172,7 +170,7 @@ async fn scanned(field: &dyn Field, bounded: &mut dyn Bounded) -> Extent {
             Scan::Inside(hull) => {
                 let reach = if is_first { Reach::Bounded } else { Reach::Endless };
                 let bounds = placeable(&hull);
-                // What is beyond the box says nothing about the room within.
+                // A surface beyond the box does not affect the room inside.
                 let extent = Extent { bounds, reach: Reach::Bounded };
                 return if is_first { extent } else { Extent { bounds: extent.with_room(|_| 0.0), reach } };
             }
@@ -191,7 +189,7 @@ async fn scanned(field: &dyn Field, bounded: &mut dyn Bounded) -> Extent {
     Extent { bounds: around(bends), reach: Reach::Endless }
 }
 
-/// The box of an endless surface with these bends.
+/// The box of an endless surface with these bends, if known.
 fn around(bends: Option<Bounds>) -> Bounds {
     let usual = Bounds::cube(USUAL_HALF);
     let Some(bends) = bends else { return usual };
@@ -201,27 +199,28 @@ fn around(bends: Option<Bounds>) -> Bounds {
     placeable(&Bounds::point(bends.middle()).enlarged((0.5 + ROOM) * bends.size().max_element()))
 }
 
-/// The box of a surface that comes again along every axis, of short periods two.
+/// The box of a surface that is periodic along every axis: of a short period two; none if none is
+/// short.
 fn of_periods(periods: [Option<f64>; 3]) -> Option<Bounds> {
     let [Some(x), Some(y), Some(z)] = periods else { return None };
     let of = |period: f64| if period < SHORT_PERIOD { period } else { USUAL_HALF };
     let longest = x.max(y).max(z);
     let is_short = [x, y, z].into_iter().any(|period| period > 0.0 && period < SHORT_PERIOD);
-    // Along an axis along which nothing changes the box is as wide as along the widest other.
+    // Along an axis on which nothing changes, the box is as wide as along the widest other one.
     let half = [x, y, z].map(|period| of(if period > 0.0 { period } else { longest }));
     is_short.then(|| placeable(&Bounds::symmetric(half)))
 }
 
 /// A box of one period along every axis on which the surface of a field has one, and as wide as
-/// `bounds` along the others. Any such box holds all of the surface. This one has its corners away
+/// `bounds` along the others. Any such box holds all of the surface. This one has its corners far
 /// from the surface, where |f| is largest on a grid, and its faces away from planes of symmetry,
-/// which often touch the surface: creases are plain curves then.
+/// which often touch the surface: then creases are plain curves.
 #[must_use]
 pub fn unit_cell(field: &dyn Field, periods: [Option<f64>; 3], bounds: &Bounds) -> Bounds {
-    /// Places of the corner along each axis. Fewer come less near to the largest |f| in the cell.
+    /// Places of the corner along each axis. Fewer get less close to the largest |f| in the cell.
     const SIDE: u32 = 8;
-    /// Share of the way between two places at which the first one is, by the golden ratio: planes
-    /// of symmetry are at simple fractions.
+    /// Place of the first one, as a share of the distance between two: by the golden ratio, since
+    /// planes of symmetry are at simple fractions.
     const ASIDE: f64 = 0.382;
     let periods = DVec3::from_array(periods.map(Option::unwrap_or_default));
     let is_repeated = periods.cmpgt(DVec3::ZERO);
@@ -241,7 +240,7 @@ pub fn unit_cell(field: &dyn Field, periods: [Option<f64>; 3], bounds: &Bounds) 
     Bounds::new(best.0, DVec3::select(is_repeated, best.0 + periods, bounds.hi()))
 }
 
-/// The box, made larger around its middle until particles can be put in it.
+/// The box, enlarged around its middle until particles can be put in it.
 fn placeable(wanted: &Bounds) -> Bounds {
     let (middle, mut half) = (wanted.middle(), 0.5 * wanted.size());
     // A flat box has no room across.

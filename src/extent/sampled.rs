@@ -6,15 +6,16 @@ use super::{Extent, FALLBACK, HALVES, Reach, placeable};
 use crate::field::{BATCH, Evaluator, Field, Frame};
 use crate::math::Bounds;
 
-/// The grid is laid again over what it found, with a cell around it, until that fills this share of
-/// it: further grids would hardly be smaller.
+/// The grid is laid again over what it found, with a margin of one cell, until that fills this
+/// share of the grid: further grids would hardly be smaller.
 const FULL: f64 = 0.6;
-/// Cells of a larger grid by which it may show the surface farther out than a smaller one did.
+/// A larger grid must show the surface this many of its cells farther out than a smaller one to
+/// count.
 const NEAR: f64 = 2.1;
 
 /// Finds the smallest cube through whose faces the surface does not pass, and its box in it. The
-/// surface goes on if the grid of a larger cube shows more, or a thin part leads out of the largest
-/// one.
+/// surface is endless if the grid of a larger cube shows more, or a thin part leads out of the
+/// largest one.
 pub(super) async fn find(field: &dyn Field) -> Extent {
     // In single precision rounding decides the sign far from the origin, where terms nearly cancel.
     let mut evaluator = field.evaluator(Frame { double: Some(1.0), ..Frame::default() });
@@ -26,7 +27,7 @@ pub(super) async fn find(field: &dyn Field) -> Extent {
     Extent { bounds: FALLBACK, reach: Reach::Unknown }
 }
 
-/// [`find`], by the changes of sign that are counted; none if there are none.
+/// [`find`], by the changes of sign that are `counted`; none if there are none.
 async fn find_by(field: &mut dyn Evaluator, counted: Counted) -> Option<Extent> {
     let mut seen = None;
     let mut halves = HALVES.into_iter().rev();
@@ -40,8 +41,8 @@ async fn find_by(field: &mut dyn Evaluator, counted: Counted) -> Option<Extent> 
         let extent = settle(field, cube, found, counted).await;
         for half in halves {
             let cube = Bounds::cube(half);
-            // What a grid finds is less than two cells away, of which one is room, or a jump of f
-            // next to the surface that passes for a zero on this grid.
+            // A larger grid reaches up to two cells farther, one of them its margin, or finds a
+            // jump of f next to the surface that passes for a zero on it.
             let near = extent.bounds.enlarged(NEAR * cube.size().x / CELLS as f64);
             let all = changes(field, &cube, counted).await;
             if all.is_some_and(|all| near.joined(&all.hull) != near) {
@@ -51,7 +52,7 @@ async fn find_by(field: &mut dyn Evaluator, counted: Counted) -> Option<Extent> 
         return Some(extent);
     }
     let (cube, found) = seen?;
-    // What leaves the cube may be thin parts alone, which the grids of larger ones do not show.
+    // Only thin parts may leave the cube, which the grids of larger cubes do not show.
     if let Walked::To(reached) = walk(field, &found, &cube).await {
         let over = cube.joined(&reached).enlarged(found.step.max_element());
         if let Some(found) = changes(field, &over, counted).await.filter(|found| !found.passes) {
@@ -63,9 +64,9 @@ async fn find_by(field: &mut dyn Evaluator, counted: Counted) -> Option<Extent> 
 
 /// The extent of a surface that does not pass through the faces of the grid `over` a box.
 async fn settle(field: &mut dyn Evaluator, mut over: Bounds, mut found: Changes, counted: Counted) -> Extent {
-    // It ends: the grids shrink, down to a box in which particles have no room.
+    // The surface is bounded: the grids shrink, down to a box in which particles have no room.
     while found.hull.size().max_element() < FULL * over.size().max_element() && found.hull.is_valid() {
-        // A cell of the grid around what it found is room for what it missed.
+        // The margin of one cell covers what the grid missed.
         over = found.hull;
         let Some(finer) = changes(field, &over, counted).await else { break };
         found = finer;
@@ -79,7 +80,7 @@ async fn settle(field: &mut dyn Evaluator, mut over: Bounds, mut found: Changes,
     }
 }
 
-/// Share of the nodes of all grids at which f has a value.
+/// Share of the nodes of all grids at which f is defined.
 pub(crate) fn defined_share(field: &mut dyn Evaluator) -> f64 {
     let mut values = [0.0; BATCH];
     let (mut defined, mut nodes) = (0, 0);

@@ -1,18 +1,17 @@
-//! The scan of a cube: it is divided into eighths, again and again, and cells without surface are
-//! dropped.
+//! The scan of a cube, which is divided into eighths repeatedly; cells without surface are dropped.
 //!
 //! A point at which a component reaches farthest along an axis, inside the cube, has no slope along
-//! the other two: else the surface would go on. So besides the cells at the faces of the cube only
-//! those are kept whose bounds allow that for some axis: of a sphere a few around its six poles.
-//! Bounds of the value are those of the expression and of the mean value form, as in the search for
-//! components.
+//! the other two: else the surface would continue. So, besides the cells at the faces of the cube,
+//! only those are kept whose bounds allow that for some axis: for a sphere a few around its six
+//! poles. Bounds of the value are those of the expression and of the mean value form, as in the
+//! search for components.
 //!
-//! Bounds are wide where a cell is large against the places at which f bends: over a cell on both
-//! sides of x = 0 those of x³(x − 2) reach far below the least value, and hundreds of cells far
-//! from the surface are kept. A thorough scan looks [into](look_into) each such cell before it
+//! Bounds are wide if a cell is large compared with the distances over which f bends: over a cell
+//! on both sides of x = 0 those of x³(x − 2) reach far below the least value, and hundreds of cells
+//! far from the surface are kept. A thorough scan looks [into](look_into) each such cell before it
 //! keeps it: the cell is halved along the axis that widens its bounds most, and again, as long as
-//! few parts are left. It is made where a plain one leaves a box at one of whose sides no part of
-//! the surface is [seen](is_loose), or decides nothing.
+//! few parts are left. It is made if a plain scan decides nothing, or leaves a box at one of whose
+//! sides no part of the surface is [seen](is_loose).
 
 use crate::field::{Bounded, Enclosure};
 use crate::math::{Bounds, key_of, sort_by_key};
@@ -23,40 +22,39 @@ use glam::DVec3;
 /// run along the faces of cells.
 const OFF_CENTRE: DVec3 = DVec3::new(0.013, 0.007, 0.019);
 /// Factor by which the cube is enlarged, so that it reaches its half-width on every side although
-/// its centre is moved: 1 plus the largest component of [`OFF_CENTRE`], rounded up.
+/// its centre is shifted: 1 plus the largest component of [`OFF_CENTRE`], rounded up.
 const LARGER: f64 = 1.02;
-/// The extremes are known to this share of the longest side of their box: a third of the room that
-/// is left around it.
+/// The extremes are found to this share of the longest side of their box: a third of the room
+/// around it.
 const FINE: f64 = 1.0 / 64.0;
-/// This share will do where no cells are left to visit. With [`FINE`] instead some boxes would be
+/// This share is enough if no cells are left to visit. With [`FINE`] instead some boxes would be
 /// larger.
 const COARSE: f64 = 1.0 / 16.0;
-/// Halvings after which what is still in the cells at the faces, a 128th of the cube wide, counts
-/// as passing through them: a test holds a scan to a fiftieth of its half-width.
+/// Number of halvings after which the surface in the cells at the faces, a 128th of the cube wide,
+/// counts as passing through them: a test holds a scan to a fiftieth of its half-width.
 const FACE_LEVEL: u32 = 7;
-/// Halvings at most, for an isolated point: places are counted in 32 bits.
+/// Largest number of halvings, for an isolated point: places are counted in 32 bits.
 const DEPTH: u32 = 30;
-/// Cells of a level that are many while some lie at the faces: eighths of them are a third of the
-/// cells that a scan may visit.
+/// Number of cells of a level that is large while some lie at the faces: their eighths are a third
+/// of the cells that a scan may visit.
 const MANY_AT_FACES: usize = 1_500;
-/// Where a level of this depth, which has 512 cells, drops less than a tenth of them, the bounds
-/// say nothing. Without this rule surfaces of short periods would take many more cells.
+/// If a level of this depth, which has 512 cells, drops less than a tenth of them, the bounds say
+/// nothing. Without this rule surfaces of short periods would take many more cells.
 const IDLE_LEVEL: u32 = 3;
 const IDLE_SHARE: f64 = 0.9;
-/// Parts of a cell that are looked into at a time: two for each of the eight corners of a cell that
-/// meet at a point of it, where the bounds are widest. More are as many as in a cell that the
-/// surface passes.
+/// Largest number of parts of a cell that are examined at a time: two for each of the eight parts
+/// that meet at a point, where the bounds are widest. A cell that the surface passes has more.
 const MOST_PARTS: usize = 16;
-/// Times that a cell is halved for that: ten along each axis, by which a cell that is a 128th of
-/// the largest cube becomes one of 0.15.
+/// Largest number of halvings of a cell for that: ten along each axis, which turn a cell that is a
+/// 128th of the largest cube into one of 0.15.
 const HALVINGS: u32 = 30;
-/// Share of a box at each of its sides in which a cell with the surface is looked for. A box
+/// Share of a box at each of its sides in which a cell with the surface is searched for. A box
 /// without one is too large.
 const OUTER: f64 = 0.25;
-/// Cells that are looked into for that at each side, the outermost first.
+/// Cells that are examined for that at each side, the outermost first.
 const MOST_OUTER: usize = 64;
-/// A box of bends that becomes smaller than this share of itself when the cells are halved is that
-/// of the cells, not of the bends.
+/// A box of bends that shrinks below this share of itself when the cells are halved is that of the
+/// cells, not of the bends.
 const STEADY: f64 = 0.75;
 /// The box that holds nothing.
 const NOWHERE: Bounds = Bounds::new(DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -71,16 +69,16 @@ pub(super) enum Scan {
     /// As [`Scan::Inside`], but at a side of the box no part of the surface is seen.
     TooLarge(Bounds),
     /// The surface passes through the faces of the cube: f changes its sign there. The box is that
-    /// of its bends, if these are few.
+    /// of its bends, if there are few.
     Crossing(Option<Bounds>),
-    /// The bounds do not decide it.
+    /// The bounds do not decide.
     Undecided,
 }
 
-/// How closely a scan looks at cells.
+/// How thoroughly a scan examines cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Effort {
-    /// A cell is dropped by its bounds.
+    /// A cell is dropped by its own bounds.
     Plain,
     /// A cell is dropped by the bounds of its parts.
     Thorough,
@@ -120,8 +118,8 @@ impl ScanLevel {
     }
 }
 
-/// Scans the cube of this half-width around the origin, in about `left` cells, of which those
-/// visited are taken. Only a plain scan asks whether the box that it finds is too large.
+/// Scans the cube of this half-width around the origin in about `left` cells, and subtracts those
+/// visited. Only a plain scan checks whether the box that it finds is too large.
 pub(super) async fn scan(field: &mut dyn Bounded, half: f64, effort: Effort, left: &mut usize) -> Scan {
     let side = 2.0 * half * LARGER;
     let lo = side * (OFF_CENTRE / 2.0 - 0.5);
@@ -151,7 +149,7 @@ fn eighths(cells: &[OpenCell]) -> Vec<CellPlace> {
     cells.iter().flat_map(|cell| (0..8).map(move |eighth| of(cell, eighth))).collect()
 }
 
-/// The result of the scan but for the bends, if a level with these cells is the last one.
+/// The result of the scan except for the bends, if a level with these cells is the last one.
 async fn result(field: &mut dyn Bounded, level: &ScanLevel, kept: &[OpenCell], left: usize) -> Option<Scan> {
     if kept.is_empty() {
         return Some(Scan::Empty);
@@ -174,7 +172,7 @@ async fn result(field: &mut dyn Bounded, level: &ScanLevel, kept: &[OpenCell], l
     is_last.then_some(Scan::Undecided)
 }
 
-/// Whether the cells of a level are at most this share of a box.
+/// Whether the cells of a level are at most this share of a box wide.
 fn is_fine(level: &ScanLevel, hull: &Bounds, share: f64) -> bool {
     level.size <= share * hull.size().max_element()
 }
@@ -192,8 +190,8 @@ fn hull(level: &ScanLevel, kept: &[OpenCell]) -> Bounds {
     Bounds { min, max }
 }
 
-/// The box of the bends of a surface that goes on: of the cells with an extreme, where these are
-/// few and none lies at the faces.
+/// The box of the bends of an endless surface: of the cells with an extreme, if there are few and
+/// none lies at the faces.
 async fn bends(
     field: &mut dyn Bounded,
     mut level: ScanLevel,
@@ -201,7 +199,7 @@ async fn bends(
     effort: Effort,
     left: &mut usize,
 ) -> Option<Bounds> {
-    // A box that is fine enough, until the next level tells whether it is that of the bends.
+    // A box that is fine enough, until the next level shows whether it is that of the bends.
     let mut fine: Option<Bounds> = None;
     loop {
         kept.retain(|cell| cell.extremes != [false; 3]);
@@ -224,7 +222,7 @@ async fn bends(
     }
 }
 
-/// The cells that may hold surface, and lie at the faces of the cube or may hold an extreme.
+/// The cells that may hold surface, and are at the faces of the cube or may hold an extreme.
 async fn visit(
     field: &mut dyn Bounded,
     level: &ScanLevel,
@@ -253,8 +251,8 @@ async fn visit(
     kept
 }
 
-/// Whether a box is too large: at one of its sides no cell shows that it may hold the extreme
-/// there, once its parts are looked into.
+/// Whether a box is too large: at one of its sides no cell, once its parts are examined, may still
+/// hold the extreme there.
 async fn is_loose(field: &mut dyn Bounded, level: &ScanLevel, kept: &[OpenCell], hull: &Bounds) -> bool {
     let mut batch = BoundsBatch::default();
     let room = OUTER * hull.size().max_element();
@@ -294,7 +292,7 @@ async fn is_loose(field: &mut dyn Bounded, level: &ScanLevel, kept: &[OpenCell],
     false
 }
 
-/// Bounds over a box that f may vanish in.
+/// Bounds over a box in which f may vanish.
 #[derive(Clone, Copy)]
 struct Part {
     own: Bounds,
@@ -302,7 +300,7 @@ struct Part {
     extremes: [bool; 3],
     /// The axis along which f changes most by its bounds.
     widest: usize,
-    /// The sign of f in the middle; 0 where it is not known.
+    /// The sign of f in the middle; 0 if unknown.
     sign: i8,
 }
 
@@ -311,7 +309,7 @@ struct Part {
 struct BoundsBatch {
     boxes: Vec<Bounds>,
     known: Vec<Enclosure>,
-    /// Indices of the boxes that the bounds of the expression leave open.
+    /// Indices of the boxes that the bounds of the expression do not exclude.
     open: Vec<usize>,
     middles: Vec<Bounds>,
     at_middle: Vec<Enclosure>,
@@ -373,7 +371,7 @@ impl BoundsBatch {
                 let others = [(axis + 1) % 3, (axis + 2) % 3];
                 !is_regular || others.iter().all(|&other| known.gradient[other].holds(0.0))
             });
-            // Where nothing is known the longest side is.
+            // If nothing is known, it is the longest side.
             let is_known = swings.iter().all(|swing| swing.is_finite());
             let weight = |axis: &usize| if is_known { swings[*axis] } else { half[*axis] };
             let widest = (0..3).max_by(|a, b| weight(a).total_cmp(&weight(b))).unwrap_or(0);
@@ -387,7 +385,7 @@ impl BoundsBatch {
     }
 
     /// The extremes that a factor of the field may have in a cell, by the bounds of its parts; none
-    /// where it vanishes nowhere. The parts are taken from those that are `left`.
+    /// if it vanishes nowhere. The parts are subtracted from `left`.
     fn look_into(
         &mut self,
         field: &mut dyn Bounded,
@@ -430,7 +428,7 @@ impl Part {
     }
 }
 
-/// Whether f changes its sign between corners of a cell at the faces, in which it is continuous.
+/// Whether f changes its sign between corners of a cell at the faces in which it is continuous.
 async fn crosses_faces(field: &mut dyn Bounded, level: &ScanLevel, kept: &[OpenCell]) -> bool {
     let factors = field.factors();
     for cell in kept.iter().filter(|cell| level.is_at_face(cell.at)) {

@@ -1,10 +1,10 @@
-//! Walks on the surface from where a grid shows it to reach farthest, to the ends of parts that are
-//! thinner than its cells: spikes and arms.
+//! Walks on the surface, from the places where a grid shows it to reach farthest to the ends of
+//! parts that are thinner than its cells: spikes and arms.
 //!
 //! A walk climbs along one direction of an axis. It takes steps in the tangent plane and returns to
-//! the surface by Newton's method, until the surface reaches no farther along its direction. Where
-//! it has left the box of the grid, walks along the other directions follow from there, as an arm
-//! may bend.
+//! the surface by Newton's method, until the surface reaches no farther along its direction. If it
+//! has left the box of the grid, walks along the other directions start at its end, as an arm may
+//! bend.
 
 use super::HALVES;
 use super::grid::{CELLS, Change, Changes, NODES};
@@ -14,32 +14,32 @@ use crate::math::{Bounds, newton};
 use crate::slices::pause;
 use glam::Vec3;
 
-/// Steps of a walk at most. One along a straight spike takes some ten; more follow longer arms that
-/// wind.
+/// Largest number of steps of a walk. One along a straight spike takes some ten; more follow longer
+/// arms that wind.
 const STEPS: u32 = 400;
-/// A walk ends where a step leads less far along its direction than this share of the longest side
-/// of the box: a fiftieth of the room that is left around it.
+/// A walk ends if a step leads less far along its direction than this share of the longest side of
+/// the box: a fiftieth of the room around it.
 const LEAST_GAIN: f32 = 1e-3;
-/// Share of the expected gain that a step must have. A step that has less has left the part of the
-/// surface that it follows.
+/// Share of the expected gain that a step must have. A smaller gain means that it has left the part
+/// of the surface that it follows.
 const FAITHFUL: f32 = 0.5;
 /// Largest distance from the surface, in roundings of the largest coordinate.
 const ROUNDINGS: f32 = 8.0;
-/// Number of times that walks may follow from the ends of others.
+/// Number of times that walks may start from the ends of others.
 const BENDS: u32 = 16;
 
 /// Where the walks have led.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Walked {
-    /// Nowhere beyond the box.
+    /// They stay in the box.
     Inside,
-    /// To places beyond the box, which are in this one.
+    /// To places beyond the box; this box holds them.
     To(Bounds),
     /// Out of the largest cube, or farther than they could be followed.
     Away,
 }
 
-/// A point on its way along the surface.
+/// A point that moves along the surface.
 #[derive(Clone, Copy)]
 struct Walk {
     place: Vec3,
@@ -51,13 +51,13 @@ struct Walk {
 }
 
 impl Walk {
-    /// The next step, to be made in the tangent plane.
+    /// The next step, in the tangent plane.
     fn step(&self) -> Vec3 {
         let along = self.way - self.normal * self.way.dot(self.normal);
         along.normalize_or_zero() * self.length
     }
 
-    /// How much farther along its way the next step leads.
+    /// How far along its way the next step leads.
     fn gain(&self) -> f32 {
         self.step().dot(self.way)
     }
@@ -69,7 +69,7 @@ fn ways() -> impl Iterator<Item = Vec3> {
 }
 
 /// Walks from the changes of sign of a grid to the farthest places of the surface. `within` is the
-/// box that is known to hold what the grid shows.
+/// box known to hold what the grid shows.
 pub(super) async fn walk(field: &mut dyn Evaluator, found: &Changes, within: &Bounds) -> Walked {
     let length = found.step.max_element() as f32;
     let mut walks: Vec<Walk> = ways()
@@ -87,7 +87,7 @@ pub(super) async fn walk(field: &mut dyn Evaluator, found: &Changes, within: &Bo
             ends.extend(found);
         }
         walks.clear();
-        // Those that have led farthest go on.
+        // Those that have led farthest continue.
         for way in ways() {
             let along = |place: &Vec3| place.dot(way);
             let Some(&place) = ends.iter().max_by(|a, b| along(a).total_cmp(&along(b))) else { continue };
@@ -106,8 +106,8 @@ pub(super) async fn walk(field: &mut dyn Evaluator, found: &Changes, within: &Bo
     Walked::Away
 }
 
-/// The places of those changes of sign next to which none is farther along this way. Of several
-/// that are as far one is taken.
+/// The places of those changes of sign that have none next to them farther along this way. Of
+/// several equally far ones, one is taken.
 fn farthest(list: &[Change], way: Vec3) -> Vec<Vec3> {
     let axis = way.abs().max_position();
     // Its number along the way comes first.
@@ -131,7 +131,8 @@ fn farthest(list: &[Change], way: Vec3) -> Vec<Vec3> {
     last.filter(|(at, _)| !is_beyond(*at)).map(|(_, place)| place).take(BATCH).collect()
 }
 
-/// Takes walks to their ends; none if one leads away.
+/// Takes walks to their ends; none if one leaves the largest cube, or is outside the box after
+/// [`STEPS`] steps.
 async fn climb(field: &mut dyn Evaluator, walks: &[Walk], within: &Bounds) -> Option<Vec<Vec3>> {
     let least = LEAST_GAIN * within.size().max_element() as f32;
     let mut under_way = Vec::new();
@@ -171,8 +172,8 @@ async fn climb(field: &mut dyn Evaluator, walks: &[Walk], within: &Bounds) -> Op
     is_inside.then_some(ends)
 }
 
-/// The points of the surface to which Newton's method leads from a place of each walk, within the
-/// length of its step, with their unit normals.
+/// For each walk, the point of the surface to which Newton's method leads from a place, within the
+/// length of its step, and its unit normal.
 fn land(
     field: &mut dyn Evaluator,
     walks: &[Walk],

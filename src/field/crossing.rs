@@ -4,18 +4,18 @@ use super::Evaluator;
 use super::descent::{Descent, descend};
 use glam::Vec3;
 
-/// Distances on either side of a place at which a line is tried, each half the one before: a wall
-/// is seen if it is thicker than a 64th of the reach.
+/// Distances on either side of a place at which a line is tried, each half of the one before: a
+/// wall is found if it is thicker than a 64th of the reach.
 const HALVINGS: u32 = 6;
-/// Steps of Newton's method: it doubles the digits at each.
+/// Steps of Newton's method, each of which doubles the digits.
 const STEPS: u32 = 8;
-/// Largest distance from the surface at which a place is on it, in shares of the reach. Larger:
-/// Newton's method ends sooner; where it leads to a zero, it leads to any smaller distance.
+/// A place at most this far from the surface, in shares of the reach, is on it. Larger: Newton's
+/// method ends sooner; where it leads to a zero, it gets as near as wanted.
 const ON: f32 = 1e-3;
 
-/// Whether a sheet that faces as `up`, a unit vector, does passes within `reach` of a place:
-/// Newton's method leads to one, or f is negative at one place of the line along `up` and positive
-/// at a later one, as below a tip, where f may have no gradient.
+/// Whether a sheet that faces like the unit vector `up` passes within `reach` of a place: Newton's
+/// method leads to one, or along `up` f is first negative and later positive, as below a tip, where
+/// f may have no gradient.
 pub(crate) fn is_passed(field: &mut dyn Evaluator, place: Vec3, up: Vec3, reach: f32) -> bool {
     let (mut at, mut normal, mut ok) = ([place], [Vec3::ZERO], [false]);
     let mut limits = Descent { residual: ON * reach, reach, trust: 0.0 };

@@ -1,18 +1,17 @@
 //! Newton's method along the gradient, in single precision: from points near a surface to points on
 //! it, a batch at a time.
 //!
-//! Seeds, the relaxation and the figures move their points here, each with limits of its own. The
-//! others move one point:
+//! Seeds, the relaxation and the figures move their points here, each with its own limits. Other
+//! Newton methods move one point:
 //!
 //! * [`newton`](crate::math::newton) moves it in double precision.
-//! * `sampler::discovery::nearness` does, too, and looks at the second derivative at each step.
+//! * `sampler::discovery::nearness` too, and it uses the second derivative at each step.
 //! * `sampler::constraint::tips` moves a direction along a sphere, and `sampler::projection` an
 //!   angle along a circle.
-//! * `sampler::refine` moves a particle along planes of the box, and `sampler::sheet` asks after
-//!   each step whether there is one sheet; both take the [`step`] of this file.
-//! * `quality::sheets` takes one step at a time on its way along a surface,
-//!   `sampler::discovery::sheets` takes turns with a box, and `sampler::discovery::audit` stays in
-//!   a plane on its way.
+//! * `sampler::refine` moves a particle along planes of the box, and `sampler::sheet` checks after
+//!   each step whether there is one sheet; both use the [`step`] of this file.
+//! * `quality::sheets` takes one step at a time along a surface, `sampler::discovery::sheets`
+//!   alternates with a box, and `sampler::discovery::audit` stays in a plane.
 //! * `sampler::discovery::singular` looks for a zero of the gradient, and `field::formula::creases`
 //!   for one of two functions at once.
 
@@ -33,7 +32,7 @@ pub(crate) fn step(value: f32, gradient: Vec3) -> Vec3 {
     gradient * (value / gradient.length_squared())
 }
 
-/// Limits of the way of a point along the gradient; the default sets none.
+/// Limits of the path of a point along the gradient; the default sets none.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Descent {
     /// Largest |f|/|∇f| at which the point is on the surface.
@@ -42,7 +41,7 @@ pub(crate) struct Descent {
     pub(crate) reach: f32,
     /// Length of a correction below which the point is not evaluated again. Newton's method
     /// converges quadratically, so the residual is then below the order of the tolerance. The
-    /// normal is that of the point before the correction.
+    /// normal is taken before the correction.
     pub(crate) trust: f32,
 }
 
@@ -106,7 +105,7 @@ pub(crate) fn descend(
     let (mut value, mut gradient) = ([0.0; BATCH], [Vec3::ZERO; BATCH]);
     let mut start = [Vec3::ZERO; BATCH];
     start[..n].copy_from_slice(points);
-    // The first `count` entries of both are the points under way: their places, and their indices.
+    // The first `count` entries of both are the points under way: their places and their indices.
     let mut at = start;
     let mut active: [u32; BATCH] = core::array::from_fn(|i| i as u32);
     ok[..n].fill(false);

@@ -1,5 +1,5 @@
-//! Functions of the program at work in a frame: batches of them, derivatives by differences where
-//! they are not given, and the count of their calls.
+//! Evaluates functions of the program in a frame: batches, derivatives by differences where none
+//! are given, and the count of calls.
 
 use super::{
     BATCH, Evaluator, Field, FieldError, Frame, Jet, MaybeSend, MaybeSync, Pieces, edges, jet_of_slopes,
@@ -10,9 +10,8 @@ use core::sync::atomic::{AtomicU64, Ordering};
 use glam::{DVec3, Vec3};
 use std::sync::OnceLock;
 
-/// Steps of second differences are this many times those of first ones: ε^¼ in place of ε^⅓, the
-/// best compromise between the error of the formula, of order h², and that of rounding, of order
-/// ε/h².
+/// Steps of second differences are this many times those of first differences: ε^¼ instead of ε^⅓
+/// balances the truncation error, of order h², and the rounding error, of order ε/h².
 const SECOND: f64 = 20.0;
 
 /// f, and ∇f if it is given, at batches of points.
@@ -103,8 +102,8 @@ macro_rules! field_of_functions {
 
 pub(super) use field_of_functions;
 
-/// The points for which functions of the program were asked, and the failure after which they are
-/// asked no more.
+/// The points at which functions of the program were evaluated, and the failure after which they
+/// are no longer called.
 pub(super) struct Calls {
     made: AtomicU64,
     most: u64,
@@ -117,7 +116,7 @@ impl Default for Calls {
     }
 }
 
-/// A copy of the functions has been asked for nothing yet.
+/// A copy of the functions has made no calls yet.
 impl Clone for Calls {
     fn clone(&self) -> Self {
         Self::limited(self.most)
@@ -131,12 +130,12 @@ impl Debug for Calls {
 }
 
 impl Calls {
-    /// No calls yet, of which there may be so many.
+    /// No calls yet, with a limit of `most` points.
     pub(super) fn limited(most: u64) -> Self {
         Self { made: AtomicU64::new(0), most, failure: OnceLock::new() }
     }
 
-    /// The number of points so far, of values and of gradients.
+    /// The number of points so far, for values and for gradients.
     pub(super) fn made(&self) -> u64 {
         self.made.load(Ordering::Relaxed)
     }
@@ -146,7 +145,7 @@ impl Calls {
         self.failure.get().cloned()
     }
 
-    /// Makes a call for so many points. Returns whether it was made, and has not failed.
+    /// Makes a call for this many points. Returns whether it was made and succeeded.
     fn call(&self, points: usize, call: impl FnOnce() -> Result<(), FieldError>) -> bool {
         if self.failure.get().is_some() {
             return false;
@@ -163,7 +162,7 @@ impl Calls {
     }
 }
 
-/// The functions of the program would have been asked for more points than they may be.
+/// The functions of the program would have been called for more points than allowed.
 #[derive(Debug)]
 struct TooManyCalls {
     most: u64,
@@ -187,15 +186,15 @@ pub(super) struct Differences<'a> {
     functions: &'a dyn Functions,
     /// The piece that is evaluated; none for f.
     label: Option<u32>,
-    /// The evaluator of a piece.
+    /// The evaluator of a piece, if one was used.
     piece: Option<Box<Self>>,
     frame: Frame,
     /// The points of a batch, in the coordinates of the field.
     points: Vec<DVec3>,
-    /// The labels of their pieces; empty where the functions name none.
+    /// The labels of their pieces; empty if the functions name none.
     labels: Vec<u32>,
-    /// The places around the points whose values or gradients make differences. Those around a
-    /// point are values of its piece, so that no difference reaches over an edge.
+    /// The places around the points that differences use. Those around a point take values of its
+    /// piece, so that no difference crosses an edge.
     places: Vec<DVec3>,
     labels_of_places: Vec<u32>,
     value: Vec<f64>,
@@ -226,7 +225,7 @@ impl<'a> Differences<'a> {
         }
     }
 
-    /// Takes the points of a batch, in the coordinates of the field.
+    /// Sets the points of a batch, in the coordinates of the field.
     fn take(&mut self, points: impl Iterator<Item = DVec3>) {
         self.points.clear();
         self.points.extend(points);
@@ -239,7 +238,7 @@ impl<'a> Differences<'a> {
         }
     }
 
-    /// Takes places around the points of the batch, so many around each.
+    /// Sets places around the points of the batch, `around` for each.
     fn take_places(&mut self, around: usize, at: impl Fn(DVec3, usize) -> DVec3) {
         self.places.clear();
         self.places.extend(
@@ -306,11 +305,11 @@ impl<'a> Differences<'a> {
     }
 }
 
-/// Number of points for which a function is asked at a time, at most.
+/// Maximum number of points in one call of a function.
 const AT_ONCE: usize = SLOPE * BATCH;
 
-/// The label of the piece at each point; 0 once a function has failed. That is no call for a value,
-/// and does not count as one.
+/// The label of the piece at each point; 0 once a function has failed. Calls for labels do not
+/// count.
 fn write_labels(functions: &dyn Functions, points: &[DVec3], labels: &mut [u32]) {
     for (points, labels) in points.chunks(AT_ONCE).zip(labels.chunks_mut(AT_ONCE)) {
         if !functions.calls().call(0, || functions.write_labels(points, labels)) {
@@ -412,8 +411,8 @@ impl Pieces for Differences<'_> {
     }
 
     fn labels_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
-        /// Largest box in which the labels at some points stand for all, as a share of the diagonal
-        /// of the box of the run.
+        /// Largest box in which the labels at some points are taken for all labels, as a share of
+        /// the diagonal of the box of the run.
         const SMALL: f64 = 0.125;
         /// Points along each of its sides.
         const SIDE: usize = 3;
@@ -446,8 +445,7 @@ impl Pieces for Differences<'_> {
     }
 }
 
-/// Number of values that a gradient takes and a second-order jet, and of gradients that a jet
-/// takes.
+/// Number of values for a gradient and for a second-order jet, and of gradients for a jet.
 const SLOPE: usize = 4;
 const JET: usize = 19;
 const AROUND: usize = 7;
@@ -460,7 +458,7 @@ fn at_slope(p: DVec3, k: usize, h: f64) -> DVec3 {
 
 /// The gradient by forward differences, from the values at the places of [`at_slope`]. Its error is
 /// of order h: less than a ten-thousandth where the surface bends within a twentieth of the box,
-/// and no more where a function computes in single precision.
+/// even for a function in single precision.
 fn slope(f: [f64; SLOPE], h: f64) -> DVec3 {
     (DVec3::new(f[1], f[2], f[3]) - DVec3::splat(f[0])) / h
 }

@@ -1,36 +1,35 @@
-//! Who evaluates a field: batches of points in single precision, single ones in double, counted
-//! from a near origin.
+//! How a field is evaluated: batches of points in single precision, single points in double,
+//! relative to a near origin.
 
 use super::{BATCH, Enclosure, Field, Jet, STEP};
 use crate::math::{Bounds, Interval, Sym3, median, power_of_two};
 use glam::{DVec3, Vec3};
 
-/// Largest gradient that needs no scale, and the inverse of the smallest. The square of such a
-/// gradient, and of a value a million times smaller or larger, is a normal number in single
-/// precision.
+/// Gradients from the inverse of this to this need no scale. The square of such a gradient, and of
+/// a value a million times smaller or larger, is a normal number in single precision.
 const COMFORTABLE: f64 = (1_u64 << 40) as f64;
 
-/// How an [`Evaluator`] counts places and brings values within reach of the numbers that they are
-/// computed with.
+/// The origin of an [`Evaluator`]'s places, and the scale that keeps values in the range of the
+/// numbers they are computed with.
 ///
-/// The default counts from zero and takes f as it is. A survey of the surface chooses one for a
+/// The default has origin zero and leaves f as it is. A survey of the surface chooses one for a
 /// whole run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// The point from which places and boxes are counted, in the coordinates of the field: single
-    /// precision holds the places of particles that are far from zero only so.
+    /// The point that places and boxes are relative to, in the coordinates of the field: only so
+    /// does single precision resolve particles that are far from zero.
     pub origin: DVec3,
-    /// A power of two by which f is multiplied. With the right one, squares of values and gradients
+    /// A power of two that multiplies f. With the right one, squares of values and gradients
     /// neither overflow nor underflow in single precision, whatever units f is in. No digit is
     /// lost.
     pub scale: f32,
-    /// The s of arsinh(f/s), which batches give for f, computed in double precision; none for f
-    /// itself. Single points are then evaluated to f/s. It is for fields whose values or
-    /// intermediate results are beyond single precision: arsinh(f/s) has the zeros and signs of f,
-    /// is f/s near the surface, and grows like a logarithm far from it.
+    /// The s of arsinh(f/s), which batches give instead of f, computed in double precision; none
+    /// for f itself. Single points then give f/s. It is for fields whose values or intermediate
+    /// results exceed single precision: arsinh(f/s) has the zeros and signs of f, is about f/s near
+    /// the surface, and grows like a logarithm far from it.
     pub double: Option<f64>,
-    /// The length of what is looked at, to which the steps of differences are small: the diagonal
-    /// of the box in a run.
+    /// The length scale, which the steps of differences are small against: in a run the diagonal of
+    /// the box.
     pub length: f64,
 }
 
@@ -41,7 +40,7 @@ impl Default for Frame {
 }
 
 impl Frame {
-    /// The frame that counts from `origin`, with f as it is.
+    /// The frame with this `origin`, and f as it is.
     #[must_use]
     pub fn around(origin: DVec3) -> Self {
         Self { origin, ..Self::default() }
@@ -53,9 +52,8 @@ impl Frame {
     }
 
     /// This frame with the power of two that brings the median magnitude of the gradient near 1, or
-    /// with 1 if that is not needed. The gradient is sampled at no more than one batch of `points`:
-    /// because only the exponent of the median counts, nearly all choices of points give the same
-    /// scale.
+    /// with 1 if no scale is needed. The gradient is sampled at most at one batch of `points`: only
+    /// the exponent of the median matters, so nearly all choices of points give the same scale.
     pub(crate) fn scaled_to(self, field: &dyn Field, points: impl ExactSizeIterator<Item = Vec3>) -> Self {
         let stride = points.len().div_ceil(BATCH).max(1);
         let points: Vec<Vec3> = points.step_by(stride).collect();
@@ -74,7 +72,7 @@ impl Frame {
         if self.origin == DVec3::ZERO { p } else { self.origin + p }
     }
 
-    /// A box in the coordinates of the field that holds this box of the frame.
+    /// A box in the coordinates of the field that contains this box of the frame.
     #[must_use]
     pub fn outward(&self, bounds: &Bounds) -> Bounds {
         if self.origin == DVec3::ZERO {
@@ -84,8 +82,8 @@ impl Frame {
         Bounds { min: lo.map(f64::next_down), max: hi.map(f64::next_up) }
     }
 
-    /// Whether batches are to be computed in double precision: the coordinates of the field may
-    /// have more digits than single precision holds.
+    /// Whether batches are computed in double precision: the coordinates of the field may have more
+    /// digits than single precision holds.
     #[must_use]
     pub fn is_double(&self) -> bool {
         self.double.is_some() || self.origin != DVec3::ZERO
@@ -102,14 +100,14 @@ impl Frame {
         least.max(STEP * power_of_two(self.length))
     }
 
-    /// f and ∇f as they are given for single points.
+    /// f and ∇f in the form for single points.
     #[must_use]
     pub fn exact(&self, (value, gradient): (f64, DVec3)) -> (f64, DVec3) {
         let (s, scale) = (self.double.unwrap_or(1.0), f64::from(self.scale));
         (value / s * scale, gradient / s * scale)
     }
 
-    /// f, ∇f and ∇∇f as they are given for single points.
+    /// f, ∇f and ∇∇f in the form for single points.
     #[must_use]
     pub fn jet(&self, jet: Jet) -> Jet {
         let (s, scale) = (self.double.unwrap_or(1.0), f64::from(self.scale));
@@ -117,13 +115,13 @@ impl Frame {
         Jet { value, gradient, hessian: jet.hessian.map(|entry| entry / s * scale) }
     }
 
-    /// f as it is given in batches, from its value in double precision.
+    /// f in the form for batches, from its value in double precision.
     #[must_use]
     pub fn value(&self, f: f64) -> f32 {
         self.double.map_or(f, |s| libm::asinh(f / s)) as f32 * self.scale
     }
 
-    /// f and ∇f as they are given in batches; not finite where f is not.
+    /// f and ∇f in the form for batches; not finite where f is not.
     #[must_use]
     pub fn gradient(&self, (f, gradient): (f64, DVec3)) -> (f32, Vec3) {
         // d/df arsinh(f/s) = 1/√(s² + f²)
@@ -131,7 +129,7 @@ impl Frame {
         (self.value(f), (gradient / size).as_vec3() * self.scale)
     }
 
-    /// f, ∇f and ∇∇f as they are given in batches; not finite where f is not.
+    /// f, ∇f and ∇∇f in the form for batches; not finite where f is not.
     #[must_use]
     pub fn hessian(&self, jet: &Jet) -> (f32, Vec3, Sym3<f32>) {
         let (value, slope) = self.gradient((jet.value, jet.gradient));
@@ -154,7 +152,7 @@ impl Frame {
         (value, slope, hessian)
     }
 
-    /// Multiplies the bounds of f and ∇f.
+    /// Scales bounds of f and ∇f.
     pub(crate) fn scale_bounds(&self, known: &mut [Enclosure]) {
         if self.scale != 1.0 {
             let scale = f64::from(self.scale);
@@ -165,7 +163,7 @@ impl Frame {
         }
     }
 
-    /// Multiplies the bounds of ∇∇f.
+    /// Scales bounds of ∇∇f.
     pub(crate) fn scale_second(&self, known: &mut [Sym3<Interval>]) {
         if self.scale != 1.0 {
             for known in known {
@@ -175,7 +173,7 @@ impl Frame {
     }
 }
 
-/// A field at work in a [`Frame`], with the memory that this takes: what the sampler calls.
+/// Evaluates a field in a [`Frame`], with the memory for it: what the sampler calls.
 ///
 /// A batched method reads `points` and writes the first `points.len()` entries of each output.
 /// Evaluation does not allocate once it is warm. The result at a point does not depend on the other
@@ -186,11 +184,11 @@ impl Frame {
 ///
 /// If an output is shorter than `points`.
 pub trait Evaluator: super::MaybeSend + super::MaybeSync {
-    /// The frame in which places are counted and values are given.
+    /// The frame of its places and values.
     fn frame(&self) -> Frame;
 
-    /// Another evaluator of the same function, or of the same branch of it, in the same frame, with
-    /// memory of its own: threads that measure have one each. It gives the same bits.
+    /// Another evaluator of the same function or branch, in the same frame, with its own memory:
+    /// each measuring thread has one. It gives the same bits.
     fn another(&self) -> Box<dyn Evaluator + '_>;
 
     /// f at each point.
@@ -221,49 +219,46 @@ pub trait Evaluator: super::MaybeSend + super::MaybeSync {
         }
     }
 
-    /// This evaluator as one that can bound f over boxes, however wide the bounds are. Of a field
-    /// that cannot, which is the default, the survey samples densely, and completeness is not
-    /// proven.
+    /// This evaluator as one that can bound f over boxes, however wide the bounds. A field without
+    /// bounds, the default, is surveyed densely, and completeness is not proven.
     fn bounded(&mut self) -> Option<&mut dyn Bounded> {
         None
     }
 
-    /// This evaluator as one of a function that is put together of smooth [pieces](Pieces). By
-    /// default it tells of none.
+    /// This evaluator as one of a function made of smooth [pieces](Pieces). By default it has none.
     fn pieces(&mut self) -> Option<&mut dyn Pieces> {
         None
     }
 }
 
-/// An evaluator that bounds values and derivatives over boxes, rounded outward: what the proofs
-/// about a surface rest on.
+/// An evaluator that bounds values and derivatives over boxes, rounded outward: the basis of proofs
+/// about a surface.
 ///
 /// Box `boxes[i]` belongs to `out[i]`.
 pub trait Bounded: Evaluator {
-    /// Number of operations that an evaluation takes, by which work is shared out; 0 if it is not
-    /// known.
+    /// Number of operations of an evaluation, used to share out work; 0 if unknown.
     fn operations(&self) -> usize {
         0
     }
 
-    /// Number of functions among whose zeros are those of f: the factors of a product, otherwise 1.
-    /// Where f has creases, those of each of its patches; where a choice keeps sheets of a surface
+    /// Number of functions whose zeros include those of f: the factors of a product, otherwise 1.
+    /// If f has creases, the factors of each patch count; if a choice keeps sheets of a surface
     /// without creases apart, those of each sheet.
     fn factors(&self) -> usize {
         1
     }
 
-    /// Bounds of factor `factor` of f and of its gradient over each box. What an enclosure says
-    /// about being defined and continuous holds for f as a whole. That of a patch or of a sheet is
-    /// empty where it gives f nowhere in the box.
+    /// Bounds of factor `factor` of f and of its gradient over each box. In an enclosure, being
+    /// defined and continuous refers to f as a whole. The enclosure of a patch or sheet is empty
+    /// where it does not give f anywhere in the box.
     ///
     /// # Panics
     ///
     /// If `factor` is not below [`Bounded::factors`], or `out` is shorter than `boxes`.
     fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]);
 
-    /// Whether f is what factor `factor` is at `p`: where f has creases or sheets that are kept
-    /// apart, whether its patch or sheet gives f there.
+    /// Whether factor `factor` gives f at `p`: if f has creases or separate sheets, whether its
+    /// patch or sheet gives f there.
     fn gives(&mut self, factor: usize, p: DVec3) -> bool {
         let _ = (factor, p);
         true
@@ -277,40 +272,40 @@ pub trait Bounded: Evaluator {
     /// Under the same conditions as [`Bounded::enclose`].
     fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]);
 
-    /// Number of parts in which the field names the [cells](Bounded::cells) of a factor with which
-    /// the search for components begins; 0, the default, if it begins with the box of the run. It
-    /// is for fields that know where their surface is, as an image with many voxels does: a search
-    /// that begins with the box may have to open all of them.
+    /// Number of parts in which the field names the [cells](Bounded::cells) of a factor where the
+    /// search for components begins; 0, the default, if it begins with the box of the run. For
+    /// fields that know where their surface is, such as an image with many voxels: a search that
+    /// begins with the box may have to open all of them.
     fn parts(&mut self, factor: usize) -> usize {
         let _ = factor;
         0
     }
 
     /// Adds boxes in the box `within`, whose sides may have no length. Each zero of the factor in
-    /// `within` at which its derivatives along all of the axes `sides` vanish must be in a box of a
-    /// part, and each end of the surface where f is defined no longer. Of the other zeros as many
-    /// as possible should be in none.
+    /// `within` at which its derivatives along all axes `sides` vanish must be in a box of a part,
+    /// and so must each place where the surface ends because f is undefined beyond. As few other
+    /// zeros as possible should be.
     fn cells(&mut self, factor: usize, part: usize, within: &Bounds, sides: &[usize], out: &mut Vec<Bounds>) {
         let _ = (factor, part, within, sides, out);
     }
 }
 
 /// An evaluator of a function that is one of several smooth functions at each point, its *pieces*:
-/// max(a, b) is a here and b there. Where two of them meet on the surface it may have an edge, a
+/// max(a, b) is a here and b there. Where two of them meet, the surface may have an edge, a
 /// *crease*. The part of the surface on which one piece gives f is a *patch*.
 ///
-/// A piece has a label. Equal labels are equal functions, and they do not depend on what was asked
-/// before. Places and boxes are counted in the [frame](Evaluator::frame).
+/// A piece has a label. Equal labels mean equal functions, whatever was called before. Places and
+/// boxes are relative to the [frame](Evaluator::frame).
 ///
-/// Formulas with maxima, minima and absolute values, and solids that are [put
-/// together](crate::union), bring their pieces; [`PiecewiseFn`](crate::PiecewiseFn) makes them of
-/// functions of the program, and of other functions they are found in the values of f.
+/// Formulas with maxima, minima and absolute values, and [combined](crate::union) solids, know
+/// their pieces; [`PiecewiseFn`](crate::PiecewiseFn) takes them from functions of the program; for
+/// other functions they are found in the values of f.
 pub trait Pieces {
     /// The label of the piece that gives f at `p`; 0 where f is smooth everywhere.
     fn label(&mut self, p: DVec3) -> u32;
 
-    /// The evaluator of a piece, also where another one gives f. Its bounds are those of the piece,
-    /// its pieces still those of f.
+    /// The evaluator of a piece, even where another one gives f. It has the bounds of the piece,
+    /// but the pieces of f.
     ///
     /// # Panics
     ///
@@ -318,14 +313,14 @@ pub trait Pieces {
     fn piece(&mut self, label: u32) -> &mut dyn Evaluator;
 
     /// The labels of the pieces that may give a point of the surface in a box, each once; none if
-    /// they are more than can be listed.
+    /// there are too many to list.
     fn labels_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>>;
 
-    /// Cells of a box with which a search for edges can begin: in or beside one of them each edge
-    /// in the box has a point. They are no wider than `width` but where that would take too long.
+    /// Cells of a box in which a search for edges can begin: each edge in the box has a point in or
+    /// next to one of them. They are no wider than `width`, unless that would take too long.
     fn seams_in(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds>;
 
-    /// Pairs of patches that meet without an edge somewhere and yet are no single patch, since they
+    /// Pairs of patches that meet without an edge somewhere and yet are not one patch, since they
     /// or their neighbours meet at an angle elsewhere; the smaller label first.
     fn tangent_pairs(&mut self) -> Vec<[u32; 2]> {
         Vec::new()
@@ -336,7 +331,7 @@ pub trait Pieces {
         false
     }
 
-    /// Whether the zeros of a piece limit the surface and are no part of it: it ends at them.
+    /// Whether the zeros of a piece limit the surface without being part of it: it ends at them.
     fn is_limit(&mut self, label: u32) -> bool {
         let _ = label;
         false
@@ -344,13 +339,13 @@ pub trait Pieces {
 }
 
 impl<'a> dyn Evaluator + 'a {
-    /// [`Pieces::label`], or 0 of a smooth function.
+    /// [`Pieces::label`]; 0 for a smooth function.
     #[doc(hidden)]
     pub fn label(&mut self, p: DVec3) -> u32 {
         self.pieces().map_or(0, |patches| patches.label(p))
     }
 
-    /// The evaluator of the smooth function of a patch; of f itself where there is no patch.
+    /// The evaluator of the smooth function of a patch; f itself if there is no patch.
     #[doc(hidden)]
     pub fn on(&mut self, patch: Option<u32>) -> &mut dyn Evaluator {
         match patch {
@@ -369,7 +364,7 @@ impl<'a> dyn Evaluator + 'a {
         self.pieces().is_some_and(|patches| patches.is_limit(branch))
     }
 
-    /// Whether a zero of f is no point of the surface: it is one of a branch that limits it.
+    /// Whether a zero of f is no point of the surface, because it belongs to a limiting branch.
     pub(crate) fn is_beyond_limits(&mut self, p: DVec3) -> bool {
         self.has_limits() && {
             let branch = self.label(p);
@@ -377,19 +372,19 @@ impl<'a> dyn Evaluator + 'a {
         }
     }
 
-    /// [`Pieces::tangent_pairs`]; none of a smooth function.
+    /// [`Pieces::tangent_pairs`]; empty for a smooth function.
     pub(crate) fn tangent_pairs(&mut self) -> Vec<[u32; 2]> {
         self.pieces().map_or_else(Vec::new, |patches| patches.tangent_pairs())
     }
 
-    /// [`Pieces::labels_in`]; none of a smooth function.
+    /// [`Pieces::labels_in`]; none for a smooth function.
     #[doc(hidden)]
     pub fn labels_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
         self.pieces().and_then(|patches| patches.labels_in(bounds))
     }
 }
 
-/// The evaluator of a field by its own methods, one point at a time.
+/// Evaluates a field by its own methods, one point at a time.
 pub(super) struct Pointwise<'a, F: ?Sized> {
     pub(super) field: &'a F,
     pub(super) frame: Frame,

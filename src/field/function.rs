@@ -9,30 +9,29 @@ use glam::DVec3;
 /// A field given by a function of a point, with its gradient or without.
 ///
 /// f is negative inside the surface; where it is undefined it returns NaN. Derivatives that are not
-/// given are found by differences, with four evaluations for a gradient and nineteen for a Hessian:
-/// a gradient makes sampling several times as fast. There are no bounds to prove by that every
-/// component of the surface was found.
+/// given are computed by differences, with four evaluations for a gradient and nineteen for a
+/// Hessian: a given gradient makes sampling several times as fast. Without bounds there is no proof
+/// that every component of the surface was found.
 ///
-/// Edges, as those of the union of two bodies by `min`, are found in the values of f, on a grid of
-/// 64 cells along the longest side of the box: particles lie on them, and the mesh is closed along
-/// them. What is smaller than a cell may be missed, and what fades out, or is computed in
-/// single precision, is not found: the mesh is open there, and the report says where. A
-/// [`PiecewiseFn`](crate::PiecewiseFn) says where its edges are, and so do bodies that are given
-/// one by one and joined by [`union`](crate::union).
+/// Edges, such as those of a union of two bodies by `min`, are found in the values of f, on a grid
+/// of 64 cells along the longest side of the box: particles lie on them, and the mesh is closed
+/// along them. Edges smaller than a cell may be missed; edges that fade out, or of a function in
+/// single precision, are not found: the mesh is open there, and the report says where. A
+/// [`PiecewiseFn`](crate::PiecewiseFn) says where its edges are, and so do separate bodies joined
+/// by [`union`](crate::union).
 ///
-/// Give the box of the surface where it is known ([`Settings::in_box`](crate::Settings::in_box)).
+/// Give the box of the surface if it is known ([`Settings::in_box`](crate::Settings::in_box)).
 /// Without one, grids of 32 cells a side look for changes of sign over cubes around the origin,
 /// from ±4 to ±10,000, each four or five times as wide as the one before. The box is fitted to what
-/// lies in the smallest cube through whose faces the surface does not pass. Spikes and arms that
-/// grow thinner than the cells of its grid are followed to their ends. What is smaller than a cell
-/// by itself is not seen, and a small part far away is missed without a word. Where a
-/// larger grid shows more, a warning says so ([`Warning::Beyond`](crate::Warning::Beyond)); where
-/// none shows anything, [`Error::NoBox`](crate::Error::NoBox) does.
+/// lies in the smallest cube whose faces the surface does not cross. Spikes and arms that become
+/// thinner than the grid's cells are followed to their ends. A separate part smaller than a cell is
+/// not found, and a small part far away is missed without notice. If a larger grid shows more, a
+/// warning says so ([`Warning::Beyond`](crate::Warning::Beyond)); if none shows anything, the error
+/// is [`Error::NoBox`](crate::Error::NoBox).
 ///
-/// A function that takes long is asked less often in a box that is given, with its gradient, by a
-/// coarser survey ([`Settings::survey_cells`](crate::Settings::survey_cells)) and without measuring
-/// ([`Measured::Nothing`](crate::Measured::Nothing)); [`FnField::limit_calls`] sets an
-/// end.
+/// A slow function is called less often with a given box, with its gradient, with a coarser survey
+/// ([`Settings::survey_cells`](crate::Settings::survey_cells)) and without measuring
+/// ([`Measured::Nothing`](crate::Measured::Nothing)); [`FnField::limit_calls`] sets a limit.
 ///
 /// ```
 /// use glam::DVec3;
@@ -62,8 +61,8 @@ impl<F, G> FnField<F, G> {
         FnField { value: self.value, gradient: Some(gradient), calls: self.calls }
     }
 
-    /// Returns the field whose functions are asked for `most` points at most, by all runs together.
-    /// A run that needs more ends with [`Error::Field`](crate::Error::Field).
+    /// Returns the field with a limit: its functions are evaluated at `most` points in all runs
+    /// together. A run that needs more ends with [`Error::Field`](crate::Error::Field).
     #[must_use]
     pub fn limit_calls(self, most: u64) -> Self {
         Self { calls: Calls::limited(most), ..self }
@@ -103,10 +102,9 @@ field_of_functions! {
 
 /// A field given by a function of a batch of points, with its gradients or without.
 ///
-/// The function writes f at each point, of which there are 512 at most. It may fail: the run ends
-/// then, and gives the error. A function that has failed once is not asked again, by no run; with
-/// the feature `parallel` other threads may be asking it at that moment. What is said of
-/// [`FnField`] holds here, too.
+/// The function writes f at each of at most 512 points. It may fail: the run then ends with its
+/// error. After a failure no run calls the function again; with the feature `parallel` other
+/// threads may be calling it at that moment. Otherwise [`FnField`] says what applies.
 pub struct BatchField<F, E = FieldError, G = fn(&[DVec3], &mut [DVec3]) -> Result<(), E>> {
     values: F,
     gradients: Option<G>,
@@ -137,8 +135,8 @@ impl<F, E, G> BatchField<F, E, G> {
         BatchField { values, gradients: Some(gradients), calls, error }
     }
 
-    /// Returns the field whose functions are asked for `most` points at most, by all runs together.
-    /// A run that needs more ends with [`Error::Field`](crate::Error::Field).
+    /// Returns the field with a limit: its functions are evaluated at `most` points in all runs
+    /// together. A run that needs more ends with [`Error::Field`](crate::Error::Field).
     #[must_use]
     pub fn limit_calls(self, most: u64) -> Self {
         Self { calls: Calls::limited(most), ..self }

@@ -1,4 +1,4 @@
-//! A program gives a field, a function of a point or a function of a batch of points to be sampled.
+//! What a program can give to be sampled: a field, a function of a point, or a function of a batch.
 
 use super::{BatchField, Field, FnField, MaybeSend, MaybeSync};
 use core::fmt::{self, Debug, Display, Formatter};
@@ -10,8 +10,8 @@ use std::sync::Arc;
 /// that gives f at a point, or a function `Fn(&[DVec3], &mut [f64]) -> Result<(), E>` that writes f
 /// at each of a batch of points and may fail.
 ///
-/// `Kind` tells the compiler which of these it is; nobody has to name it. The type of a closure's
-/// argument has to be written.
+/// `Kind` tells the compiler which of these it is; nobody has to name it. A closure's argument
+/// needs its type written.
 ///
 /// ```
 /// use marching_particles::glam::DVec3;
@@ -34,7 +34,7 @@ pub trait IntoField<Kind> {
     /// The field.
     type Field: Field;
 
-    /// The field of what was given.
+    /// The field made of the given value.
     fn into_field(self) -> Self::Field;
 }
 
@@ -79,16 +79,16 @@ where
     }
 }
 
-/// An error of a function of the program, as errors can be shared. In WebAssembly it may hold
-/// values of JavaScript.
+/// An error of a function of the program, in shareable form. In WebAssembly it may hold values of
+/// JavaScript.
 #[cfg(not(target_arch = "wasm32"))]
 pub type SharedError = Arc<dyn Error + Send + Sync>;
-/// An error of a function of the program, as errors can be shared. In WebAssembly it may hold
-/// values of JavaScript.
+/// An error of a function of the program, in shareable form. In WebAssembly it may hold values of
+/// JavaScript.
 #[cfg(target_arch = "wasm32")]
 pub type SharedError = Arc<dyn Error>;
 
-/// The error of a function of the program that is sampled.
+/// The error of a sampled function of the program.
 #[derive(Clone)]
 pub struct FieldError(SharedError);
 
@@ -112,7 +112,7 @@ impl Display for FieldError {
     }
 }
 
-/// Two errors are equal if they are one.
+/// Two errors are equal if they are the same object.
 impl PartialEq for FieldError {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)

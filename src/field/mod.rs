@@ -1,8 +1,8 @@
 //! Fields f(x, y, z) whose zero set is the surface.
 //!
-//! A [`Field`] is a function that does not change. An [`Evaluator`] of it has the memory to
-//! evaluate batches of points, and if it is [`Bounded`] it bounds f over boxes. [`formula`] makes
-//! fields from text, [`gallery`] holds named formulas, and [`rbf`] sums radial functions.
+//! A [`Field`] is a function that does not change. Its [`Evaluator`] has the memory to evaluate
+//! batches of points, and if it is [`Bounded`] it bounds f over boxes. [`formula`] makes fields
+//! from text, [`gallery`] holds named formulas, and [`rbf`] sums radial functions.
 
 mod combined;
 pub(crate) mod crossing;
@@ -66,7 +66,7 @@ pub struct Enclosure {
     /// derivatives are meaningless.
     pub smooth: bool,
     /// Whether f may vanish in the box. Zeros can be excluded even if the bounds have both signs,
-    /// as those of 1/x.
+    /// as for 1/x.
     pub may_vanish: bool,
 }
 
@@ -81,7 +81,7 @@ impl Enclosure {
         may_vanish: true,
     };
 
-    /// Value and gradient in the middle of their bounds. Of a single point these are all but exact.
+    /// Value and gradient in the middle of their bounds. For a single point these are nearly exact.
     pub(crate) fn middle(&self) -> (f64, DVec3) {
         (self.value.middle(), DVec3::from_array(self.gradient.map(Interval::middle)))
     }
@@ -92,12 +92,12 @@ impl Enclosure {
 
 /// A scalar field f with its derivatives; f < 0 inside the surface.
 ///
-/// A field is a function: it does not change, so it can be shared between runs, threads and whoever
-/// measures. One method is required, [`Field::value_and_gradient`]. The sampler calls a field
-/// through an [`Evaluator`], which has the memory that this takes; a field that can do better than
-/// one point at a time, in double precision and without bounds, brings an evaluator of its own.
+/// A field is a function: it does not change, so it can be shared between runs, threads and
+/// measurements. One method is required, [`Field::value_and_gradient`]. The sampler calls a field
+/// through an [`Evaluator`], which has the memory for it; a field that can do better than one point
+/// at a time, in double precision and without bounds, provides its own evaluator.
 ///
-/// f is NaN where it is undefined, and it has the same bits whenever it is asked.
+/// f is NaN where it is undefined. Repeated evaluations give the same bits.
 ///
 /// # Example
 ///
@@ -121,12 +121,12 @@ pub trait Field: MaybeSend + MaybeSync {
     /// f and ∇f at `p`.
     fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3);
 
-    /// f at `p`, for fields of which it takes less than with the gradient.
+    /// f at `p`, for fields that compute it faster than with the gradient.
     fn value(&self, p: DVec3) -> f64 {
         self.value_and_gradient(p).0
     }
 
-    /// Writes f at each point, for fields that are asked for many points at a time.
+    /// Writes f at each point, for fields that are evaluated at many points at a time.
     ///
     /// # Panics
     ///
@@ -147,26 +147,26 @@ pub trait Field: MaybeSend + MaybeSync {
         Box::new(Pointwise { field: self, frame })
     }
 
-    /// Returns what the field knows of itself: periods, a cell, the equation that is sampled.
+    /// Returns the field's own facts: periods, a cell, the equation that is sampled.
     fn facts(&self) -> Facts {
         Facts::default()
     }
 
-    /// The points for which functions of the program have been asked so far, of values and of
-    /// gradients; none where there are no such functions, or they are not counted.
+    /// The points at which functions of the program were evaluated so far, for values and
+    /// gradients; none without such functions, or if they are not counted.
     fn calls(&self) -> Option<u64> {
         None
     }
 
-    /// Why the field has no values any more, if a function of the program has failed. A run ends
-    /// then, and gives this error.
+    /// Why the field has no values any more, if a function of the program has failed. A run then
+    /// ends with this error.
     fn failure(&self) -> Option<FieldError> {
         None
     }
 
-    /// This field as one that finds out by itself where its [pieces](Pieces) meet. Of a field whose
-    /// evaluator knows its pieces, the library looks where labels change; the values of any other
-    /// one are searched for edges.
+    /// This field as one that finds the places where its [pieces](Pieces) meet. For a field whose
+    /// evaluator knows its pieces, the library searches where labels change; in any other field it
+    /// searches the values for edges.
     #[doc(hidden)]
     fn piecewise(&self) -> Option<&dyn Piecewise> {
         None
@@ -178,72 +178,71 @@ pub trait Field: MaybeSend + MaybeSync {
         false
     }
 
-    /// The field that stands for this one in what is [put together](union) of it and others, where
-    /// that is another one: the function without what ends its surface.
+    /// The field that replaces this one as an operand of a [combination](union), if any: the
+    /// function without what ends its surface.
     #[doc(hidden)]
     fn operand(&self) -> Option<Arc<dyn Field>> {
         None
     }
 }
 
-/// Facts about a field that no value tells.
+/// Facts about a field that its values do not show.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Facts {
     /// The period of f along each axis: 0 if f does not change along it, none if f is not known to
     /// be periodic.
     pub periods: [Option<f64>; 3],
-    /// The box that closes the solid f ≤ 0 as a cell. What its opposite faces cut is the same along
-    /// every axis that it repeats.
+    /// The box that closes the solid f ≤ 0 as a cell. Its opposite faces cut the surface equally
+    /// along every axis that it repeats.
     pub unit_cell: Option<UnitCell>,
-    /// The equation of the same surface that is evaluated in the place of the one that was given,
-    /// if there is one.
+    /// The equivalent equation that is evaluated instead of the given one, if any.
     pub sampled_as: Option<String>,
-    /// The faces of a solid, as equations, with which a cutter lies flush: what it would leave of
-    /// them has no thickness and is no part of the surface.
+    /// The faces of a solid, as equations, that a cutter leaves flush: the rest of them has no
+    /// thickness and is not part of the surface.
     pub flush_faces: Vec<String>,
     /// Names that the field defines, and that nothing in it uses.
     pub unused: Vec<String>,
     /// A sentence for the user on why f is the same everywhere, if it is known.
     pub why_constant: Option<String>,
-    /// A box that holds the whole surface, if the field knows one. The box of a run is fitted to
-    /// it, and the surface is not searched elsewhere.
+    /// A box that contains the whole surface, if the field knows one. The box of a run is fitted to
+    /// it, and the surface is not searched for elsewhere.
     pub within: Option<Within>,
-    /// The box in which f is known, as that of an image, if it is not known everywhere.
+    /// The box in which f is known, such as an image's, if it is not known everywhere.
     pub domain: Option<Bounds>,
-    /// The distance between the values that f is interpolated from, if it is: that of the voxels of
-    /// an image. Nothing is known of what is finer.
+    /// The distance between the values that f is interpolated from, such as the voxels of an image,
+    /// if it is. Finer details are unknown.
     pub resolution: Option<f64>,
 }
 
-/// A box that holds the whole surface of a field.
+/// A box that contains the whole surface of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Within {
     /// The box.
     pub bounds: Bounds,
-    /// Whether the surface would go on through faces of the box, as that of an image does at its
+    /// Whether the surface would continue through faces of the box, as an image's does at its
     /// border. A run then takes the box as it is; otherwise it leaves room around it.
     pub is_cut: bool,
 }
 
-/// A field that finds out by itself where its [pieces](Pieces) meet.
+/// A field that finds the places where its [pieces](Pieces) meet.
 #[doc(hidden)]
 pub trait Piecewise: Field + Any {
-    /// Finds cells of a box, in slices, outside of which no pieces meet at an angle on the surface:
-    /// no wider than `width` but where that would take too long; no cell if none meet. With them
-    /// comes the field in which pieces that meet smoothly on the surface in the box are one, and
-    /// which an evaluator is to be asked of.
+    /// Finds, in slices, cells of a box that contain all places where pieces meet at an angle on
+    /// the surface: no wider than `width`, unless that would take too long; empty if none meet.
+    /// Also returns the field, to evaluate from then on, in which pieces that meet smoothly on the
+    /// surface in the box are one.
     fn pieces_in<'a>(&'a self, bounds: &Bounds, width: f64) -> Work<'a, (Vec<Bounds>, Arc<dyn Piecewise>)>;
 
-    /// This field with the pieces of another one, [found](Piecewise::pieces_in) before, where it is
-    /// the same function of other parameters; otherwise with its own.
+    /// This field with the pieces of another one, [found](Piecewise::pieces_in) before, if it is
+    /// the same function with other parameters; otherwise with its own.
     fn with_pieces_of(&self, other: &dyn Piecewise) -> Arc<dyn Piecewise>;
 
     /// The field f − shift, or −f − shift, with its pieces.
     fn turned(&self, is_negative: bool, shift: f64) -> Arc<dyn Field>;
 }
 
-/// A box whose faces close a solid, so that copies of it beside each other are joined.
+/// A box whose faces close a solid, so that adjacent copies of it join.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnitCell {
     /// The box.
@@ -253,7 +252,7 @@ pub struct UnitCell {
 }
 
 impl UnitCell {
-    /// The cell with its places counted from `origin`.
+    /// The cell with its places relative to `origin`.
     #[must_use]
     pub fn relative_to(&self, origin: DVec3) -> Self {
         Self { bounds: self.bounds.relative_to(origin), ..*self }
@@ -264,8 +263,8 @@ impl UnitCell {
 const STEP: f64 = 1.0 / 131_072.0;
 
 /// Length of the steps of central differences at `p`: ∛ε of its largest coordinate, or of 1 if that
-/// is smaller. It is the best compromise between the error of the formula, of order h², and that of
-/// rounding, of order ε/h (Press et al., "Numerical Recipes", §5.7).
+/// is smaller. It balances the truncation error, of order h², and the rounding error, of order ε/h
+/// (Press et al., "Numerical Recipes", §5.7).
 pub(crate) fn difference_step(p: DVec3) -> f64 {
     STEP * p.abs().max_element().max(1.0)
 }
@@ -281,8 +280,8 @@ fn jet_by_differences<F: Field + ?Sized>(field: &F, p: DVec3) -> Jet {
     jet_of_slopes(value, gradient, [x, y, z])
 }
 
-/// The jet with these derivatives of the gradient along the axes, which rounding leaves a little
-/// asymmetric.
+/// The jet with these derivatives of the gradient along the axes, made symmetric: rounding leaves
+/// them slightly asymmetric.
 fn jet_of_slopes(value: f64, gradient: DVec3, [x, y, z]: [DVec3; 3]) -> Jet {
     let (xy, xz, yz) = (0.5 * (x.y + y.x), 0.5 * (x.z + z.x), 0.5 * (y.z + z.y));
     Jet { value, gradient, hessian: Sym3 { xx: x.x, xy, xz, yy: y.y, yz, zz: z.z } }
@@ -335,6 +334,6 @@ impl<P: Deref<Target: Field> + MaybeSend + MaybeSync> Field for P {
     }
 }
 
-/// Share of its longest side by which a box is enlarged for proofs about the surface in it, so that
-/// a surface that touches the box from inside is inside.
+/// Share of a box's longest side by which the box is enlarged for proofs about the surface in it,
+/// so that a surface that touches it from inside is inside.
 pub(crate) const MARGIN: f64 = 1.0 / 65_536.0;

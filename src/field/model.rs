@@ -7,12 +7,12 @@ use crate::math::Bounds;
 use core::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
 
-/// Numbers of centres that can be asked for, of [`fit_points`](crate::fit_points) for example.
+/// Numbers of centres that can be requested, for example from [`fit_points`](crate::fit_points).
 pub const CENTRES: RangeInclusive<u32> = 100..=800;
 /// Maximum size of a file of points in bytes. Fifty million bytes hold some millions of points,
 /// thousands of times more than an interpolant can have centres.
 pub const MAX_FILE_BYTES: u32 = 50_000_000;
-/// Default number of centres, which is that of the paper's models (§6).
+/// Default number of centres, as in the paper's models (§6).
 pub const DEFAULT_CENTRES: u32 = 200;
 
 /// Origin of the normals of a model's points.
@@ -23,7 +23,7 @@ pub enum NormalSource {
     /// The normals were given with the points.
     #[default]
     Given,
-    /// The normals are area-weighted means of those of the faces around each point.
+    /// Each normal is the area-weighted mean of the normals of the faces around its point.
     FromMesh,
     /// The normals were estimated from the neighbours of each point.
     Estimated,
@@ -48,16 +48,16 @@ pub struct ModelInfo {
     /// their distance from the surface to first order (G. Taubin, "Estimation of Planar Curves,
     /// Surfaces, and Nonplanar Space Curves Defined by Implicit Equations", 1991).
     pub residual_mean: f64,
-    /// Residual that 95 % of them do not exceed, as a share of that diagonal.
+    /// Residual that 95 % of the points do not exceed, as a share of that diagonal.
     pub residual_95: f64,
     /// Maximum residual, as a share of that diagonal.
     pub residual_max: f64,
-    /// Position of the point with that residual.
+    /// Position of the point with the maximum residual.
     pub farthest: [f64; 3],
     /// The mesh of the file, if it has faces.
     pub mesh: Option<GivenMesh>,
     /// Share of the area of the fitted surface in its box that lies beyond the border of the
-    /// points; 0 where there is no border.
+    /// points; 0 without a border.
     #[serde(default)]
     pub beyond_share: f64,
     /// Origin of the normals.
@@ -67,7 +67,7 @@ pub struct ModelInfo {
     pub warnings: Vec<String>,
 }
 
-/// The mesh of a file, as it is.
+/// The mesh of a file, without repairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct GivenMesh {
@@ -86,7 +86,7 @@ pub struct GivenTopology {
     pub components: usize,
     /// Euler number: vertices − edges + faces.
     pub euler: i64,
-    /// Number of border loops, where the mesh is open.
+    /// Number of border loops, if the mesh is open.
     pub borders: usize,
 }
 

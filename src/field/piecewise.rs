@@ -1,4 +1,4 @@
-//! Fields put together of smooth functions of the program, which tell which of them gives f where.
+//! Fields made of smooth functions of the program, which say which of them gives f at a point.
 
 use super::differences::{Calls, Differences, Functions, field_of_functions};
 use super::{Evaluator, Field, FieldError, Frame, Jet, MaybeSend, MaybeSync};
@@ -6,17 +6,17 @@ use core::fmt::{self, Debug, Formatter};
 use core::marker::PhantomData;
 use glam::DVec3;
 
-/// A field put together of smooth functions, its *pieces*, by functions of the program: one that
-/// gives the label of the piece at a point, and one that gives the value of a piece there.
+/// A field made of smooth functions, its *pieces*, by functions of the program: one gives the label
+/// of the piece at a point, and one the value of a piece there.
 ///
 /// f at a point is the value of its piece. Where the surface passes from one piece to another it
-/// has an edge: particles lie on it, and the mesh is closed along it, to the digits of the numbers.
-/// To find the edge the library evaluates a piece also a few particles beyond it, where another
-/// piece gives f; it should be smooth there, too. Pieces with equal labels are the same function. f
-/// should be continuous: where the values of two pieces differ at their border, the surface ends.
+/// has an edge: particles lie on it, and the mesh is closed along it, to full precision. To find
+/// the edge the library evaluates a piece also a few particles beyond it, where another piece gives
+/// f; it should be smooth there, too. Pieces with equal labels are the same function. f should be
+/// continuous: where the values of two pieces differ at their border, the surface ends.
 ///
-/// Of a function that tells nothing about its pieces, [`FnField`](super::FnField), the edges are
-/// found in its values.
+/// For a function that does not name its pieces, [`FnField`](super::FnField), edges are found in
+/// the values.
 ///
 /// ```
 /// use marching_particles::glam::DVec3;
@@ -50,8 +50,8 @@ impl<L: Fn(DVec3) -> u32, P: Fn(u32, DVec3) -> f64> PiecewiseFn<L, P> {
 }
 
 impl<L, P> PiecewiseFn<L, P> {
-    /// Returns the field whose pieces are asked for `most` points at most, by all runs together. A
-    /// run that needs more ends with [`Error::Field`](crate::Error::Field).
+    /// Returns the field with a limit: its pieces are evaluated at `most` points in all runs
+    /// together. A run that needs more ends with [`Error::Field`](crate::Error::Field).
     #[must_use]
     pub fn limit_calls(self, most: u64) -> Self {
         Self { calls: Calls::limited(most), ..self }
@@ -88,11 +88,11 @@ field_of_functions! {
     P: Fn(u32, DVec3) -> f64 + MaybeSend + MaybeSync,
 }
 
-/// [`PiecewiseFn`] by functions of batches of points, which may fail, as that of a
-/// [`BatchField`](super::BatchField) may.
+/// [`PiecewiseFn`] by functions of batches of points, which may fail, as in a
+/// [`BatchField`](super::BatchField).
 ///
 /// One function writes the labels at points, the other one the values of a piece at points. A batch
-/// has 512 points at most.
+/// has at most 512 points.
 pub struct BatchPiecewise<L, P, E = FieldError> {
     labels: L,
     piece: P,

@@ -1,4 +1,4 @@
-//! The bodies of a mesh: the pieces in which a printer would print it.
+//! The bodies of a mesh: the pieces that a printer would print.
 
 use super::triangulation::Triangulation;
 use crate::math::sort_few;
@@ -7,8 +7,8 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// Area of a body, as a share of that of the largest one, below which it is a loose chip: what a
-/// box cuts off at a corner, for example. Larger: small pieces that are wanted count as chips.
+/// A body is a loose chip if its area is below this share of the largest one's: a piece that a box
+/// cuts off at a corner, for example. Larger: small pieces that are wanted count as chips.
 const CHIP_SHARE: f64 = 0.05;
 
 /// A body of a mesh: a closed component with the walls of its hollows, or an open component.
@@ -21,13 +21,13 @@ pub struct Body {
     pub min: [f64; 3],
     /// Upper corner of the box around it.
     pub max: [f64; 3],
-    /// Volume that it encloses, without that of its hollows; none if an edge of it is open.
+    /// Volume that it encloses, without its hollows; none if it has an open edge.
     pub volume: Option<f64>,
-    /// Whether it is a loose chip: it has less than a twentieth of the area of the largest body.
+    /// Whether it is a loose chip: its area is less than a twentieth of the largest body's.
     pub is_chip: bool,
 }
 
-/// The bodies of a mesh that a file holds.
+/// Which bodies of a mesh a file holds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
@@ -36,13 +36,13 @@ pub enum Bodies {
     /// All of them.
     #[default]
     All,
-    /// Those that are no loose chips.
+    /// All that are not loose chips.
     WithoutChips,
     /// The one with the largest area.
     Largest,
 }
 
-/// The bodies of a mesh, and which components are theirs.
+/// The bodies of a mesh, and their components.
 pub(crate) struct Split {
     /// The largest first.
     pub(crate) bodies: Vec<Body>,
@@ -52,7 +52,7 @@ pub(crate) struct Split {
 
 impl Split {
     pub(crate) fn new(mesh: &Triangulation, particles: &Particles) -> Self {
-        /// A body that holds nothing yet.
+        /// A body that is still empty.
         const NOTHING: Body = Body {
             area: 0.0,
             min: [f64::INFINITY; 3],
@@ -102,7 +102,7 @@ impl Triangulation {
         Split::new(self, particles).bodies
     }
 
-    /// The triangles of some bodies, for a file: nothing is counted on them.
+    /// The triangles of some bodies, for a file; their topology is not counted.
     pub(crate) fn only(&self, which: Bodies, particles: &Particles) -> Cow<'_, Self> {
         if which == Bodies::All {
             return Cow::Borrowed(self);
@@ -139,7 +139,7 @@ impl Split {
 }
 
 impl Bodies {
-    /// Whether the body at a place among `bodies` is one of these.
+    /// Whether the body at a place among `bodies` is kept.
     fn keep(self, bodies: &[Body], place: usize) -> bool {
         match self {
             Self::All => true,
@@ -148,7 +148,7 @@ impl Bodies {
         }
     }
 
-    /// The sides of the box around these bodies of a mesh, whose bodies are `all`, the largest
+    /// The size of the box around these bodies of a mesh, whose bodies are `all`, the largest
     /// first; zeros without any.
     #[must_use]
     pub fn size(self, all: &[Body]) -> DVec3 {

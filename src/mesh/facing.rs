@@ -1,5 +1,4 @@
-//! The inside of the closed parts of a mesh, and which parts have to be turned so that they face
-//! outward.
+//! The inside of the closed parts of a mesh, and which parts must be turned to face outward.
 
 use crate::math::{key_of, sort_by_key, sort_pairs};
 use crate::slices::{LIGHT, pause};
@@ -7,7 +6,7 @@ use crate::topology::Topology;
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 
-/// The sign of f inside of the closed parts of a surface.
+/// The sign of f inside the closed parts of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[non_exhaustive]
@@ -18,31 +17,31 @@ pub enum Inside {
     /// f is positive inside, as a density above its level is.
     #[serde(rename = "f > 0")]
     Positive,
-    /// f is negative inside of some parts and positive inside of others.
+    /// f is negative inside some parts and positive inside others.
     #[serde(rename = "f < 0, f > 0")]
     Both,
 }
 
-/// How the parts of a mesh face.
+/// The orientation of the parts of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Facing {
-    /// For each vertex, whether the triangles around it have to be turned to face outward; empty
-    /// where all do.
+    /// For each vertex, whether the triangles around it must be turned to face outward; empty if
+    /// all do.
     pub(crate) turned: Vec<bool>,
-    /// Sign of f inside of the closed parts; none if there is no closed part.
+    /// Sign of f inside the closed parts; none if there is no closed part.
     pub(crate) inside: Option<Inside>,
-    /// The component that is the outer wall of each component's body: itself, or for the wall of a
-    /// hollow the wall around that. It is empty if no component has a hollow.
+    /// For each component, the outer wall of its body: itself or, for the wall of a hollow, the
+    /// wall around that. Empty if no component has a hollow.
     pub(crate) body_of: Vec<u32>,
 }
 
-/// A part of a mesh: triangles that edges join.
+/// A part of a mesh: triangles that are connected by edges.
 struct Part {
-    /// A vertex of the part, from which its volume is counted.
+    /// A vertex of the part, the origin of the sum for its volume.
     origin: DVec3,
     /// Volume that its triangles enclose as they are; negative if they face inward.
     volume: f64,
-    /// Whether it is closed: along every edge as many triangles run one way as the other.
+    /// Whether it is closed: along every edge as many triangles run one way as the other way.
     is_closed: bool,
     /// The vertex with the largest x.
     last: u32,
@@ -54,15 +53,16 @@ impl Part {
     }
 }
 
-/// How the parts of a mesh face, whose triangles are counter-clockwise round the gradient of f.
+/// The orientation of the parts of a mesh whose triangles are counter-clockwise round the gradient
+/// of f.
 ///
 /// A closed part that lies in no other one faces outward if it encloses a positive volume. Parts
-/// within it stay to it as they are: the walls of a hollow bound one solid. Where f is positive
-/// inside of all closed parts, the open ones are turned with them, so that the mesh as a whole is
-/// that of −f; elsewhere open parts stay as f has them.
+/// inside it keep their orientation relative to it: the walls of a hollow bound one solid. If f is
+/// positive inside all closed parts, the open ones are turned, too, so that the whole mesh is that
+/// of −f; otherwise open parts stay as f has them.
 ///
-/// Linear in the triangles. Where the signs of the volumes differ, which part holds which is found
-/// by a ray from each.
+/// Linear in the triangles. If the signs of the volumes differ, a ray from each part shows which
+/// part contains which.
 pub(crate) async fn facing(position: &[Vec3], triangles: &[[u32; 3]], topology: &Topology) -> Facing {
     let parts = parts(position, triangles, topology).await;
     let part_of = &topology.component_of;
@@ -122,7 +122,7 @@ async fn parts(position: &[Vec3], triangles: &[[u32; 3]], topology: &Topology) -
     for &[a, _] in &topology.lone_edges {
         parts[part_of[a as usize] as usize].is_closed = false;
     }
-    // Along an edge of more than two triangles they may still be as many each way.
+    // An edge of more than two triangles may still have as many in each direction.
     let mut is_crowded = vec![false; parts.len()];
     topology.crowded_edges.iter().for_each(|&[a, _]| is_crowded[part_of[a as usize] as usize] = true);
     if is_crowded.contains(&true) {
@@ -147,10 +147,10 @@ async fn parts(position: &[Vec3], triangles: &[[u32; 3]], topology: &Topology) -
     parts
 }
 
-/// Which parts hold others.
+/// Which parts contain others.
 struct Nesting {
-    /// For each part, the closed part that holds it and is held by none: itself if there is no such
-    /// part, or if it is open.
+    /// For each part, the outermost closed part that contains it: itself if there is none, or if it
+    /// is open.
     outer: Vec<usize>,
     /// See [`Facing::body_of`].
     body_of: Vec<u32>,
@@ -164,7 +164,7 @@ async fn nesting(position: &[Vec3], triangles: &[[u32; 3]], parts: &[Part], part
         .map(|(k, part)| (position[part.last as usize], k))
         .collect();
     sort_by_key(&mut rays, |(p, _)| key_of(p.y.into()));
-    // Pairs of the part of a ray and a part that it meets, one for each time.
+    // Pairs of the part of a ray and a part that it meets, one for each intersection.
     let mut met: Vec<[u32; 2]> = Vec::new();
     for slice in triangles.chunks(LIGHT) {
         for triangle in slice {
@@ -193,7 +193,7 @@ async fn nesting(position: &[Vec3], triangles: &[[u32; 3]], parts: &[Part], part
     };
     let depth = |part: u32| holders_of(part).count();
     let outer = |part: u32| holders_of(part).find(|&holder| depth(holder) == 0);
-    // Walls alternate from outside to inside: of a body, of its hollow, of a body in that.
+    // Walls alternate from outside to inside: of a body, of its hollow, of a body in the hollow.
     let wall =
         |part: u32| holders_of(part).find(|&holder| depth(part) % 2 == 1 && depth(holder) + 1 == depth(part));
     let all = 0..parts.len() as u32;
@@ -204,11 +204,11 @@ async fn nesting(position: &[Vec3], triangles: &[[u32; 3]], parts: &[Part], part
 }
 
 /// Whether the ray along x from a point meets a triangle. A ray meets a closed mesh an odd number
-/// of times if and only if it begins inside, also where it runs through edges and corners: each
-/// side counts by a rule that is the same for both of its triangles.
+/// of times if and only if it begins inside, even if it runs through edges and corners: each side
+/// counts by a rule that is the same for both of its triangles.
 fn is_met(corners: [Vec3; 3], p: Vec3) -> bool {
     let [a, b, c] = corners.map(|corner| (corner - p).as_dvec3());
-    // Whether the way from p along y in the plane of y and z runs across a side.
+    // Whether the ray from p along y, in the plane of y and z, crosses a side.
     let crosses = |a: DVec3, b: DVec3| {
         let (low, high) = if a.z < b.z { (a, b) } else { (b, a) };
         low.z <= 0.0 && 0.0 < high.z && {
@@ -232,7 +232,7 @@ mod tests {
 
     const OUTWARD: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
-    /// A mesh of tetrahedra: each around a middle, of a size, facing outward or inward.
+    /// A mesh of tetrahedra: each has a middle and a size, and faces outward or inward.
     #[derive(Default)]
     struct Tetrahedra {
         position: Vec<Vec3>,
@@ -258,7 +258,7 @@ mod tests {
             self
         }
 
-        /// For each tetrahedron, whether it has to be turned, and what is inside.
+        /// For each tetrahedron, whether it must be turned, and the sign inside.
         fn facing(&self) -> (Vec<bool>, Option<Inside>) {
             let topology = Topology::new(&self.triangles, self.position.len());
             let Facing { turned, inside, .. } = complete(facing(&self.position, &self.triangles, &topology));
@@ -279,7 +279,7 @@ mod tests {
     #[test]
     fn walls_of_a_hollow_are_turned_together() {
         let around = [0.0; 3];
-        // Also where the ray from the inner wall runs through a corner of the outer one.
+        // Also if the ray from the inner wall runs through a corner of the outer one.
         for inner in [around, [0.1, -0.2, 0.05], [0.0, 0.0, -0.75]] {
             let hollow = |outer: bool| {
                 Tetrahedra::default().with(inner, 0.25, !outer).with(around, 1.0, outer).with(

@@ -6,11 +6,11 @@ use crate::slices;
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
-/// Points nearer to the border than this many d_hex are left out of the figures per point: their
-/// neighbourhood is cut. Smaller: `cover` comes out larger; larger: the figures rest on fewer
-/// points.
+/// Points nearer to the border than this many d_hex are left out of the figures per point, since
+/// their neighbourhood is cut. Smaller: `cover` comes out larger; larger: the figures are based on
+/// fewer points.
 const MARGIN: f64 = 4.0;
-/// Step of the grid on a face, in d_hex. A border that is sampled this densely seems at most 0.05 %
+/// Step of the grid on a face, in d_hex. Sampled this densely, the border seems at most 0.05 %
 /// farther away than it is, at the distance of the margin.
 const STEP: f64 = 0.25;
 /// Largest number of cells of that grid along a side, which limits the evaluations to two million
@@ -113,7 +113,7 @@ impl Face {
     }
 
     /// The points of the border on the edges of a row of the grid and on those from the row before,
-    /// with the values of both.
+    /// whose values are `above`.
     fn crossings_at(&self, field: &mut dyn Evaluator, row: usize, above: &[f32], value: &[f32]) -> Vec<Vec3> {
         let mut found = Vec::new();
         let mut add = |a: [usize; 2], fa: f32, b: [usize; 2], fb: f32| {
@@ -123,7 +123,7 @@ impl Face {
                 found.push(p.as_vec3());
             }
         };
-        // This is false where either is NaN.
+        // This is false if either is NaN.
         let changes = |fa: f32, fb: f32| fa < 0.0 && fb >= 0.0 || fa >= 0.0 && fb < 0.0;
         for column in 0..=self.columns {
             if row > 0 && changes(above[column], value[column]) {

@@ -1,4 +1,4 @@
-//! Connected components of the surface, as far as the points show them.
+//! Connected components of the surface, as shown by the points.
 
 use super::gaps::LONG;
 use super::points::MeasuredPoints;
@@ -8,9 +8,9 @@ use crate::slices::{MEDIUM, pause};
 /// Returns the component of every point, in tree order, and the number of components. Component 0
 /// has the most points; ties are in the order of the points as given.
 ///
-/// Two points are on one component if a triangle joins them, or if they are natural neighbours and
-/// one is in no triangle, and if their distance is not [`LONG`] at either. `welded` are the
-/// triangles by vertices, which the patches share.
+/// Two points are on one component if a triangle joins them. So are natural neighbours of which one
+/// is in no triangle, if their distance is not [`LONG`] at either. `welded` are the triangles by
+/// vertices, which the patches share.
 pub(super) async fn label(
     points: &MeasuredPoints,
     spacing: &[f32],
@@ -27,7 +27,7 @@ pub(super) async fn label(
             forest.join(i as u32, j as u32);
         }
     };
-    // The vertex of each point; of a point in which bodies touch, that of one of them.
+    // The vertex of each point; if bodies touch in the point, the vertex of one of them.
     let mut vertex: Vec<u32> = (0..n).map(|i| points.creases.first(i) as u32).collect();
     for (chunk, welded) in mesh.chunks(MEDIUM).zip(welded.chunks(MEDIUM)) {
         for (rows, &[a, b, c]) in chunk.iter().zip(welded) {
@@ -41,7 +41,7 @@ pub(super) async fn label(
     for i in (0..n).filter(|&i| !is_used[i]) {
         points.stars.of(i).for_each(|j| join(i, j));
     }
-    // What joins patches is the particles on creases.
+    // Particles on creases join the patches.
     (0..).zip(&vertex).for_each(|(i, &vertex)| forest.join(i, vertex));
     let root: Vec<u32> = (0..n as u32).map(|i| forest.find(i)).collect();
 
@@ -53,7 +53,7 @@ pub(super) async fn label(
         count[r as usize] += u32::from(points.creases.is_first(i));
         first[r as usize] = first[r as usize].min(origin);
     }
-    // The key falls with the count, so the component with the most points is first.
+    // The key decreases with the count, so the component with the most points is first.
     let key = |r: u32| u64::from(u32::MAX - count[r as usize]) << 32 | u64::from(first[r as usize]);
     let mut order: Vec<u64> = (0..n as u32).filter(|&r| count[r as usize] > 0).map(key).collect();
     order.sort_unstable();

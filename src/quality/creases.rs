@@ -1,4 +1,4 @@
-//! The rows of particles on creases: which are of one patch, and which of one particle.
+//! The rows of particles on creases: which are on one patch, and which belong to one particle.
 
 use crate::field::Evaluator;
 use crate::math::{NONE, sort_pairs, unkey};
@@ -13,8 +13,8 @@ pub(super) struct CreaseRows {
     patch: Vec<u32>,
     /// The first row of the particle of each point, as given.
     particle: Vec<u32>,
-    /// The point that is the first row of each point's vertex, which is its particle but at a tip;
-    /// itself where that was left out.
+    /// Index of the point with the first row of the mesh vertex (one vertex for each particle, one
+    /// for each nappe at a tip); the point itself if that one was left out.
     first: Vec<u32>,
     /// Whether each point is at a tip.
     is_tip: Vec<bool>,
@@ -56,12 +56,12 @@ impl CreaseRows {
         }
     }
 
-    /// Whether the surface ends at point `i`, at a limit.
+    /// Whether the surface ends at point `i`, on a limit.
     pub(super) fn is_rim(&self, i: usize) -> bool {
         self.is_rim.get(i).copied().unwrap_or(false)
     }
 
-    /// Whether the surface ends at a limit anywhere.
+    /// Whether the surface ends on a limit anywhere.
     pub(super) fn has_rim(&self) -> bool {
         self.is_rim.contains(&true)
     }
@@ -75,27 +75,27 @@ impl CreaseRows {
         self.particle.get(i).copied().unwrap_or(tree.origin[i])
     }
 
-    /// The point that stands for the particle of point `i`.
+    /// The point that represents the vertex of point `i`.
     pub(super) fn first(&self, i: usize) -> usize {
         self.first.get(i).map_or(i, |&first| first as usize)
     }
 
-    /// Whether point `i` stands for its particle.
+    /// Whether point `i` represents its vertex.
     pub(super) fn is_first(&self, i: usize) -> bool {
         self.first(i) == i
     }
 
-    /// Number of points that stand for another one.
+    /// Number of points that another one represents.
     pub(super) fn further(&self) -> usize {
         (0..self.first.len()).filter(|&i| !self.is_first(i)).count()
     }
 
-    /// Whether two points are rows of one particle.
+    /// Whether two points are rows of the same particle.
     pub(super) fn are_one(&self, i: usize, j: usize) -> bool {
         !self.is_empty() && self.particle[i] == self.particle[j]
     }
 
-    /// Squared distance of the nearest point that is of another particle than point `i`, and that
+    /// Squared distance to the nearest point of another particle than that of point `i`, and that
     /// point or another row of its particle; infinite and [`NONE`] if there is none.
     pub(super) fn nearest(&self, tree: &Tree, i: usize) -> (f32, u32) {
         if self.is_empty() {
@@ -106,8 +106,8 @@ impl CreaseRows {
         keys.first().map_or((f32::INFINITY, NONE), |&key| unkey(key))
     }
 
-    /// Distance of the nearest point that is of another particle than point `i`, if that of its own
-    /// patch is so far.
+    /// Distance to the nearest point of another particle than that of point `i`, if the nearest one
+    /// on its own patch is at the distance `of_patch`.
     pub(super) fn nearest_within(&self, tree: &Tree, i: usize, of_patch: f32) -> f32 {
         if self.is_empty() {
             return of_patch;
@@ -154,14 +154,14 @@ impl CreaseRows {
         self.edges = edges;
     }
 
-    /// Whether natural neighbours i < j are neighbours on the surface. Points on creases may have a
-    /// hole of their patch between them.
+    /// Whether natural neighbours i < j are neighbours on the surface. Between points on creases
+    /// there may be a hole of their patch.
     pub(super) fn are_joined(&self, i: usize, j: usize) -> bool {
         !(self.holds(i) && self.holds(j)) || self.edges.binary_search(&[i as u32, j as u32]).is_ok()
     }
 
-    /// Whether two points of one patch are the first rows of their particles that are: particles
-    /// that follow each other along a crease are neighbours on each of its patches.
+    /// Whether the patch of two points is the first one that their particles share: successive
+    /// particles along a crease are neighbours on each of its patches.
     pub(super) fn is_first_pair(&self, i: usize, j: usize) -> bool {
         if self.is_empty() {
             return true;
@@ -189,7 +189,7 @@ impl CreaseRows {
         };
         let mut done = 0;
         while done < position.len() {
-            // Near points are on few patches, in long runs.
+            // Near points are on few patches, in long runs of the same patch.
             let run = patch[done..].iter().take_while(|&&other| other == patch[done]).count();
             let end = done + run;
             field.on(Some(patch[done])).exact_gradients(
@@ -206,13 +206,13 @@ impl CreaseRows {
         field.on(self.patch.get(i).copied())
     }
 
-    /// Whether a place is on the patch of point `i`, and not on what lies beyond its creases.
+    /// Whether a place is on the patch of point `i`, not beyond its creases.
     pub(super) fn reaches(&self, field: &mut dyn Evaluator, i: usize, p: Vec3) -> bool {
         self.patch.get(i).is_none_or(|&patch| field.label(p.as_dvec3()) == patch)
     }
 
-    /// The rows of the particles at the points, with these normals. Rows that are left out have no
-    /// position.
+    /// The particles with the positions of the points and these normals. Rows that were left out
+    /// have no position.
     pub(super) fn placed(&self, tree: &Tree, normal: &[Vec3], rows: &Particles) -> Particles {
         let count = rows.patch.len();
         let (mut local, mut normals) = (vec![Vec3::NAN; count], vec![Vec3::ZERO; count]);

@@ -1,4 +1,4 @@
-//! Energy of every point among its natural neighbours, by which the particles can be coloured.
+//! Energy of every point with its natural neighbours, by which particles can be coloured.
 
 use super::points::MeasuredPoints;
 use super::sizes::WantedRadii;
@@ -10,10 +10,10 @@ use core::f64::consts::E;
 const SIX: f32 = (6.0 / (E * E)) as f32;
 
 /// Returns the energy of each point, Σ exp(−2 s²) over its natural neighbours, over that of six at
-/// the ideal distance, where s = 1.
+/// the ideal distance, s = 1.
 ///
-/// s is the distance over that of a hexagonal lattice of as many points, or over the sum of both
-/// radii where sizes are wanted. With s = d/2r it is the Gaussian energy exp(−d²/2σ²) of the
+/// s is the distance over that of a hexagonal lattice of as many points or, if sizes are wanted,
+/// over the sum of both radii. With s = d/2r it is the Gaussian energy exp(−d²/2σ²) of the
 /// relaxation, whose σ is r; neighbours farther away add less than 2 %.
 pub(super) async fn of_points(points: &MeasuredPoints, wanted: Option<&WantedRadii>, d_hex: f64) -> Vec<f32> {
     let n = points.tree.len();

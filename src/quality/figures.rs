@@ -131,9 +131,9 @@ pub struct Spacing {
     pub rho: f64,
     /// First percentile of the nearest-neighbour distance.
     pub nearest_percentile_1: f64,
-    /// Pairs of points nearer than 0.75: over `ideal_spacing`, as `nearest_min`, or of natural
-    /// neighbours over the sum of their wanted radii, as `overlap_min`, where those are known. A
-    /// duplicate is a pair with the point that it equals. None where there are no distances.
+    /// Pairs of points closer than 0.75: over `ideal_spacing`, as `nearest_min`, or, if wanted
+    /// radii are known, of natural neighbours over the sum of theirs, as `overlap_min`. A duplicate
+    /// is a pair with the point that it equals. None if there are no distances.
     pub crowded: Option<usize>,
 }
 
@@ -141,21 +141,22 @@ pub struct Spacing {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Coverage {
-    /// Radius of the largest hole over `ideal_spacing`/√3, that of the perfect lattice: 1 is ideal.
+    /// Radius of the largest hole over `ideal_spacing`/√3, the radius in the perfect lattice: 1 is
+    /// ideal.
     pub cover: f64,
     /// Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius
-    /// there, which is the mean of the wanted radii of the points around the hole. One factor
-    /// scales all wanted radii so that their cells have the surface's area. 1 is ideal. With equal
-    /// radii this is `cover`.
+    /// there, the mean of the wanted radii of the points around the hole. One factor scales all
+    /// wanted radii so that their cells have the surface's area. 1 is ideal. With equal radii this
+    /// is `cover`.
     pub cover_local: f64,
-    /// Mean squared distance from the surface to the nearest point over that of the perfect
+    /// Mean squared distance from the surface to the nearest point, over that in the perfect
     /// lattice: 1 is ideal.
     pub quantization_error: f64,
-    /// Share of the surface that no disc of a point around it covers, where the discs are known:
-    /// 1 - π/(2√3) = 0.093 in a lattice whose discs touch.
+    /// Share of the surface that no disc of a point around it covers, if the discs are known: 1 -
+    /// π/(2√3) = 0.093 in a lattice whose discs touch.
     pub uncovered: f64,
-    /// Holes wider than 1.4, as `cover`, or as `cover_local` where wanted radii are known: empty
-    /// discs of which none has its middle in a wider one. None where `cover` is undefined.
+    /// Holes wider than 1.4, as `cover` or, if wanted radii are known, as `cover_local`: empty
+    /// discs whose middle lies in no wider one. None if `cover` is undefined.
     pub wide_holes: Option<usize>,
 }
 
@@ -198,8 +199,7 @@ pub struct Connectivity {
     /// Fraction of the triangles (away from the border) that belong to the natural-neighbour stars
     /// of all three corners.
     pub agree: f64,
-    /// Euler number of the kept triangles: those on which at least two of their three corners
-    /// agree.
+    /// Euler number of the kept triangles, on which at least two of their three corners agree.
     pub euler: i64,
     /// Number of components of the surface, by natural neighbours: components of the kept
     /// triangles, and groups of points far from all of them.

@@ -1,6 +1,5 @@
-//! Triangles across gaps of the surface. Where a box cuts the surface into pieces, or where it
-//! ends, points on both sides of the gap are natural neighbours, and nothing between them is
-//! surface.
+//! Triangles across gaps of the surface. If a box cuts the surface into pieces, or if it ends,
+//! points on both sides of the gap are natural neighbours without any surface between them.
 
 use super::points::MeasuredPoints;
 use super::projection::STEPS;
@@ -13,15 +12,15 @@ use glam::Vec3;
 /// An edge may lead across a gap if it is longer than this many times the spacing at either end.
 /// Smaller: surfaces fall into pieces; larger: pieces on either side of a gap may count as one.
 pub(super) const LONG: f32 = 2.0;
-/// The distance of the natural neighbour with this rank is the spacing at a point, or that of the
-/// last one where there are fewer: a single neighbour may be far too near.
+/// The spacing at a point is the distance of its natural neighbour of this rank, or of the last one
+/// if there are fewer: a single neighbour may be far too close.
 const RANK: usize = 3;
 /// Largest distance of the surface from the middle of an edge, lifted to the circle through its
 /// ends, over the edge's length: the sagitta of an arc that turns by one radian is an eighth of its
 /// chord.
 const REACH: f32 = 0.125;
-/// Distance from the surface at which a place is on it, and from the box at which it is in it, over
-/// the edge's length. Larger: pieces on either side of a gap may count as one.
+/// Largest distance of a place on the surface from it, and of a place in the box, over the edge's
+/// length. Larger: pieces on either side of a gap may count as one.
 const NEAR: f32 = 0.02;
 
 /// Returns the spacing at every point.
@@ -74,7 +73,7 @@ impl Gaps<'_> {
         is_across
     }
 
-    /// The edge of a triangle, if it is long.
+    /// The edge of a triangle, if it is too long.
     fn long_edge(&self, triangle: usize, i: usize, j: usize) -> Option<LongEdge> {
         let [p, q] = [i, j].map(|k| self.points.tree.position[k]);
         let (length_sq, most) = (p.distance_squared(q), LONG * self.spacing[i].min(self.spacing[j]));
@@ -88,7 +87,7 @@ impl Gaps<'_> {
         Some(LongEdge { triangle, middle, up, length })
     }
 
-    /// Notes the triangles of which an edge has its middle not near the surface in the box.
+    /// Marks the triangles with an edge whose middle is not near the surface in the box.
     fn look_across(&self, field: &mut dyn Evaluator, edges: &[LongEdge], is_across: &mut [bool]) {
         let (mut at, mut normal, mut ok) = ([Vec3::ZERO; BATCH], [Vec3::ZERO; BATCH], [false; BATCH]);
         let mut limits = [Descent::default(); BATCH];

@@ -32,17 +32,16 @@ fn circumcentre(position: &[Vec3], triangle: [u32; 3]) -> Option<(DVec3, f64)> {
     offset.is_finite().then(|| (a + offset, offset.length()))
 }
 
-/// The points whose holes are measured, and the triangles from which samples of the surface are
-/// drawn.
+/// The points whose holes are measured, and the triangles on which the surface is sampled.
 pub(super) struct Cover<'a> {
     pub(super) tree: &'a Tree,
     pub(super) creases: &'a CreaseRows,
-    /// The triangles; those of one patch follow each other.
+    /// The triangles, patch by patch.
     pub(super) mesh: &'a [[u32; 3]],
     pub(super) mesh_area: f64,
     pub(super) border: Option<&'a Border>,
     pub(super) wanted: Option<&'a WantedRadii>,
-    /// Radius of the disc of each point, in the order given; none if they are not known.
+    /// Radius of the disc of each point, in the order given; none if unknown.
     pub(super) discs: &'a [f32],
     /// Radius of a hole in the perfect lattice, d_hex/√3.
     pub(super) lattice: f32,
@@ -59,8 +58,8 @@ impl Cover<'_> {
         self.border.is_none_or(|border| !border.is_near(p))
     }
 
-    /// Returns the radius of an ideal hole between some points: that of the perfect lattice, if
-    /// there are no wanted radii.
+    /// Returns the radius of an ideal hole between some points: without wanted radii, that of the
+    /// perfect lattice.
     fn ideal(&self, points: &[u32]) -> f32 {
         self.wanted.map_or(self.lattice, |wanted| wanted.hole_between(points))
     }
@@ -87,17 +86,17 @@ impl Cover<'_> {
 pub(super) struct Holes {
     /// Radius of the largest hole.
     pub(super) widest: f64,
-    /// Largest radius over that of an ideal hole at the same position.
+    /// Largest radius over that of an ideal hole at the same place.
     pub(super) relative: f64,
     /// Mean squared distance of the random samples; NaN if there are none.
     pub(super) mean_sq: f64,
-    /// Share of the random samples that lies outside the discs around them; NaN if there are none.
+    /// Share of the random samples outside the discs around them; NaN if there are none.
     pub(super) bare: f64,
     /// The wide holes, and the largest ones if they are not wide.
     pub(super) found: Vec<Hole>,
 }
 
-/// Slices of the work that `count` random samples are.
+/// Slices of work that `count` random samples take.
 pub(super) fn slices(count: usize) -> u64 {
     (count / BATCH) as u64
 }
@@ -130,7 +129,7 @@ pub(super) async fn measure(
 }
 
 impl Holes {
-    /// Takes in what the triangles cannot show: components without a point, and regions where the
+    /// Adds what the triangles cannot show: components without a point, and regions where the
     /// points end. The part of the surface that is farther from every point than any sample on the
     /// triangles counts by its share of the area.
     async fn add_missed(&mut self, cover: &Cover<'_>, crossings: &[Vec3]) {
@@ -166,8 +165,8 @@ impl Holes {
     }
 }
 
-/// The points in a box around the last sample. Samples that follow each other lie near one another,
-/// so that most of them need no search in the tree, which takes ten times as long.
+/// The points in a box around the last sample. Successive samples are close to one another, so most
+/// of them need no search in the tree, which takes ten times as long.
 #[derive(Default)]
 struct Surroundings {
     lo: Vec3,
@@ -176,14 +175,14 @@ struct Surroundings {
 }
 
 impl Surroundings {
-    /// Has the next search gather the points anew.
+    /// Makes the next search gather the points anew.
     fn clear(&mut self) {
         (self.lo, self.hi) = (Vec3::ZERO, Vec3::ZERO);
     }
 
     /// The squared distance of the nearest point of `tree` to `p` and that point, if it is below
     /// `bound_sq`; otherwise `bound_sq` and [`NONE`]. The box is gathered anew if it does not hold
-    /// all of those; within `width` there are a few points.
+    /// all points that close; within `width` there are a few points.
     fn nearest(&mut self, tree: &Tree, p: Vec3, bound_sq: f32, width: f32) -> (f32, u32) {
         /// Room around a sample for those that follow, in units of `width`. Less: the box is
         /// gathered more often; more: it holds more points.
@@ -228,13 +227,13 @@ struct HoleSearch {
 }
 
 impl HoleSearch {
-    /// Returns whether a distance is that of a wide hole, or larger than those so far, in itself or
-    /// relative to the ideal one.
+    /// Returns whether a distance is that of a wide hole, or larger than those so far, absolutely
+    /// or relative to the ideal one.
     fn matters(&self, gap_sq: f32, ideal_sq: f32) -> bool {
         gap_sq > self.widest_sq || gap_sq > self.relative_sq * ideal_sq || gap_sq > WIDE_SQ * ideal_sq
     }
 
-    /// Takes in an empty disc around `p`.
+    /// Adds an empty disc around `p`.
     fn widen(&mut self, p: Vec3, gap_sq: f32, ideal_sq: f32) {
         let relative_sq = gap_sq / ideal_sq;
         let hole = || hole(p, f64::from(gap_sq).sqrt(), f64::from(relative_sq).sqrt());
@@ -248,7 +247,7 @@ impl HoleSearch {
         self.relative_sq = self.relative_sq.max(relative_sq);
     }
 
-    /// Takes in `count` batches of samples, of which the statistics are made if they are `random`.
+    /// Adds `count` batches of samples; only `random` ones enter the statistics.
     async fn add_all(
         &mut self,
         field: &dyn Evaluator,
@@ -278,7 +277,7 @@ impl HoleSearch {
         }
     }
 
-    /// Takes in a batch of samples once they are projected.
+    /// Projects a batch of samples and adds them.
     fn add(
         &mut self,
         field: &mut dyn Evaluator,
@@ -300,7 +299,7 @@ impl HoleSearch {
                 continue;
             }
             let (gap_sq, nearer) = around.nearest(cover.tree, p, corner_sq, leash);
-            // The circumcentre of a long triangle may come to a far place, where other points are
+            // The circumcentre of a long triangle may be at a far place, where other points are
             // larger.
             if nearer != NONE {
                 ideal = ideal.max(cover.ideal(&[nearer]));
@@ -355,7 +354,7 @@ async fn samples(cover: &Cover<'_>, count: usize) -> Vec<Batch> {
                 while next < passed && stratum <= count as f64 {
                     let [a, b, c] = triangle.map(|i| position[i as usize].as_dvec3());
                     // The sample is uniform in the triangle: the square root undoes the crowding
-                    // towards `a`.
+                    // near `a`.
                     let (s, t) = (unit().sqrt(), unit());
                     let p = a + ((b - a) * (1.0 - t) + (c - a) * t) * s;
                     // The nearest point is no farther than the nearest corner, and the projection
@@ -407,8 +406,8 @@ mod tests {
         let field = Formula::as_written("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
         let field = &mut *field.evaluator(Frame::default());
         let at = |y: f32, z: f32| Vec3::new(1.0, y, z).normalize_or_zero();
-        // These are almost on a great circle: their circumcentre is near that of the sphere, far
-        // from the surface.
+        // These are almost on a great circle: their circumcentre is near the centre of the sphere,
+        // far from the surface.
         let flat = [at(-0.1, 0.001), at(0.0, 0.0), at(0.1, 0.001)];
         let wide = [at(-0.1, 0.0), at(0.1, 0.0), at(0.0, 0.2)];
         for (points, holes) in [(flat, 0.0..=0.0), (wide, 0.1..=0.15)] {
@@ -435,7 +434,7 @@ mod tests {
     fn a_hole_is_measured_by_the_largest_of_the_discs_around_it() {
         let field = Formula::as_written("z = 0", &[]).expect("a formula");
         let field = &mut *field.evaluator(Frame::default());
-        // The circumcentre of the long triangle of three small discs is beside the large one.
+        // The circumcentre of the long triangle of three small discs is next to the large one.
         let tree = Tree::new(
             &[[-0.1, 0.0], [0.0, 0.01], [0.1, 0.0], [0.0, -0.45]].map(|[x, y]| Vec3::new(x, y, 0.0)),
         );

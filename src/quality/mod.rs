@@ -7,23 +7,23 @@
 //!
 //! *Natural neighbours* are defined in the tangent plane. The points of the same sheet are rotated
 //! into the tangent plane of a point, at their true distances, and its natural neighbours are those
-//! whose Voronoi cells share an edge with its own: its star, by which particles are
-//! [joined](crate::mesh::triangulation), too. Two points are on the same sheet if their normals are
-//! within 90° and the line between them leaves one tangent plane about as it arrives at the other,
-//! which separates sheets that face the same way; where those are near, the field between the
-//! points decides.
+//! whose Voronoi cells share an edge with its own: its star, from which the
+//! [mesh](crate::mesh::triangulation) is made, too. Two points are on the same sheet if their
+//! normals are within 90° and the line between them leaves one tangent plane about as it arrives at
+//! the other, which separates sheets that face the same way; if such sheets are close, the field
+//! between the points decides.
 //!
-//! A mesh fills the places in on which stars disagree. The figures do without: their triangles are
-//! those that stars see, so that nothing that was filled in says that a surface is closed. A run
-//! whose mesh closes what these leave open reports the components and the Euler number of its mesh.
+//! A mesh fills the places where stars disagree. The figures do not: their triangles are those that
+//! stars see, so that no filled place makes a surface look closed. A run whose mesh closes what
+//! these leave open reports the components and the Euler number of its mesh.
 //!
-//! On a surface with creases the neighbours of a particle are those of its own patch, and the
+//! On a surface with creases the neighbours of a particle are those on its own patch, and the
 //! triangles are those of the mesh, which end at the creases. A particle on a crease has no full
-//! ring of neighbours, and the figures of order leave it out; in distances, holes, angles and the
-//! topology it counts, once.
+//! ring of neighbours and is left out of the figures of order; for distances, holes, angles and the
+//! topology it counts once.
 //!
 //! The whole report costs a few microseconds for each particle. It is deterministic, with the same
-//! bits natively and in WebAssembly if the field has the same bits.
+//! bits natively and in WebAssembly if the values of f have the same bits.
 
 mod accuracy;
 mod border;
@@ -71,11 +71,11 @@ use sizes::WantedRadii;
 use std::sync::Arc;
 use triangles::TriangleAngles;
 
-/// Smallest number of random samples for `quantization_error`, of which there is at least one for
-/// each particle: stratified, so many give it to about 0.1 %.
+/// Smallest number of random samples for `quantization_error`, which are at least as many as the
+/// particles: stratified, so many give it to about 0.1 %.
 const LEAST_SAMPLES: usize = 65_536;
-/// Largest number of random samples for `quantization_error`. Over a disc the squared distance
-/// scatters by 0.58 of its mean, so that the error of so many samples is 0.1 %.
+/// Largest number of random samples for `quantization_error`. Over a disc the standard deviation of
+/// the squared distance is 0.58 of its mean, so the error of so many samples is 0.1 %.
 const MOST_SAMPLES: usize = 262_144;
 /// Mean squared distance to the nearest point of a hexagonal lattice, over its area per point: 5 /
 /// (18 √3).
@@ -93,10 +93,10 @@ pub struct Measurements {
     /// Distance to the nearest other particle, of any sheet, in the field's units; infinite for a
     /// lone one, NaN for a non-finite position.
     pub nearest: Vec<f32>,
-    /// First-order distance to the surface |f|/|∇f|, in the field's units; where f has no gradient,
-    /// |f| over its slope to the steeper side along the normal. NaN where that is undefined, too.
+    /// First-order distance to the surface |f|/|∇f|, in the field's units; if f has no gradient,
+    /// |f| over its slope to the steeper side along the normal. NaN if that is undefined, too.
     pub residual: Vec<f32>,
-    /// Energy of the particle among its natural neighbours, over that of six at the ideal distance;
+    /// Energy of the particle with its natural neighbours, over that of six at the ideal distance;
     /// NaN for a duplicate or a non-finite position.
     pub energy: Vec<f32>,
     /// Connected component of the surface, by the natural neighbours: 0 is the one with most
@@ -109,11 +109,11 @@ pub struct Measurements {
     pub places: Places,
     /// Columns that a program has [added](crate::Sample::add_value).
     pub values: Vec<NamedValues>,
-    /// The opening that the triangles of natural neighbours leave in the surface; none if they
-    /// close it.
+    /// The opening that the triangles of natural neighbours leave in the surface; none if it is
+    /// closed.
     pub(crate) opening: Option<Opening>,
-    /// Sign of f inside of the parts of the surface that the triangles of natural neighbours close;
-    /// none if they close no part.
+    /// Sign of f inside the parts of the surface that the triangles of natural neighbours close;
+    /// none if they close none.
     pub(crate) inside: Option<Inside>,
 }
 
@@ -122,7 +122,7 @@ pub struct Measurements {
 pub struct NamedValues {
     /// The name: a letter, then letters, digits and _.
     pub name: String,
-    /// A number for each row; NaN where there is none.
+    /// A number for each row; NaN if undefined.
     pub values: Vec<f32>,
 }
 
@@ -131,8 +131,8 @@ impl Measurements {
     pub const NO_COMPONENT: u32 = NONE;
 }
 
-/// Places away from the border of a clipped surface where the triangles of natural neighbours do
-/// not close it.
+/// Places away from the border of a clipped surface where the triangles of natural neighbours leave
+/// it open.
 #[derive(Clone, Debug)]
 pub(crate) struct Opening {
     /// Number of edges that belong to one triangle alone.
@@ -150,8 +150,8 @@ pub(crate) struct Opening {
 /// continues beyond the box, are left out of every figure but the residual, the normals, the area
 /// and the topology. Random lines through the box find what the particles have missed, for `cover`
 /// and `quantization_error`. Without `bounds` only the triangles are sampled. The given normals are
-/// used where the gradient is undefined, and are themselves measured against it; the slice may be
-/// shorter than `position`.
+/// used where the gradient is undefined, and are also compared with it; the slice may be shorter
+/// than `position`.
 ///
 /// The cost is linear, about 2 µs for each particle natively on a formula. No input causes a panic:
 /// what is undefined (the spacing of one particle, angles without triangles) is NaN, and non-finite
@@ -172,7 +172,7 @@ pub fn measure(
     })
 }
 
-/// Where the points of a measurement lie, as far as it is known.
+/// Where the points of a measurement lie, if known.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Surroundings<'a> {
     /// The box that was sampled.
@@ -181,7 +181,8 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) sheets: Option<&'a Arc<Sheets>>,
 }
 
-/// Number of slices that measurements of one surface are expected to take, of so many points each.
+/// Number of slices that measurements of one surface are expected to take, for each of these
+/// numbers of points.
 pub(crate) fn expected_slices(points: impl Iterator<Item = usize>) -> u64 {
     /// Slices for each point: of two passes that take [`HEAVY`](slices::HEAVY) points at once, and
     /// of some twenty that take [`MEDIUM`] points or triangles.
@@ -190,14 +191,14 @@ pub(crate) fn expected_slices(points: impl Iterator<Item = usize>) -> u64 {
     probe::SLICES + points.map(of).sum::<u64>()
 }
 
-/// Number of random samples on the triangles of so many points.
+/// Number of random samples on the triangles of `points` points.
 fn samples_for(points: usize) -> usize {
     points.clamp(LEAST_SAMPLES, MOST_SAMPLES)
 }
 
-/// [`measure`] in slices of work. A few of them look at all particles, for some 20 ns each.
-/// `crossings` are random samples of the surface in the box, which are found if there are none yet:
-/// all measurements of one surface share them.
+/// [`measure`] in slices of work. A few of them take all particles at once, some 20 ns each.
+/// `crossings` are random samples of the surface in the box, which are found if absent: all
+/// measurements of one surface share them.
 pub(crate) async fn in_slices(
     position: &[Vec3],
     normal: &[Vec3],
@@ -270,7 +271,7 @@ struct DistinctFigures {
     inside: Option<Inside>,
 }
 
-/// Measures the points; `crowded` is left for the duplicates to be added.
+/// Measures the points; duplicates have yet to be added to `crowded`.
 async fn figures_of(
     prepared: &Prepared,
     field: &mut dyn Evaluator,
@@ -342,8 +343,7 @@ async fn points_away_from(border: Option<&Border>, points: &MeasuredPoints) -> V
     parts.await.concat()
 }
 
-/// Measures valences, bond order and edges of the points that are `inner`, and returns the pairs of
-/// them.
+/// Measures valences, bond order and edges of the `inner` points, and returns their pairs.
 async fn measure_neighbourhoods(
     points: &MeasuredPoints,
     inner: &[bool],
@@ -393,9 +393,9 @@ async fn measure_neighbourhoods(
     pairs
 }
 
-/// Measures angles, agreement and topology of the triangles, of the points that are `inner` and of
-/// those that are also counted `once`, as the first rows of their particles; and the connected
-/// component of each point, the opening of the triangles, and what is inside of them.
+/// Measures angles, agreement and topology of the triangles: of `inner` points and of those that
+/// also represent their particle (`once`). Also finds the connected component of each point, the
+/// opening of the triangles, and what is inside them.
 async fn measure_triangles(
     prepared: &Prepared,
     [inner, once]: [&[bool]; 2],
@@ -452,7 +452,7 @@ async fn measure_triangles(
     };
 }
 
-/// The opening that the triangles leave between points that are `inner`, if there is one.
+/// The opening that the triangles leave between `inner` points, if there is one.
 fn opening(topology: &Topology, mesh: &[[u32; 3]], inner: &[bool], position: &[Vec3]) -> Option<Opening> {
     let mut is_bare = inner.to_vec();
     mesh.iter().flatten().for_each(|&i| is_bare[i as usize] = false);

@@ -16,7 +16,7 @@ impl Moments {
         self.squares += step * (value - self.mean);
     }
 
-    /// Takes in other numbers (T. F. Chan, G. H. Golub & R. J. LeVeque, "Updating Formulae and a
+    /// Adds other numbers (T. F. Chan, G. H. Golub & R. J. LeVeque, "Updating Formulae and a
     /// Pairwise Algorithm for Computing Sample Variances", 1979, equation 2.1).
     pub(super) fn join(&mut self, other: &Self) {
         if other.count > 0.0 {
@@ -43,7 +43,7 @@ impl Moments {
     }
 }
 
-/// Returns the share of `count` in `all`; NaN if there are none at all.
+/// Returns the share of `count` in `all`; NaN if `all` is 0.
 pub(super) fn share(count: usize, all: usize) -> f64 {
     count as f64 / all as f64
 }

@@ -13,10 +13,10 @@ pub struct MeasureOptions<'a> {
     /// [`Edges::overlap_min`](super::figures::Edges::overlap_min); without them these are NaN. If
     /// the slice is too short, particles without a radius are left out.
     pub radii: Option<&'a [f32]>,
-    /// The particles of which the radii are used, as those of discs, for
-    /// [`Coverage::uncovered`](super::figures::Coverage::uncovered), which is NaN without them; and
-    /// where the surface has creases patch, twins, segments and sides. Neighbours of a particle are
-    /// then looked for on its own patch, and the patches are one surface by the particles on
-    /// creases. Each column is then one of rows.
+    /// The particles. Their radii are those of the discs for
+    /// [`Coverage::uncovered`](super::figures::Coverage::uncovered), which is NaN without them. If
+    /// the surface has creases, patch, twins, segments and sides are also used: neighbours of a
+    /// particle are then searched for on its own patch, the particles on creases join the patches
+    /// to one surface, and each column has one entry for each row.
     pub rows: Option<&'a Particles>,
 }

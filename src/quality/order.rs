@@ -6,7 +6,7 @@ use super::points::MeasuredPoints;
 use crate::math::tangent_frame;
 use glam::DVec2;
 
-/// Counts of the valences, and the bond order, of the points seen so far.
+/// Counts of the valences, and the bond order, of the points added so far.
 #[derive(Default)]
 pub(super) struct ValenceTally {
     count: usize,
@@ -18,7 +18,7 @@ pub(super) struct ValenceTally {
 }
 
 impl ValenceTally {
-    /// Takes in point `i`.
+    /// Adds point `i`.
     pub(super) fn add(&mut self, points: &MeasuredPoints, i: usize) {
         self.count += 1;
         if points.stars.is_open[i] {
@@ -38,7 +38,7 @@ impl ValenceTally {
             let q = DVec2::new(offset.dot(u), offset.dot(v));
             let length_sq = q.length_squared();
             if length_sq > 0.0 {
-                // exp(6iθ) is the cube of exp(2iθ), which takes no root.
+                // exp(6iθ) is the cube of exp(2iθ), which needs no root.
                 let square = q.rotate(q) / length_sq;
                 sum += square.rotate(square).rotate(square);
             }
@@ -46,7 +46,7 @@ impl ValenceTally {
         self.bond_order.add(sum.length() / neighbours as f64);
     }
 
-    /// Takes in the points of another tally.
+    /// Adds the points of another tally.
     pub(super) fn join(&mut self, other: &Self) {
         self.count += other.count;
         self.open += other.open;

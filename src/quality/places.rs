@@ -10,9 +10,9 @@ use serde::Serialize;
 /// apart.
 pub const CROWDED: f64 = 0.75;
 /// Radius, over the ideal one, above which a hole is wide. A lattice with one particle missing has
-/// a hole of √3, and one of half that excess is 1.37.
+/// a hole of √3; half that excess is 1.37.
 pub const WIDE: f64 = 1.4;
-/// Largest number of places of each kind that are told: enough to look at one by one. The figures
+/// Largest number of places of each kind that are listed: enough to examine one by one. The figures
 /// count all of them.
 const MOST: usize = 64;
 
@@ -22,7 +22,7 @@ const MOST: usize = 64;
 pub struct Pair {
     /// Indices of the particles, the smaller one first.
     pub particles: [u32; 2],
-    /// Distance over the ideal spacing or, where there are wanted radii, over their sum.
+    /// Distance over the ideal spacing or, if radii are wanted, over their sum.
     pub ratio: f64,
 }
 
@@ -34,8 +34,8 @@ pub struct Hole {
     pub position: [f32; 3],
     /// Distance to the nearest particle, in the field's units.
     pub radius: f64,
-    /// Radius over that of the perfect lattice or, where there are wanted radii, of the lattice
-    /// with those around it.
+    /// Radius over that in the perfect lattice or, if radii are wanted, in the lattice of those
+    /// around it.
     pub ratio: f64,
 }
 
@@ -58,8 +58,7 @@ pub(super) struct Pairs {
 }
 
 impl Pairs {
-    /// Returns whether a pair at this distance would be counted or kept, so that it has to be
-    /// added.
+    /// Returns whether a pair at this distance would be counted or kept, so that it must be added.
     pub(super) fn matters(&self, ratio: f64) -> bool {
         ratio < CROWDED || self.kept.first().is_none_or(|closest| ratio < closest.ratio)
     }
@@ -99,8 +98,8 @@ impl Pairs {
 /// Returns the number of wide holes, and the holes to be reported, from the empty discs that were
 /// found.
 ///
-/// Several empty discs may show one hole: where the middle of one disc lies in another, only the
-/// one with the larger ratio of its radius to the ideal one counts.
+/// Several empty discs may show one hole: if the middle of one disc lies in another, only the one
+/// with the larger ratio of its radius to the ideal one counts.
 pub(super) async fn distinct(mut found: Vec<Hole>) -> (usize, Vec<Hole>) {
     let bits = |hole: &Hole| hole.position.map(|c| u64::from(c.to_bits()));
     sort_by_key(&mut found, |hole| bits(hole)[2]);

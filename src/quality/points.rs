@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// order.
 pub(super) struct MeasuredPoints {
     pub(super) tree: Arc<Tree>,
-    /// Unit normals: ∇f/|∇f|, or the given normal where that is undefined.
+    /// Unit normals: ∇f/|∇f|, or the given normal if that is undefined.
     pub(super) normal: Vec<Vec3>,
     /// First-order distances from the surface, see
     /// [`Measurements::residual`](super::Measurements::residual).
@@ -27,20 +27,18 @@ pub(super) struct MeasuredPoints {
     /// Angles between the given normals and ∇f.
     pub(super) normal_angles: NormalAngles,
     pub(super) stars: Stars,
-    /// Distance of the nearest point of another particle, of any sheet and patch.
+    /// Distance to the nearest point of another particle, on any sheet and patch.
     nearest: Vec<f32>,
     pub(super) creases: CreaseRows,
     /// The sheets of the patches; none on a surface without creases.
     pub(super) sheets: Option<Arc<Sheets>>,
-    /// Whether a duplicate of the point was dropped, so that the distance to the nearest point
-    /// is 0.
+    /// Whether a duplicate of the point was dropped: its nearest distance is then 0.
     has_duplicate: Vec<bool>,
 }
 
-/// The field gives a point its residual and its normal. The angle says how far the normal that was
-/// given is off.
+/// The field gives a point its residual and its normal. The angle is the error of the given normal.
 struct Deviation {
-    /// Unit normal: ∇f/|∇f|, or the given one where that is undefined.
+    /// Unit normal: ∇f/|∇f|, or the given one if that is undefined.
     normal: Vec3,
     /// First-order distance from the surface.
     residual: f64,
@@ -81,7 +79,7 @@ fn deviations(
 }
 
 impl MeasuredPoints {
-    /// The points that are not dropped; `known` are the sheets of all points, where they are there.
+    /// The points that are not dropped; `known` are the sheets of all points, if given.
     pub(super) async fn new(
         position: &[Vec3],
         given: &[Vec3],
@@ -179,8 +177,8 @@ impl MeasuredPoints {
         (self.tree.position[i].as_dvec3() - self.tree.position[j].as_dvec3()).length()
     }
 
-    /// Returns the points `j` > `i` of which each is a natural neighbour of the other on the
-    /// surface, if both are `inner`.
+    /// Returns the points `j` > `i` that are natural neighbours of `i` on the surface as `i` is of
+    /// them, if both are `inner`.
     pub(super) fn mutual<'a>(&'a self, inner: &'a [bool], i: usize) -> impl Iterator<Item = usize> + 'a {
         self.stars.of(i).filter(move |&j| {
             j > i && inner[i] && inner[j] && self.stars.adjacent(j, i) && self.creases.are_joined(i, j)

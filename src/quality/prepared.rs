@@ -27,13 +27,13 @@ pub(super) struct Prepared {
     pub(super) area: f64,
     pub(super) duplicates: usize,
     pub(super) not_finite: usize,
-    /// Whether each point is left out, by the index given.
+    /// Whether each point is left out, by its index as given.
     pub(super) drop: Vec<bool>,
 }
 
 impl Prepared {
     /// Prepares the points; `bounds` is the box that was sampled, and `known` are the sheets of all
-    /// points, where they are there.
+    /// points, if given.
     pub(super) async fn new(
         position: &[Vec3],
         normal: &[Vec3],
@@ -49,7 +49,7 @@ impl Prepared {
         let mut drop: Vec<bool> = position.iter().map(|p| !p.is_finite()).collect();
         let not_finite = drop.iter().filter(|&&dropped| dropped).count();
         let mut has_duplicate = vec![false; position.len()];
-        // Equal points go first: all of them would be nearest neighbours of one another.
+        // Equal points are dropped first: all of them would be nearest neighbours of one another.
         drop_equal(position, is_further, &mut drop, &mut has_duplicate);
         pause().await;
         loop {

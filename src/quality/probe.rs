@@ -2,7 +2,7 @@
 //!
 //! The triangles do not show what the particles have missed: a component without a seed, or a
 //! region where the front stopped. A line that is uniform among those that meet a convex box
-//! crosses a surface in the box with a mean number of crossings in proportion to its area
+//! crosses a surface in the box with a mean number of crossings proportional to its area
 //! (Cauchy–Crofton formula), so the crossings are uniform random samples of the whole surface.
 
 use super::projection::project;
@@ -26,7 +26,7 @@ pub(super) const SLICES: u64 = (LINES / LINES_AT_ONCE) as u64;
 /// A crossing counts if its first-order distance from the surface after projection is below this
 /// share of the step along the line: at poles and jumps the sign changes too.
 const RESIDUAL: f32 = 1e-2;
-/// Seed of the lines, other than that of the samples on triangles: the letters of `lines`.
+/// Seed of the lines, different from that of the samples on triangles: the letters of `lines`.
 const STREAM: u64 = 0x6c69_6e65_7300_0000;
 
 /// Returns random samples of the surface in `bounds`, uniform over its area; at most a few for each
@@ -65,7 +65,7 @@ pub(super) async fn crossings(field: &mut dyn Evaluator, bounds: &Bounds) -> Vec
 /// A change of the sign of f between neighbouring points of a line.
 #[derive(Clone, Copy)]
 struct SignChange {
-    /// Where f is 0 if it is linear between both points.
+    /// The place where f is 0 if it is linear between both points.
     position: Vec3,
     /// The distance between both points.
     leash: f32,
@@ -87,7 +87,7 @@ fn sign_changes(field: &mut dyn Evaluator, chords: &[(DVec3, DVec3)]) -> Vec<Sig
     for (line, value) in points.chunks_exact(STATIONS).zip(values.chunks_exact(STATIONS)) {
         for k in 1..STATIONS {
             let (a, b) = (value[k - 1], value[k]);
-            // This is false where either is NaN.
+            // This is false if either is NaN.
             if a <= 0.0 && b > 0.0 || a > 0.0 && b <= 0.0 {
                 let share = a / (a - b);
                 changes.push(SignChange {
@@ -101,11 +101,12 @@ fn sign_changes(field: &mut dyn Evaluator, chords: &[(DVec3, DVec3)]) -> Vec<Sig
     changes
 }
 
-/// The places on the surface in the box to which changes lead, at most [`BATCH`] of them.
+/// The places on the surface in the box to which changes lead by projection, at most [`BATCH`] of
+/// them.
 fn settled(field: &mut dyn Evaluator, bounds: &Bounds, changes: &[SignChange]) -> Vec<Vec3> {
     let mut position: Vec<Vec3> = changes.iter().map(|change| change.position).collect();
     let leash: Vec<f32> = changes.iter().map(|change| change.leash).collect();
-    // All steps are taken: near a pole they lead away from it, by as much again at each step.
+    // All steps are taken: near a pole they lead away from it, each doubling the distance.
     project(field, &mut position, &leash, 0.0);
     let mut value = vec![0.0; position.len()];
     let mut gradient = vec![Vec3::ZERO; position.len()];

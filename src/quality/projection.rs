@@ -37,8 +37,8 @@ pub(super) fn project(field: &mut dyn Evaluator, sample: &mut [Vec3], leash: &[f
 }
 
 /// Returns whether a projected sample is on the surface, up to another last step. The circumcentre
-/// of an almost flat triangle, as there are some along the border of a box, is far from the
-/// surface, and its projection may fail.
+/// of an almost flat triangle, as at the border of a box, is far from the surface, and its
+/// projection may fail.
 pub(super) fn is_reached(field: &mut dyn Evaluator, sample: Vec3, leash: f32) -> bool {
     let (mut value, mut gradient) = ([0.0], [Vec3::ZERO]);
     field.gradients(&[sample], &mut value, &mut gradient);
@@ -62,7 +62,8 @@ mod tests {
             assert!((p.length() - 1.0).abs() < 1e-3, "{p}");
             assert!(is_reached(field, *p, 0.5));
         }
-        // Beyond its leash it stays where it is, and is known not to have come to the surface.
+        // A sample that would move farther than its leash stays where it is, and is known not to be
+        // on the surface.
         assert_eq!(sample[2], Vec3::new(3.0, 0.0, 0.0));
         assert!(!is_reached(field, sample[2], 0.5));
     }

@@ -1,4 +1,4 @@
-//! Tells sheets apart that face the same way and lie near each other, by the field between them.
+//! Distinguishes sheets that face the same way and lie near each other, by the field between them.
 //!
 //! Two sheets that face the same way always have a third sheet between them, which faces the other
 //! way. A pair of points is therefore doubtful only if such a third sheet is near, and if the
@@ -6,8 +6,8 @@
 //! point above the tangent plane at the other. On one sheet it is of third order in the distance of
 //! the points.
 //!
-//! The points are taken to lie where their residuals say, so that the lift does not suffer from
-//! their distances from the surface.
+//! The points are first moved by their residuals, so that their distances from the surface do not
+//! enter the lift.
 
 use super::accuracy::first_order_height;
 use crate::field::Evaluator;
@@ -16,15 +16,15 @@ use crate::mesh::stars::TellsApart;
 use crate::particles::OrientedPoint;
 use glam::DVec3;
 
-/// A pair is doubtful from this share of the distance of the sheet that faces the other way: those
-/// on either side of it are farther apart than that.
+/// Lift from which a pair is doubtful, as a share of the distance of the sheet that faces the other
+/// way: points on either side of that sheet are farther apart.
 const SHARE: f64 = 0.5;
-/// Steps of the way along the surface from one point to another. At an eighth of the distance d a
+/// Number of steps along the surface from one point to another. At an eighth of the distance d a
 /// step leaves the surface by d³/3000 times the change of the curvature, which must be less than
 /// the distance to another sheet.
 const STEPS: u32 = 8;
 
-/// Tells sheets of a field apart.
+/// Distinguishes sheets by the field.
 pub(crate) struct ByField<'a> {
     field: Box<dyn Evaluator + 'a>,
     patch: Option<u32>,
@@ -35,7 +35,7 @@ impl<'a> ByField<'a> {
         Self { field: field.another(), patch: None }
     }
 
-    /// The point led onto the surface, and its normal.
+    /// The point moved onto the surface, and its normal.
     fn on_surface(&mut self, OrientedPoint { position, normal }: OrientedPoint) -> (DVec3, DVec3) {
         let (position, normal) = (position.as_dvec3(), normal.as_dvec3());
         let (value, gradient) = self.field.on(self.patch).value_and_gradient(position);
@@ -58,7 +58,8 @@ impl TellsApart for ByField<'_> {
         distances.fold(f64::INFINITY, f64::min)
     }
 
-    /// If doubtful, whether the way along the surface from one point leads past the other.
+    /// If the pair is doubtful, whether the way along the surface from one point leads past the
+    /// other.
     fn are_two(&mut self, one: OrientedPoint, other: OrientedPoint, facing_away: f64) -> bool {
         let ((p, n), (q, m)) = (self.on_surface(one), self.on_surface(other));
         let lift = (0.5 * (q - p).dot(n + m)).abs();
@@ -81,7 +82,7 @@ impl TellsApart for ByField<'_> {
                 at += direction * length - normal * (0.5 * curvature * length * length);
             }
         }
-        // False for NaN: where the way ends at a singular point nothing is known.
+        // False for NaN: if the way ends at a singular point, nothing is known.
         (q - at).dot(normal).abs() > 0.5 * lift
     }
 }

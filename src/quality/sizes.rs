@@ -11,13 +11,13 @@ const HOLE: f64 = 2.0 / SQRT_3;
 /// The wanted radii, in tree order; NaN for a point without one.
 pub(super) struct WantedRadii {
     pub(super) radius: Vec<f64>,
-    /// Radius of an ideal hole over the wanted radius, if all radii are scaled so that their
+    /// Radius of an ideal hole over the wanted radius, with all radii scaled so that their
     /// hexagonal cells have the area of the surface.
     pub(super) hole: f64,
 }
 
 impl WantedRadii {
-    /// Takes the `radii` of points on a surface of this `area`, in the order of the particles.
+    /// The `radii` of points on a surface of this `area`, in the order of the particles.
     pub(super) fn new(points: &MeasuredPoints, radii: &[f32], area: f64) -> Self {
         let of = |&i: &u32| radii.get(i as usize).map_or(f64::NAN, |&r| f64::from(r));
         let radius: Vec<f64> = points.tree.origin.iter().map(of).collect();
@@ -36,7 +36,7 @@ impl WantedRadii {
         let sum: f64 = points.iter().map(|&i| self.radius[i as usize]).sum();
         (self.hole * sum / points.len() as f64) as f32
     }
-    /// Adds the pairs of natural neighbours, of which at least one is `inner`, by their ratios.
+    /// Adds the pairs of natural neighbours with at least one `inner` point, by their ratios.
     /// Returns the smallest ratio; NaN if there is none.
     pub(super) async fn add_pairs(&self, points: &MeasuredPoints, inner: &[bool], pairs: &mut Pairs) -> f64 {
         let MeasuredPoints { tree, stars, creases, .. } = points;
@@ -46,8 +46,8 @@ impl WantedRadii {
                 for j in stars.of(i) {
                     let ratio = self.ratio(points, i, j);
                     least = least.min(ratio);
-                    // A pair of inner points that are neighbours of each other is seen from both;
-                    // it is added at the earlier one.
+                    // A pair of inner points that are mutual neighbours is seen from both; it is
+                    // added at the earlier one.
                     let is_seen_again = j < i && inner[j] && stars.adjacent(j, i);
                     if ratio.is_finite() && !is_seen_again && creases.is_first_pair(i, j) {
                         pairs.add(ratio, creases.particle(tree, i), creases.particle(tree, j));

@@ -9,8 +9,8 @@ use crate::slices::{MEDIUM, pause, ranges};
 use serde::Serialize;
 
 /// Histogram of the nearest-neighbour distances over the ideal ones: the ideal spacing, or twice
-/// the particle's wanted radius where one is given. Bins are equal, and values outside fall into
-/// the outermost.
+/// the particle's wanted radius if given. Bins are equal, and values outside are counted in the
+/// outermost.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Histogram {
@@ -23,14 +23,13 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// The range is fixed, so that two runs can be compared; the perfect lattice has 1. Hardly any
-    /// particle has a larger distance.
+    /// The range is fixed, so that two runs can be compared; the perfect lattice is at 1. Hardly
+    /// any particle has a larger distance.
     const RANGE: (f64, f64) = (0.0, 1.2);
     /// A bin is 0.01 wide: a fifth of the standard deviation of the distances on a relaxed surface.
     const BINS: usize = 120;
 
-    /// Counts the distances `nearest` of particles over the ideal one of each. Those that are NaN
-    /// are left out.
+    /// Counts the distances `nearest` of particles over the ideal one of each. NaN is left out.
     pub(super) fn new(nearest: impl IntoIterator<Item = (usize, f32)>, ideal: impl Fn(usize) -> f64) -> Self {
         let (min, max) = Self::RANGE;
         let mut bins = vec![0; Self::BINS];
@@ -44,7 +43,7 @@ impl Histogram {
     }
 }
 
-/// Adds the pairs of points by their distance over d_hex, of which at least one point is `inner`.
+/// Adds the pairs of points with at least one `inner` point, by their distance over d_hex.
 pub(super) async fn add_pairs(points: &MeasuredPoints, inner: &[bool], d_hex: f64, pairs: &mut Pairs) {
     let MeasuredPoints { tree, creases, .. } = points;
     let reach = (CROWDED * d_hex) as f32;
@@ -64,7 +63,7 @@ pub(super) async fn add_pairs(points: &MeasuredPoints, inner: &[bool], d_hex: f6
             }
             for &j in &near {
                 let j = j as usize;
-                // Of two inner points, the pair is added at the earlier one.
+                // A pair of two inner points is added at the earlier one.
                 if j != i && creases.is_first(j) && (j > i || !inner[j] || nearest >= CROWDED) {
                     pairs.add(points.distance(i, j) / d_hex, tree.origin[i], tree.origin[j]);
                 }
@@ -74,8 +73,7 @@ pub(super) async fn add_pairs(points: &MeasuredPoints, inner: &[bool], d_hex: f6
     }
 }
 
-/// Nearest-neighbour distances of the points that are `inner`, without those that are too near, and
-/// of `duplicates`.
+/// Nearest-neighbour distances of the `inner` points, without dropped points, and of `duplicates`.
 pub(super) fn measure(points: &MeasuredPoints, inner: &[bool], duplicates: usize, d_hex: f64) -> Spacing {
     // Distances are sorted as keys. A dropped duplicate is a point too, at distance 0 from the one
     // it equals.

@@ -1,8 +1,7 @@
 //! Triangles of natural neighbours that their corners agree on, and the figures of their angles.
 //!
-//! Triangles that are in doubt are left out. [`crate::mesh::triangulation`] makes one manifold of
-//! the same stars, and fills such places in: what it has filled must not say that the surface is
-//! closed.
+//! Doubtful triangles are left out. [`crate::mesh::triangulation`] makes one manifold from the same
+//! stars and fills such places, which must not make the surface look closed here.
 
 use super::figures::Angles;
 use super::moments::{Moments, share};
@@ -46,7 +45,7 @@ impl Triangles {
     }
 
     /// The triangles of a mesh: those that all corners see are unanimous, and the others count as
-    /// well.
+    /// majority.
     pub(super) fn seen(stars: &Stars, mesh: &[[u32; 3]]) -> Self {
         let is_seen =
             |&[a, b, c]: &[u32; 3]| stars.sees(a, b, c) && stars.sees(b, c, a) && stars.sees(c, a, b);
@@ -54,8 +53,8 @@ impl Triangles {
         Self { unanimous, majority, single: Vec::new() }
     }
 
-    /// Adds the triangles of which `i` is the smallest corner that sees them, so that each is added
-    /// once.
+    /// Adds the triangles for which `i` is the smallest corner that sees them, so that each is
+    /// added once.
     fn add(&mut self, stars: &Stars, i: u32) {
         let range = stars.range(i as usize);
         for entry in range.clone() {
@@ -170,7 +169,7 @@ pub(super) fn area(position: &[Vec3], mesh: &[[u32; 3]]) -> f64 {
     mesh.iter().map(|&triangle| 0.5 * area_vector(position, triangle).length()).sum()
 }
 
-/// Angles of the triangles seen so far.
+/// Angles of the triangles added so far.
 #[derive(Default)]
 pub(super) struct TriangleAngles {
     pub(super) count: usize,
@@ -204,7 +203,7 @@ impl TriangleAngles {
         self.least = Some(self.least.unwrap_or(angle).min(angle));
     }
 
-    /// Takes in the triangles of others.
+    /// Adds the triangles of others.
     pub(super) fn join(&mut self, other: &Self) {
         self.count += other.count;
         self.smallest.join(&other.smallest);

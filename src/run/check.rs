@@ -1,22 +1,21 @@
-//! Whether what is known of a field and its box is so: the gradient is that of the values, and the
-//! surface stays in the box.
+//! Checks a field and its box: the gradient must match the values, and the surface must stay in the
+//! box.
 
 use crate::field::{Evaluator, difference_step};
 use crate::math::newton::{self, StepLimits, step_to_curve};
 use crate::math::{Bounds, SINGLE_ROUNDING};
 use glam::DVec3;
 
-/// Points along each axis of the box that are looked at: 27 in all, of which half must differ.
+/// Points along each axis of the box: 27 are checked in all, and half of them must differ.
 const SIDE: usize = 3;
-/// Least difference of a gradient that is wrong, as a share of its length. Where a closure computes
-/// in single precision, the median of the differences is up to 0.8 %; of fields with kinks and of
-/// sines of up to 1,000 radians per unit it is below 2·10⁻⁵. Larger: more wrong gradients are
-/// missed.
+/// Least relative difference of a gradient that counts as wrong. For a closure in single precision
+/// the median difference is up to 0.8 %; for fields with kinks and for sines of up to 1,000 radians
+/// per unit it is below 2·10⁻⁵. Larger: more wrong gradients are missed.
 const DIFFERENT: f64 = 0.02;
 
-/// A point of the box, counted from the origin of the frame, at which the gradient differs from the
-/// differences of f; none if it differs at fewer than half of the points, as at the kinks of a
-/// field that is right.
+/// A point of the box, relative to the origin of the frame, at which the gradient disagrees with
+/// differences of f; none if it does at fewer than half of the points, as at the kinks of a correct
+/// field.
 pub(super) fn wrong_gradient(field: &mut dyn Evaluator, bounds: &Bounds) -> Option<DVec3> {
     let mut wrong = Vec::new();
     let mut looked_at = 0;

@@ -1,23 +1,23 @@
 //! Whether a surface ends where f jumps.
 //!
-//! A surface without a border ends nowhere but where f does: where it has no value, or where it
-//! jumps. Beside such an end f is 0 on one side and not on the other, so that its sign changes
-//! across the jump, and no halving of the way across makes the change smaller.
+//! A surface without a border ends only where f does: where it is undefined, or where it jumps. At
+//! such an end f is 0 on one side and not on the other, so its sign changes across the jump, and
+//! bisecting a path across does not reduce the change.
 
 use super::RunState;
 use crate::field::{Enclosure, Evaluator, Field};
 use crate::math::Bounds;
 use glam::DVec3;
 
-/// Number of halvings of a way across a jump: as many as double precision tells apart.
+/// Number of bisections of a path across a jump: as many as double precision resolves.
 const HALVINGS: u32 = 52;
-/// Least change of f at the end of the halvings, as a share of that at their beginning, where f
-/// jumps. A continuous power of exponent 1/20 has 0.16 left.
+/// f jumps if at least this share of its change is left after the bisections. A continuous power of
+/// exponent 1/20 has 0.16 left.
 const LEFT: f64 = 0.25;
 /// Points along each side of the cube around a place, between which f is compared.
 const SIDE: usize = 3;
 
-/// Places where the triangles end at which it is looked for a jump of f. More of them take longer,
+/// Maximum number of ends of the triangles at which a jump of f is searched for. More take longer,
 /// by some thousand values of f each.
 const LOOKED_AT: usize = 8;
 
@@ -36,7 +36,7 @@ impl RunState {
         let mut ends = Ends::default();
         let Some(opening) = &self.measuring.measured.opening else { return ends };
         let (frame, reach) = (self.evaluator(field).frame(), 2.0 * self.sampler.radius());
-        // Not its pieces, which need not be right where they leave an end.
+        // Evaluates f itself: a piece need not be right beyond an end.
         let f = |p: DVec3| field.value(frame.place(p));
         let step = opening.places.len().div_ceil(LOOKED_AT);
         for place in opening.places.iter().step_by(step).map(|place| place.as_dvec3()) {
@@ -65,7 +65,7 @@ pub(super) fn jumps_near(f: &dyn Fn(DVec3) -> f64, place: DVec3, reach: f64) -> 
     })
 }
 
-/// Whether f is not known to be continuous within `reach` of a place, by its bounds.
+/// Whether f may be discontinuous within `reach` of a place, according to its bounds.
 pub(super) fn breaks_in(field: &mut dyn Evaluator, place: DVec3, reach: f64) -> bool {
     let Some(field) = field.bounded() else { return false };
     let around = Bounds::new(place - reach, place + reach);
@@ -93,7 +93,7 @@ fn is_jump(f: &dyn Fn(DVec3) -> f64, mut a: (DVec3, f64), mut b: (DVec3, f64)) -
             b = middle;
         }
     }
-    // False for NaN, which f is where it has no value.
+    // False for NaN, where f is undefined.
     change(a, b) >= LEFT * whole
 }
 

@@ -23,15 +23,15 @@ const MAX_KEPT: usize = 400_000;
 #[serde(rename_all = "snake_case")]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub enum Measured {
-    /// Nothing. The report has no figures of quality, no number of components of the sample, and
-    /// none of the warnings that come from measuring, of open edges and of close sheets; files have
-    /// no columns of measured values.
+    /// Nothing. The report has no figures of quality, no number of components of the sample, and no
+    /// warnings of open edges and close sheets, which come from measuring; files have no columns of
+    /// measured values.
     Nothing,
     /// The particles.
     #[default]
     Particles,
-    /// The particles and, where they were relaxed, those of the front before, for comparison. Both
-    /// are measured in full.
+    /// The particles and, if they were relaxed, also the front before, for comparison. Both are
+    /// measured in full.
     FrontToo,
 }
 
@@ -45,23 +45,22 @@ pub(super) struct Measuring {
     pub(super) work: Option<Estimated<'static, MeasuringResult>>,
     /// The figures and columns of the last measurement; empty before the first.
     pub(super) measured: quality::Measurements,
-    /// Number of particles that face another sheet; none if the present particles are still to be
-    /// measured.
+    /// Number of particles that face another sheet; none if the present particles have not been
+    /// measured yet.
     pub(super) facing: Option<usize>,
     /// The sheets of the present particles, if they have been measured.
     pub(super) sheets: Option<Arc<Sheets>>,
 }
 
 impl Measuring {
-    /// Keeps the first `count` particles as those of the front, if none are kept.
+    /// Keeps the first `count` particles as the front's, if none are kept.
     pub(super) fn keep_front(&mut self, particles: &Particles, count: usize) {
         if self.front.is_none() && count <= MAX_KEPT {
             self.front = Some(Arc::new(measured_columns(particles)));
         }
     }
 
-    /// Gives a measurement under way up, and says that the last one is of other particles or
-    /// another field.
+    /// Aborts a measurement under way, and marks the last one as outdated.
     pub(super) fn stop(&mut self) {
         (self.work, self.facing, self.sheets) = (None, None, None);
     }
@@ -75,7 +74,7 @@ impl Measuring {
         }
     }
 
-    /// The particles of the front that are still to be measured.
+    /// The particles of the front, if they have yet to be measured.
     pub(super) fn open_front(&self) -> Option<Arc<Particles>> {
         self.front.clone().filter(|_| self.front_figures.is_none())
     }
@@ -95,8 +94,8 @@ pub(super) fn measured_columns(particles: &Particles) -> Particles {
     }
 }
 
-/// [`quality::measure`], a slice at a time; see [`quality::in_slices`] for `crossings`. The
-/// `sheets` are those of the particles, where they are there.
+/// [`quality::measure`], a slice at a time; see [`quality::in_slices`] for `crossings`. `sheets`
+/// belongs to the particles, if known.
 pub(super) async fn measure(
     particles: &Particles,
     field: &mut dyn Evaluator,
@@ -124,7 +123,7 @@ pub(super) struct MeasuringResult {
 
 /// Number of slices that the measurement of these particles is expected to take.
 pub(super) fn expected_slices(front: Option<&Arc<Particles>>, now: &Particles) -> u64 {
-    /// Slices for each of the present particles, of their tree and of those that face each other.
+    /// Slices per particle for the tree and for the particles that face each other.
     const EACH: f64 = 0.08;
     let counts = front.map(|front| front.len()).into_iter().chain([now.len()]);
     quality::expected_slices(counts) + (EACH * now.len() as f64) as u64
@@ -165,8 +164,8 @@ impl MeasuringInput {
 
 /// Number of rows nearer than 2r to one of the same patch that faces the other way.
 async fn facing_another_sheet(particles: &Particles, sheets: &Sheets) -> usize {
-    /// Particles whose normals have this cosine with one direction, or a larger one, are within
-    /// 120° of each other, so that they repel each other. The third digit is for rounding.
+    /// Particles whose normals have at least this cosine with one direction are within 120° of each
+    /// other, so that they repel each other. The third digit is for rounding.
     const ALIKE: f32 = 0.505;
     let mut near = Vec::new();
     let mut count = 0;

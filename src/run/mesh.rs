@@ -1,5 +1,5 @@
-//! The mesh over the particles of a run: joined when it is asked for, in slices, and dropped when
-//! they change.
+//! The mesh over the particles of a run: joined on request, in slices, and dropped when they
+//! change.
 
 use super::{Run, RunState};
 use crate::export::{File, FileContent, MeshFile};
@@ -25,12 +25,11 @@ pub struct MeshAnswer {
     pub triangles: usize,
     /// Connected components, in the order of their first particles.
     pub components: Vec<MeshComponent>,
-    /// Number of border loops where no manifold could be had, other than those where the surface
-    /// ends.
+    /// Number of border loops where no manifold was possible, not counting ends of the surface.
     pub unfilled: usize,
     /// Number of particles in no triangle.
     pub left_out: usize,
-    /// [Volume](Triangulation::volume) that the mesh encloses; none where it is open.
+    /// [Volume](Triangulation::volume) that the mesh encloses; none if it is open.
     pub volume: Option<f64>,
     /// Sign of f inside of the closed parts; none if there is no closed part. All face outward in
     /// files.
@@ -38,12 +37,12 @@ pub struct MeshAnswer {
     /// [Smallest angle](Triangulation::smallest_angle) of any triangle, in degrees; none without
     /// triangles.
     pub smallest_angle: Option<f64>,
-    /// Border loops: rows of particles in order. Those where no manifold could be had come first,
+    /// Border loops: rows of particles in order. Those where no manifold was possible come first,
     /// then the longest.
     pub loops: Vec<Vec<u32>>,
     /// The bodies, the largest first.
     pub bodies: Vec<Body>,
-    /// The triangles of those that are loose chips, in ascending order.
+    /// The triangles of the bodies that are loose chips, in ascending order.
     pub chips: Vec<u32>,
 }
 
@@ -57,11 +56,11 @@ pub struct MeshComponent {
     pub euler: i64,
     /// Number of edges with one triangle.
     pub open_edges: u32,
-    /// Place of its body among those of the mesh.
+    /// Index of its body among the bodies of the mesh.
     pub body: usize,
 }
 
-/// The mesh of a run, as far as it is there, and a file of it that is being written.
+/// The mesh of a run, if there is one, and a file of it under way.
 #[derive(Default)]
 pub(super) struct Meshing {
     state: MeshState,
@@ -70,7 +69,7 @@ pub(super) struct Meshing {
 
 #[derive(Default)]
 enum MeshState {
-    /// The mesh was not asked for since the particles have changed.
+    /// No mesh has been requested since the particles changed.
     #[default]
     None,
     /// The particles are being joined.
@@ -80,7 +79,7 @@ enum MeshState {
 }
 
 impl Meshing {
-    /// The mesh, if it is there.
+    /// The mesh, if it is complete.
     pub(super) fn joined(&self) -> Option<&Triangulation> {
         match &self.state {
             MeshState::Joined(mesh) => Some(&**mesh),
@@ -97,7 +96,7 @@ impl Meshing {
         }
     }
 
-    /// The mesh, if it is there, which is taken out.
+    /// The mesh, if it is complete.
     pub(super) fn into_joined(self) -> Option<Triangulation> {
         match self.state {
             MeshState::Joined(mesh) => Some(*mesh),
@@ -106,9 +105,9 @@ impl Meshing {
     }
 }
 
-/// Joins particles to triangles, or takes those that are `known`. `bounds` is the clip box, counted
-/// from the origin of the particles, and `sheets` are theirs, where they are there: without them
-/// near sheets are told apart by directions alone.
+/// Joins particles to triangles, or takes those that are `known`. `bounds` is the clip box,
+/// relative to the origin of the particles. `sheets` belongs to the particles, if known: without it
+/// near sheets are distinguished by directions alone.
 pub(super) async fn joined(
     particles: &Particles,
     known: &[[u32; 3]],
@@ -162,29 +161,31 @@ impl MeshAnswer {
 }
 
 impl<F: Field> Run<F> {
-    /// Joins the particles to a mesh: up to `budget` slices of the work, some 10 to 50 microseconds
-    /// each; what it adds up to, once it is complete. A refined run has led to a mesh, which is
-    /// taken as it is. Call it when the run has ended. The mesh stays until the particles change.
+    /// Joins the particles to a mesh, with up to `budget` slices of the work, some 10 to 50
+    /// microseconds each; returns its counts and sizes once it is complete. The mesh of a refined
+    /// run is taken as it is. Call it when the run has ended. The mesh stays until the particles
+    /// change.
     pub fn join(&mut self, budget: u32) -> Option<MeshAnswer> {
         self.state.join(&self.field, budget)
     }
 
-    /// The mesh; none before [`Run::join`] is done.
+    /// The mesh; none before [`Run::join`] is complete.
     #[must_use]
     pub fn mesh(&self) -> Option<&Triangulation> {
         self.state.mesh()
     }
 
     /// The triangles of the [mesh](Run::mesh): triples of particles, counter-clockwise seen from
-    /// outside. There are none before [`Run::join`] is done.
+    /// outside. Empty before [`Run::join`] is complete.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         self.mesh().map_or(&[], |mesh| &mesh.triangles)
     }
 
-    /// The mesh as a file, with what was measured of the particles: up to `budget` slices of the
-    /// work, of [`MEDIUM`] rows each; the file, once it is complete. Another wish, or a change of
-    /// the particles, begins a file anew. Before [`Run::join`] is done it has no triangles.
+    /// The mesh as a file, with the measurements of the particles: up to `budget` slices of the
+    /// work, of [`MEDIUM`] rows each; returns the file once it is complete. Another wish, or a
+    /// change of the particles, starts again. Before [`Run::join`] is complete the file has no
+    /// triangles.
     ///
     /// # Errors
     ///
@@ -218,7 +219,7 @@ impl RunState {
         self.meshing.joined().map(|mesh| MeshAnswer::new(mesh, self.particles()))
     }
 
-    /// The mesh, without what fills holes where the field has no surface, and facing outward where
+    /// The mesh, without triangles in holes where the field has no surface, and facing outward if
     /// the field is larger inside.
     fn judged(&self, field: &dyn Field, mesh: Triangulation) -> Triangulation {
         let evaluator = &mut *self.evaluator(field);
@@ -227,7 +228,7 @@ impl RunState {
         if self.is_negative_outside(field) { mesh.facing_outward() } else { mesh }
     }
 
-    /// Whether the box cuts nothing of the surface, and f is negative at all of its corners.
+    /// Whether the box does not cut the surface, and f is negative at all of its corners.
     fn is_negative_outside(&self, field: &dyn Field) -> bool {
         let Bounds { min, max } = self.local_bounds();
         let corners = (0..8).map(|k| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { min } else { max }[axis]));
@@ -235,9 +236,8 @@ impl RunState {
         self.at_border() == 0 && corners.map(DVec3::from).all(|p| field.value_and_gradient(p).0 < 0.0)
     }
 
-    /// Takes the topology of the sample from its mesh where the triangles of natural neighbours
-    /// leave gaps, which they do where the surface bends too much for its particles, and the mesh
-    /// leaves none.
+    /// Takes the topology of the sample from its mesh if the triangles of natural neighbours leave
+    /// gaps and the mesh does not: they do where the surface bends too much for its particles.
     pub(super) fn take_topology(&mut self) {
         let (Some(_), Some(mesh)) = (&self.measuring.measured.opening, self.meshing.joined()) else { return };
         if !self.is_whole(mesh) {
@@ -249,9 +249,10 @@ impl RunState {
         (connectivity.components, connectivity.euler, measured.opening) = (components, euler, None);
     }
 
-    /// Whether a mesh is a manifold that is open at the faces of the box alone.
+    /// Whether a mesh is a manifold that is open only at the faces of the box.
     fn is_whole(&self, mesh: &Triangulation) -> bool {
-        /// Distance from a face, in radii, at which an edge is at the box: one and a half spacings.
+        /// Distance from a face, in radii, within which an edge is at the box: one and a half
+        /// spacings.
         const AT_BOX: f64 = 3.0;
         let (bounds, particles) = (self.local_bounds(), self.particles());
         let is_at_box = |&v: &u32| {

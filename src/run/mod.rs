@@ -1,8 +1,8 @@
 //! A run: one field, sampled in one box, from the first survey to particles, report and mesh.
 //!
-//! This is the door of the crate. [`sample`] is the whole job in one call. A [`Run`] is the same in
-//! steps, for a caller that shows progress, cancels, relaxes further or measures in slices. What
-//! either leads to is a [`Sample`].
+//! This is the entry of the crate. [`sample`] does the whole job in one call. A [`Run`] does the
+//! same in steps, for a caller that shows progress, cancels, relaxes further or measures in slices.
+//! The result of either is a [`Sample`].
 
 mod check;
 mod jumps;
@@ -46,30 +46,30 @@ use serde::Serialize;
 const KEPT_BYTES: usize = 12 + 12 + 4;
 /// Bytes per particle that a report takes while it is made, in WebAssembly, whose memory never
 /// shrinks: with the bytes kept and those of the sampler these are the 425 by which that of a front
-/// and its report grows from 100,000 to 400,000 particles of an ellipsoid. Of a gyroid it is 433,
-/// with sizes that differ 415, and refined 333; natively 378 are resident at the peak.
+/// and its report grows from 100,000 to 400,000 particles of an ellipsoid. For a gyroid it is 433,
+/// with varying sizes 415, and refined 333; natively 378 are resident at the peak.
 const REPORT_BYTES: usize = 302;
 
 /// Why there is no sample of a surface.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A setting or the box is out of its range, or the memory does not hold the particles.
+    /// A setting or the box is out of its range, or there is no memory for the particles.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// No box was given, and none was found: f changes its sign nowhere on the grids that were laid
-    /// over cubes around the origin. A surface that is smaller than their cells, or farther away,
-    /// needs its box: [`Settings::in_box`].
+    /// No box was given, and none was found: f never changes its sign on grids over cubes around
+    /// the origin. A surface that is smaller than their cells, or farther away, needs a box:
+    /// [`Settings::in_box`].
     #[error("{} (`Settings::in_box`)", no_box(halves, *cells, *defined))]
     NoBox {
         /// Half-widths of the cubes, the largest first.
         halves: &'static [f64],
         /// Cells along each side of a cube.
         cells: usize,
-        /// Share of the nodes of the grids at which f has a value.
+        /// Share of the nodes of the grids at which f is defined.
         defined: f64,
     },
-    /// A function of the program has failed: its error.
+    /// A function of the program has failed with this error.
     #[error("the function that is sampled has failed: {0}")]
     Field(FieldError),
     /// The run was ended before its first particle: nothing is known of the surface.
@@ -85,7 +85,7 @@ pub enum Error {
     },
 }
 
-/// Why no box was found, up to how to give one.
+/// Why no box was found; how to give one follows.
 fn no_box(halves: &[f64], cells: usize, defined: f64) -> String {
     let (smallest, largest) = (halves[halves.len() - 1], halves[0]);
     let grids = format!(
@@ -113,7 +113,7 @@ fn no_box(halves: &[f64], cells: usize, defined: f64) -> String {
 pub struct Start {
     /// Repulsion radius of the run, in the units of the field's coordinates.
     pub radius: f64,
-    /// Number of particles to expect.
+    /// Expected number of particles.
     pub predicted_count: u64,
     /// Estimated area of the surface in the box.
     pub area: f64,
@@ -122,18 +122,18 @@ pub struct Start {
     pub warnings: Vec<Warning>,
 }
 
-/// What the sampler knows of the present field and box.
+/// How much the sampler knows of the present field and box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Known {
     Nothing,
     /// The particles, which have followed the surface.
     Particles,
-    /// The survey of the last start, too.
+    /// Also the survey of the last start.
     Survey,
 }
 
-/// The state of a run, without its field. Every call lends it the field, of whatever type that is,
-/// so that this code is compiled once.
+/// The state of a run, without its field. Every call lends it the field, whatever its type, so that
+/// this code is compiled only once.
 struct RunState {
     field: FieldState,
     /// The clip box, in the coordinates of the field.
@@ -146,14 +146,14 @@ struct RunState {
     creases: Option<FoundCreases>,
     /// The spacing that the next run takes from a function; none if the settings give the sizes.
     spacing: Option<Spacing>,
-    /// Why the particles of a run that has ended do not have it.
+    /// Why the particles of a finished run do not have that spacing.
     spacing_error: Option<SettingsError>,
     /// Limit on the number of particles: a run that expects more is refused.
     most_particles: usize,
     /// The report on the start.
     start: Start,
     last: Option<Progress>,
-    /// The plan that fractions are shares of.
+    /// The plan that fractions refer to.
     plan: Plan,
     measuring: Measuring,
     meshing: Meshing,
@@ -162,9 +162,9 @@ struct RunState {
 /// Facts about the field of a run.
 #[derive(Clone, Default)]
 struct FieldState {
-    /// Calls of its functions before this run.
+    /// Calls of the program's functions before this run.
     calls: u64,
-    /// The pieces that were found, if the field has edges.
+    /// The pieces found, if the field has edges.
     pieces: Option<KnownPieces>,
 }
 
@@ -203,17 +203,17 @@ impl<F> Debug for Run<F> {
 }
 
 impl<F: Field> Run<F> {
-    /// Starts a run on the surface of `field`: in the box of the settings, or in one that fits the
+    /// Starts a run on the surface of `field`, in the box of the settings or in one that fits the
     /// surface.
     ///
     /// The start surveys the box and fixes the radius. A fitted box is found by bounds of the field
-    /// where it has any, and by the signs of f on grids where it has none, with some hundred
-    /// thousand evaluations: [`FnField`](crate::FnField) says what these can miss.
+    /// if it has any, otherwise by the signs of f on grids, with some hundred thousand evaluations:
+    /// [`FnField`](crate::FnField) says what these can miss.
     ///
     /// # Errors
     ///
-    /// If a setting or the box is out of its range, the memory does not hold the particles to
-    /// expect, or a function of the program fails.
+    /// If a setting or the box is out of its range, there is no memory for the expected particles,
+    /// or a function of the program fails.
     pub fn start<Kind>(
         field: impl IntoField<Kind, Field = F>,
         settings: impl Into<SpacedSettings>,
@@ -236,12 +236,12 @@ impl<F: Field> Run<F> {
         self.state.begin(&self.field, settings)
     }
 
-    /// Takes the spacing by a function of the next start.
+    /// Sets the spacing by a function for the next start.
     pub(crate) fn set_spacing(&mut self, spacing: Option<Spacing>) {
         self.state.spacing = spacing;
     }
 
-    /// Starts anew with other settings. The survey is kept, unless the settings name another box.
+    /// Starts again with other settings. The survey is kept, unless the settings name another box.
     ///
     /// # Errors
     ///
@@ -255,9 +255,9 @@ impl<F: Field> Run<F> {
         Ok(self.begin(&settings)?)
     }
 
-    /// Says what the caller is going to do once the run has ended, measure and [join](Run::join)
-    /// the particles, so that [`Progress::fraction`], [`Run::fraction`] and [`Reporting::fraction`]
-    /// are shares of all of it. Without a plan they are shares of the run alone.
+    /// Announces what the caller will do after the run, measure and [join](Run::join) the
+    /// particles, so that [`Progress::fraction`], [`Run::fraction`] and [`Reporting::fraction`] are
+    /// shares of all of it. Without a plan they are shares of the run alone.
     pub fn plan(&mut self, measured: Measured, is_joined: bool) {
         self.state.plan = Plan { measured, is_joined };
     }
@@ -270,29 +270,30 @@ impl<F: Field> Run<F> {
 
     /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's
     /// share of a relaxation step. It returns early now and then, so that a caller can show the
-    /// particles. The run has ended when [`Progress::stop_reason`] is set: it is
-    /// [cancelled](StopReason::Cancelled) where a function of the program [has
+    /// particles. The run has ended when [`Progress::stop_reason`] is set. It is
+    /// [cancelled](StopReason::Cancelled) if a function of the program [has
     /// failed](Run::check_field).
     pub fn step(&mut self, budget: u32) -> Progress {
         self.state.step(&self.field, budget)
     }
 
-    /// Has the particles of a finished run follow its surface to that of `field`, in the same box,
-    /// which has moved but little; [`Run::step`] does it. Each call is a frame of a motion: the
-    /// transport of the particles, births and deaths where they become sparse or crowd, and a step
-    /// of relaxation. The same sequence of fields gives the same particles to the last bit.
+    /// Lets the particles of a finished run follow its surface to the surface of `field`, in the
+    /// same box, which has moved only a little; [`Run::step`] does it. Each call is a frame of a
+    /// motion: the transport of the particles, births and deaths where they become sparse or crowd,
+    /// and a step of relaxation. The same sequence of fields gives the same particles to the last
+    /// bit.
     ///
-    /// The box stays what it is: one that was fitted to the first surface cuts what grows out of
-    /// it, which the report says ([`Cut::Outgrown`]).
+    /// The box stays the same: one that was fitted to the first surface cuts what grows out of it,
+    /// which the report says ([`Cut::Outgrown`]).
     ///
-    /// The order of the fronts is lost where particles are born and die; those of a refined run
-    /// move with its mesh, and keep theirs, until the surface tears or joins. Components are no
-    /// longer searched beyond a survey.
+    /// Births and deaths destroy the order of the fronts; particles of a refined run move with its
+    /// mesh and keep their order, until the surface tears or joins. Components that a survey misses
+    /// are no longer searched for.
     ///
     /// # Errors
     ///
-    /// If the particles cannot follow: the error says why, and what to do. The run is then as if
-    /// this had not been called, with its field.
+    /// If the particles cannot follow: the error says why, and what to do. The run and its field
+    /// are then as before the call.
     ///
     /// ```
     /// use marching_particles::{Bounds, Formula, Run, Settings};
@@ -304,7 +305,7 @@ impl<F: Field> Run<F> {
     ///     run.follow(ellipsoid(1.0 + 0.01 * f64::from(frame))?)?;
     ///     while run.step(u32::MAX).stop_reason.is_none() {}
     /// }
-    /// // Most of the particles are those of the beginning.
+    /// // Most of the particles were there at the beginning.
     /// assert!(run.particles().identity.iter().filter(|&&number| number < 1_000).count() > 900);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -319,16 +320,16 @@ impl<F: Field> Run<F> {
         followed
     }
 
-    /// [`Run::follow`] to the surface of the field that the run has, in its box: both may have
-    /// changed since the last step. `is_closed`: no particle is born, and none dies but where it
-    /// does not come to the surface.
+    /// [`Run::follow`] to the surface of the run's own field, in its box: both may have changed
+    /// since the last step. If `is_closed`, particles are neither added nor removed, except those
+    /// that do not reach the surface.
     pub(crate) fn follow_field(&mut self, is_closed: bool) -> Result<(), FollowError> {
         self.state.follow(&self.field, is_closed)
     }
 
-    /// Asks for more relaxation steps on the particles of a run that has ended; [`Run::step`] does
-    /// them. Returns whether there are particles to relax: while the run is under way there are
-    /// none, and its steps are those of its [settings](Settings::relax_steps).
+    /// Requests more relaxation steps on the particles of a finished run; [`Run::step`] does them.
+    /// Returns whether there are particles to relax: not while the run is under way, whose steps
+    /// are set by its [settings](Settings::relax_steps).
     #[must_use]
     pub fn relax(&mut self, steps: u32) -> bool {
         self.state.relax(&self.field, steps)
@@ -339,7 +340,7 @@ impl<F: Field> Run<F> {
         self.state.cancel(&self.field)
     }
 
-    /// Measures the particles and makes a [`Sample`] of the run, where it stands.
+    /// Measures the particles and makes a [`Sample`] of the run in its present state.
     ///
     /// # Errors
     ///
@@ -359,13 +360,13 @@ impl<F: Field> Run<F> {
         self.state.finished(&self.field, measured)
     }
 
-    /// The error of a function of the program that has failed. The run has ended then, and its
-    /// particles are those of before.
+    /// The error of a function of the program that has failed. The run has ended then; its
+    /// particles are those placed before.
     ///
     /// # Errors
     ///
-    /// [`Error::Field`], if it has, and [`Error::Settings`] if it is that of a [`Spacing`], or if
-    /// the spacing is not above 0 at a particle.
+    /// [`Error::Field`] if a function of the field has failed; [`Error::Settings`] if the function
+    /// of a [`Spacing`] has, or if the spacing is not above 0 at a particle.
     pub fn check_field(&self) -> Result<(), Error> {
         self.state.check_functions(&self.field)
     }
@@ -375,7 +376,7 @@ impl<F: Field> Run<F> {
         self.state.check_not_empty(&self.field)
     }
 
-    /// The report on particles that were measured, once their mesh is joined.
+    /// The report on measured particles, once their mesh is joined.
     pub(crate) fn reported(&mut self) -> Report {
         self.state.reported(&self.field)
     }
@@ -385,8 +386,8 @@ impl<F: Field> Run<F> {
         Sample::new(self.state, report)
     }
 
-    /// The particles so far; of a generation level under way, the columns may hold provisional rows
-    /// beyond [`Run::rows`].
+    /// The particles so far. While a generation level is under way, the columns may hold
+    /// provisional rows beyond [`Run::rows`].
     #[must_use]
     pub fn particles(&self) -> &Particles {
         self.state.sampler.particles()
@@ -398,7 +399,7 @@ impl<F: Field> Run<F> {
         self.state.count()
     }
 
-    /// Rows of the columns that will stay: more than there are particles where some lie on creases,
+    /// Rows of the columns that will stay: more than there are particles if some lie on creases,
     /// with a row on each side.
     #[must_use]
     pub fn rows(&self) -> usize {
@@ -435,7 +436,7 @@ impl<F: Field> Run<F> {
         &self.field
     }
 
-    /// An evaluator of the field in the frame of the particles: places are counted from their
+    /// An evaluator of the field in the frame of the particles: places are relative to their
     /// origin. It knows the patches of the surface.
     #[must_use]
     pub fn evaluator(&self) -> Box<dyn Evaluator + '_> {
@@ -450,14 +451,14 @@ impl<F: Field> Run<F> {
 
     /// Refuses, from now on, runs that need more than about `bytes` with the report on them.
     pub fn limit_memory(&mut self, bytes: usize) {
-        // A refined run takes more than a front does, but before the report is made it has given
-        // most of that back.
+        // A refined run takes more than a front, but has freed most of that before the report is
+        // made.
         let with_report = bytes_per_particle(&Settings::DEFAULT) + KEPT_BYTES + REPORT_BYTES;
         self.state.most_particles = bytes / with_report;
     }
 
     /// Principal curvatures (κ₁, κ₂) at the particles from `from` on, in inverse units of length;
-    /// NaN where the surface has none.
+    /// NaN where they are undefined.
     pub fn curvatures(&self, from: usize) -> Vec<[f32; 2]> {
         let count = self.rows();
         let positions = &self.particles().local[from.min(count)..count];
@@ -477,33 +478,33 @@ impl<F: Field> Run<F> {
         &mut self.state.measuring.measured
     }
 
-    /// The sampler, for what the report leaves out.
+    /// The sampler, for facts that the report omits.
     #[doc(hidden)]
     #[must_use]
     pub fn sampler(&self) -> &Sampler {
         &self.state.sampler
     }
 
-    /// Ends the run and returns its sampler, with the method where it is.
+    /// Ends the run and returns its sampler, with the method where it stopped.
     #[doc(hidden)]
     #[must_use]
     pub fn into_sampler(self) -> Sampler {
         self.state.sampler
     }
 
-    /// Takes another box for the next start, which ends a run in the one before.
+    /// Sets the box of the next start, which ends a run in the box before.
     pub(crate) fn set_bounds(&mut self, bounds: Bounds, reach: Option<Reach>) {
         self.state.set_bounds(&self.field, bounds, reach);
     }
 
-    /// Takes another field for the next start. The particles stay until then. A field that
-    /// `is_same` gives the same surface: the survey stays good.
+    /// Sets the field of the next start. The particles stay until then. A field that `is_same` has
+    /// the same surface: the survey remains valid.
     pub(crate) fn set_field(&mut self, field: F, is_same: bool) {
         self.state.leave_field(&self.field, &field, is_same);
         self.field = field;
     }
 
-    /// Whether the next start has nothing to find out about the creases of the surface.
+    /// Whether the next start needs no search for the creases of the surface.
     pub(crate) fn knows_creases(&self) -> bool {
         self.state.knows_creases()
     }
@@ -518,7 +519,7 @@ impl<F: Field> Run<F> {
         Box::pin(async move { sampler::find_creases(&field, origin, &bounds).await })
     }
 
-    /// Takes the creases of the surface for the next start.
+    /// Sets the creases of the surface for the next start.
     pub(crate) fn know_creases(&mut self, found: FoundCreases) {
         self.state.creases = Some(found);
     }

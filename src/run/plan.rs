@@ -1,9 +1,9 @@
-//! One figure of progress for a whole call: a run, and what its caller does with it afterwards.
+//! One progress figure for a whole call: a run, and what its caller does with it afterwards.
 
 use super::Measured;
 use crate::sampler::Method;
 
-/// Cost of a run without its report, over that of measuring its particles once.
+/// Cost of a run without its report, relative to measuring its particles once.
 fn run_cost(method: Method) -> f64 {
     match method {
         Method::Front => 0.7,
@@ -11,8 +11,8 @@ fn run_cost(method: Method) -> f64 {
     }
 }
 
-/// Cost of the mesh, over that of measuring the particles once. A refined run has made it already,
-/// and measuring has found the neighbours that a front's is made of.
+/// Cost of the mesh, relative to measuring the particles once. A refined run has made it already,
+/// and measuring finds the neighbours that a front's mesh needs.
 fn mesh_cost(method: Method, measured: Measured) -> f64 {
     match (method, measured) {
         (Method::Front, Measured::Nothing) => 0.3,
@@ -20,8 +20,7 @@ fn mesh_cost(method: Method, measured: Measured) -> f64 {
     }
 }
 
-/// A plan says whether the particles will be measured, and whether they will be joined, once the
-/// run has ended.
+/// Says whether the particles will be measured, and joined, once the run has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Plan {
     pub(super) measured: Measured,
@@ -34,7 +33,7 @@ impl Default for Plan {
     }
 }
 
-/// Shares of a call: the estimated time of each part over that of all. Their sum is 1.
+/// Shares of a call: the estimated time of each part, relative to the whole. Their sum is 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shares {
     pub(super) run: f64,

@@ -36,22 +36,22 @@ pub struct Report {
     /// Figures of quality.
     #[serde(flatten)]
     pub measures: Measures,
-    /// Volume that the mesh encloses to which [`Run::join`] has joined the particles; none where it
-    /// is open, or they were not joined.
+    /// Volume enclosed by the mesh to which [`Run::join`] has joined the particles; none if it is
+    /// open, or the particles were not joined.
     #[serde(rename = "volume")]
     pub joined_volume: Option<f64>,
     /// Sign of f inside of the closed parts of the surface, by that mesh if the particles were
-    /// joined, else by the triangles of natural neighbours; none where no part is closed, or
-    /// nothing was measured.
+    /// joined, else by the triangles of natural neighbours; none if no part is closed, or nothing
+    /// was measured.
     pub inside: Option<Inside>,
-    /// Smallest angle of the triangles of that mesh in degrees, those at its border among them;
-    /// none where the particles were not joined.
+    /// Smallest angle of the triangles of that mesh in degrees, including its border; none if the
+    /// particles were not joined.
     pub smallest_angle: Option<f64>,
-    /// Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none where no
-    /// faces are the same.
+    /// Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none if no
+    /// opposite faces agree.
     pub pairs: Option<usize>,
-    /// Particles with a child that fell outside of the box; of those that have followed a moving
-    /// surface, with place for one there.
+    /// Particles with a child that fell outside of the box; for particles that have followed a
+    /// moving surface, with room for a child there.
     pub border: usize,
     /// Why particles lie at the border of the box.
     pub cut: Option<Cut>,
@@ -69,12 +69,12 @@ pub struct Report {
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Cut {
-    /// The surface goes on beyond the fitted box: it has no end, or the search for the box missed
-    /// a part of it.
+    /// The surface continues beyond the fitted box: it is unbounded, or the search for the box
+    /// missed a part of it.
     Endless,
     /// The box was given, and the surface reaches beyond it.
     Fixed,
-    /// The box was fitted to the surface before it moved, and it has grown beyond it.
+    /// The box was fitted to the surface before it moved, and the surface has outgrown it.
     Outgrown,
 }
 
@@ -82,8 +82,8 @@ pub enum Cut {
 #[derive(Clone, Copy, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Radii {
-    /// Repulsion radius of the run; with adaptive sampling the one at which as many particles of
-    /// equal radius would cover the surface.
+    /// Repulsion radius of the run; with adaptive sampling, the radius at which as many particles
+    /// of equal size would cover the surface.
     pub radius: f64,
     /// Repulsion radius of the smallest particle; 0 without particles.
     pub radius_min: f64,
@@ -99,7 +99,7 @@ pub struct Growth {
     pub levels: u32,
     /// Particles per generation level.
     pub level_counts: Vec<u32>,
-    /// Fronts started: each from a seed of its own, or from creases that hang together.
+    /// Fronts started: each from a seed of its own, or from connected creases.
     pub components_seeded: u32,
     /// Particles placed in gaps between fronts.
     pub gaps_filled: u64,
@@ -108,17 +108,17 @@ pub struct Growth {
     /// Field evaluations of the whole run, counted as
     /// [`Progress::evaluations`](crate::Progress::evaluations).
     pub evaluations: u64,
-    /// Points for which functions of the program were asked, of values and of gradients, from the
-    /// search for a box to this report; none of fields that do not [count](crate::Field::calls)
+    /// Points at which functions of the program were evaluated, for values and gradients, from the
+    /// search for a box to this report; none if the field does not [count](crate::Field::calls)
     /// them.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(test, ts(skip))]
     pub calls: Option<u64>,
     /// Field evaluations of the front per particle.
     pub evaluations_per_particle: f64,
-    /// Times that a coarse front was refined; none where it was not, or the front stands.
+    /// Number of refinements of a coarse front; none if it was not refined, or the front was kept.
     pub refined_levels: Option<u32>,
-    /// Energy per particle before the first relaxation step and after each; none where nothing was
+    /// Energy per particle before the first relaxation step and after each; none if nothing was
     /// relaxed.
     pub energy: Option<Vec<f64>>,
 }
@@ -127,29 +127,29 @@ pub struct Growth {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Proof {
-    /// Number of components at this radius: those of the graph of natural neighbours of the
-    /// particles. 0, and null in JSON, without particles or where they were not measured.
+    /// Number of components at this radius, in the graph of natural neighbours of the particles. 0,
+    /// and null in JSON, without particles or if they were not measured.
     #[serde(serialize_with = "null_for_zero")]
     #[cfg_attr(test, ts(type = "number | null"))]
     pub components: usize,
-    /// Whether it is proven that there is a witness on every component of the surface, and of each
-    /// witness that it is on the component of a particle or named in `sampled`.
+    /// Whether it is proven that every component of the surface has a witness, and that every
+    /// witness is on the component of a particle or named in `sampled`.
     pub search: Search,
     /// The witnessed components that hold particles, and those that do not.
     pub sampled: Sampled,
-    /// Cells of the box in which the proof could not decide, and witnesses of which it could not;
-    /// none where no proof was attempted.
+    /// Cells of the box and witnesses that the proof left undecided; none if no proof was
+    /// attempted.
     pub undecided_cells: Option<u64>,
-    /// Places where f has no gradient on the surface, a curve of them counted as one; none where
-    /// they were not looked for.
+    /// Places where f has no gradient on the surface, a curve of them counted as one; none if they
+    /// were not searched for.
     pub singular_points: Option<u64>,
     /// Curves of particles along which the surface has an edge, from corner to corner or closed;
-    /// none where it has no edges.
+    /// none if it has no edges.
     pub creases: Option<usize>,
-    /// Particles at which creases meet or end; none where the surface has no edges.
+    /// Particles at which creases meet or end; none if the surface has no edges.
     pub corners: Option<usize>,
-    /// Curves of particles along which patches of the surface meet without an edge; none where they
-    /// meet nowhere so.
+    /// Curves of particles along which patches of the surface meet without an edge; none if there
+    /// are none.
     pub seams: Option<usize>,
 }
 
@@ -157,9 +157,9 @@ pub struct Proof {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Measures {
-    /// Quality of the present particles; none if there are none, or where they were not measured.
+    /// Quality of the present particles; none without particles, or if they were not measured.
     pub quality: Option<Figures>,
-    /// Quality of the particles after the front, before the relaxation; none where nothing was
+    /// Quality of the particles after the front, before the relaxation; none if nothing was
     /// relaxed, or the front was not measured.
     pub quality_before: Option<Figures>,
     /// Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of
@@ -173,8 +173,8 @@ fn null_for_zero<S: Serializer>(count: &usize, serializer: S) -> Result<S::Ok, S
     Some(*count).filter(|&count| count > 0).serialize(serializer)
 }
 
-/// These counts describe the curves of particles along which the surface has an edge, or those
-/// along which it has none.
+/// Counts of the curves of particles along which the surface has an edge, or of those along which
+/// it has none.
 pub(super) struct CurveCounts {
     curves: usize,
     /// Particles at which curves meet or end.
@@ -188,7 +188,7 @@ pub(super) struct CurveCounts {
 fn curves_of(Particles { twins, segments, sides, .. }: &Particles, is_of_kind: &[bool]) -> CurveCounts {
     let of_kind: Vec<u32> =
         (0..).zip(is_of_kind).filter(|&(_, &is_of_kind)| is_of_kind).map(|(k, _)| k).collect();
-    // Those at each particle.
+    // The segments at each particle.
     let mut at = vec![Vec::new(); twins.len()];
     for &k in &of_kind {
         segments[k as usize].iter().for_each(|&first| at[first as usize].push(k));
@@ -207,30 +207,29 @@ fn curves_of(Particles { twins, segments, sides, .. }: &Particles, is_of_kind: &
     }
 }
 
-/// Counts the creases, and the seams without an edge; none where there are none.
+/// Counts the creases, and the seams without an edge; none if their number is 0.
 pub(super) fn creases_and_seams(particles: &Particles) -> [Option<CurveCounts>; 2] {
     let edges = particles.edges();
     let seams: Vec<bool> = edges.iter().map(|is_edge| !is_edge).collect();
     [edges, seams].map(|kind| Some(curves_of(particles, &kind)).filter(|counts| counts.curves > 0))
 }
 
-/// A report that is being made, as [`Run::measure`] begins it. Dropping it gives the measurement
-/// up.
+/// A report in the making, as [`Run::measure`] begins it. Dropping it aborts the measurement.
 pub struct Reporting<'a> {
     work: Estimated<'a, Report>,
     /// Share of the call that was done before the measurement.
     before: f64,
-    /// Share of the call that the measurement is.
+    /// Share of the call that is the measurement.
     share: f64,
 }
 
 impl Reporting<'_> {
-    /// Does up to `budget` slices, some 10 to 50 microseconds each; the report, once it is
+    /// Does up to `budget` slices, some 10 to 50 microseconds each; returns the report once it is
     /// complete.
     ///
     /// # Panics
     ///
-    /// If it has given the report already.
+    /// If it has returned the report already.
     pub fn step(&mut self, budget: u32) -> Option<Report> {
         self.work.advance(budget)
     }
@@ -243,8 +242,8 @@ impl Reporting<'_> {
 }
 
 impl<F: Field> Run<F> {
-    /// Measures the particles and reports. Call it when the run has ended. What was measured since
-    /// the particles last changed is not measured again.
+    /// Measures the particles and reports. Call it when the run has ended. Measurements made since
+    /// the particles last changed are not repeated.
     pub fn report(&mut self) -> Report {
         self.report_with(Measured::Particles)
     }
@@ -259,9 +258,9 @@ impl<F: Field> Run<F> {
         self.state.measure(&self.field, measured)
     }
 
-    /// [`Run::report_with`] in slices, up to `budget` of them, with the run free between them: the
-    /// report, once it is complete. A measurement that anything comes between is given up, and the
-    /// next call begins anew.
+    /// [`Run::report_with`] in slices, up to `budget` of them, with the run free between them;
+    /// returns the report once it is complete. Any other change in between aborts the measurement,
+    /// and the next call starts again.
     pub(crate) fn measure_copy(&mut self, measured: Measured, budget: u32) -> Option<Report>
     where
         F: Clone + 'static,
@@ -270,26 +269,26 @@ impl<F: Field> Run<F> {
     }
 
     /// Measures particles that something else has placed on the surface, one row each, and keeps
-    /// that as the last measurement. Sizes are what [`Sampling`] says; positions are counted from
-    /// the origin of the run's own particles.
+    /// the result as the last measurement. [`Sampling`] says whether sizes vary; positions are
+    /// relative to the origin of the run's own particles.
     pub fn measure_placed(&mut self, placed: &Particles, sampling: Sampling) -> Measures {
         self.state.measure_placed(&self.field, placed, sampling)
     }
 }
 
 impl RunState {
-    /// The particles of the front that are to be measured, if they are wanted.
+    /// The particles of the front that have to be measured, if wanted.
     fn wanted_front(&self, measured: Measured) -> Option<Arc<Particles>> {
         self.measuring.open_front().filter(|_| measured == Measured::FrontToo)
     }
 
-    /// Whether something that is wanted has not been measured since the particles changed.
+    /// Whether wanted measurements have not been made since the particles changed.
     fn is_due(&self, measured: Measured) -> bool {
         measured != Measured::Nothing
             && (self.measuring.facing.is_none() || self.wanted_front(measured).is_some())
     }
 
-    /// The input of a measurement of the particles and of those of the front that are wanted.
+    /// The input of a measurement of the particles, and of the front's if wanted.
     fn measuring_input(&self, measured: Measured) -> MeasuringInput {
         MeasuringInput {
             front: self.wanted_front(measured),
@@ -388,14 +387,14 @@ impl RunState {
         }
         (self.measuring.measured, self.measuring.facing, self.measuring.sheets) =
             (now, Some(facing), Some(sheets));
-        // A refined run has led to its mesh.
+        // A refined run already has its mesh.
         if self.measuring.measured.opening.is_some() && !self.sampler.triangles().is_empty() {
             while self.join(field, u32::MAX).is_none() {}
         }
         self.take_topology();
     }
 
-    /// The report, with the measurements that are there.
+    /// The report, with the present measurements.
     pub(super) fn reported(&mut self, field: &dyn Field) -> Report {
         let is_overflowing = self.sampler.is_open_by_overflow(&self.field.function(field));
         let blur = self.sampler.blur(&self.field.function(field));
@@ -437,9 +436,9 @@ impl RunState {
     }
 
     /// Number of particles at the border of the box, with a child that fell outside. A child beyond
-    /// a crease is outside of its patch, which is told apart by the distance from the box: a child
-    /// is two radii away. The children of particles that have moved lay elsewhere; they would now
-    /// fall outside where a way of two radii in the tangent plane does.
+    /// a crease is outside of its patch, which the distance from the box distinguishes: a child is
+    /// two radii away. Particles that have moved had their children elsewhere; they count if a step
+    /// of two radii in the tangent plane leads outside.
     pub(super) fn at_border(&self) -> usize {
         let (particles, bounds) = (self.particles(), self.local_bounds());
         let is_inside = |i: usize, reach: Vec3| {
@@ -465,15 +464,15 @@ impl RunState {
     fn cut(&self, field: &dyn Field) -> Option<Cut> {
         match self.reach {
             Some(Reach::Bounded) if self.has_moved() => Some(Cut::Outgrown),
-            // Particles that are large against the surface may have a child outside of a box that
-            // holds it.
+            // Particles that are large compared with the surface may have a child outside of a box
+            // that contains it.
             Some(Reach::Bounded) => self.passes_faces(field).then_some(Cut::Endless),
             Some(Reach::Endless | Reach::Nowhere | Reach::Unknown) => Some(Cut::Endless),
             None => Some(Cut::Fixed),
         }
     }
 
-    /// Whether the surface passes through the faces of the box beside a particle.
+    /// Whether the surface passes through the faces of the box next to a particle.
     fn passes_faces(&self, field: &dyn Field) -> bool {
         let (particles, bounds, field) = (self.particles(), self.local_bounds(), &mut *self.evaluator(field));
         (0..particles.len()).any(|i| {
@@ -555,7 +554,7 @@ mod tests {
 
     #[test]
     fn a_surface_that_passes_through_the_faces_of_its_fitted_box_is_said_to() {
-        // Particles of the second one are so large that children fall outside of the box.
+        // In the second case particles are so large that children fall outside of the box.
         for (half, radius_share, is_cut) in [(0.9, 0.02, true), (1.05, 0.2, false), (1.3, 0.02, false)] {
             let field = Formula::parse("x^2 + y^2 + z^2 = 1").expect("a formula");
             let mut run = Run::idle(field, Bounds::cube(half));

@@ -22,16 +22,16 @@ use std::sync::{Arc, OnceLock};
 /// a field, a closure.
 ///
 /// The surface is sampled in the box of the settings, or in one that fits it: around all of a
-/// bounded surface, and of one that goes on for ever a part. The box of a field without
-/// [bounds](crate::Bounded) is fitted to what grids show ([`FnField`](crate::FnField)): give it
-/// where it is known. The same field, settings and seed give the same particles to the last bit, on
-/// every platform. For progress, cancelling or slices of work take a [`Run`].
+/// bounded surface, or a part of an unbounded one. The box of a field without
+/// [bounds](crate::Bounded) is fitted to what grids show ([`FnField`](crate::FnField)): give the
+/// box if it is known. The same field, settings and seed give the same particles to the last bit,
+/// on every platform. For progress, cancelling or slices of work use a [`Run`].
 ///
 /// # Errors
 ///
-/// If a setting or the box is out of its range, the memory does not hold the particles to expect,
-/// no particle could be placed, or a function of the program fails: the error says why. Anything
-/// else that a field may do wrong is a [`Warning`] in the report.
+/// If a setting or the box is out of its range, there is no memory for the expected particles, no
+/// particle could be placed, or a function of the program fails: the error says why. Anything else
+/// that may be wrong with a field is a [`Warning`] in the report.
 ///
 /// ```
 /// use marching_particles::{Formula, Format, Settings, sample};
@@ -53,17 +53,16 @@ pub fn sample<Kind>(
     run.finish()
 }
 
-/// The particles of a finished run, with the report on them; their mesh is made when it is first
-/// asked for.
+/// The particles of a finished run, with the report on them; their mesh is made when first needed.
 #[derive(Clone, Debug)]
 pub struct Sample {
     particles: Particles,
     report: Report,
     measured: quality::Measurements,
     bounds: Bounds,
-    /// The triangles that a refined run has led to.
+    /// The triangles of a refined run.
     known: Vec<[u32; 3]>,
-    /// The sheets of the particles, where they were measured.
+    /// The sheets of the particles, if they were measured.
     sheets: Option<Arc<Sheets>>,
     mesh: OnceLock<Triangulation>,
     record: RecordText,
@@ -95,7 +94,8 @@ impl Sample {
         &self.report
     }
 
-    /// The measurements of each particle, in columns as long as those of [`Sample::particles`].
+    /// The measurements of each particle, in columns as long as the columns of
+    /// [`Sample::particles`].
     #[must_use]
     pub fn measured(&self) -> &quality::Measurements {
         &self.measured
@@ -112,8 +112,8 @@ impl Sample {
     }
 
     /// The triangles over the particles: an oriented manifold, closed where the surface is. Closed
-    /// parts are counter-clockwise seen from outside, also where f is larger inside. The first call
-    /// joins the particles, in below a microsecond each.
+    /// parts are counter-clockwise seen from outside, even if f is larger inside. The first call
+    /// joins the particles, in less than a microsecond each.
     #[must_use]
     pub fn mesh(&self) -> &Triangulation {
         if let Some(mesh) = self.mesh.get() {
@@ -121,15 +121,15 @@ impl Sample {
         }
         let bounds = self.bounds.relative_to(self.particles.origin);
         let sheets = self.sheets.as_deref();
-        // A thread that waits for others may do another job of the pool, which may ask for the
-        // mesh: nothing must be locked now.
+        // A thread that waits for others may do another job of the pool, which may need the mesh:
+        // nothing must be locked now.
         let mesh =
             slices::in_pool(|| slices::complete(joined(&self.particles, &self.known, &bounds, sheets)));
         self.mesh.get_or_init(|| mesh)
     }
 
-    /// The warnings about the [mesh](Sample::mesh): another topology than that of the particles as
-    /// they were measured, holes, and particles in no triangle.
+    /// The warnings about the [mesh](Sample::mesh): a topology that differs from the measured one
+    /// of the particles, holes, and particles in no triangle.
     #[must_use]
     pub fn mesh_warnings(&self) -> Vec<Warning> {
         Warning::of_mesh(&self.measured, self.mesh(), Warning::tell_of_jumps(&self.report.warnings))
@@ -142,7 +142,7 @@ impl Sample {
         self.mesh().volume(&self.particles)
     }
 
-    /// Writes the particles with what was measured of them to `out`, which should be buffered: in a
+    /// Writes the particles with their measurements to `out`, which should be buffered: in a
     /// [`Format`](crate::Format), or as a [`ParticleFile`] with a record. Their normals follow the
     /// gradient: they point inward where f is larger inside.
     ///
@@ -186,9 +186,9 @@ impl Sample {
         export::write_mesh(&file.into(), &self.particles, &self.measured, self.mesh(), &mut out)
     }
 
-    /// The sample with this record, which [`Sample::save`] and [`Sample::save_mesh`] put into the
-    /// files that have a place for it, and for CSV into a file beside it, whose name goes on with
-    /// `.json`.
+    /// The sample with this record, which [`Sample::save`] and [`Sample::save_mesh`] write into
+    /// files that can hold it, and for CSV into a file next to it, with `.json` appended to the
+    /// name.
     #[must_use]
     pub fn recorded(self, record: RecordText) -> Self {
         Self { record, ..self }
@@ -200,7 +200,7 @@ impl Sample {
     ///
     /// # Errors
     ///
-    /// If the extension is none of these, and the errors of the file.
+    /// If the extension is none of these, or writing fails.
     pub fn save(&self, path: impl AsRef<Path>) -> io::Result<()> {
         let path = path.as_ref();
         match (of_path(path, Format::of_extension), of_path(path, MeshFormat::of_extension)) {
@@ -232,7 +232,7 @@ impl Sample {
     ///
     /// # Errors
     ///
-    /// If the extension is none of these, and the errors of the file.
+    /// If the extension is none of these, or writing fails.
     pub fn save_mesh(&self, path: impl AsRef<Path>) -> io::Result<()> {
         let path = path.as_ref();
         let Some(format) = of_path(path, MeshFormat::of_extension) else {
@@ -242,8 +242,8 @@ impl Sample {
         written(path, |out| self.write_mesh(file, out))
     }
 
-    /// Positions of the particles in the coordinates of the field, for a buffer of a graphics card.
-    /// A particle where patches meet is there once for each of them, with the normal of each.
+    /// Positions of the particles in the coordinates of the field, for a graphics buffer. A
+    /// particle where patches meet occurs once for each of them, with its normal.
     #[must_use]
     pub fn positions(&self) -> Vec<[f32; 3]> {
         (0..self.particles.len()).map(|i| self.particles.place(i).as_vec3().to_array()).collect()
@@ -272,7 +272,7 @@ fn no_format(path: &Path, known: Vec<&str>) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, message)
 }
 
-/// Writes a file. The error names it, and its folder where that is missing.
+/// Writes a file. The error names it, and its folder if that is missing.
 fn written(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let written = || {
         let mut file = BufWriter::new(File::create(path)?);

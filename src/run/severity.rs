@@ -8,8 +8,8 @@ use serde::Serialize;
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[non_exhaustive]
 pub enum Severity {
-    /// Nothing is known to be amiss, and nothing needs to be done: the warning tells what was found
-    /// or done, or what a figure of the report says, too.
+    /// Nothing is known to be wrong, and nothing needs to be done: the warning reports what was
+    /// found or done, or repeats a figure of the report.
     Note,
     /// The result may be incomplete, or less even than it could be.
     Caution,

@@ -26,13 +26,13 @@ impl FieldState {
         given.calls().map(|calls| calls - self.calls)
     }
 
-    /// The field that is sampled.
+    /// The sampled field.
     pub(super) fn function<'a>(&'a self, given: &'a dyn Field) -> KnownField<&'a dyn Field, &'a EdgeTable> {
         KnownPieces::of(self.pieces.as_ref(), given)
     }
 
-    /// The state for `given`, which takes the place of the last field and keeps what was found out
-    /// about the branches of that one.
+    /// The state for `given`, which replaces the last field and keeps what was found about that
+    /// field's branches.
     pub(super) fn followed_by(&self, given: &dyn Field) -> Self {
         let pieces = match (given.piecewise(), &self.pieces) {
             (Some(given), Some(KnownPieces::Own(known))) => {
@@ -100,7 +100,7 @@ impl RunState {
             spacing.check_limits()?;
             let bends = settings.sampling == Sampling::Adaptive;
             self.sampler.set_spacing(Some((spacing.clone(), bends)));
-            // The sampler makes sizes that differ, whatever they follow.
+            // Whatever sizes follow, the sampler makes them vary.
             settings.sampling = Sampling::Adaptive;
         } else {
             self.sampler.set_spacing(None);
@@ -211,7 +211,7 @@ impl RunState {
         self.spacing_error.clone().map_or(Ok(()), |error| Err(error.into()))
     }
 
-    /// Drops a measurement under way and the mesh: they are of other particles, or of another
+    /// Drops a measurement under way and the mesh, which belong to other particles or another
     /// field.
     fn forget_results(&mut self) {
         self.measuring.stop();
@@ -223,7 +223,7 @@ impl RunState {
         self.check_not_empty(field)?;
         let mut report = self.report_with(field, measured);
         if self.measuring.measured.opening.is_some() {
-            // Only the field can say which of the gaps are surface.
+            // Only the field shows which of the gaps are surface.
             slices::in_pool(|| while self.join(field, u32::MAX).is_none() {});
             report = self.reported(field);
         }
@@ -274,7 +274,7 @@ impl RunState {
         self.field.function(field).into_evaluator(self.sampler.frame())
     }
 
-    /// The clip box, counted from the origin of the particles.
+    /// The clip box, relative to the origin of the particles.
     pub(super) fn local_bounds(&self) -> Bounds {
         self.bounds.relative_to(self.particles().origin)
     }
@@ -289,7 +289,7 @@ impl RunState {
         }
     }
 
-    /// Takes `next` in the place of the field: [`Run::set_field`](super::Run::set_field).
+    /// Replaces the field by `next`: [`Run::set_field`](super::Run::set_field).
     pub(super) fn leave_field(&mut self, field: &dyn Field, next: &dyn Field, is_same: bool) {
         if !is_same {
             self.end(field);
@@ -299,13 +299,13 @@ impl RunState {
         self.creases = None;
     }
 
-    /// Whether the next start has nothing to find out about the creases of the surface.
+    /// Whether the next start needs no search for the creases of the surface.
     pub(super) fn knows_creases(&self) -> bool {
         self.known == Known::Survey || self.creases.is_some()
     }
 
-    /// Ends the run on a field or a box that is about to change: nothing that the sampler knows of
-    /// them holds any more.
+    /// Ends the run on a field or a box that is about to change: the sampler's knowledge of them
+    /// becomes invalid.
     fn end(&mut self, field: &dyn Field) {
         if self.known != Known::Nothing {
             self.known = Known::Nothing;
@@ -313,7 +313,7 @@ impl RunState {
         }
     }
 
-    /// The place of a point that is counted from the origin of the particles.
+    /// The place of a point relative to the origin of the particles.
     pub(super) fn place(&self, position: [f64; 3]) -> [f64; 3] {
         (self.particles().origin + DVec3::from_array(position)).to_array()
     }

@@ -15,7 +15,7 @@ use core::fmt::{self, Debug, Formatter};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
-/// A number at each particle, by a formula or a function of place.
+/// A number at each particle, by a formula or a function of position.
 ///
 /// ```
 /// use marching_particles::{Format, Formula, Settings, Value, sample};
@@ -47,11 +47,11 @@ impl Debug for Value {
     }
 }
 
-/// Why a sample has no such values.
+/// Why values cannot be added to a sample.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ValueError {
-    /// The name is none that every file can have.
+    /// Not every file can have this name.
     #[error(
         "`{name}` cannot be the name of values: take a letter, then letters, digits and _, and no name of another column"
     )]
@@ -59,12 +59,12 @@ pub enum ValueError {
         /// The name.
         name: String,
     },
-    /// The function has failed: its error.
+    /// The function has failed with this error.
     #[error("the function of the values has failed: {0}")]
     Function(FieldError),
 }
 
-/// A value in the words of errors.
+/// How errors name a value.
 const NOUN: Noun = Noun {
     name: "value",
     unknown: "A particle has no",
@@ -90,12 +90,12 @@ const QUANTITIES: [Quantity; 12] = [
     ("edge", |at| at.edge),
 ];
 
-/// Quantities that follow from the second derivatives, from the mesh and from the sharp edges.
+/// Quantities that need the second derivatives, the mesh, or the sharp edges.
 const CURVED: [&str; 5] = ["k_1", "k_2", "d_x", "d_y", "d_z"];
 const AREA: &str = "area";
 const EDGE: &str = "edge";
 
-/// What is known of a row of the particles.
+/// Properties of a row of the particles.
 struct At<'a> {
     particles: &'a Particles,
     row: usize,
@@ -105,7 +105,7 @@ struct At<'a> {
 }
 
 impl Value {
-    /// The value of a formula of the place x, y, z and of
+    /// The value of a formula of the position x, y, z and of
     ///
     /// | name | quantity |
     /// |---|---|
@@ -118,7 +118,7 @@ impl Value {
     /// | `area` | share of the surface: a third of the triangles of the mesh around it, which adds up to the area of the mesh |
     ///
     /// So `0.5 (k_1 + k_2)` is the mean curvature and `k_1 k_2` the Gaussian one. On an edge, where
-    /// there is no curvature, what is made of it is NaN.
+    /// there is no curvature, formulas that use it give NaN.
     ///
     /// # Errors
     ///
@@ -141,21 +141,21 @@ impl Value {
         Ok(Self(Source::Formula(Box::new(Formula::expression(text, &known, &NOUN)?))))
     }
 
-    /// The value of a function of place: anything that can be [sampled](IntoField), as a function
-    /// of a point or one of a batch of points that may fail. It is asked once for each row of the
-    /// particles.
+    /// The value of a function of position: anything that can be [sampled](IntoField), such as a
+    /// function of a point or one of a batch of points that may fail. It is evaluated once for each
+    /// row of the particles.
     pub fn by<Kind>(function: impl IntoField<Kind, Field: 'static>) -> Self {
         Self(Source::Function(Arc::new(function.into_field())))
     }
 
-    /// Whether the value takes the mesh, for the area.
+    /// Whether the value needs the mesh, for the area.
     #[doc(hidden)]
     #[must_use]
     pub fn needs_mesh(&self) -> bool {
         self.takes(&[AREA])
     }
 
-    /// Whether the formula takes one of these quantities.
+    /// Whether the formula uses one of these quantities.
     fn takes(&self, names: &[&str]) -> bool {
         match &self.0 {
             Source::Formula(formula) => formula.parameters().iter().any(|own| names.contains(&&*own.name)),
@@ -166,13 +166,13 @@ impl Value {
 
 impl Sample {
     /// Adds a column of numbers at the rows of the particles, which files get as well: PLY and CSV
-    /// under its name, NPY after the others, and GLB as the attribute `_NAME` in capitals. `field`
-    /// is the one that was sampled, or a reference to it: the curvatures are those of its values.
+    /// under its name, NPY after the other columns, and GLB as the attribute `_NAME` in capitals.
+    /// `field` is the sampled one, or a reference to it: it gives the curvatures.
     ///
     /// # Errors
     ///
-    /// If the name is that of another column, or is none that a file can have; or a function of
-    /// the program fails.
+    /// If another column has the name, or some file cannot have it; or if a function of the program
+    /// fails.
     pub fn add_value<Kind>(
         &mut self,
         field: impl IntoField<Kind>,
@@ -194,9 +194,9 @@ impl Sample {
 }
 
 impl<F: Field> Run<F> {
-    /// [`Sample::add_value`] at the particles of a run that is complete, with the mesh joined if
-    /// the value [needs](Value::needs_mesh) it. It takes the place of one with this name. A report
-    /// that is taken later drops the columns.
+    /// [`Sample::add_value`] at the particles of a complete run, with the mesh joined if the value
+    /// [needs](Value::needs_mesh) it. It replaces a column of the same name. A later report drops
+    /// the columns.
     #[doc(hidden)]
     pub fn add_value(&mut self, name: &str, value: &Value) -> Result<(), ValueError> {
         let is_other = |own: &NamedValues| own.name != name;
@@ -209,12 +209,12 @@ impl<F: Field> Run<F> {
     }
 }
 
-/// Checks that no other column has the name, and that every file can.
+/// Checks that no other column has the name, and that every file can have it.
 fn check_name<'a>(name: &str, others: impl Iterator<Item = &'a NamedValues>) -> Result<(), ValueError> {
     let mut taken = COLUMNS.iter().map(|column| column.name).chain(others.map(|v| &*v.name));
     let is_word = name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-    // GLB has the names in capitals.
+    // GLB writes the names in capitals.
     if !is_word || taken.any(|known| known.eq_ignore_ascii_case(name)) {
         return Err(ValueError::Name { name: name.to_owned() });
     }
@@ -281,8 +281,8 @@ fn areas(mesh: &Triangulation, particles: &Particles) -> Vec<f32> {
 /// The distance of each row from the nearest sharp edge or rim, along the segments between the
 /// particles there.
 fn distances_to_edges(particles: &Particles) -> Vec<f32> {
-    /// Ends of segments whose segments are looked at: of a longer segment that passes nearer, an
-    /// end is among them.
+    /// Number of nearest ends whose segments are examined: a longer segment that passes nearer has
+    /// an end among them.
     const ENDS: usize = 8;
     let edges = particles.segments.iter().zip(particles.edges()).filter(|(_, is_edge)| *is_edge);
     let segments: Vec<[Vec3; 2]> =

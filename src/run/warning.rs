@@ -25,32 +25,32 @@ use glam::DVec3;
 pub(super) use kind::Told;
 use missing::{about_length, unproven, without_particle};
 
-/// Least share of the particles that face another sheet where sheets are said to be close. The
+/// Sheets are reported as close if at least this share of the particles faces another sheet. The
 /// particles around a tip face each other too, up to 15 of them at any radius. Smaller: more tips
-/// are taken for close sheets; larger: more close sheets are missed.
+/// are mistaken for close sheets; larger: more close sheets are missed.
 const CLOSE_SHARE: f64 = 0.005;
-/// Least number of particles that face another sheet where sheets are said to be close: in samples
-/// of a few hundred, tips exceed the share. Smaller: more tips are taken for close sheets; larger:
+/// Sheets are reported as close if at least this many particles face another sheet: in samples of a
+/// few hundred, tips exceed the share. Smaller: more tips are mistaken for close sheets; larger:
 /// more close sheets are missed.
 const CLOSE_COUNT: usize = 8;
-/// Places of components without a particle that are named in words: as many as a note of some four
-/// lines holds. It is a choice of length; the report has all of them.
+/// Maximum number of places of components without a particle that a message names, as a note of
+/// some four lines holds. A choice; the report has all of them.
 const NAMED: usize = 4;
 
-/// Spacing of the particles over that of the voxels of an image, below which the particles are said
-/// to be finer than the image. A larger one warns where the image still decides their places.
+/// Particles count as finer than an image if their spacing is below this multiple of the voxels'
+/// spacing. Larger: a warning appears although the image still determines their places.
 const FINEST: f64 = 0.5;
 
-/// Largest difference of the areas of a mesh and of the surface fitted to it that is not told, as a
-/// share of the mesh's. Of smooth meshes it is 0.1 %; rounded edges take 2 % of a cylinder, 4 % of
-/// a washer and 5 % of a cube.
+/// Largest difference between the areas of a mesh and of the surface fitted to it that gives no
+/// warning, as a share of the mesh's area. For smooth meshes it is 0.1 %; rounded edges take 2 % of
+/// a cylinder, 4 % of a washer and 5 % of a cube.
 const AREA_TOLERANCE: f64 = 0.01;
-/// The triangles of N particles on a sphere lack 3/N of its area. Most surfaces bend no more than
-/// four such spheres together.
+/// The triangles of N particles on a sphere lack 3/N of its area. Most surfaces bend at most as
+/// much as four such spheres.
 const LACKING: f64 = 12.0;
 
 /// A warning about a run. The first sentence of its `Display` says what happened and what to do, in
-/// at most 110 letters and without the words of the method; the others are details.
+/// at most 110 letters and without the terms of the method; the others are details.
 ///
 /// Positions are in the coordinates of the field. `length` is the radius of the run; `Display`
 /// rounds positions to a thousandth of it.
@@ -59,14 +59,14 @@ const LACKING: f64 = 12.0;
 pub enum Warning {
     /// More particles would fit than the limit allows.
     Limit {
-        /// Number of particles to expect.
+        /// Expected number of particles.
         predicted: u64,
         /// The limit, [`Settings::max_particles`](crate::sampler::Settings::max_particles).
         limit: u32,
     },
     /// f touches zero without changing its sign.
     Touches,
-    /// f also comes to zero on a curve or at a point, where it has no surface.
+    /// f also vanishes on a curve or at a point, where it has no surface.
     Bare {
         /// A place where it does.
         position: [f64; 3],
@@ -78,19 +78,19 @@ pub enum Warning {
         /// The fitted box.
         bounds: Bounds,
     },
-    /// Another equation of the same surface is sampled.
+    /// An equivalent equation of the surface is sampled.
     SampledAs {
         /// The equation that is sampled.
         equation: String,
     },
     /// The spacing changes faster than the [grading](crate::Settings::grading) lets sizes follow.
     Smoothed {
-        /// Share of the area on which particles are nearer to each other than is asked for, by more
-        /// than a twentieth.
+        /// Share of the area on which particles are nearer to each other than wanted, by more than
+        /// 5 %.
         share: f64,
         /// Largest ratio of the spacing and the distance between neighbours.
         ratio: f64,
-        /// The place where it is.
+        /// The place of the largest ratio.
         position: [f64; 3],
         /// Radius of the run.
         length: f64,
@@ -100,7 +100,7 @@ pub enum Warning {
         /// The faces, as equations.
         faces: Vec<String>,
     },
-    /// The particles are finer than what the field is interpolated from.
+    /// The particles are finer than the values that the field is interpolated from.
     Finer {
         /// Distance between neighbouring particles.
         spacing: f64,
@@ -112,23 +112,23 @@ pub enum Warning {
         /// The names.
         names: Vec<String>,
     },
-    /// The gradient that the field gives is not that of its values.
+    /// The gradient given by the field does not match its values.
     Gradient {
         /// Position at which the two differ.
         position: [f64; 3],
-        /// Length to a thousandth of which the position is rounded.
+        /// The position is rounded to a thousandth of this length.
         length: f64,
     },
-    /// A wanted number of particles was missed by more than the 3 % that are promised.
+    /// A wanted number of particles was missed by more than the promised 3 %.
     Count {
         /// Number of particles.
         count: usize,
         /// Wanted number of particles.
         wanted: u32,
     },
-    /// A refinement was asked for, and the front stands.
+    /// A refinement was requested, but the front was kept.
     NotRefined(Refusal),
-    /// Opposite faces of a cell are not the same.
+    /// Opposite faces of a cell do not agree.
     Unpaired {
         /// The axis across the faces: 0, 1 or 2.
         axis: usize,
@@ -139,9 +139,9 @@ pub enum Warning {
     Children {
         /// Number of children that found no surface at the right distance.
         not_converged: u64,
-        /// Number of children that met a place without a value or a normal.
+        /// Number of children that met a place where f or the normal is undefined.
         undefined: u64,
-        /// Whether the particles were measured and close the surface all the same.
+        /// Whether the particles were measured and close the surface anyway.
         is_closed: bool,
     },
     /// Particles face another sheet within their diameter.
@@ -181,9 +181,9 @@ pub enum Warning {
     },
     /// The particles have followed the surface while it moved.
     Moved,
-    /// The run was ended because too many seeds stayed alone beside other particles.
+    /// The run was ended because too many seeds stayed alone next to other particles.
     EndedEarly {
-        /// Number of seeds taken back.
+        /// Number of seeds undone.
         seeds: u32,
     },
     /// Features within the reach of other particles are too small for a particle of their own.
@@ -197,7 +197,7 @@ pub enum Warning {
         components: Vec<Unsampled>,
         /// Radius of the run.
         length: f64,
-        /// Whether sheets are too near to be told apart, so that a smaller radius is no remedy.
+        /// Whether sheets are too near to be distinguished, so that a smaller radius does not help.
         is_unresolved: bool,
     },
     /// The triangles between the particles do not close the surface, or close it without some of
@@ -226,7 +226,7 @@ pub enum Warning {
         /// Euler numbers of the mesh and of the sample.
         euler: [i64; 2],
     },
-    /// The mesh has border loops where no manifold could be had.
+    /// The mesh has border loops where no manifold was possible.
     MeshHoles {
         /// Number of border loops.
         count: usize,
@@ -268,22 +268,22 @@ pub enum Warning {
     /// Rounding in double precision may move the surface by more than 10⁻⁴ of the distance between
     /// neighbours.
     Digits {
-        /// The particle, of a selection, at which it does so most.
+        /// The particle, of a selection, with the largest effect.
         position: [f64; 3],
-        /// Bound of the distance by which the surface is moved near the particle.
+        /// Bound of the distance by which the surface moves near the particle.
         distance: f64,
         /// Wanted distance between neighbours near the particle.
         spacing: f64,
     },
-    /// The search was left open beside places where f is beyond double precision.
+    /// The search was left undecided near places where f overflows double precision.
     Overflow,
 }
 
 impl Warning {
-    /// The warnings about a mesh. Its topology is compared with that of the particles, if they were
-    /// measured and their triangles leave no gaps. Where a box cuts the surface, the two end in
-    /// different ways beside its faces, and only the components are compared; where f jumps they do
-    /// everywhere, and nothing is.
+    /// The warnings about a mesh. Its topology is compared with the particles' topology, if they
+    /// were measured and their triangles leave no gaps. Where a box cuts the surface, the two end
+    /// differently near its faces, and only the components are compared; where f jumps they do so
+    /// everywhere, and nothing is compared.
     pub(super) fn of_mesh(measured: &Measurements, mesh: &Triangulation, ends_at_jumps: bool) -> Vec<Self> {
         let mut warnings = Vec::new();
         let Connectivity { components, euler, .. } = measured.figures.connectivity;
@@ -309,7 +309,7 @@ impl Warning {
         warnings
     }
 
-    /// Whether one of some warnings says that the surface ends where f jumps.
+    /// Whether one of these warnings reports that the surface ends where f jumps.
     pub(super) fn tell_of_jumps(warnings: &[Self]) -> bool {
         warnings.iter().any(|warning| matches!(warning, Self::Jumps { .. }))
     }
@@ -331,8 +331,7 @@ impl Warning {
 }
 
 impl RunState {
-    /// Returns the warnings that are known at the start, at which this is expected, and `limit`
-    /// particles are allowed.
+    /// Returns the warnings known at the start, with this forecast and at most `limit` particles.
     pub(super) fn known_at_start(&mut self, field: &dyn Field, start: Forecast, limit: u32) -> Vec<Warning> {
         let mut warnings = Vec::new();
         let Forecast { predicted_count: predicted, radius, .. } = start;
@@ -346,7 +345,7 @@ impl RunState {
             let position = self.place(position.as_dvec3().to_array());
             Warning::Smoothed { share, ratio, position, length: self.sampler.radius() }
         }));
-        // Derivatives of a field that has bounds are derived, not given.
+        // Derivatives of a field with bounds are derived, not given.
         let bounds = self.local_bounds();
         let evaluator = &mut *self.evaluator(field);
         if evaluator.bounded().is_none()
@@ -370,8 +369,8 @@ impl RunState {
         warnings
     }
 
-    /// The warning about the faces of a cell across an axis, if particles lie on them, and not the
-    /// same ones.
+    /// The warning about the faces of a cell across an axis, if particles lie on them and do not
+    /// match.
     fn unpaired(&self, field: &dyn Field, axis: usize) -> Option<Warning> {
         let cell = field.facts().unit_cell?.relative_to(self.particles().origin);
         let Particles { local: position, opposite, .. } = self.particles();
@@ -381,8 +380,8 @@ impl RunState {
         (!is_paired && is_reached()).then_some(Warning::Unpaired { axis, repeats: cell.repeats[axis] })
     }
 
-    /// The warnings about the run. The places in `sampled` are coordinates of the field; `facing`
-    /// is the number of particles that face another sheet.
+    /// The warnings about the run. The places in `sampled` are in the coordinates of the field;
+    /// `facing` is the number of particles that face another sheet.
     pub(super) fn warnings_of_run(
         &self,
         field: &dyn Field,
@@ -409,14 +408,14 @@ impl RunState {
         warnings.extend(counts.refusal.map(|refusal| Warning::NotRefined(refusal.counted_from_zero(origin))));
         let unpaired = [0, 1, 2].map(|axis| self.unpaired(field, axis));
         warnings.extend(unpaired.into_iter().flatten().filter(|_| stop_reason == Some(StopReason::Complete)));
-        // Children of a coarse front are no trouble once its mesh has been checked and refined.
+        // Children of a coarse front do not matter once its mesh has been checked and refined.
         let FateCounts { not_converged, undefined, .. } =
             if counts.refined_levels.is_some() { FateCounts::default() } else { counts.fates };
         let ends = self.ends(field);
         // New particles find no surface beyond its ends.
         let is_told = ends.at_jump.is_some() && ends.others.is_none();
         if (not_converged > 0 || undefined > 0) && !is_told {
-            // The figures of other particles say nothing of these.
+            // Figures of other particles do not apply to these.
             let is_closed = self.measuring.facing.is_some() && self.measuring.measured.opening.is_none();
             warnings.push(Warning::Children { not_converged, undefined, is_closed });
         }
@@ -425,7 +424,7 @@ impl RunState {
         }
         let [meets, rims] = self.singular_warnings(field);
         let meets = [rims, meets, self.crossing()];
-        // A smaller radius takes no sheets apart that meet.
+        // A smaller radius does not separate sheets that meet.
         let is_close = !is_unresolved && meets.iter().all(Option::is_none) && facing >= CLOSE_COUNT;
         warnings.extend(meets.into_iter().flatten());
         if is_close && facing as f64 >= CLOSE_SHARE * total as f64 {
@@ -434,7 +433,7 @@ impl RunState {
         if counts.ended_early {
             warnings.push(Warning::EndedEarly { seeds: counts.left_out });
         }
-        // Where the run was audited, components without particles are named.
+        // If the run was audited, components without particles are named.
         if sampled.missing.is_none() && counts.left_out > 0 {
             warnings.push(Warning::SmallFeatures { count: counts.left_out });
         }
@@ -452,9 +451,9 @@ impl RunState {
             let (edges, points) = (opening.edges, opening.points);
             warnings.push(Warning::Open { edges, points, position, length });
         }
-        // Where sheets are too near to be told apart, that is why witnesses are left open, and it
-        // is told already. No model from points has bounds, which the row of the report says. How
-        // components of a moved surface were looked for is told already, too.
+        // Sheets too near to be distinguished leave witnesses open, which is reported already. No
+        // model from points has bounds, which the row of the report says. How components of a moved
+        // surface were searched for is reported already, too.
         let is_told = |doubt: &Doubt| match doubt {
             Doubt::NoBounds | Doubt::Creases => false,
             Doubt::Witnesses { .. } => !is_unresolved,
@@ -742,7 +741,7 @@ impl fmt::Display for Warning {
     }
 }
 
-/// The words of those things of which there are some.
+/// The words for those things whose count is not 0.
 fn those_that_are(things: [(usize, String); 2]) -> String {
     let words = things.into_iter().filter(|(count, _)| *count > 0).map(|(_, words)| words);
     words.collect::<Vec<_>>().join(" and ")

@@ -1,5 +1,4 @@
-//! The radius of a run. Where a number of particles is wanted, it is corrected from attempt to
-//! attempt.
+//! The radius of a run. If a number of particles is wanted, each attempt corrects the radius.
 
 use crate::math::{Bounds, HEXAGONAL_CELL, sort_numbers};
 use crate::sampler::constraint::CreaseLadder;
@@ -38,15 +37,15 @@ const RESERVE: f64 = 1.05;
 /// farther off.
 pub(crate) const COUNT_TOLERANCE: f64 = 0.03;
 
-/// Attempts at meeting a wanted count, after which the nearest of them stands: a limit on time
-/// where the count leaps with the radius.
+/// Attempts at meeting a wanted count, after which the nearest one is taken: a limit on time where
+/// the count leaps with the radius.
 const MAX_ATTEMPTS: u32 = 8;
-/// Attempts at meeting a wanted count by the radius of a coarse front, each of which is refined.
+/// Attempts at meeting a wanted count by refining coarse fronts of other radii.
 const MAX_COARSE_ATTEMPTS: u32 = 4;
 
-/// The packing that an attempt shows is taken to hold for other radii where its count is within
-/// this factor of the expected one. Larger: sheets nearer to each other than the particles are
-/// taken for a small area.
+/// The packing of an attempt is used for other radii if its count is within this factor of the
+/// expected one. Larger: sheets nearer to each other than the particles are mistaken for a small
+/// area.
 const TRUSTED: f64 = 1.5;
 /// Largest factor by which the radius changes after an attempt whose packing is not trusted.
 /// Smaller: more attempts.
@@ -55,8 +54,8 @@ const MOST_CHANGE: f64 = 2.0;
 /// An attempt at covering the surface.
 #[derive(Clone, Default)]
 pub(super) struct Attempt {
-    /// Repulsion radius. Of an adaptive run it is the one at which as many particles of equal
-    /// radius would cover the surface.
+    /// Repulsion radius. In an adaptive run, the radius at which as many particles of equal size
+    /// would cover the surface.
     pub(super) radius: f64,
     /// The radius field of an adaptive run.
     pub(super) sizing: Option<Sizing>,
@@ -80,7 +79,7 @@ struct Nearest {
     sizing: Option<Sizing>,
 }
 
-/// A search for the radius at which there are as many particles as are wanted.
+/// A search for the radius that gives the wanted number of particles.
 #[derive(Clone, Copy, Debug)]
 struct Search {
     /// The radius over that of the first attempt.
@@ -98,10 +97,10 @@ impl Default for Search {
 }
 
 impl Search {
-    /// Changes the scale after an attempt with `miss` times the wanted number of particles, by the
-    /// law that the number goes with the inverse square of the radius. Between two scales, one with
-    /// too many particles and one with too few, the next one is in the middle if the law leads
-    /// beyond them. Returns the factor on the radius.
+    /// Changes the scale after an attempt with `miss` times the wanted number of particles,
+    /// assuming that the number goes with the inverse square of the radius. If this leads beyond a
+    /// scale known to give too many particles or one known to give too few, the next scale is
+    /// halfway between them. Returns the factor on the radius.
     fn advance(&mut self, miss: f64, most_change: f64) -> f64 {
         let [many, few] = &mut self.bracket;
         if miss > 1.0 {
@@ -126,10 +125,10 @@ impl Search {
 /// Plan of the refinement of a front, and the failures so far.
 #[derive(Clone)]
 pub(super) struct Refining {
-    /// Times that the radius of the front is halved, after which it is that of the attempt.
+    /// Number of halvings that lead from the radius of the front to the radius of the attempt.
     pub(super) halvings: u32,
-    /// The search for the radius of the front by which the wanted count is met; its scale is a
-    /// factor on that radius.
+    /// The search for the radius of the front that meets the wanted count; its scale is a factor on
+    /// that radius.
     search: Search,
     /// The front that came nearest.
     nearest: Option<NearestFront>,
@@ -139,7 +138,7 @@ pub(super) struct Refining {
     pub(super) ladder: Option<CreaseLadder>,
     /// Point of the surface with the largest curvature.
     pub(super) bend: Vec3,
-    /// Number of refinements that could not go on.
+    /// Number of refinements that failed.
     pub(super) failures: u32,
     /// Why coarser fronts could not be refined, if that is known.
     pub(super) failure: Option<Refusal>,
@@ -156,7 +155,7 @@ struct NearestFront {
 }
 
 impl Refining {
-    /// Goes back to the front that came nearest to the wanted count, which stands then. Says
+    /// Returns to the front that came nearest to the wanted count, which is then final. Returns
     /// whether there is one.
     pub(super) fn recall_nearest(&mut self) -> bool {
         let Some(NearestFront { scale, halvings, failures, .. }) = self.nearest.take() else { return false };
@@ -191,8 +190,8 @@ impl Attempt {
         attempt
     }
 
-    /// Takes the area and the radius field of a surface that has moved, and the `growth` of the
-    /// radius since the survey before where the number of particles is given.
+    /// Takes the area and the radius field of a surface that has moved, and, if a number of
+    /// particles is wanted, the `growth` of the radius since the survey before.
     pub(super) fn move_on(
         &mut self,
         settings: &Settings,
@@ -219,9 +218,9 @@ impl Attempt {
         self.area * self.packing / HEXAGONAL_CELL
     }
 
-    /// Makes this an attempt at a coarse front to be refined, on a surface with these largest
-    /// curvatures at points spread over it, if that can be. There is no pilot run: the refinement
-    /// meets the wanted count by itself. Returns why it cannot be; the front with its relaxation is
+    /// Makes this an attempt at a coarse front to be refined, if possible, on a surface with these
+    /// largest curvatures at points spread over it. There is no pilot run: the refinement meets the
+    /// wanted count by itself. Otherwise returns the reason; the front with its relaxation is
     /// attempted then.
     pub(super) fn refine(
         &mut self,
@@ -237,11 +236,11 @@ impl Attempt {
         sort_numbers(&mut curvature);
         let largest = curvature.last().copied().unwrap_or(f64::INFINITY);
         let halvings_at = |curvature: f64| refine::halvings(curvature * 2.0 * radius, count);
-        // What bends too much may be a component of its own, beside which others can be refined.
+        // A component may bend too much to be refined while others can be.
         let is_mostly_smooth =
             || largest.is_finite() && halvings_at(curvature[curvature.len() / 2]).is_some();
         let halvings = halvings_at(largest).or_else(|| is_mostly_smooth().then_some(0));
-        // There is no radius where there is no surface.
+        // Without a surface there is no radius.
         let expected = if radius > 0.0 { count } else { 0.0 };
         if refine::halvings(0.0, expected).is_none() {
             return Some(Refusal::Few { expected: expected as u64 });
@@ -275,9 +274,9 @@ impl Attempt {
         None
     }
 
-    /// Grades the radius field for a refinement on a surface with creases. The front has radii that
-    /// differ there, too: it decides how many particles lie on each crease. The radii of every
-    /// level are those of the front over a power of two, and their slope is as much smaller.
+    /// Grades the radius field for a refinement on a surface with creases. The radii of the front
+    /// vary there, too: it decides how many particles lie on each crease. Each level has the radii
+    /// of the front divided by a power of two, and so has their slope.
     fn grade(&mut self, settings: &Settings) {
         let share = self.front_radius() / self.radius;
         if !self.refining.as_ref().is_some_and(|refining| refining.is_creased) {
@@ -292,8 +291,8 @@ impl Attempt {
         self.set_radius_by_sizing();
     }
 
-    /// The front of this attempt, for particles in a box. One that is refined grows in a larger
-    /// box, of one size but where there are creases.
+    /// The front of this attempt, for particles in a box. A front that is refined grows in a larger
+    /// box, with particles of one size unless there are creases.
     pub(super) fn front(&mut self, settings: &Settings, bounds: &Bounds) -> FrontPlan {
         self.grade(settings);
         let share = self.front_radius() / self.radius;
@@ -319,8 +318,8 @@ impl Attempt {
         }
     }
 
-    /// The facts about the surface in a box that the refinement of this attempt's front uses, or a
-    /// mesh that follows a moving surface.
+    /// What the refinement of this attempt's front, or a mesh that follows a moving surface, uses
+    /// of the surface in a box.
     pub(super) fn surface(&self, bounds: &Bounds) -> SurfaceFacts<'_> {
         let refining = self.refining.as_ref();
         SurfaceFacts {
@@ -357,7 +356,7 @@ impl Attempt {
         (2.0 * self.radius / self.packing.sqrt()) as f32
     }
 
-    /// The first attempt at the front that stands because this one's was refused.
+    /// The first attempt at a front that replaces this one after a refusal.
     pub(super) fn without_refinement(&mut self, settings: &Settings, diagonal: f64) -> Self {
         Self::first(settings, self.area, diagonal, self.sizing.take().map(|sizing| sizing.unscaled(settings)))
     }
@@ -374,7 +373,7 @@ impl Attempt {
     fn set_radius_by_sizing(&mut self) {
         let Some(sizing) = &self.sizing else { return };
         let radius = (self.area / (HEXAGONAL_CELL * sizing.predicted_count())).sqrt();
-        // There is none where there is no surface.
+        // Without a surface there is none.
         if radius > 0.0 && radius.is_finite() {
             self.radius = radius;
         }
@@ -398,20 +397,19 @@ impl Attempt {
         tolerance(self.radius as f32, survey.residual_limits(), survey.gradient_scale)
     }
 
-    /// Number of the front under way, from 1: of all attempts, those at a front that is refined
-    /// among them.
+    /// Number of the front under way, from 1, counting the fronts of all attempts and refinements.
     pub(super) fn number(&self) -> u32 {
         let refined = self.refining.as_ref().map_or(0, |refining| refining.search.completed);
         self.search.completed + refined + 1
     }
 
-    /// Notes that this attempt has covered the surface with `count` particles, or more than that if
-    /// it `is_capped`. Says whether another one, with the radius as now corrected, should come
-    /// nearer to the wanted count. After the last one it is the nearest one again.
+    /// Records that this attempt has covered the surface with `count` particles, or with more if it
+    /// `is_capped`. Returns whether another one, with the radius as now corrected, should come
+    /// nearer to the wanted count. After the last one, restores the nearest.
     pub(super) fn is_corrected(&mut self, settings: &Settings, count: usize, is_capped: bool) -> bool {
         let miss = count as f64 / f64::from(settings.count);
         let is_met = !is_capped && (miss - 1.0).abs() <= COUNT_TOLERANCE;
-        // A limit below the wanted count stands.
+        // A limit below the wanted count prevails.
         let is_limited = is_capped && settings.count > settings.max_particles;
         self.search.completed += 1;
         if settings.size_mode == SizeMode::Radius
@@ -447,11 +445,11 @@ impl Attempt {
         true
     }
 
-    /// Notes that the refinement of this attempt's front has ended with `count` particles. Says
-    /// whether another front, with the radius as now corrected, should lead nearer to the wanted
-    /// count: where patches are flat, their lattice stays as the front has placed it. After the
-    /// last one it is the nearest one again. The radius of the refined particles stays, and so does
-    /// a lattice without a defect, if the first front `is_in_order`: its number can only leap.
+    /// Records that the refinement of this attempt's front has ended with `count` particles.
+    /// Returns whether another front, with the radius as now corrected, should come nearer to the
+    /// wanted count: on flat patches the lattice stays as the front has placed it. After the last
+    /// one, restores the nearest. The radius of the refined particles stays, and so does a lattice
+    /// without a defect, if the first front `is_in_order`: its number can only leap.
     pub(super) fn is_front_corrected(
         &mut self,
         settings: &Settings,

@@ -1,7 +1,7 @@
 //! How a method is carried out in slices. A method is an async function that reads from top to
 //! bottom as the method does. It owns nothing: it puts the next slice of its work on its desk, as a
-//! function of the sampler, and waits. The sampler takes the slice from the desk when it is given a
-//! budget, does it with the field that comes with the budget, and lets the method go on.
+//! function of the sampler, and waits. Given a budget, the sampler takes the slice from the desk,
+//! runs it with the current field, and lets the method continue.
 
 use super::Sampler;
 use super::phase::StopReason;
@@ -22,9 +22,9 @@ pub(super) type Slice = Box<dyn FnOnce(&mut Sampler, &mut Probe, &mut u32) + Sen
 enum Wish {
     /// A slice of work, once there is budget left.
     Work(Slice),
-    /// Something that takes no time worth a budget.
+    /// Something too short to count against a budget.
     Now(Slice),
-    /// The next call of the caller, who can look at the particles before.
+    /// The next call of the caller, who may look at the particles in between.
     Turn,
 }
 
@@ -96,7 +96,7 @@ impl Desk {
         }
     }
 
-    /// Does something that takes no time worth a budget.
+    /// Does something too short to count against a budget.
     pub(super) async fn now<R: Send + 'static>(
         &self,
         what: impl FnOnce(&mut Sampler) -> R + Send + 'static,
@@ -113,8 +113,8 @@ impl Desk {
         self.wait_for(Wish::Now, |sampler, probe, _| what(sampler, probe)).await
     }
 
-    /// The result of a part of a method. If the run was stopped in it, what is half made is tidied
-    /// up.
+    /// The result of a part of a method. If the run was stopped in it, `tidy` cleans up what is
+    /// half done.
     pub(super) async fn leaving<R>(
         &self,
         part: impl Future<Output = Result<R, Stopped>>,
@@ -127,13 +127,13 @@ impl Desk {
         result
     }
 
-    /// Does something at the end, also of a run that was stopped.
+    /// Does something at the end, even if the run was stopped.
     pub(super) async fn finally(&self, what: impl FnOnce(&mut Sampler, &mut Probe) + Send + 'static) {
         // It is lost only with the method.
         let _ = self.wait_for(Wish::Now, |sampler, probe, _| what(sampler, probe)).await;
     }
 
-    /// Ends the caller's step: the next slice is done in another one.
+    /// Ends the caller's step: the next slice waits for another one.
     pub(super) async fn turn(&self) -> Result<(), Stopped> {
         self.state().wish = Some(Wish::Turn);
         pause().await;
@@ -164,12 +164,12 @@ impl MethodUnderWay {
         Self { work: Box::pin(method(desk.clone())), desk }
     }
 
-    /// Stops the method. What it does [finally](Desk::finally) it asks for next.
+    /// Stops the method. It then requests only what it does [finally](Desk::finally).
     pub(super) fn stop(&mut self) {
         *self.desk.state() = State { wish: None, is_stopped: true };
     }
 
-    /// What the method asks for, if so much of a budget is left.
+    /// What the method requests, with this much of a budget left.
     pub(super) fn request(&mut self, left: u32) -> Request {
         loop {
             let wish = self.desk.state().wish.take();

@@ -1,30 +1,30 @@
 //! Particles that follow a surface while it moves, frame by frame: the idea of Witkin and Heckbert
-//! 1994 (§4), for which the paper's fronts are the start.
+//! 1994 (§4), starting from the paper's fronts.
 //!
 //! A frame has three parts. The particles are *transported* down the gradient onto the new surface;
-//! one that does not come there dies. In every few frames they are *balanced*. Then they make a
-//! step of the [relaxation](super::relaxation). The surface is surveyed in the frame after a
-//! balance, so that no frame takes much longer than another. After a leap, which some particles
-//! cannot make, both come at once. The balance:
+//! one that does not reach it dies. Every few frames they are *balanced*. Then they make a step of
+//! the [relaxation](super::relaxation). The surface is surveyed in the frame after a balance, so
+//! that no frame takes much longer than another. After a leap, which some particles cannot make,
+//! both happen at once. The balance:
 //!
-//! * Of two particles that crowd each other the younger one dies. So does a particle with more
-//!   energy than all around it, where that is too much.
+//! * Of two particles that crowd each other the younger one dies. So does a particle whose energy
+//!   is too large and larger than that of all around it.
 //! * Children are placed as a front places them wherever a sector around a particle is open: where
 //!   a sheet tears, widens or comes into the box. A point of a new survey that no particle is near
 //!   is a seed, of a component that was born.
-//! * A particle with less energy than all around it, where that is too little, gets a child in the
-//!   widest gap beside it.
+//! * A particle whose energy is too small and smaller than that of all around it gets a child in
+//!   the widest gap next to it.
 //!
 //! Births and deaths at extrema of the energy are spread evenly, and hold the density. They leave
-//! the disorder of Witkin and Heckbert's system: the order of the fronts comes back with a run. The
-//! particles of a refined run keep theirs, as long as they move with its
+//! the disorder of Witkin and Heckbert's system: only a new run restores the order of the fronts.
+//! The particles of a refined run keep their order as long as they move with its
 //! [mesh](crate::sampler::refine::MovingMesh).
 //!
 //! # Differs from Witkin and Heckbert
 //!
 //! * Velocities are not integrated: a particle goes to the new surface by Newton's method, so that
 //!   it never drifts from it.
-//! * Radii are those of the run and do not adapt (their §4.3); fission is a birth in a gap.
+//! * The run's radii are kept and do not adapt (their §4.3); fission is a birth in a gap.
 
 use crate::field::Evaluator;
 use crate::math::functions::{atan2, cos, sin};
@@ -46,16 +46,16 @@ use core::f32::consts::{FRAC_PI_3, PI, TAU};
 use core::f64::consts::E;
 use glam::{Vec2, Vec3};
 
-/// Frames from one balance to the next. On the sweeps of `benches/flow.rs` fewer of the first
-/// particles live to the end with a smaller number, and holes are wider with a larger one.
+/// Frames from one balance to the next. Smaller: on the sweeps of `benches/flow.rs` fewer of the
+/// first particles survive; larger: holes are wider.
 pub(crate) const BALANCE_EVERY: u32 = 4;
 
 /// Steps of relaxation after a balance; every other frame has one. With one the closest pairs of
 /// the sweeps of `benches/flow.rs` are nearer; a third changes nothing.
 const STEPS_AFTER_BALANCE: u32 = 2;
 
-/// Two particles nearer than this, over the sum of their radii, crowd each other: a front takes a
-/// child so near to a particle for that particle. With less or more, the count is farther off.
+/// Two particles nearer than this, over the sum of their radii, crowd each other: a front matches a
+/// child so near to a particle with it. With less or more, the count is farther off.
 const CROWDED: f32 = 0.7;
 
 /// The energy, over the usual one, below which a particle gets a child if no neighbour has less,
@@ -64,27 +64,27 @@ const CROWDED: f32 = 0.7;
 const LEAST_ENERGY: f32 = 0.9;
 const MOST_ENERGY: f32 = 1.3;
 
-/// The energy, over the usual one, below which a particle gets a child in a wide gap beside it,
-/// whatever its neighbours have: where a surface grows everywhere, extrema are too few. Without
-/// this rule spheres that grow have too few particles.
+/// The energy, over the usual one, below which a particle gets a child in a wide gap next to it,
+/// whatever its neighbours have: on a surface that grows everywhere extrema are too few. Without
+/// this rule growing spheres have too few particles.
 const SPARSE_ENERGY: f32 = 0.8;
 
-/// Radius of a gap, over the sum of two radii, in which a child has room beside an extremum, and
-/// that of a wide one. In a lattice it is 0.577. If the second is smaller, fewer particles have six
-/// neighbours; if it is larger, the count is farther off.
+/// Radii of gaps, over the sum of two radii: from the first on an extremum has room for a child,
+/// from the second on a gap is wide. In a lattice gaps have 0.577. Smaller second: fewer particles
+/// have six neighbours; larger: the count is farther off.
 const GAP: f32 = 0.5;
 const WIDE_GAP: f32 = 0.7;
 
 /// Energy of a pair of neighbours in a lattice: exp(−2) less the energy at the end of the range.
 const LATTICE_PAIR: f64 = 1.0 / (E * E) - END_ENERGY as f64;
 
-/// A sector without a neighbour is open if its angle is larger: in a lattice it is 60°, and 120°
-/// where one neighbour is missing.
+/// A sector without a neighbour is open above this angle: in a lattice it has 60°, and 120° where
+/// one neighbour is missing.
 const OPEN_SECTOR: f32 = 100.0 / 180.0 * PI;
 
-/// A child is placed 60° beside the neighbour at which an open sector begins, as in a front. In a
-/// sector too narrow for two it is placed in the middle: below half-way between 120° and the 180°
-/// that two take.
+/// As in a front, a child is placed 60° from the neighbour at which an open sector begins. In a
+/// sector too narrow for two it is placed in the middle: below halfway between 120° and the 180°
+/// that two need.
 const NARROW_SECTOR: f32 = 150.0 / 180.0 * PI;
 
 /// Distance that a child in an open sector needs from all others, over the sum of the radii.
@@ -95,12 +95,12 @@ const CLEAR: f32 = 0.8;
 /// Larger: after a leap the count is farther off, and fewer particles have six neighbours.
 const MOST_FAR: f64 = 0.1;
 
-/// Least share of such particles at which the frame is a leap, in which the others are balanced at
+/// Least share of such particles that makes the frame a leap, in which the others are balanced at
 /// once: fewer may lie where the gradient vanishes. Without the balance a leap may leave wide
 /// holes.
 const LEAP: f64 = 0.01;
 
-/// Why particles cannot follow a surface. Nothing has changed then: a run under way goes on, and a
+/// Why particles cannot follow a surface. Nothing changes then: a run under way continues, and a
 /// finished one keeps its particles.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -108,8 +108,8 @@ pub enum FollowError {
     /// The run is under way.
     #[error("the run has not ended, and goes on: let its particles follow when it has")]
     UnderWay,
-    /// No particles cover the surface: the run was cut short or has fewer than two particles, or
-    /// there is none with these settings.
+    /// No particles cover the surface: the run was cut short or has fewer than two particles, or no
+    /// run has these settings.
     #[error(
         "no particles cover the surface, of a run with these settings that has come to its end: start one"
     )]
@@ -136,7 +136,7 @@ pub enum FollowError {
     },
 }
 
-/// What the births and deaths of a frame have to know of the run.
+/// What the births and deaths of a frame need to know about the run.
 pub(crate) struct FlowSurface<'a> {
     pub(crate) bounds: Bounds,
     pub(crate) survey: &'a Survey,
@@ -150,10 +150,9 @@ pub(crate) struct FlowSurface<'a> {
     pub(crate) max_particles: usize,
 }
 
-/// What follows the transport of a frame.
+/// The outcome of a frame's births and deaths.
 pub(crate) struct Settled {
-    /// The new row of each particle, of those that were born, too; none if rows have neither come
-    /// nor gone.
+    /// The new row of each particle, including those born; none if no rows were added or removed.
     pub(crate) rows: Option<Vec<u32>>,
     /// Steps of relaxation that the frame has.
     pub(crate) steps: u32,
@@ -168,7 +167,7 @@ struct Bearing {
     index: u32,
 }
 
-/// A particle with too little energy, and the least radius of the gap beside it in which it gets a
+/// A particle with too little energy, and the least radius of a gap next to it in which it gets a
 /// child.
 struct Sparse {
     parent: usize,
@@ -178,26 +177,25 @@ struct Sparse {
 /// Particles that follow a surface.
 #[derive(Clone, Default)]
 pub(crate) struct Flow {
-    /// Frames since the last balance: the first of them begins with a survey.
+    /// Frames since the last balance; a survey begins the first of them.
     frames: u32,
-    /// Whether the surface has moved too far for some particles in this frame, in which it is
-    /// surveyed and the particles are balanced, whatever the turn.
+    /// Whether the surface has moved too far for some particles in this frame, which therefore has
+    /// a survey and a balance, whatever its turn.
     is_leap: bool,
-    /// Whether particles are neither born nor die but where the transport loses them.
+    /// Whether particles are neither born nor die, except those that the transport loses.
     pub(crate) is_closed: bool,
-    /// Whether a survey has shown no place without particles since they have moved with a mesh.
+    /// Whether a survey has found no place without particles since they have moved with a mesh.
     pub(crate) is_seeded: bool,
-    /// Whether the last frame came to its end, so that the neighbour lists are those of these
-    /// particles.
+    /// Whether the last frame was finished, so that the neighbour lists match these particles.
     pub(crate) is_whole: bool,
-    /// Whether the neighbour lists at the beginning of this frame were those of these particles.
+    /// Whether the neighbour lists matched these particles at the beginning of this frame.
     are_listed: bool,
     /// The number of the next particle that is born.
     next_identity: u32,
-    /// Mean energy of the particles as the run has left them, at which one neither dies nor gets a
-    /// child; none before the first balance.
+    /// Mean energy of the particles at the end of the run, at which none dies or gets a child; none
+    /// before the first balance.
     usual_energy: Option<f32>,
-    /// Factor by which radii had to grow at the last balance for as many particles as are wanted.
+    /// Factor by which radii had to grow at the last balance to keep the wanted count.
     growth: f64,
     columns: BalanceColumns,
     /// Particles that crowd an older one.
@@ -210,19 +208,20 @@ pub(crate) struct Flow {
     landing: Vec<CircleLanding>,
 }
 
-/// What a balance keeps of every particle.
+/// What a balance stores for every particle.
 #[derive(Clone, Default)]
 struct BalanceColumns {
     handle: Vec<GridHandle>,
-    /// Energy, by [`pair_energy`], less that of neighbours that have died; beside an open sector
-    /// with what the missing neighbours would add.
+    /// Energy, by [`pair_energy`], without neighbours that have died; next to an open sector it
+    /// includes what the missing neighbours would add.
     energy: Vec<f32>,
     is_open: Vec<bool>,
     is_dead: Vec<bool>,
 }
 
 impl Flow {
-    /// Begins with the particles of a run, each known by its row, unless they are known already.
+    /// Begins with the particles of a run, each identified by its row, unless they are numbered
+    /// already.
     pub(crate) fn begin(&mut self, particles: &mut Particles) {
         if particles.identity.is_empty() {
             let n = particles.len() as u32;
@@ -231,25 +230,24 @@ impl Flow {
         }
     }
 
-    /// Has this frame survey the surface and balance the particles.
+    /// Marks this frame for a survey and a balance.
     pub(crate) fn leap(&mut self) {
         self.is_leap = true;
     }
 
-    /// Begins a frame without a mesh. Returns whether the neighbour lists are those of these
-    /// particles.
+    /// Begins a frame without a mesh. Returns whether the neighbour lists match these particles.
     pub(crate) fn begin_frame(&mut self) -> bool {
         self.are_listed = core::mem::take(&mut self.is_whole);
         self.are_listed
     }
 
-    /// Factor by which radii had to grow at the last balance for as many particles as are wanted.
+    /// Factor by which radii had to grow at the last balance to keep the wanted count.
     pub(crate) fn growth(&self) -> f64 {
         self.growth
     }
 
     /// Ends a frame of particles that have moved with a mesh. Returns whether they cover the
-    /// surface, as far as a survey has shown; if not, the next frame balances them.
+    /// surface, according to a survey if there was one; if not, the next frame balances them.
     pub(crate) fn end_with_mesh(&mut self, particles: &mut Particles, survey: &Survey) -> bool {
         let is_surveyed = self.is_due();
         self.end_turn();
@@ -269,12 +267,12 @@ impl Flow {
         covers
     }
 
-    /// Lets the particles be balanced as soon as their neighbours are known.
+    /// Has the particles balanced as soon as their neighbours are known.
     pub(crate) fn hurry(&mut self) {
         self.frames = BALANCE_EVERY - 1;
     }
 
-    /// Gives the particles that were born their numbers.
+    /// Numbers the particles that were born.
     pub(crate) fn number(&mut self, particles: &mut Particles) {
         while particles.identity.len() < particles.len() {
             particles.identity.push(self.next_identity);
@@ -292,7 +290,7 @@ impl Flow {
         self.frames == 0 || self.is_leap
     }
 
-    /// The turn of the next frame among those from one balance to the next.
+    /// The turn of the next frame, counted from the last balance.
     pub(crate) fn turn(&self) -> u32 {
         self.frames
     }
@@ -308,9 +306,9 @@ impl Flow {
         self.is_last() && !self.are_listed && !self.is_closed
     }
 
-    /// Lets those particles die that the transport has lost, and balances the others if that is
-    /// due. `pairs` are the neighbours of the particles before they were transported; there are
-    /// none in the first frame without a mesh, and no balance.
+    /// Removes the particles that the transport has lost, and balances the others if that is due.
+    /// `pairs` are the neighbours of the particles before the transport; in the first frame without
+    /// a mesh there are none, and there is no balance.
     pub(crate) fn settle(
         &mut self,
         probe: &mut Probe,
@@ -337,7 +335,7 @@ impl Flow {
         Settled { rows: has_changed.then(|| particles.keep(|i| !is_dead[i])), steps }
     }
 
-    /// Places seeds after a survey, and lets particles die and be born if that is due.
+    /// Places seeds after a survey, and lets particles die and be born, if due.
     fn balance(
         &mut self,
         probe: &mut Probe,
@@ -444,8 +442,8 @@ impl Flow {
         }
     }
 
-    /// Finds the particles with an open sector among those with too little energy, and gives them
-    /// what the missing neighbours would add.
+    /// Finds the particles with an open sector among those with too little energy, and adds what
+    /// the missing neighbours would contribute.
     fn find_open_sectors(&mut self, particles: &Particles, usual: f32) {
         refill(&mut self.columns.is_open, particles.len(), false);
         for i in 0..particles.len() {
@@ -491,8 +489,7 @@ impl Flow {
         sort_few(&mut self.around, |a, b| (a.angle, a.index) < (b.angle, b.index));
     }
 
-    /// Compares the mean energy with that of the particles as the run has left them, and returns
-    /// that.
+    /// Compares the mean energy with the mean at the end of the run, and returns the latter.
     fn find_growth(&mut self, surface: &FlowSurface) -> f32 {
         let BalanceColumns { energy, is_dead, .. } = &self.columns;
         let living = energy.iter().zip(is_dead).filter(|(_, is_dead)| !**is_dead);
@@ -510,8 +507,8 @@ impl Flow {
         usual
     }
 
-    /// Lets the particles with too much energy die that have more than all around them. Returns
-    /// those with too little.
+    /// Lets particles die whose energy is too large and larger than that of all around them.
+    /// Returns those with too little energy.
     fn find_extrema(&mut self, particles: &Particles, usual: f32) -> Vec<Sparse> {
         let mut sparse = Vec::new();
         for i in 0..particles.len() {
@@ -566,13 +563,13 @@ impl Flow {
             let direction = u * cos(angle) + w * sin(angle);
             let circle = circle_around(particles, parent, direction, 1.0);
             self.try_child(probe, surface, particles, parent, &circle, CLEAR);
-            // Where there is no room for a child, the direction counts as taken, too.
+            // A direction without room for a child counts as taken, too.
             let at = self.around.partition_point(|other| other.angle < angle);
             self.around.insert(at, Bearing { angle, distance: 1.0, index: parent as u32 });
         }
     }
 
-    /// Places a child in the widest gap beside a particle.
+    /// Places a child in the widest gap next to a particle.
     fn fill_gap(
         &mut self,
         probe: &mut Probe,
@@ -626,7 +623,7 @@ impl Flow {
         }
     }
 
-    /// Adds a particle, a seed unless it has a parent; its own sectors are looked at in turn.
+    /// Adds a particle, a seed unless it has a parent; its own sectors get their turn later.
     fn add(
         &mut self,
         probe: &mut Probe,
@@ -651,13 +648,13 @@ impl Flow {
     }
 }
 
-/// The energy of two particles at a distance, and with a sum of radii.
+/// The energy of two particles at a distance, with this sum of their radii.
 fn energy_of(distance_sq: f32, sum: f32) -> f32 {
     pair_energy(4.0 * distance_sq / (sum * sum))
 }
 
-/// The circle around a particle on which a child has its place in a direction, `share` times as
-/// large as that of a front.
+/// The circle on which a particle's child in a direction lies, `share` times as large as in a
+/// front.
 fn circle_around(particles: &Particles, parent: usize, direction: Vec3, share: f32) -> ChildCircle {
     let OrientedPoint { position, normal } = OrientedPoint::of(particles, parent);
     let radius = 2.0 * particles.radius[parent] * share;
@@ -689,12 +686,12 @@ fn direction_angle(x: f32, y: f32) -> f32 {
     if angle < 0.0 { angle + TAU } else { angle }
 }
 
-/// Whether it is a leap to the surface of a field: whether some particles are farther from it than
+/// Whether the step to a field's surface is a leap: whether some particles are farther from it than
 /// they can be transported.
 ///
 /// # Errors
 ///
-/// If they are too many.
+/// If there are too many such particles.
 pub(crate) fn is_leap(
     field: &mut dyn Evaluator,
     particles: &Particles,

@@ -1,6 +1,6 @@
 //! The three methods, from top to bottom: a front with its relaxation or refinement, more steps of
-//! the relaxation, and particles that follow a surface that moves. Each name of the [`Sampler`] is
-//! a step of a method; [`Desk`] says how it is done in slices.
+//! the relaxation, and particles that follow a moving surface. Each method of the [`Sampler`] named
+//! here is one step; [`Desk`] says how steps are done in slices.
 
 use super::Sampler;
 use super::desk::{Desk, Stopped};
@@ -8,7 +8,7 @@ use super::phase::StopReason;
 use super::refine::{Components, Refinement, Refusal};
 use super::relaxation::{Grading, Sweep};
 
-/// A verdict on a front that has covered the surface says what follows.
+/// What follows after a front has covered the surface.
 pub(super) enum Verdict {
     /// Another front, with other radii.
     Again,
@@ -16,7 +16,7 @@ pub(super) enum Verdict {
     Relax,
     /// The refinement of the front, which is a coarse one.
     Refine(Components),
-    /// The front stands as it is, and the run ends for this reason.
+    /// The front is final, and the run ends for this reason.
     Stands(StopReason),
 }
 
@@ -51,12 +51,12 @@ async fn place(desk: &Desk) -> Result<StopReason, Stopped> {
     Ok(reason)
 }
 
-/// Covers the surface with particles: from its creases and tips, from seeds that the survey knows,
-/// from witnesses of components that the survey has missed, and in the gaps that are left.
+/// Covers the surface with particles: from its creases and tips, from seeds of the survey, from
+/// witnesses of components that the survey has missed, and in the gaps that are left.
 async fn cover(desk: &Desk) -> Result<(), Stopped> {
     let is_known = desk.now(Sampler::begin_attempt).await?;
     if is_known {
-        // Over a component of which an earlier front is known, one seed is enough.
+        // Over a component covered by an earlier front, one seed is enough.
         if desk.until(|sampler, probe, _| Some(sampler.begin_at_known(probe))).await? {
             grow(desk, true).await?;
         }
@@ -89,7 +89,7 @@ async fn grow(desk: &Desk, is_witness: bool) -> Result<(), Stopped> {
 
 /// Lets a front grow level by level, until it has met itself, another one or the box everywhere
 /// (paper §4.2 to §4.4): parents predict children, these are projected onto the surface, and those
-/// that have room there are the parents of the next level.
+/// that find room are the parents of the next level.
 async fn grow_levels(desk: &Desk) -> Result<(), Stopped> {
     while !desk.now(|sampler| sampler.has_closed()).await? {
         desk.until(Sampler::place_children).await?;
@@ -126,10 +126,9 @@ fn refusal(result: Result<(), Halt>) -> Result<Option<Refusal>, Stopped> {
     }
 }
 
-/// Refines the components of a coarse front: brings the few particles into order, and keeps it
-/// while their number is multiplied by four from level to level. Each level is held to f itself,
-/// since patches are refined by their own functions. Returns the reason, if the front
-/// is refused.
+/// Refines the components of a coarse front: orders its few particles, and keeps that order while
+/// each level multiplies their number by four. Each level is checked against f itself, since
+/// patches are refined by their own functions. Returns the reason if the front is refused.
 async fn refine(desk: &Desk, components: &mut Components) -> Result<Option<Refusal>, Stopped> {
     refusal(make_levels(desk, components).await)
 }
@@ -161,7 +160,7 @@ async fn make_levels(desk: &Desk, components: &mut Components) -> Result<(), Hal
     Ok(())
 }
 
-/// Divides every face into four, and brings the particles of the finer mesh onto the surface.
+/// Divides every face into four, and projects the particles of the finer mesh onto the surface.
 async fn divide(desk: &Desk, mesh: &mut Refinement) -> Result<(), Halt> {
     let mut division = mesh.begin_division();
     let mut coarse = desk.until_on(mesh, move |_, mesh, _, left| mesh.divide(&mut division, left)).await?;
@@ -181,7 +180,7 @@ async fn make_passes(desk: &Desk, mesh: &mut Refinement) -> Result<(), Halt> {
     Ok(())
 }
 
-/// More steps of the relaxation, which has begun, on the particles of a run that has ended.
+/// More steps of a relaxation that has begun, on the particles of a finished run.
 pub(super) async fn relax_further(desk: Desk) -> StopReason {
     let reason = async {
         relax(&desk).await?;
@@ -197,8 +196,8 @@ async fn relax(desk: &Desk) -> Result<(), Stopped> {
     desk.leaving(make_steps(desk), Sampler::leave_step).await
 }
 
-/// Steps stand only if they lower the energy. At the end all particles are brought onto the surface
-/// as closely as single precision allows, and radii that differ are graded once more.
+/// A step is kept only if it lowers the energy. At the end all particles are projected onto the
+/// surface as closely as single precision allows, and radii that vary are graded once more.
 async fn make_steps(desk: &Desk) -> Result<(), Stopped> {
     if !desk.now(|sampler| sampler.relaxation().is_only_graded()).await? {
         sum_forces(desk, Grading::WhereUneven).await?;
@@ -221,14 +220,14 @@ async fn make_steps(desk: &Desk) -> Result<(), Stopped> {
     list_neighbours(desk, Grading::Always).await
 }
 
-/// The forces on all particles and their energy, by lists of neighbours that are complete.
+/// The forces on all particles and their energy, from complete lists of neighbours.
 async fn sum_forces(desk: &Desk, grading: Grading) -> Result<(), Stopped> {
     list_neighbours(desk, grading).await?;
     sweep(desk, Sweep::SumForces).await
 }
 
-/// Lists the neighbours of those particles whose lists are stale, and lowers the radii that are too
-/// large beside a neighbour's.
+/// Lists the neighbours of particles whose lists are stale, and lowers radii that are too large
+/// compared with a neighbour's.
 async fn list_neighbours(desk: &Desk, grading: Grading) -> Result<(), Stopped> {
     let (wants_lists, wants_grid) = desk.now(|sampler| sampler.relaxation().wants_lists()).await?;
     if wants_grid {
@@ -256,14 +255,14 @@ async fn audit(desk: &Desk) -> Result<(), Stopped> {
     desk.until(Sampler::audit).await
 }
 
-/// Marks the particles next to singular points, also those of a run that was stopped.
+/// Marks the particles next to singular points, even if the run was stopped.
 async fn ended(desk: &Desk, reason: Result<StopReason, Stopped>) -> StopReason {
     desk.finally(Sampler::mark).await;
     reason.unwrap_or(StopReason::Cancelled)
 }
 
 /// A frame of particles that follow a moving surface: with the mesh of a refined run, as long as
-/// that can follow.
+/// the mesh can follow.
 pub(super) async fn follow(desk: Desk) -> StopReason {
     follow_surface(&desk).await.unwrap_or(StopReason::Cancelled)
 }

@@ -1,10 +1,10 @@
 //! The sampler covers a surface with particles and relaxes them.
 //!
-//! [`Sampler::begin`] surveys the field and fixes the radius; [`Sampler::step`] then does a given
-//! number of units of work and returns, as often as the caller likes. A budget is a count, never a
-//! time, and how a run is cut into steps does not change its result by a bit. Placing and relaxing
-//! allocate nothing for a particle but the growth of the columns; the search for components, the
-//! audit and the refinement make memory of their own.
+//! [`Sampler::begin`] surveys the field and fixes the radius; each [`Sampler::step`] then does a
+//! given number of units of work. A budget is a count, never a time, and how a run is cut into
+//! steps does not change its result by a bit. Placing and relaxing particles allocates only the
+//! growth of the columns; the search for components, the audit and the refinement have memory of
+//! their own.
 
 mod attempt;
 mod constraint;
@@ -70,11 +70,10 @@ use relaxation::Relaxation;
 use sizing::{Sizing, Wish};
 use steps::SurveyCursor;
 
-/// Bytes per particle that have to be free before a run: the columns, neighbour lists and grid of a
-/// front, and most of what its relaxation adds; of a refined run the columns and the last two
-/// levels of its mesh, with the wanted sizes where these differ. tests/memory.rs holds this to what
-/// runs take. It is no more than that, since memory that was asked for once is not given back by
-/// WebAssembly.
+/// Bytes per particle that must be free before a run. For a front: the columns, neighbour lists and
+/// grid, and most of what its relaxation adds. For a refined run: the columns and the last two
+/// levels of its mesh, with the wanted sizes if they vary. tests/memory.rs checks this against what
+/// runs take. Not more, since WebAssembly never gives memory back.
 pub(crate) fn bytes_per_particle(settings: &Settings) -> usize {
     match (settings.method, settings.sampling) {
         (Method::Front, _) => 95,
@@ -87,7 +86,7 @@ pub(crate) fn bytes_per_particle(settings: &Settings) -> usize {
 #[derive(Default)]
 pub struct Sampler {
     settings: Settings,
-    /// The spacing by a function, if one is asked for, and whether sizes also follow the curvature.
+    /// The spacing by a function, if there is one, and whether sizes also follow the curvature.
     spacing: Option<(Spacing, bool)>,
     bounds: Bounds,
     survey: Survey,
@@ -100,7 +99,7 @@ pub struct Sampler {
     attempt: Attempt,
     /// The front of this attempt.
     plan: FrontPlan,
-    /// The method that is under way, if one is.
+    /// The method under way, if any.
     method: Option<MethodUnderWay>,
     phase: Phase,
     /// Why the last method has ended; none while one is under way.
@@ -124,7 +123,7 @@ pub struct Sampler {
 struct Tools {
     memory: ProbeMemory,
     front: Front,
-    /// Coarse fronts, of which a refinement takes several where the surface has several components.
+    /// Coarse fronts, one for each component that is refined.
     coarse: CoarseFronts,
     relaxation: Relaxation,
     flow: Flow,
@@ -137,11 +136,11 @@ struct Output {
     particles: Particles,
     /// The particles of a coarse front that lie in the box, while the front marches beyond.
     inside: Option<Particles>,
-    /// The mesh that a refinement has led to, by the particles at the corners of its faces.
+    /// The mesh of a refinement: the particles at the corners of its faces.
     corners: Vec<u32>,
-    /// Whether particles have moved or gone since the last step.
+    /// Whether particles have moved or been removed since the last step.
     moved: bool,
-    /// The largest share of the work that was told since work was asked for.
+    /// The largest share of the work reported so far, since work was last requested.
     fraction: f64,
 }
 
@@ -149,11 +148,11 @@ struct Output {
 #[derive(Clone, Default)]
 pub(crate) struct FoundCreases {
     pub(crate) creases: Creases,
-    /// What is known of the pieces of the field: those that meet smoothly on the surface are one.
+    /// What is known of the pieces of the field; those that meet smoothly on the surface are one.
     pub(crate) known: Option<KnownPieces>,
 }
 
-/// Finds the creases of the surface of a field in a box, which is counted from `origin`, in slices.
+/// Finds, in slices, the creases of the surface of a field in a box given relative to `origin`.
 pub(crate) fn find_creases<'a>(
     field: &'a dyn Field,
     origin: DVec3,
@@ -179,8 +178,8 @@ pub(crate) fn find_creases<'a>(
     })
 }
 
-/// The frame that brings values and gradients of a field at points of a box within reach of the
-/// numbers they are computed with.
+/// The frame that scales values and gradients of a field in a box into the range of the numbers
+/// they are computed with.
 fn frame_for(field: &dyn Field, origin: DVec3, bounds: &Bounds) -> Frame {
     /// Points along each axis: 125 of them, off the faces of the box and its planes of symmetry,
     /// fill one batch.
@@ -193,7 +192,7 @@ fn frame_for(field: &dyn Field, origin: DVec3, bounds: &Bounds) -> Frame {
 
 impl Sampler {
     /// The particles so far. Those of a level under way may be provisional: [`Progress::particles`]
-    /// says how many stay. Those that a coarse front has placed beyond the box are not among them.
+    /// says how many stay. Particles that a coarse front has placed beyond the box are left out.
     #[must_use]
     pub fn particles(&self) -> &Particles {
         self.output.inside.as_ref().unwrap_or(&self.output.particles)
@@ -204,9 +203,9 @@ impl Sampler {
         self.output.inside.unwrap_or(self.output.particles)
     }
 
-    /// The mesh that a refined run has led to: triples of particles, counter-clockwise seen from
-    /// outside, an oriented manifold whose border lies on the box. There is none for a front,
-    /// before the end of the run, and once the particles are relaxed.
+    /// The mesh of a refined run: triples of particles, counter-clockwise seen from outside, an
+    /// oriented manifold whose border lies on the box. It is empty for a front, before the end of
+    /// the run, and once the particles are relaxed.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         self.output.corners.as_chunks().0
@@ -219,9 +218,9 @@ impl Sampler {
         Counts { fates: level.fates, gaps_filled: level.filled, ..self.counts.clone() }
     }
 
-    /// Energy per particle before the first relaxation step and after each. Of uniform sampling it
-    /// is Σ s (exp(−d²/2σ²) − exp(−9/2)) over the pairs nearer than 3σ, where s goes from 1 for
-    /// pairs whose normals are within 60° to 0 for those beyond 120°: ½ + cosine in between.
+    /// Energy per particle before the first relaxation step and after each. For uniform sampling it
+    /// is Σ s (exp(−d²/2σ²) − exp(−9/2)) over the pairs nearer than 3σ. The factor s is 1 for pairs
+    /// whose normals are within 60°, 0 beyond 120°, and ½ + cosine in between.
     #[must_use]
     pub fn energy(&self) -> &[f64] {
         self.tools.relaxation.energy()
@@ -233,14 +232,14 @@ impl Sampler {
         self.attempt.radius
     }
 
-    /// Whether it is proven that there is a witness on every connected component, and of each
-    /// witness that it is on the component of a particle or [named](Sampled::without).
+    /// Whether it is proven that every connected component has a witness, and that every witness is
+    /// on the component of a particle or [named](Sampled::without).
     #[must_use]
     pub fn search(&self) -> Search {
         if self.doubts().is_empty() { Search::Proven } else { Search::Searched }
     }
 
-    /// The doubts that are left about the components; empty where everything is proven.
+    /// The doubts that are left about the components; empty if everything is proven.
     #[must_use]
     pub fn doubts(&self) -> Vec<Doubt> {
         let mut doubts = self.components.doubts(self.survey.nearness, self.least_gap());
@@ -260,22 +259,22 @@ impl Sampler {
         self.components.sampled(self.doubts().is_empty())
     }
 
-    /// Number of cells in which the proof could not decide whether they hold the first point of a
-    /// component, and of witnesses of which it could not decide whether their component holds a
-    /// particle; `None` where no proof was attempted.
+    /// Number of cells that the proof left undecided on whether they hold the first point of a
+    /// component, plus the witnesses for which it could not decide whether their component holds a
+    /// particle; `None` if no proof was attempted.
     #[must_use]
     pub fn undecided_cells(&self) -> Option<u64> {
         self.components.open_questions()
     }
 
     /// Number of points of the surface where f has no gradient, a curve of them counted as one;
-    /// `None` where they were not searched.
+    /// `None` if they were not searched for.
     #[must_use]
     pub fn singular_points(&self) -> Option<u64> {
         self.components.open_questions().map(|_| self.singular_places().len() as u64)
     }
 
-    /// The places of the surface where f has no gradient, as far as they are known.
+    /// The known places of the surface where f has no gradient.
     pub(crate) fn singular_places(&self) -> Vec<SingularPlace> {
         let mut places = singular::places(self.components.singular(), spacing(&self.bounds));
         let passed = self.creases.passed.map(|position| SingularPlace {
@@ -287,7 +286,7 @@ impl Sampler {
         places
     }
 
-    /// The frame in which the field of the last start is evaluated.
+    /// The frame in which the field was evaluated since the last start.
     #[must_use]
     pub fn frame(&self) -> Frame {
         self.frame
@@ -300,14 +299,14 @@ impl Sampler {
     }
 
     /// Starts a run, with valid settings in a valid box: surveys the field (about 40,000
-    /// evaluations, 80,000 where a field has no bounds to prove by) and fixes the radius. Particles
-    /// of an earlier run are dropped. The box is counted from `origin`, as particles will be.
-    /// `creases` are those of the surface in the box; without them all that is known of field and
-    /// box is kept from the last start, with its survey.
+    /// evaluations, 80,000 for a field without bounds to prove by) and fixes the radius. Particles
+    /// of an earlier run are dropped. The box, like the particles, is relative to `origin`.
+    /// `creases` are the creases of the surface in the box; without them everything known of field
+    /// and box is kept from the last start, with its survey.
     ///
     /// # Errors
     ///
-    /// If there is no memory for the particles to expect; there is no run then.
+    /// If there is no memory for the expected particles; no run is started then.
     pub fn begin(
         &mut self,
         field: &dyn Field,
@@ -368,12 +367,12 @@ impl Sampler {
         Ok(Forecast { radius, predicted_count: predicted as u64, area })
     }
 
-    /// Surveys the field, unless creases are not given and the last survey holds. Where the survey
-    /// finds no point, the search is carried to its end at once: the area is then that of spheres
-    /// with the curvature at the points that it finds.
+    /// Surveys the field, unless no creases are given and the last survey holds. If the survey
+    /// finds no point, the search is completed at once: the area is then estimated by spheres with
+    /// the curvature at the points that it finds.
     fn look_over(&mut self, function: &dyn Field, creases: Option<Creases>) {
-        // A survey that has found nothing by itself is made again: what it was given since depends
-        // on the run.
+        // A survey that found nothing by itself is repeated: what was added to it since depends on
+        // the run.
         let is_known = self.survey.area > 0.0 && !self.survey.is_adopted;
         let creases = creases.or_else(|| (!is_known).then(|| core::mem::take(&mut self.creases)));
         if let Some(creases) = creases {
@@ -420,7 +419,7 @@ impl Sampler {
         }
     }
 
-    /// Looks for a zero of f on a curve, or a point by itself, among singular points, if none is
+    /// Looks among singular points for a zero of f on a curve or at an isolated point, if none is
     /// known.
     fn find_bare_place(&mut self, field: &mut dyn Evaluator, singular: &[Singular]) {
         if self.bare_place().is_none() {
@@ -433,10 +432,10 @@ impl Sampler {
         }
     }
 
-    /// Finds the singular points near those of the survey, on each patch by itself.
+    /// Finds the singular points near the points of the survey, for each patch by itself.
     fn find_singular_points(&mut self, probe: &mut Probe) {
         let spacing = spacing(&self.bounds);
-        // Those of no patch come first.
+        // Points without a patch come first.
         let mut patches: Vec<Vec<Vec3>> = Vec::new();
         for &p in &self.survey.position {
             let patch = self.creases.are_there().then(|| probe.field.label(p.as_dvec3()));
@@ -460,12 +459,12 @@ impl Sampler {
         }
     }
 
-    /// Finds the tips among the singular points of a patch, and those near bends at which f has no
+    /// Finds the tips among the singular points of a patch, and those near bends where f has no
     /// second derivative.
     fn find_tips(&mut self, probe: &mut Probe, patch: Option<u32>, near: &NearSurvey, spacing: f64) {
-        /// Bends at which the gradient may jump that are looked at. Most surfaces have none; around
-        /// a tip where f has a gradient they are the sharpest. More make the search on a much bent
-        /// surface take longer.
+        /// Maximum number of bends with a possible jump of the gradient that are examined. Most
+        /// surfaces have none; around a tip where f has a gradient they are the sharpest. More take
+        /// longer on a much bent surface.
         const MOST: usize = 16;
         for place in singular::places(&near.points, spacing) {
             if place.kind == SingularKind::Point {
@@ -499,47 +498,47 @@ impl Sampler {
         self.survey.touches
     }
 
-    /// A place where f comes to zero on a curve or at a point alone, if one was seen. At a corner
-    /// there is a surface, though the solid may be too thin for f to show it.
+    /// A place where f vanishes only on a curve or at an isolated point, if one was found. At a
+    /// corner there is a surface, though the solid may be too thin for f to show it.
     pub(crate) fn bare_place(&self) -> Option<DVec3> {
         let reach = bare_size(spacing(&self.bounds));
         let is_alone = |place: &DVec3| !self.creases.has_corner(*place, reach);
         [self.survey.bare, self.creases.bare].into_iter().flatten().find(is_alone)
     }
 
-    /// Whether nothing was seen of a surface, and nothing was proven: f may have one that is small
-    /// against the box, or beyond it.
+    /// Whether no surface was found and none was ruled out: f may have one that is small compared
+    /// with the box, or beyond it.
     pub(crate) fn shows_nothing(&self) -> bool {
         let absence = self.survey.absence;
         let is_unseen = matches!(absence, Absence::NotSeen | Absence::Undefined | Absence::Constant);
         is_unseen && self.components.singular().is_empty()
     }
 
-    /// Says whether the box of the next run is one that a person gave, as messages do.
+    /// Sets whether the user gave the box of the next run, which messages depend on.
     pub(crate) fn set_box_given(&mut self, is_given: bool) {
         self.is_box_given = is_given;
     }
 
-    /// Whether the search for components was left open in a box where f is beyond double precision
-    /// in places.
+    /// Whether the search for components was left undecided in a box where f overflows double
+    /// precision in places.
     pub(crate) fn is_open_by_overflow(&self, field: &dyn Field) -> bool {
         self.undecided_cells().is_some_and(|cells| cells > 0)
             && precision::overflows_double(&mut *field.evaluator(self.frame), &self.bounds)
     }
 
-    /// The particle that rounding in double precision moves most, where it does by more than a
-    /// particle may lie off the surface.
+    /// The particle that rounding in double precision moves most, if by more than a particle may
+    /// lie off the surface.
     pub(crate) fn blur(&self, field: &dyn Field) -> Option<Blur> {
         precision::blur(&mut *field.evaluator(self.frame), &self.output.particles)
     }
 
-    /// Takes the spacing of the next start, whose settings are those of adaptive sampling, and
-    /// whether sizes also follow the curvature.
+    /// Sets the spacing of the next start, whose settings must be adaptive, and whether sizes also
+    /// follow the curvature.
     pub(crate) fn set_spacing(&mut self, spacing: Option<(Spacing, bool)>) {
         self.spacing = spacing;
     }
 
-    /// The spacing that is asked for, in the frame of the run.
+    /// The wanted spacing, in the frame of the run.
     fn wish(&self) -> Option<Wish> {
         let (spacing, bends) = self.spacing.clone()?;
         Some(Wish { spacing, bends, origin: self.frame.origin })
@@ -572,9 +571,8 @@ impl Sampler {
             && bytes(more).is_some_and(is_there)
     }
 
-    /// Asks for `steps` more relaxation steps on the particles of a run that has ended;
-    /// [`Sampler::step`] does them. Returns whether it has, with particles to relax. If not,
-    /// nothing has changed.
+    /// Requests `steps` more relaxation steps on the particles of a finished run; [`Sampler::step`]
+    /// does them. Returns whether there are particles to relax; if not, nothing has changed.
     #[must_use]
     pub fn relax(&mut self, steps: u32) -> bool {
         let can_relax = self.stop_reason.is_some() && self.output.particles.len() > 1;
@@ -586,9 +584,10 @@ impl Sampler {
         can_relax
     }
 
-    /// Begins a frame of particles that follow a surface: those of a finished run are brought to
-    /// the surface of `field` in a box, which have changed but little; [`Sampler::step`] does it.
-    /// Where that `is_closed`, no particle is born, and none dies but where it is lost.
+    /// Begins a frame of particles that follow a surface: those of a finished run are moved onto
+    /// the surface of `field` in a box, which has changed only a little; [`Sampler::step`] does it.
+    /// If it `is_closed`, particles are neither added nor removed, except those that lost the
+    /// surface.
     ///
     /// # Errors
     ///
@@ -603,7 +602,7 @@ impl Sampler {
         // A front that was stopped has not covered the surface.
         let covers = match (self.phase, self.stop_reason) {
             (Phase::Done, reason) => reason == Some(StopReason::Complete) || !particles.identity.is_empty(),
-            // A frame that has not ended: the next one goes on from where the particles are.
+            // An unfinished frame: the next one continues from where the particles are.
             (Phase::Flow, _) => true,
             (Phase::Idle, _) => false,
             _ => return Err(FollowError::UnderWay),
@@ -632,8 +631,8 @@ impl Sampler {
         Ok(())
     }
 
-    /// Surveys a surface that has moved. The packing stays as measured, and what was proven of the
-    /// surface before no longer holds.
+    /// Surveys a surface that has moved. The packing stays as measured; proofs about the surface
+    /// before no longer hold.
     fn look_again(&mut self, function: &dyn Field) {
         let bounds = &{ self.bounds };
         let frame = frame_for(function, self.output.particles.origin, bounds);
@@ -658,14 +657,14 @@ impl Sampler {
         }
     }
 
-    /// Takes a method as the one that is under way.
+    /// Makes a method the one under way.
     fn carry_out(&mut self, method: MethodUnderWay, phase: Phase) {
         (self.method, self.stop_reason, self.phase) = (Some(method), None, phase);
         self.output.fraction = 0.0;
     }
 
-    /// Ends the run where it is; the particles placed so far stay. The next step tidies them, even
-    /// if its budget is 0.
+    /// Ends the run where it is; the particles placed so far stay. The next step tidies up, even if
+    /// its budget is 0.
     pub fn cancel(&mut self) {
         self.output.inside = None;
         if let Some(method) = &mut self.method {
@@ -674,8 +673,8 @@ impl Sampler {
     }
 
     /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's
-    /// share of a relaxation step. Returns early where the search or the relaxation begins, so that
-    /// the caller can show the particles of the front, and now and then during both.
+    /// share of a relaxation step. Returns early when the search or the relaxation begins, and now
+    /// and then during both, so that the caller can show the particles.
     pub fn step(&mut self, field: &dyn Field, budget: u32) -> Progress {
         let field = &mut *field.evaluator(self.frame);
         let mut memory = core::mem::take(&mut self.tools.memory);
@@ -691,7 +690,7 @@ impl Sampler {
             }
         }
         self.tools.memory = memory;
-        // The refinement makes its particles anew.
+        // The refinement makes new particles.
         self.output.particles.origin = self.frame.origin;
         self.look_inside();
         let progress = self.progress();

@@ -36,7 +36,7 @@ pub enum Phase {
 pub enum StopReason {
     /// All phases were completed.
     Complete,
-    /// Stopped by the caller; what was there stays.
+    /// Stopped by the caller; the particles so far stay.
     Cancelled,
     /// The limit on particles was reached.
     Cap,
@@ -44,7 +44,7 @@ pub enum StopReason {
     NoSurface,
     /// f has the same value everywhere.
     Constant,
-    /// f has no value in the box, or none that double precision holds.
+    /// f is undefined in the box, or beyond double precision.
     Undefined,
     /// The radius is too large for the surface: no child fits.
     OneParticle,

@@ -1,4 +1,4 @@
-//! The field as the sampler evaluates it: in batches, with the memory that they take, and counted.
+//! The field as the sampler evaluates it: in batches, with their memory, and counted.
 
 pub(crate) use crate::field::BATCH;
 
@@ -37,21 +37,21 @@ impl<'a> Probe<'a> {
         self.memory.evaluations
     }
 
-    /// The smooth function of a patch in the place of f; f itself where there is no patch.
+    /// Evaluates the smooth function of a patch instead of f; f itself if there is no patch.
     pub(crate) fn on(&mut self, patch: Option<u32>) -> Probe<'_> {
         Probe { field: self.field.on(patch), memory: &mut *self.memory }
     }
 
-    /// Whether a point of the sheet of a patch, with its normal there, lies on the patch, whose
-    /// function this is; a surface without creases has none, and every point does. `size` is about
-    /// the size of a particle there.
+    /// Whether a point of the sheet of a patch, with its normal there, lies on the patch whose
+    /// function this is. Without creases there are no patches, and every point does. `size` is
+    /// about the size of a particle there.
     ///
-    /// It is asked a little outside: within a solid, where its bodies share a plane, each of two
-    /// branches gives f on its inner side alone.
+    /// The test is made a little outside: where the bodies of a solid share a plane, each of two
+    /// branches gives f only on its inner side.
     pub(crate) fn is_on_patch(&mut self, point: Vec3, normal: Vec3, size: f32, patch: Option<u32>) -> bool {
-        /// Distance outside, in sizes of a particle, far above rounding in double precision: of two
-        /// branches of which one is 10⁶ times as steep, the other one is asked within a hundredth
-        /// of a particle from where both are zero.
+        /// Distance outside, in sizes of a particle, far above rounding in double precision: next
+        /// to a branch 10⁶ times as steep, the test is still made within a hundredth of a particle
+        /// from where both branches vanish.
         const OUTSIDE: f64 = 1e-8;
         patch.is_none_or(|patch| {
             let outward = normal.as_dvec3() * (OUTSIDE * f64::from(size));
@@ -65,25 +65,25 @@ impl<'a> Probe<'a> {
         })
     }
 
-    /// Whether a patch may have points in a box: the zeros of √(u² + v²) on the edge of other
-    /// patches are none.
+    /// Whether a patch may have points in a box. Ignores the zeros of √(u² + v²) that lie on the
+    /// edge of other patches.
     pub(crate) fn may_have_zeros(&mut self, patch: Option<u32>, bounds: &Bounds) -> bool {
         let known = self.field.labels_in(bounds);
         patch.zip(known).is_none_or(|(patch, known)| known.contains(&patch))
     }
 
-    /// Whether a zero of f is one of a curve, or a point by itself, on no surface: f keeps one sign
-    /// around it, and most planes through it have no other zero of f around it. A plane cuts a
-    /// surface, and holds a curve that is tangent to it, as the edge of a solid may be. `size` is
-    /// the largest distance at which f is looked at; the surface is not to bend within it.
+    /// True if f vanishes here only along a curve or at an isolated point: f keeps one sign around
+    /// it, and most planes through it contain no other zero of f nearby. A plane cuts a surface,
+    /// and contains a curve that is tangent to it, such as the edge of a solid. `size` is the
+    /// largest distance at which f is evaluated; the surface must not bend within it.
     ///
     /// The evaluations, which are in double precision, are not counted.
     pub(crate) fn is_bare_zero(&mut self, point: DVec3, size: f64) -> bool {
-        /// Distances as shares of the size: a surface that bends within one need not within the
-        /// other, and what the point may be off by counts least at the larger one.
+        /// Distances as shares of the size: a surface that bends within one need not bend within
+        /// the other, and an error in the point matters least at the larger one.
         const SIZES: [f64; 2] = [1.0, 0.25];
-        /// Normals of the planes. Any three are independent, so that at most two of the planes hold
-        /// one direction.
+        /// Normals of the planes. Any three are independent, so that at most two planes contain one
+        /// direction.
         const NORMALS: [DVec3; 5] = [
             DVec3::new(0.8, 0.5, 0.3),
             DVec3::new(-0.3, 0.8, 0.5),
@@ -96,8 +96,8 @@ impl<'a> Probe<'a> {
         /// method ends nearer than that to a zero.
         const ZERO: f64 = 0.01;
         let (at_point, slope) = self.field.value_and_gradient(point);
-        // Where another branch of f is far steeper, f is small beside what is around it and yet no
-        // zero.
+        // Next to a much steeper branch of f, f may be small compared with its surroundings without
+        // being zero.
         if at_point.abs() > ZERO * slope.length() * size && slope.length() > 0.0 {
             return false;
         }
@@ -113,11 +113,11 @@ impl<'a> Probe<'a> {
     }
 
     /// Whether f changes its sign near the zero to which Newton's method leads from a point: a
-    /// surface that is small beside `size` looks like a point or a curve.
+    /// surface that is small compared with `size` looks like a point or a curve.
     fn changes_sign_near(&mut self, mut point: DVec3, size: f64) -> bool {
         /// Number of Newton steps, and of distances tried. At a double zero a Newton step halves
-        /// the distance, and each distance tried is half of the one before, so that both come
-        /// from `size` down to 2⁻⁴⁰ of it.
+        /// the distance, and each distance tried is half of the one before, so that both get from
+        /// `size` down to 2⁻⁴⁰ of it.
         const STEPS: usize = 40;
         for _ in 0..STEPS {
             let (value, gradient) = self.field.value_and_gradient(point);
@@ -142,8 +142,8 @@ impl<'a> Probe<'a> {
         false
     }
 
-    /// The largest |f| all around a point at a distance; 0 where f has both signs there, NaN where
-    /// it has no value.
+    /// The largest |f| all around a point at a distance; 0 if f takes both signs there, NaN if it
+    /// is undefined.
     fn most_around(&mut self, point: DVec3, distance: f64) -> f64 {
         /// Number of steps towards a smaller |f|. Each is twice a Newton step, so that it ends at a
         /// double zero (a curve) and passes a simple one (the side of a narrow cone), where f
@@ -180,12 +180,12 @@ impl<'a> Probe<'a> {
         most
     }
 
-    /// Whether f is zero somewhere on the circle around a point across `normal`, or changes its
-    /// sign or has no value there.
+    /// Whether f vanishes somewhere on the circle around a point across `normal`, or changes its
+    /// sign or is undefined there.
     fn is_zero_around(&mut self, point: DVec3, normal: DVec3, radius: f64) -> bool {
         /// Below this share of its largest value on the circle |f| counts as zero. It is far above
-        /// rounding and above what the steps leave of |f| beside a sheet; beside the curve of |u| +
-        /// v² the share is about the radius.
+        /// rounding and above what the steps leave of |f| near a sheet; near the curve of |u| + v²
+        /// the share is about the radius.
         const ZERO: f64 = 1e-9;
         /// The circle is divided into this many arcs; `TANGENT` is tan(π/8), of half an arc.
         const ARCS: usize = 8;
@@ -262,7 +262,7 @@ impl<'a> Probe<'a> {
 }
 
 /// The least of some values of a function between −`most` and `most`, near its minimum if it has
-/// one: by the golden section (J. Kiefer, "Sequential minimax search for a maximum", 1953).
+/// one: golden-section search (J. Kiefer, "Sequential minimax search for a maximum", 1953).
 fn least_within(most: f64, mut value: impl FnMut(f64) -> f64) -> f64 {
     /// The share of an interval that is left after a step.
     const GOLDEN: f64 = 0.618_033_988_749_895;

@@ -16,7 +16,7 @@ const RELAXATION_STEP_COST: f64 = 0.125;
 pub struct Forecast {
     /// Repulsion radius of the run.
     pub radius: f64,
-    /// Number of particles to expect.
+    /// Expected number of particles.
     pub predicted_count: u64,
     /// Estimated area of the surface in the box.
     pub area: f64,
@@ -51,7 +51,7 @@ pub struct Progress {
     /// derivative by differences ([`FnField`](crate::FnField)), and for the box, the set-up and the
     /// proof, which are not counted.
     pub evaluations: u64,
-    /// Estimated share of the work done. It does not go back before more is asked for.
+    /// Estimated share of the work done. It never decreases until more work is requested.
     pub fraction: f64,
     /// Set once the run has ended.
     pub stop_reason: Option<StopReason>,
@@ -60,7 +60,7 @@ pub struct Progress {
     pub message: Option<String>,
     /// Repulsion radius.
     pub radius: f64,
-    /// Whether particles that were there before this step have moved or gone.
+    /// Whether particles that existed before this step have moved or been removed.
     pub moved: bool,
 }
 
@@ -82,26 +82,26 @@ pub struct Counts {
     pub gaps_filled: u64,
     /// Fronts started, each from a seed of its own.
     pub seeds: u32,
-    /// Seeds that stayed alone beside other particles and were taken back.
+    /// Seeds that stayed alone next to other particles and were undone.
     pub left_out: u32,
-    /// Whether no more seeds were tried because too many had been taken back.
+    /// Whether no more seeds were tried because too many had been undone.
     pub ended_early: bool,
-    /// Times that the coarse front was refined, where it was.
+    /// Number of refinements of the coarse front, if it was refined.
     pub refined_levels: Option<u32>,
-    /// Why the front stands, where a refinement was asked for.
+    /// Why the front was kept although a refinement was requested.
     pub refusal: Option<Refusal>,
 }
 
 /// The progress of a refinement.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct RefineProgress {
-    /// Number of levels, that of the coarse front included.
+    /// Number of levels, including the coarse front.
     levels: u32,
-    /// Levels after the one under way.
+    /// Levels still to come after the one under way.
     to_come: u32,
-    /// Share of the particles of this level in components that have made it.
+    /// Share of the particles of this level in components that have finished it.
     before: f64,
-    /// Share of them in the component that is at work.
+    /// Share of them in the component under way.
     share: f64,
     /// Share of its own work that this component has done.
     pub(super) at: f64,
@@ -120,7 +120,7 @@ impl RefineProgress {
         (self.levels - self.to_come, self.levels)
     }
 
-    /// Estimated share of the work that is done, that of the coarse front included.
+    /// Estimated share of the work done, including the coarse front.
     fn fraction(&self) -> f64 {
         // From a quarter of the share of this level to all of it.
         refine::coarse_share(self.to_come) * (1.0 + 3.0 * (self.before + self.share * self.at))
@@ -128,7 +128,7 @@ impl RefineProgress {
 }
 
 impl Sampler {
-    /// The state as of now. [`Progress::moved`] tells of what has changed since the last step.
+    /// The present state. [`Progress::moved`] reports changes since the last step.
     #[must_use]
     pub fn progress(&self) -> Progress {
         let settled = self.settled();
@@ -178,7 +178,7 @@ impl Sampler {
             // In all other phases the number of particles grows.
             _ => {
                 // A coarse front is the smaller part of its run, and so is a pilot. Any front may
-                // place more particles than are expected.
+                // place more particles than expected.
                 let (share, expected) = match &self.attempt.refining {
                     Some(refining) => (refine::coarse_share(refining.halvings), self.plan.expected),
                     None => (generation, self.attempt.predicted_count(&self.settings)),

@@ -76,7 +76,7 @@ pub(crate) enum CircleLanding {
     },
     /// The search has met no point of the surface.
     NotConverged,
-    /// The field has no value there, or its gradient counts as zero.
+    /// The field is undefined there, or its gradient counts as zero.
     Undefined,
 }
 
@@ -91,7 +91,7 @@ pub(crate) struct Tolerance {
 
 impl Tolerance {
     /// Returns whether |∇f| can be divided by: it does not count as zero, and does not overflow, as
-    /// it does beside a pole, where any value would be small against it.
+    /// it does next to a pole, where any value would be small compared with it.
     pub(crate) fn is_slope(&self, slope: f32) -> bool {
         slope > self.min_gradient && slope < f32::INFINITY
     }
@@ -124,9 +124,9 @@ impl Probe<'_> {
     /// Finds the point of the surface nearest to the guess on each of at most [`BATCH`] circles.
     /// `landing[i]` belongs to `circles[i]`.
     ///
-    /// Newton's method in θ takes two evaluations where the guess is good. Where it does not
-    /// converge, a bracketed search follows. Both together take at most 50 steps, so the search
-    /// ends on any field.
+    /// Newton's method in θ takes two evaluations from a good guess. If it does not converge, a
+    /// bracketed search follows. Both together take at most 50 steps, so the search ends on any
+    /// field.
     pub(crate) fn land_on_circles(
         &mut self,
         circles: &[ChildCircle],
@@ -186,8 +186,8 @@ impl Probe<'_> {
         }
     }
 
-    /// Goes along the surface from the centre of a circle to the circle, in small steps, so that it
-    /// stays on the sheet of the centre where others are near.
+    /// Walks along the surface from the centre of a circle to the circle, in small steps, so that
+    /// it stays on the sheet of the centre where others are near.
     pub(crate) fn walk(&mut self, circle: &ChildCircle, tolerance: Tolerance) -> CircleLanding {
         /// Steps from the centre to the circle. A choice.
         const STEPS: u32 = 8;
@@ -353,9 +353,9 @@ pub(crate) fn turned([cos, sin]: [f32; 2], t: f32) -> [f32; 2] {
 /// (§4.3) and gives no number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ResidualLimits {
-    /// The distance that single precision resolves on this field.
+    /// The smallest distance that single precision resolves on this field.
     pub(crate) finest: f32,
-    /// The distance within which a particle cannot be taken for one of another sheet.
+    /// The distance within which a particle cannot be mistaken for one of another sheet.
     pub(crate) coarsest: f32,
 }
 
@@ -363,8 +363,8 @@ impl ResidualLimits {
     /// Nothing is known of the field.
     pub(crate) const UNLIMITED: Self = Self { finest: 0.0, coarsest: f32::INFINITY };
 
-    /// Returns the largest |f|/|∇f| of a particle of a radius: 10⁻⁴ r, within these limits. A
-    /// smaller share takes more evaluations.
+    /// Returns the largest |f|/|∇f| allowed for a particle of a radius: 10⁻⁴ r, within these
+    /// limits. A smaller share takes more evaluations.
     pub(crate) fn residual(self, radius: f32) -> f32 {
         (1e-4 * radius).min(self.coarsest).max(self.finest)
     }

@@ -51,7 +51,7 @@ pub enum LawKind {
 pub enum Method {
     /// A front of the wanted radius, and relaxation (paper §4 and §5).
     Front,
-    /// A coarse front, brought into order and refined. Where that cannot be done, the front stands.
+    /// A coarse front, brought into order and refined. If that is impossible, the front is kept.
     Refined,
 }
 
@@ -75,8 +75,8 @@ pub enum Radius {
     Share(f64),
 }
 
-/// Settings of a run. `Default` gives the paper's values where it names them. As text it has no
-/// other names than these.
+/// Settings of a run. `Default` gives the paper's values where it names them. As text, unknown keys
+/// are errors.
 ///
 /// ```
 /// use marching_particles::{Bounds, Settings};
@@ -93,12 +93,12 @@ pub struct Settings {
     /// surface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bounds: Option<Bounds>,
-    /// Repulsion radius r as a length. With one, `size_mode` and `radius_share` do not count.
+    /// Repulsion radius r as a length. If it is given, `size_mode` and `radius_share` are ignored.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
-    /// Cells along the longest side of the box of the grid on which a surface is looked for whose
-    /// field has no [bounds](crate::Bounded): a part smaller than a cell may be missed. Half as
-    /// many take a quarter of the evaluations. Without a number there are 64.
+    /// Grid cells along the longest side of the box, to find a surface whose field has no
+    /// [bounds](crate::Bounded): a part smaller than a cell may be missed. Half as many take a
+    /// quarter of the evaluations. The default is 64.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub survey_cells: Option<u32>,
     /// Uniform or adaptive sampling.
@@ -112,11 +112,11 @@ pub struct Settings {
     pub count: u32,
     /// Law for the radius of an adaptive particle, given the principal curvatures.
     pub radius_law: LawKind,
-    /// Distance aimed at between the surface and a triangle of neighbours, as a share of the box
-    /// diagonal; the limits on the radii go before it. With the default the ellipsoid of the
+    /// Wanted distance between the surface and a triangle of neighbours, as a share of the box
+    /// diagonal; the limits on the radii take precedence. With the default the ellipsoid of the
     /// gallery takes about 16,000 particles, the sphere 13,000.
     pub chord_error: f64,
-    /// Radius of a particle over the radius of curvature under it.
+    /// Radius of a particle over the surface's radius of curvature there.
     pub curvature_scale: f64,
     /// Radius of the smallest particle as a share of the box diagonal.
     pub radius_min_share: f64,
@@ -129,23 +129,23 @@ pub struct Settings {
     /// Method by which the particles are placed and evened out.
     pub method: Method,
     /// A child joins an existing particle within this distance, in units of 2r. The paper names no
-    /// tolerance; 0.7 gives the most particles with six neighbours on smooth surfaces.
+    /// tolerance. With 0.7 most particles have six neighbours on smooth surfaces.
     pub match_tolerance: f64,
     /// Treatment of gaps where fronts meet.
     pub gaps: GapPolicy,
     /// Seed of the random choice of the point where the front begins.
     pub seed: u64,
-    /// The run stops when it has placed this many. A wanted count up to it may be missed upwards
-    /// like any other.
+    /// The run stops when it has placed this many. A wanted count up to this limit may be missed
+    /// upwards like any other.
     pub max_particles: u32,
 }
 
-/// Largest number of particles that may be wanted. With the room and the report they take 1.5 to
-/// 1.7 GB, less than half of what WebAssembly addresses.
+/// Largest number of particles that may be wanted. With spare columns and the report they take 1.5
+/// to 1.7 GB, less than half of what WebAssembly addresses.
 const MOST_WANTED: f64 = 4e6;
 
-/// Room for the particles that are expected, as a multiple of them: a wanted count is met within 3
-/// %, and a first attempt may place some too many.
+/// Room for the expected particles, as a multiple of them: a wanted count is met within 3 %, and a
+/// first attempt may place some too many.
 pub const COUNT_ROOM: f64 = 1.1;
 
 /// The smallest and the largest radius that are accepted, as shares of the diagonal: on an area of
@@ -170,8 +170,7 @@ const NUMBERS: [Number; 11] = [
     ("grading", 0.01, 0.5, |s| s.grading),
     // A limit on time: a hundred times the paper's steps.
     ("relax_steps", 0.0, 1000.0, |s| s.relax_steps.into()),
-    // Below, children overlap by half; at 1 they are taken for the particles beside them in a
-    // lattice.
+    // Below, children overlap by half; at 1 they match the particles next to them in a lattice.
     ("match_tolerance", 0.5, 0.9, |s| s.match_tolerance),
     ("seed", 0.0, u64::MAX as f64, |s| s.seed as f64),
     ("max_particles", 1.0, COUNT_ROOM * MOST_WANTED, |s| s.max_particles.into()),
@@ -199,27 +198,27 @@ pub enum SettingsError {
         /// Largest value allowed.
         max: f64,
     },
-    /// A radius as a length, of particles whose sizes follow the curvature.
+    /// A radius given as a length although sizes follow the curvature.
     #[error("a radius is for particles of one size: adaptive ones take a count or a chord error")]
     RadiusOfAdaptive,
-    /// No particles can be put in the clip box.
+    /// The box cannot be sampled.
     #[error(transparent)]
     Box(#[from] BoxError),
     /// The columns of that many particles do not fit into the memory.
     #[error("there is not enough memory for about {particles} particles: choose fewer, or a larger radius")]
     Memory {
-        /// Particles to expect.
+        /// Expected number of particles.
         particles: u64,
     },
-    /// A [spacing](super::Spacing) is not above 0 at a place of the surface, or has no value there.
+    /// A [spacing](super::Spacing) is not above 0 at a place of the surface, or is undefined there.
     #[error(fmt = no_length)]
     Spacing {
-        /// The spacing there, NaN where it has no value.
+        /// The spacing there, NaN if it is undefined.
         value: f64,
         /// The place, in the coordinates of the field.
         position: [f64; 3],
     },
-    /// The function of a [spacing](super::Spacing) has failed: its error.
+    /// The function of a [spacing](super::Spacing) has failed with this error.
     #[error("the function of the spacing has failed: {0}")]
     SpacingFunction(FieldError),
 }
@@ -245,10 +244,10 @@ fn no_length(value: &f64, position: &[f64; 3], f: &mut fmt::Formatter<'_>) -> fm
 }
 
 impl Settings {
-    /// The values that `Default` gives. The radius is the smaller one of the paper (§6). By the
-    /// chord error most surfaces take about as many particles as the default count, by the largest
-    /// curvature more; of the limits of their radii the smaller one gives 300,000 particles on a
-    /// sphere and the larger one 340. There is room for ten times the default count.
+    /// The values that `Default` gives. The radius is the smaller one of the paper (§6). With the
+    /// chord error most surfaces take about as many particles as the default count, with the
+    /// largest curvature more. On a sphere the limits of the radii give 300,000 particles and 340.
+    /// There is room for ten times the default count.
     pub const DEFAULT: Self = Self {
         bounds: None,
         radius: None,
@@ -279,8 +278,8 @@ impl Settings {
         Self { size_mode: SizeMode::Count, count, max_particles, ..Self::DEFAULT }
     }
 
-    /// Default settings for particles with this repulsion radius, with room for as many as there
-    /// can be; neighbours sit two radii apart. Adaptive sampling takes its radii from the curvature
+    /// Default settings for particles with this repulsion radius, with the largest possible room;
+    /// neighbours sit two radii apart. Adaptive sampling takes its radii from the curvature
     /// instead.
     ///
     /// ```
@@ -301,8 +300,8 @@ impl Settings {
         }
     }
 
-    /// Default settings for adaptive sampling in which triangles of neighbours keep this distance
-    /// from the surface: a length over [`Bounds::diagonal`] of the box that is given.
+    /// Default settings for adaptive sampling in which triangles of neighbours stay within this
+    /// distance from the surface: a length over [`Bounds::diagonal`] of the given box.
     #[must_use]
     pub fn with_chord_error(share: f64) -> Self {
         Self { radius_law: LawKind::ChordError, chord_error: share, ..Self::DEFAULT.adaptive() }
@@ -314,15 +313,15 @@ impl Settings {
         Self { bounds: Some(bounds), ..self }
     }
 
-    /// Asks for adaptive sampling (paper §5), in which the repulsion radius follows the curvature,
-    /// and returns the settings. A radius as a share has no effect then; as a length it is
+    /// Chooses adaptive sampling (paper §5), in which the repulsion radius follows the curvature,
+    /// and returns the settings. A radius as a share then has no effect; a length is
     /// [refused](SettingsError::RadiusOfAdaptive) when a run starts.
     #[must_use]
     pub fn adaptive(self) -> Self {
         Self { sampling: Sampling::Adaptive, ..self }
     }
 
-    /// Asks for the refined method, which orders and subdivides a coarse front, and returns the
+    /// Chooses the refined method, which orders and subdivides a coarse front, and returns the
     /// settings.
     #[must_use]
     pub fn refined(self) -> Self {
@@ -336,20 +335,20 @@ impl Settings {
         Self { seed, ..self }
     }
 
-    /// Smallest and largest value of a setting that is a number; none for another one.
+    /// Smallest and largest value of a numeric setting; none for other settings.
     #[must_use]
     pub fn range(name: &str) -> Option<RangeInclusive<f64>> {
         NUMBERS.iter().find(|number| number.0 == name).map(|&(_, min, max, _)| min..=max)
     }
 
-    /// The radius of the largest particle as a share of the diagonal of this box, estimated where a
-    /// number of particles is wanted; at most the largest that is accepted.
+    /// The radius of the largest particle as a share of the diagonal of this box, estimated if a
+    /// number of particles is wanted; at most the largest accepted.
     #[must_use]
     pub fn largest_share(&self, bounds: &Bounds) -> f64 {
         let share = match (self.size_mode, self.sampling, self.radius) {
             (_, Sampling::Uniform, Some(length)) => length / bounds.diagonal(),
             (SizeMode::Radius, Sampling::Uniform, None) => self.radius_share,
-            // On an area of one squared diagonal, about that of a sphere; each particle takes 2√3
+            // For an area of one squared diagonal, about that of a sphere; each particle takes 2√3
             // r².
             (SizeMode::Count, _, None) => (1.0 / (12_f64.sqrt() * f64::from(self.count))).sqrt(),
             (_, Sampling::Adaptive, _) => self.radius_max_share,
@@ -361,7 +360,7 @@ impl Settings {
     ///
     /// # Errors
     ///
-    /// If it is a length that is out of its range there.
+    /// If the radius is a length that is out of range there.
     pub(crate) fn in_shares_of(self, bounds: &Bounds) -> Result<Self, SettingsError> {
         let Some(length) = self.radius else { return Ok(self) };
         let diagonal = bounds.diagonal();

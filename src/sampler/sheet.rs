@@ -1,7 +1,7 @@
 //! Whether two points of the surface lie on one sheet, or on two that come near each other.
 //!
-//! Points whose normals are more than 90° apart are on two sheets, wherever it is asked. Of those
-//! that face the same way there is a rule for each purpose:
+//! Points whose normals are more than 90° apart always count as on two sheets. For points that face
+//! the same way each purpose has its rule:
 //!
 //! | Purpose | Rule |
 //! |---|---|
@@ -15,9 +15,9 @@
 //! the rules of this module, so that a fault here shows there.
 //!
 //! The *lift* of two points is the mean height of each above the tangent plane at the other, along
-//! the normals. On one sheet the two heights have opposite signs and cancel but for the change of
-//! the curvature, so the lift is of third order in the distance. Between two sheets at a distance g
-//! the lift is about g. Two sheets that face the same way always have a third one between them that
+//! the normals. On one sheet the two heights have opposite signs and cancel up to the change of the
+//! curvature, so the lift is of third order in the distance. Between two sheets at a distance g the
+//! lift is about g. Two sheets that face the same way always have a third one between them that
 //! faces the other way.
 
 use crate::field::descent;
@@ -82,14 +82,14 @@ pub(crate) fn is_cover(particles: &Particles, near: &Neighbour, normal: Vec3) ->
 /// sheet that bends by 45° over the distance of two neighbours is not resolved by its particles.
 pub(crate) const MAX_RISE_SQ: f32 = 0.5;
 
-/// Square of half the match radius: nearer than that two particles are taken for one whatever the
-/// direction between them.
+/// Square of half the match radius: nearer particles count as one, whatever the direction between
+/// them.
 pub(crate) fn level_slack_sq(match_radius: f32) -> f32 {
     (0.5 * match_radius) * (0.5 * match_radius)
 }
 
 /// Whether two particles that are `distance_sq` apart face the same way, and the second rises from
-/// the tangent plane at the first by no more than 45°, or is too near for that to tell.
+/// the tangent plane at the first by at most 45°, or is too near to tell.
 pub(crate) fn is_level(pair: PointPair, distance_sq: f32, match_radius: f32) -> bool {
     let rise = pair.offset.dot(pair.normal);
     pair.faces_one_way() && rise * rise <= MAX_RISE_SQ * (distance_sq + level_slack_sq(match_radius))
@@ -99,9 +99,9 @@ pub(crate) fn is_level(pair: PointPair, distance_sq: f32, match_radius: f32) -> 
 /// to 60°, where they are neighbours on one sheet of the surface, and 0 from 120°, where they are
 /// on two.
 ///
-/// In between the weight is linear in the cosine. So no pair appears or disappears suddenly, and
-/// the energy is a continuous function of the positions. The force is the derivative with respect
-/// to the distance alone and leaves out that of the weight, so the ramp must not be steep.
+/// In between the weight is linear in the cosine, so no pair appears or disappears suddenly, and
+/// the energy is a continuous function of the positions. The force is the derivative by the
+/// distance alone and ignores the change of the weight, so the ramp must not be steep.
 pub(crate) fn repulsion_weight(cosine: f32) -> f32 {
     (0.5 + cosine).clamp(0.0, 1.0)
 }
@@ -122,32 +122,32 @@ fn is_doubtful(pair: PointPair, spacing: f32) -> bool {
 
 /// Rule that decides whether two points that face the same way are on one sheet or on two.
 ///
-/// As a rule a large lift makes a pair doubtful, and one evaluation between the two decides. That
-/// misses sheets nearer to each other than such a lift. Where the survey has seen sheets as near as
+/// Normally a large lift makes a pair doubtful, and one evaluation between the two decides. This
+/// misses sheets nearer to each other than such a lift. If the survey has found sheets as near as
 /// that, every pair is doubtful whose lift can be told from 0, and the field is followed from one
 /// point to the other.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SheetRule {
-    /// Least distance at which sheets are told apart, where some may be so near.
+    /// Least distance at which sheets are distinguished, if some may be so near.
     resolved: Option<f32>,
 }
 
 impl SheetRule {
-    /// The rule for particles of these radii, on a surface where another sheet and a third one lie
-    /// `crowding` away from a point.
+    /// The rule for particles of these radii, on a surface where the next two sheets are `crowding`
+    /// away from a point.
     pub(crate) fn new(crowding: f32, radii: RadiusRange, residual_limits: ResidualLimits) -> Self {
         let is_crowded = crowding <= MAX_LIFT * 2.0 * radii.largest;
         // Both particles of a pair may be a residual away from the surface.
         Self { resolved: is_crowded.then_some(4.0 * residual_limits.residual(radii.smallest)) }
     }
 
-    /// Lift above which a particle that has moved is on another sheet; infinite where sheets are
-    /// not as near.
+    /// Lift above which a particle that has moved is on another sheet; infinite if no sheets are
+    /// that near.
     pub(crate) fn largest_lift(self) -> f32 {
         self.resolved.unwrap_or(f32::INFINITY)
     }
 
-    /// Whether sheets may be nearer than the usual rule tells apart.
+    /// Whether sheets may be nearer than the usual rule distinguishes.
     pub(crate) fn is_fine(self) -> bool {
         self.resolved.is_some()
     }
@@ -160,7 +160,7 @@ impl SheetRule {
         }
     }
 
-    /// Lift above which a pair near a doubtful one is looked at, wherever the two are.
+    /// Lift above which a pair near a doubtful one is examined, wherever the two are.
     pub(crate) fn suspicious(self, spacing: f32) -> f32 {
         // Where there is another sheet, a particle of it can be far away to the side, and the limit
         // does not grow with the distance.
@@ -170,8 +170,8 @@ impl SheetRule {
     /// Whether the field shows that two points which face the same way, the first at `position`,
     /// lie on one sheet.
     pub(crate) fn is_one_sheet(self, probe: &mut Probe, position: Vec3, pair: PointPair) -> bool {
-        /// Times that the way between the two points is halved: the error of the curve between them
-        /// falls by 16 each time.
+        /// Times that the path between the two points is halved: the error of the curve between
+        /// them falls by a factor of 16 each time.
         const HALVINGS: u32 = 3;
         let Some(least) = self.resolved else {
             return is_one_sheet(probe, position, pair);
@@ -182,7 +182,7 @@ impl SheetRule {
     }
 
     /// Whether two points, the first at `position`, are on one sheet: they face the same way, and
-    /// where their lift leaves that in doubt the field shows it.
+    /// if their lift leaves a doubt, the field decides.
     pub(crate) fn is_own(self, probe: &mut Probe, position: Vec3, pair: PointPair, spacing: f32) -> bool {
         pair.faces_one_way() && (!self.is_doubtful(pair, spacing) || self.is_one_sheet(probe, position, pair))
     }
@@ -213,8 +213,8 @@ impl SheetRule {
 fn is_one_sheet(probe: &mut Probe, position: Vec3, pair: PointPair) -> bool {
     /// Smallest lift, as a share of the distance, that rounding leaves meaningful.
     const ROUNDING: f32 = 0.01;
-    /// Share of the lift within which the surface has to be of the middle: half-way between the
-    /// two, 0 on one sheet and ½ on two. Smaller: more children find no place; larger: the closest
+    /// The surface has to be within this share of the lift from the middle. It is 0 on one sheet
+    /// and ½ on two; this is halfway. Smaller: more children find no place; larger: the closest
     /// pairs are nearer.
     const NEAR: f32 = 0.25;
     let PointPair { offset, normal, other } = pair;
@@ -238,10 +238,9 @@ fn along_the_way(from: OrientedPoint, to: OrientedPoint) -> [Vec3; 3] {
     })
 }
 
-/// Whether the field between two points of the surface shows one sheet from one to the other: at
-/// three places along the way the surface is far nearer than the two points' lift, and faces the
-/// same way. Where it is not, the way is halved at the surface. Sheets nearer than `least` count as
-/// one.
+/// Whether the field shows one sheet all the way between two points of the surface: at three places
+/// the surface is far nearer than the two points' lift, and faces the same way. If it is not, the
+/// path is halved at the surface. Sheets nearer than `least` count as one.
 fn is_one_sheet_between(
     probe: &mut Probe,
     from: OrientedPoint,
@@ -249,7 +248,7 @@ fn is_one_sheet_between(
     least: f32,
     halvings: u32,
 ) -> bool {
-    /// Share of the lift within which the surface has to be of the curve. The curve of two sheets
+    /// The surface has to be within this share of the lift from the curve. The curve of two sheets
     /// is at least 5/32 away from both at each of the three places. Smaller: more evaluations.
     const NEAR: f32 = 0.05;
     /// Newton steps to the surface. With fewer, more children find no place.
@@ -281,7 +280,7 @@ fn is_one_sheet_between(
         let (value, gradient) = probe.gradient(middle);
         slope = gradient;
         step = descent::step(value, gradient);
-        // Within a quarter of what is not told apart.
+        // Within a quarter of the distance that is not resolved.
         if step.length_squared() <= 0.0625 * least * least {
             let middle = OrientedPoint { position: middle, normal: gradient.normalize_or_zero() };
             return middle.normal.dot(facing) > 0.0
@@ -292,8 +291,8 @@ fn is_one_sheet_between(
     false
 }
 
-/// Returns a number for each particle, equal for those of one front, and of fronts that meet on one
-/// patch: that have two neighbours whose lift is at most `largest_lift`.
+/// Returns a number for each particle, equal for particles of one front, and for fronts that meet
+/// on one patch: that have two neighbours whose lift is at most `largest_lift`.
 pub(crate) fn numbers(largest_lift: f32, particles: &Particles, neighbours: &PackedNeighbours) -> Vec<u32> {
     let mut number = particles.fronts();
     let mut met = Forest::new(number.len());

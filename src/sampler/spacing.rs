@@ -1,4 +1,4 @@
-//! The wanted distance between neighbours as a function of place.
+//! The wanted distance between neighbours as a function of position.
 
 use super::settings::{MOST_SHARE, Sampling, Settings, SettingsError, SizeMode};
 use crate::field::formula::{Formula, FormulaError, Noun, Parameter};
@@ -8,21 +8,22 @@ use core::fmt::{self, Debug, Formatter};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
-/// Wanted distance between neighbours as a function s(x, y, z) of place, in the units of the
+/// Wanted distance between neighbours as a function s(x, y, z) of position, in the units of the
 /// coordinates: twice the repulsion radius.
 ///
-/// It is asked in the coordinates of the field, at places on the surface or near it, many at a
-/// time. The largest spacing of slope 2 [`Settings::grading`] that is nowhere above s is met, so
-/// that sizes change gradually beside a jump of s; [`Warning::Smoothed`](crate::Warning::Smoothed)
-/// says where that is less than s. The grading is found on a grid of 32 cells along the longest
-/// side of the box: within a cell, s itself is met.
+/// It is evaluated in the coordinates of the field, on the surface or near it, at many points at a
+/// time. The run uses the largest spacing of slope 2 [`Settings::grading`] that is nowhere above s,
+/// so that sizes change gradually next to a jump of s;
+/// [`Warning::Smoothed`](crate::Warning::Smoothed) says where that is less than s. The grading is
+/// computed on a grid of 32 cells along the longest side of the box: within a cell, s itself is
+/// used.
 ///
 /// With [`SizeMode::Count`](crate::SizeMode::Count) s gives the ratio of the distances, and the
 /// count their scale. With adaptive sampling the smaller one of s and the spacing that follows the
-/// curvature is met. The radius stays between 0.01 % and 20 % of the diagonal of the box.
+/// curvature is used. The radius stays between 0.01 % and 20 % of the diagonal of the box.
 ///
-/// Where s is not above 0 on the surface, or has no value, there is no sample, and the error says
-/// where that is; [`Spacing::at_least`] makes sizes of 0 and below good.
+/// If s is not above 0 on the surface, or undefined, there is no sample, and the error says where;
+/// [`Spacing::at_least`] replaces sizes of 0 and below.
 ///
 /// ```
 /// use marching_particles::{Settings, Spacing, sample};
@@ -42,13 +43,13 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub struct Spacing {
     function: Arc<dyn Field>,
-    /// The formula that the function is, if it is one.
+    /// The formula of the function, if it is one.
     text: Option<Arc<str>>,
     smallest: Option<f64>,
     largest: Option<f64>,
 }
 
-/// Formulas are equal that are written alike, functions that are one.
+/// Formulas are equal if they are written alike, functions if they are the same object.
 impl PartialEq for Spacing {
     fn eq(&self, other: &Self) -> bool {
         let is_same = match (&self.text, &other.text) {
@@ -69,7 +70,7 @@ impl Debug for Spacing {
     }
 }
 
-/// A spacing in the words of errors.
+/// How errors name a spacing.
 const NOUN: Noun = Noun {
     name: "spacing",
     unknown: "The formula has no parameter",
@@ -93,7 +94,7 @@ impl Spacing {
     ///
     /// # Errors
     ///
-    /// Those of [`Spacing::parse`].
+    /// The errors of [`Spacing::parse`].
     pub(crate) fn of_formula(text: &str, parameters: &[Parameter]) -> Result<Self, FormulaError> {
         let function = Arc::new(Formula::expression(text, parameters, &NOUN)?);
         Ok(Self { function, text: Some(text.into()), smallest: None, largest: None })
@@ -102,19 +103,19 @@ impl Spacing {
     /// The spacing by a function of the program, which is anything that can be
     /// [sampled](IntoField): a function of a point, or one of a batch of points that may fail. A
     /// [`FnField`](crate::FnField) or [`BatchField`](crate::BatchField) may also
-    /// [limit](crate::FnField::limit_calls) the points that it is asked for. If the function fails
-    /// there is no sample, and the error is [`SettingsError::SpacingFunction`].
+    /// [limit](crate::FnField::limit_calls) the points of a call. If the function fails there is no
+    /// sample, and the error is [`SettingsError::SpacingFunction`].
     pub fn by<Kind>(function: impl IntoField<Kind, Field: 'static>) -> Self {
         Self { function: Arc::new(function.into_field()), text: None, smallest: None, largest: None }
     }
 
-    /// Takes `smallest` where the function is below it, also where it is 0 or negative.
+    /// Uses `smallest` wherever the function is below it, even at 0 or below.
     #[must_use]
     pub fn at_least(self, smallest: f64) -> Self {
         Self { smallest: Some(smallest), ..self }
     }
 
-    /// Takes `largest` where the function is above it.
+    /// Uses `largest` wherever the function is above it.
     #[must_use]
     pub fn at_most(self, largest: f64) -> Self {
         Self { largest: Some(largest), ..self }
@@ -132,7 +133,7 @@ impl Spacing {
         [self.smallest, self.largest]
     }
 
-    /// Checks that the limits are lengths, of which the smallest one is not above the largest.
+    /// Checks that the limits are lengths, the smallest one not above the largest.
     ///
     /// # Errors
     ///
@@ -149,13 +150,13 @@ impl Spacing {
         check("spacing_min", self.smallest, self.largest.unwrap_or(max))
     }
 
-    /// Why the function has no values any more, if it has failed.
+    /// Why the function gives no values any more, if it has failed.
     pub(crate) fn failure(&self) -> Option<FieldError> {
         self.function.failure()
     }
 
-    /// The wanted radii at places that are counted from `origin`, within the limits; NaN where the
-    /// function has no value.
+    /// The wanted radii at places relative to `origin`, within the limits; NaN where the function
+    /// is undefined.
     pub(crate) fn radii(&self, origin: DVec3, places: &[Vec3], radii: &mut [f32]) {
         let evaluator = &mut *self.function.evaluator(Frame::around(origin));
         for (places, radii) in places.chunks(BATCH).zip(radii.chunks_mut(BATCH)) {
@@ -170,7 +171,7 @@ impl Spacing {
         }
     }
 
-    /// Checks the wanted radii at places that are counted from `origin`.
+    /// Checks the wanted radii at places relative to `origin`.
     ///
     /// # Errors
     ///
@@ -190,9 +191,9 @@ impl Spacing {
 /// Settings of a run with a spacing by a function, as [`Settings::spaced`] makes them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpacedSettings {
-    /// The settings. Their radius does not count beside a spacing.
+    /// The settings. A spacing overrides their radius.
     pub settings: Settings,
-    /// The spacing; none for particles of one size, or whose size follows the curvature alone.
+    /// The spacing; none if particles have one size, or sizes that follow the curvature alone.
     pub spacing: Option<Spacing>,
 }
 
@@ -203,9 +204,9 @@ impl From<&Settings> for SpacedSettings {
 }
 
 impl Settings {
-    /// Has neighbours as far apart as a function of place says, and returns the settings with it.
-    /// With [`Settings::adaptive`] the smaller one of it and what follows the curvature is met;
-    /// [`Settings::radius`] and [`Settings::radius_share`] do not count.
+    /// Sets the distance between neighbours as a function of position, and returns the settings
+    /// with it. With [`Settings::adaptive`] the smaller one of it and the spacing by curvature is
+    /// used; [`Settings::radius`] and [`Settings::radius_share`] are ignored.
     #[must_use]
     pub fn spaced(self, spacing: Spacing) -> SpacedSettings {
         SpacedSettings { settings: self, spacing: Some(spacing) }

@@ -1,5 +1,5 @@
 //! The steps of the [methods](super::methods), on the state of a run. A step that takes long does
-//! as much as the budget allows, and has a result once it is done.
+//! as much as the budget allows, and returns a result once it is done.
 
 use super::methods::Verdict;
 use super::{Output, Sampler, Tools};
@@ -23,9 +23,9 @@ use rand_core::SeedableRng;
 
 /// Largest number of units of the search, of the audit or of the relaxation in one step, whatever
 /// the budget: a caller that derives its budget from the pace of the front must not wait. A unit
-/// takes 0.04 to 0.5 µs natively, so many 0.3 to 4 ms. It changes no particle.
+/// takes 0.04 to 0.5 µs natively, a slice 0.3 to 4 ms. The limit changes no particle.
 const SLICE: u32 = 8_192;
-/// Seeds that may be undone in an attempt, and one more for every particle.
+/// Seeds that an attempt may undo, plus one for every particle.
 const MOST_LONE_SEEDS: usize = 256;
 
 /// Position in the sequence of seeds: a point drawn from the surface first, and then the survey's
@@ -39,8 +39,8 @@ pub(super) struct SurveyCursor {
 }
 
 impl Sampler {
-    /// Empties the columns and prepares fronts of the present radius. Says whether an earlier
-    /// coarse front is known, over whose components this one is to be.
+    /// Empties the columns and prepares fronts of the present radius. Returns whether an earlier
+    /// coarse front is known, whose components this one covers.
     pub(super) fn begin_attempt(&mut self) -> bool {
         (self.phase, self.seeds) = (Phase::Seeding, SurveyCursor::default());
         self.output.moved = true;
@@ -62,14 +62,14 @@ impl Sampler {
         is_known
     }
 
-    /// Starts a front over a component of which an earlier coarse front is known. Says whether it
+    /// Starts a front over a component that an earlier coarse front has covered. Returns whether it
     /// has.
     pub(super) fn begin_at_known(&mut self, probe: &mut Probe) -> bool {
         let seed = self.tools.coarse.known().map(|known| OrientedPoint::of(known, 0));
         seed.is_some_and(|seed| self.begin_front(probe, seed))
     }
 
-    /// Looks for the next survey point that no particle covers and starts a front there. Says
+    /// Looks for the next survey point that no particle covers and starts a front there. Returns
     /// whether there was one.
     pub(super) fn find_seed(&mut self, probe: &mut Probe, left: &mut u32) -> Option<bool> {
         while *left > 0 {
@@ -110,7 +110,7 @@ impl Sampler {
     }
 
     /// Places particles on the creases, on the tips and around these, and starts fronts from them.
-    /// Says whether there are any.
+    /// Returns whether there are any.
     pub(super) fn begin_at_creases(&mut self, probe: &mut Probe) -> bool {
         let before = probe.evaluations();
         let plan = &self.plan;
@@ -140,8 +140,8 @@ impl Sampler {
         true
     }
 
-    /// Starts a front. Says whether it has: not where the limit on particles is reached, nor where
-    /// the surface has no radius for an adaptive one.
+    /// Starts a front. Returns whether it has: not if the limit on particles is reached, nor where
+    /// an adaptive surface has no radius.
     fn begin_front(&mut self, probe: &mut Probe, seed: OrientedPoint) -> bool {
         if self.output.particles.len() >= self.settings.max_particles as usize {
             self.tools.front.cap();
@@ -153,8 +153,8 @@ impl Sampler {
         }
         if patch.is_some() {
             let probe = &mut probe.on(patch);
-            // Where branches are equal, on creases and where bodies share a plane, no front begins
-            // but those of the creases.
+            // Where branches are equal, on creases and where bodies share a plane, only fronts of
+            // the creases begin.
             let (place, size) = (seed.position, self.plan.radius);
             let normal = probe.gradient(place).1.normalize_or_zero();
             if ![normal, -normal].into_iter().all(|aside| probe.is_on_patch(place, aside, size, patch)) {
@@ -196,8 +196,8 @@ impl Sampler {
         self.phase = if is_witness { Phase::Search } else { Phase::Seeding };
     }
 
-    /// Takes the last seed back if it stayed alone beside another particle, unless it `is_witness`
-    /// of a small piece of its own. Says whether it was.
+    /// Undoes the last seed if it stayed alone next to another particle, unless it `is_witness` of
+    /// a small piece of its own. Returns whether it did.
     fn drop_lone_seed(&mut self, probe: &mut Probe, is_witness: bool) -> bool {
         let is_lone = self.with_front(probe, |front, context| front.has_lone_seed(context.particles));
         let is_kept =
@@ -208,10 +208,10 @@ impl Sampler {
         is_lone && !is_kept
     }
 
-    /// Whether the last particle, a witness, is the only one on a small piece of the surface that
-    /// is closed in itself.
+    /// Whether the last particle, a witness, is the only one on a small closed piece of the
+    /// surface.
     fn is_on_own_piece(&mut self, probe: &mut Probe) -> bool {
-        /// The reach of a piece is measured along a few paths, between which it may be longer.
+        /// The reach of a piece is measured along a few paths; between them it may be longer.
         const ROOM: f64 = 1.05;
         let last = self.output.particles.len() - 1;
         let Some(field) = probe.field.bounded() else { return false };
@@ -241,8 +241,8 @@ impl Sampler {
         call(&mut self.tools.front, &mut context)
     }
 
-    /// Calls a method of the front that uses up the budget, and counts its evaluations. It says
-    /// whether it is done.
+    /// Calls a method of the front that spends the budget, and counts its evaluations. The method
+    /// returns whether it is done.
     fn spend_on_front(
         &mut self,
         probe: &mut Probe,
@@ -257,15 +257,15 @@ impl Sampler {
         is_done.then_some(())
     }
 
-    /// Begins the search for components that the survey has missed. Says whether there is more to
-    /// search for than was found for an earlier front.
+    /// Begins the search for components that the survey has missed. Returns whether anything is
+    /// left to search since an earlier front.
     pub(super) fn begin_search(&mut self) -> bool {
         self.phase = Phase::Search;
         !self.components.is_searched()
     }
 
-    /// Looks for the next witness that no particle covers and starts a front there. Says whether
-    /// there was one: after the last one the surface is covered but for the gaps.
+    /// Looks for the next witness that no particle covers and starts a front there. Returns whether
+    /// there was one: after the last one only gaps are left uncovered.
     pub(super) fn find_witness(&mut self, probe: &mut Probe, left: &mut u32) -> Option<bool> {
         if self.tools.front.level().capped {
             return Some(false);
@@ -301,9 +301,9 @@ impl Sampler {
         None
     }
 
-    /// Whether so many seeds were taken back, because they stayed alone beside other particles,
-    /// that no more are tried. A front costs the same whether it places a particle or none: without
-    /// a bound, a radius larger than the distances between thousands of sheets makes a long run of
+    /// Whether so many seeds were undone, because they stayed alone next to other particles, that
+    /// no more are tried. A front costs the same whether it places a particle or none: without a
+    /// bound, a radius larger than the distances between thousands of sheets makes a long run of
     /// few particles.
     fn has_too_many_lone_seeds(&mut self) -> bool {
         let is_over = self.counts.left_out as usize > MOST_LONE_SEEDS + self.output.particles.len();
@@ -311,7 +311,7 @@ impl Sampler {
         is_over
     }
 
-    /// Says whether there are gaps to be filled, and lists them.
+    /// Lists the gaps to be filled, and returns whether there are any.
     pub(super) fn begin_filling(&mut self) -> bool {
         let front = &mut self.tools.front;
         let has_gaps =
@@ -354,7 +354,7 @@ impl Sampler {
         }
     }
 
-    /// Takes back what a front that was stopped has not settled.
+    /// Undoes what a stopped front has not settled.
     pub(super) fn leave_front(&mut self, _: &mut Probe) {
         self.tools.front.stop(&mut self.output.particles);
         self.output.particles =
@@ -364,7 +364,7 @@ impl Sampler {
     }
 
     /// Begins to refine the front that has covered the surface, or another one over a component
-    /// that may be coarser. Does nothing where the front stands.
+    /// that may be coarser. Does nothing if the front is final.
     fn begin_refinement(&mut self, probe: &mut Probe) -> Option<Verdict> {
         let target = self.attempt.target(&self.settings)?;
         let unpinned = self.unpinned();
@@ -385,7 +385,7 @@ impl Sampler {
             }
             Ok(Next::Refine(components)) => {
                 self.tools.front.release();
-                // They are those of the front.
+                // They belong to the front.
                 self.tools.neighbours.clear();
                 // The last front was one of several.
                 self.output.moved |= self.tools.coarse.are_several;
@@ -414,8 +414,8 @@ impl Sampler {
         Some(if is_tip { Refusal::Doubtful { at } } else { Refusal::Singular { at } })
     }
 
-    /// Tries a front of half the radius, or goes back to one of the wanted radius. Pieces between
-    /// creases are refined once at least, and so is a lone component of sizes that differ.
+    /// Tries a front of half the radius, or returns to one of the wanted radius. Pieces between
+    /// creases are refined at least once, and so is a lone component of varying sizes.
     fn refuse(&mut self, refusal: Refusal) {
         let is_lone = !self.tools.coarse.are_several;
         self.tools.coarse.end();
@@ -426,8 +426,8 @@ impl Sampler {
         }
         match &mut self.attempt.refining {
             Some(refining) if refining.halvings > least(refining) && refusal.is_coarse() => {
-                // Why a coarser front failed says more than the last refusal, which may only be
-                // that no other front can be tried.
+                // The first failure is reported; the last one may only be that nothing is left to
+                // try.
                 refining.failure = refining.failure.or(Some(refusal));
                 refining.halvings -= 1;
             }
@@ -435,7 +435,7 @@ impl Sampler {
                 let failure = refining.as_ref().and_then(|refining| refining.failure);
                 let mut refusal = failure.unwrap_or(refusal);
                 let at = refusal.at().map(|at| Vec3::from(at.0).as_dvec3());
-                // Within two spacings of a tip it is the tip that cannot be had.
+                // Within two spacings of a tip the tip itself is the obstacle.
                 let is_near =
                     |tip: &&Tip| at.is_some_and(|at| tip.position.distance(at) <= 4.0 * self.attempt.radius);
                 let tip = self.tips.iter().find(is_near).map(|tip| tip.position.as_vec3().into());
@@ -445,8 +445,8 @@ impl Sampler {
         }
     }
 
-    /// Begins a level of a component of a refinement that has so many, of which so many come after
-    /// it. The component has this share of its particles.
+    /// Begins one of `levels` levels of a component's refinement, with `to_come` levels after it.
+    /// The component has this share of its particles.
     pub(super) fn begin_level(&mut self, levels: u32, to_come: u32, share: f64) {
         self.refined.begin(levels, to_come, share);
     }
@@ -475,7 +475,7 @@ impl Sampler {
     }
 
     /// Works on a mesh that is refined or that follows a moving surface, and counts the
-    /// evaluations. The work says whether it is done.
+    /// evaluations. The work returns whether it is done.
     fn work_on_mesh(
         &mut self,
         probe: &mut Probe,
@@ -494,8 +494,8 @@ impl Sampler {
         }
     }
 
-    /// Shows the particles of a level that all components have made, whole, so that a run that is
-    /// cancelled has all of its particles.
+    /// Shows the particles of a level that all components have finished, so that a cancelled run
+    /// has all of its particles.
     pub(super) fn show_level(&mut self, components: &mut Components, to_come: u32, left: &mut u32) {
         let ladder = self.attempt.refining.as_ref().and_then(|refining| refining.ladder.as_ref());
         self.output.particles = components.particles(to_come, ladder);
@@ -503,9 +503,8 @@ impl Sampler {
         *left = left.saturating_sub(self.output.particles.len() as u32);
     }
 
-    /// Inspects the particles of a level from number `next` on: whether f is zero at all that are
-    /// on no crease, or where one has been refined over the edge of its patch, which nobody has
-    /// found there.
+    /// Inspects the particles of a level from number `next` on: whether f vanishes at those off the
+    /// creases, or whether one has been refined over an undetected edge of its patch.
     pub(super) fn inspect_level(
         &mut self,
         next: &mut usize,
@@ -538,8 +537,8 @@ impl Sampler {
         Some(Ok(()))
     }
 
-    /// Says whether the refined particles stand; if not, or if the refinement was given up for a
-    /// `refusal`, another front is to be tried.
+    /// Returns whether the refined particles are final; if not, or if the refinement was given up
+    /// for a `refusal`, another front is tried.
     pub(super) fn judge_refinement(&mut self, components: Components, refusal: Option<Refusal>) -> bool {
         let Some(refining) = &mut self.attempt.refining else { return true };
         // The component that was refined least sets how coarse the next front may be.
@@ -586,7 +585,7 @@ impl Sampler {
         }
     }
 
-    /// Begins the relaxation of the particles that are there.
+    /// Begins the relaxation of the present particles.
     pub(super) fn begin_relaxation(&mut self) {
         self.phase = Phase::Relaxation;
         self.output.corners = Vec::new();
@@ -601,7 +600,7 @@ impl Sampler {
     }
 
     /// Begins a frame of particles that follow a moving surface with the mesh of a refined run, if
-    /// there is one that can.
+    /// one can.
     pub(super) fn begin_mesh(&mut self) -> Option<MovingMesh> {
         if self.output.corners.is_empty() || self.tools.flow.is_closed {
             return None;
@@ -612,7 +611,7 @@ impl Sampler {
         MovingMesh::new(particles, corners, &self.bounds, target, spacing, turn)
     }
 
-    /// Begins to bring the particles to the surface that has moved.
+    /// Begins to move the particles onto the surface that has moved.
     pub(super) fn begin_transport(&mut self) {
         self.output.corners = Vec::new();
         let are_listed = self.tools.flow.begin_frame();
@@ -621,8 +620,8 @@ impl Sampler {
         self.tools.relaxation.begin_transport(law, limits, particles, &mut self.tools.neighbours, are_listed);
     }
 
-    /// Particles that were brought to the surface are born and die there. Returns the number of
-    /// steps of relaxation that they make.
+    /// Lets particles be born and die after their transport to the surface. Returns the number of
+    /// relaxation steps to make.
     pub(super) fn settle(&mut self, probe: &mut Probe) -> u32 {
         let Tools { relaxation, flow, neighbours, front, .. } = &mut self.tools;
         let particles = &mut self.output.particles;
@@ -645,8 +644,8 @@ impl Sampler {
         steps
     }
 
-    /// Ends a frame of particles that follow a moving surface. Says whether they have to be brought
-    /// to it once more.
+    /// Ends a frame of particles that follow a moving surface. Returns whether they must be
+    /// transported once more.
     pub(super) fn end_frame(&mut self, probe: &mut Probe) -> bool {
         self.tools.flow.is_whole = true;
         if self.tools.flow.is_late() {
@@ -658,8 +657,8 @@ impl Sampler {
         false
     }
 
-    /// Moves the particles with their mesh. Says whether it could follow; where it was given up for
-    /// a `refusal`, they go on without it.
+    /// Moves the particles with their mesh. Returns whether the mesh could follow; if it was given
+    /// up for a `refusal`, they continue without it.
     pub(super) fn judge_mesh(&mut self, mesh: MovingMesh, refusal: Option<Refusal>) -> bool {
         if refusal.is_some() {
             self.tools.flow.hurry();
@@ -677,8 +676,8 @@ impl Sampler {
         true
     }
 
-    /// Joins the particles of a refined run to a mesh again, which they have lost where the surface
-    /// has torn or joined.
+    /// Joins the particles of a refined run to a mesh again, which they lost when the surface tore
+    /// or joined.
     fn join_again(&mut self, probe: &mut Probe) {
         let is_refined = self.settings.method == Method::Refined && self.counts.refusal.is_none();
         if !is_refined {
@@ -693,7 +692,7 @@ impl Sampler {
         }
     }
 
-    /// Goes on with a sweep of the relaxation over all particles.
+    /// Continues a sweep of the relaxation over all particles.
     pub(super) fn sweep(&mut self, sweep: Sweep, probe: &mut Probe, left: &mut u32) -> Option<()> {
         let start = probe.evaluations();
         let sizing = self.attempt.sizing.as_ref();
@@ -712,17 +711,17 @@ impl Sampler {
         &mut self.tools.relaxation
     }
 
-    /// Takes back a step that is only half made.
+    /// Undoes a step that is only half made.
     pub(super) fn leave_step(&mut self, _: &mut Probe) {
         self.output.moved |= self.tools.relaxation.abandon(&mut self.output.particles);
     }
 
-    /// Begins to find out which components hold particles. All particles are placed then.
+    /// Begins to find out which components hold particles, now that all are placed.
     pub(super) fn begin_audit(&mut self) {
         (self.phase, self.output.fraction) = (Phase::Search, 1.0);
         if self.creases.repeat_faces(&mut self.output.particles, &mut self.output.corners) {
             self.output.moved = true;
-            // They are those of the particles before.
+            // They belong to the particles before.
             self.tools.neighbours.clear();
         }
         self.components.restart_audit();
@@ -750,7 +749,7 @@ impl Sampler {
         Some(())
     }
 
-    /// Why a run ends that has covered the surface.
+    /// Why a run ends after it has covered the surface.
     pub(super) fn reason_for_end(&self) -> StopReason {
         if self.tools.front.level().capped { StopReason::Cap } else { StopReason::Complete }
     }

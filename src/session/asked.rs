@@ -1,5 +1,5 @@
-//! Settings as a program asks for them: with lengths where the settings themselves have shares of
-//! the diagonal of a box that may not be known yet.
+//! Settings as a program gives them: with lengths instead of shares of the diagonal of a box, which
+//! may not be known yet.
 
 use crate::math::Bounds;
 use crate::sampler::Settings;
@@ -10,20 +10,20 @@ use serde::Deserialize;
 pub struct Asked {
     /// The settings.
     pub settings: Settings,
-    /// The lengths, which take the place of shares.
+    /// The lengths, which replace shares.
     pub lengths: Lengths,
 }
 
-/// Lengths in the places of settings that are shares of the diagonal of the box, but for the
-/// radius, which [`Settings::radius`] has.
+/// Lengths that replace shares of the diagonal of the box. For the radius there is
+/// [`Settings::radius`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Lengths {
-    /// In the place of [`Settings::chord_error`].
+    /// Replaces [`Settings::chord_error`].
     pub chord_error: Option<f64>,
-    /// In the place of [`Settings::radius_min_share`].
+    /// Replaces [`Settings::radius_min_share`].
     pub radius_min_share: Option<f64>,
-    /// In the place of [`Settings::radius_max_share`].
+    /// Replaces [`Settings::radius_max_share`].
     pub radius_max_share: Option<f64>,
 }
 

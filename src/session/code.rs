@@ -1,6 +1,6 @@
-//! The program that makes the particles of a run: in Rust on the library, in JavaScript on the
-//! package for npm, in Python on its package, and as a command. It says what differs from the
-//! defaults, and nothing else.
+//! The program that makes the particles of a run: in Rust with the library, in JavaScript with the
+//! package for npm, in Python with its package, and as a command. It contains only what differs
+//! from the defaults.
 
 use super::setting::{Setting, SettingGroup, SettingValue, with_values};
 use super::{BoxCell, BoxFaces, BoxMode, FileRecord, Session, SpacingText};
@@ -25,17 +25,17 @@ pub enum Language {
 }
 
 impl Language {
-    /// Every language, with the word by which it is asked for.
+    /// Every language, with the word that selects it.
     pub const ALL: [(&'static str, Self); 4] =
         [("rust", Self::Rust), ("js", Self::JavaScript), ("python", Self::Python), ("shell", Self::Shell)];
 
-    /// The language by its word.
+    /// The language that a word selects.
     #[must_use]
     pub fn named(word: &str) -> Option<Self> {
         Self::ALL.iter().find(|(name, _)| *name == word).map(|&(_, language)| language)
     }
 
-    /// The name of what a program in this language runs on.
+    /// What runs a program in this language.
     fn runner(self) -> &'static str {
         match self {
             Self::Rust => "the library",
@@ -54,18 +54,18 @@ pub struct Code {
     pub text: String,
 }
 
-/// Largest length of a line, where it can be broken.
+/// Maximum length of a line that can be broken.
 const WIDTH: usize = 100;
 
-/// The settings for which every language has a word of its own.
+/// The settings that every language has a word of its own for.
 const NAMED: [&str; 6] = ["sampling", "size_mode", "radius_share", "count", "method", "seed"];
 
-/// The largest whole number up to which JavaScript has them all.
+/// The largest number up to which JavaScript represents all whole numbers.
 const LAST_SAFE: u64 = (1 << 53) - 1;
 
 impl Session {
-    /// The program that makes the particles of the last run again, if that is on a formula: all of
-    /// them, also where the run was stopped.
+    /// The program that makes the particles of the last run again, if the run is on a formula: all
+    /// of them, even if the run was stopped.
     ///
     /// # Errors
     ///
@@ -95,10 +95,10 @@ impl Session {
     }
 }
 
-/// A run, of which programs are written.
+/// A run to write programs for.
 struct Program<'a> {
     record: &'a FileRecord,
-    /// The settings of the run; their box is to be said, whatever would be found.
+    /// The settings of the run; a box in them is always written.
     settings: Settings,
     /// Whether the search for a box finds the one of the run.
     is_box_found: bool,
@@ -113,20 +113,20 @@ impl Program<'_> {
         self.settings.sampling == Sampling::Adaptive
     }
 
-    /// Whether the sizes are those of the law of the curvature or of a spacing, and no radius is.
+    /// Whether a curvature law or a spacing, and no radius, determines the sizes.
     fn are_graded(&self) -> bool {
         self.is_adaptive() || self.record.spacing.is_some()
     }
 
-    /// The box that is sampled, if it has to be said. Around a closed solid it is that of the
-    /// settings alone.
+    /// The sampled box, if it has to be written. Around a closed solid it is only the box of the
+    /// settings.
     fn sampled_box(&self) -> Option<Bounds> {
         let own = (!self.is_closed() && !self.is_box_found).then_some(self.record.bounds);
         self.settings.bounds.or(own)
     }
 
-    /// The settings that differ from those that a size by itself brings, and have an effect, but
-    /// for the [`NAMED`] ones.
+    /// The settings that have an effect and differ from the values that a size alone implies,
+    /// without the [`NAMED`] ones.
     fn others(&self) -> Vec<Setting> {
         let usual = match self.settings.size_mode {
             SizeMode::Count => Settings::with_count(self.settings.count),
@@ -134,7 +134,7 @@ impl Program<'_> {
         };
         let (values, usual) = (with_values(&self.settings), with_values(&usual));
         let is_effective = |setting: &Setting| {
-            // The steps of the front count where it cannot be refined.
+            // Relaxation steps matter where the front cannot be refined.
             let is_grading = setting.name == "grading" && self.are_graded();
             is_grading
                 || setting.when.iter().filter(|condition| condition.name != "method").all(|condition| {
@@ -151,7 +151,7 @@ impl Program<'_> {
         values.iter().zip(usual).filter(is_other).map(|(value, _)| *value).collect()
     }
 
-    /// Refuses what a package cannot say.
+    /// Refuses what a package cannot express.
     fn check_plain(&self, language: Language) -> Result<(), String> {
         if self.is_closed() && self.settings.bounds.is_some() {
             let name = language.runner();
@@ -258,7 +258,7 @@ impl Program<'_> {
         text
     }
 
-    /// The arguments beside the formula, as Python and JavaScript name them.
+    /// The arguments besides the formula, as Python and JavaScript name them.
     fn arguments(&self, language: Language) -> Result<Vec<String>, String> {
         self.check_plain(language)?;
         let Self { record, settings, .. } = self;
@@ -321,7 +321,7 @@ impl Program<'_> {
         if settings.seed != 0 {
             given.push(("seed", settings.seed.to_string()));
         }
-        // The packages have room for the count that is asked for.
+        // The packages themselves make room for the wanted count.
         let is_needed =
             |setting: &Setting| setting.name != "max_particles" || settings.size_mode != SizeMode::Count;
         for setting in self.others().into_iter().filter(is_needed) {
@@ -385,7 +385,7 @@ impl Program<'_> {
                 words.push(format!("--param {}", in_shell(&format!("{name}={}", shortest_text(value)))));
             }
         }
-        // A named surface brings its own box, which makes room for a unit cell.
+        // The box of a named surface has room for a unit cell.
         let clip = record.faces.unwrap_or(record.bounds);
         let is_fixed = solid.box_mode == BoxMode::Fixed && solid.box_cell == BoxCell::Periodic;
         let is_own = named.is_some_and(|surface| solid.own_box(surface) == clip) && !is_fixed;
@@ -448,7 +448,7 @@ fn camel(name: &str) -> String {
     text
 }
 
-/// A share in per cent, which is read as the same number: its decimal point moves by two digits.
+/// A share in per cent that reads back as the same number: its decimal point moves by two digits.
 fn percent_text(share: f64) -> String {
     let text = share.to_string();
     let (whole, fraction) = text.split_once('.').unwrap_or((&text, ""));
@@ -527,7 +527,7 @@ fn push_line(text: &mut String, line: &str) {
     let _ = writeln!(text, "    {line}");
 }
 
-/// Adds a chain of calls, with a line for each if it is too long for one.
+/// Adds a chain of calls, one per line if it is too long for a single line.
 fn push_chain(text: &mut String, head: &str, links: &[String], tail: &str) {
     let line = format!("{head}{}{tail}", links.concat());
     if links.len() == 1 || line.chars().count() + 4 <= WIDTH {

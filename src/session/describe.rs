@@ -87,8 +87,8 @@ pub struct ReportRow {
     pub key: &'static str,
     /// Path of the upper end, if the row is a range that begins at `key`.
     pub to: Option<&'static str>,
-    /// Path of the figure that replaces this one where the report has it: a figure that is relative
-    /// to the lattice of one size does not apply to particles of many sizes.
+    /// Path of the figure that replaces this one if the report has it: a figure that is relative to
+    /// the lattice of one size does not apply to particles of many sizes.
     pub unless: Option<&'static str>,
     /// Name for a person.
     pub label: &'static str,
@@ -100,7 +100,7 @@ pub struct ReportRow {
     pub digits: u8,
     /// The ideal value, in words.
     pub ideal: &'static str,
-    /// Direction in which the figure gets better.
+    /// Whether lower or higher is better.
     pub better: Option<&'static str>,
     /// Definition and meaning.
     pub help: &'static str,
@@ -177,7 +177,7 @@ pub fn describe() -> Description {
         fates: FATES,
         functions: FUNCTIONS,
         colours: COLOURS,
-        // What the page saves is the result of a run.
+        // The page saves the result of a run.
         columns: COLUMNS.iter().filter(|column| column.presence != Presence::Moved).collect(),
         vertices: VERTICES,
         new_parameter: Parameter::automatic(""),

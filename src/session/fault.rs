@@ -1,4 +1,4 @@
-//! Why a command was refused. What was there before stays.
+//! Why a command was refused. A refused command changes nothing.
 
 use crate::field::formula::{FormulaError, FormulaErrorKind, Mended};
 use core::fmt;
@@ -31,7 +31,7 @@ pub enum FaultKind {
     Image,
     /// The file is no mesh, or the mesh has no such surface.
     Mesh,
-    /// The file of a mesh has points alone.
+    /// The file of a mesh has only points.
     NoFaces,
     /// The mesh encloses nothing.
     NoSolid,
@@ -54,11 +54,11 @@ pub struct Fault {
     pub start: u32,
     /// End of the mistake in the formula, in UTF-16 code units.
     pub end: u32,
-    /// Text that would mend the span, if there is a good guess.
+    /// Text that would correct the span, if there is a good guess.
     pub suggestion: Option<String>,
     /// Texts for the span, each with another meaning, where the formula has several readings.
     pub choices: Box<[String]>,
-    /// The formula with every mistake of this kind mended, if there are several.
+    /// The formula with every mistake of this kind corrected, if there are several.
     pub mended: Option<Box<Mended>>,
     /// The unknown name, which could become a slider.
     pub name: Option<String>,
@@ -70,11 +70,11 @@ pub struct Fault {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Excess {
-    /// Particles to expect.
+    /// Expected number of particles.
     pub expected: u32,
     /// Largest number of particles that a run may have.
     pub limit: u32,
-    /// Factor by which all radii have to be multiplied to stay within the limit.
+    /// Factor on all radii that keeps the run within the limit.
     pub factor: f64,
 }
 

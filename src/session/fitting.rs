@@ -1,6 +1,6 @@
-//! Before a run starts, a session finds three things, in slices: the box, which is given with the
-//! field, belongs to a gallery surface, or is fitted around the surface of a formula; the solid
-//! that is made of the surface in the box; and the creases of the solid.
+//! Before a run starts, a session finds three things, in slices: the box, which comes with the
+//! field or with a gallery surface, or is fitted around the surface of a formula; the solid that is
+//! made of the surface in the box; and the creases of the solid.
 
 use super::{Fault, FaultKind, FieldAnswer, Session, Source};
 use crate::extent::{self, Extent, Reach};
@@ -19,10 +19,10 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BoxMode {
-    /// A box that fits the surface, where none is given. A surface of the gallery keeps its own.
+    /// A box that fits the surface, unless one is given. A surface of the gallery keeps its own.
     #[default]
     Fit,
-    /// The box that is given, or that of the surface with which the formula began.
+    /// The given box, or the box of the surface that the formula began with.
     Fixed,
 }
 
@@ -61,7 +61,7 @@ pub enum BeyondPoints {
 }
 
 /// Settings that act before a run: the box, and the solid that is made of the surface of a formula.
-/// To a model from points only the last one means something.
+/// Only the last one applies to a model from points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SolidSettings {
@@ -69,9 +69,9 @@ pub struct SolidSettings {
     pub box_mode: BoxMode,
     /// Treatment of the surface at the faces of the box.
     pub box_faces: BoxFaces,
-    /// What opposite faces of the box have in common, where they close the solid.
+    /// What opposite faces of the box have in common, if they close the solid.
     pub box_cell: BoxCell,
-    /// Thickness of the sheet around the surface that is sampled in its place, in the units of the
+    /// Thickness of the sheet that is sampled instead of the surface, in the units of the
     /// coordinates; 0 for the surface itself. See [`Formula::thickened_by`].
     pub thickness: Thickness,
     /// Where the surface of a model from points ends.
@@ -79,12 +79,12 @@ pub struct SolidSettings {
 }
 
 impl SolidSettings {
-    /// Names of these settings, which the page gives together with those of a run.
+    /// Names of these settings. The page sends them together with the settings of a run.
     pub const NAMES: [&str; 5] = ["box_mode", "box_faces", "box_cell", "thickness", "beyond_points"];
-    /// The numbers that [`SolidSettings::thickness`] can be.
+    /// The values of a numeric [`SolidSettings::thickness`].
     pub const THICKNESSES: RangeInclusive<f64> = 0.0..=*Bounds::DIAGONALS.end();
 
-    /// Checks that a thickness that is a number is in its range.
+    /// Checks that a numeric thickness is in its range.
     ///
     /// # Errors
     ///
@@ -106,8 +106,8 @@ impl SolidSettings {
     }
 
     /// The field of the solid that is made of the surface of `field`: the surface or the sheet
-    /// around it, closed by a box where one is given. A thickness that the surface cannot have
-    /// makes no sheet.
+    /// around it, closed by a box if one is given. A thickness that the surface cannot have is
+    /// ignored.
     #[must_use]
     pub fn made_of(&self, field: Formula, closing: Option<&Bounds>) -> Formula {
         let mut solid = field.without_solid();
@@ -123,8 +123,8 @@ impl SolidSettings {
         }
     }
 
-    /// The box that closes the solid which is made of the surface of `field`: these bounds, or the
-    /// unit cell there, whose place is chosen if it `is_free`. None if the solid stays open.
+    /// The box that closes the solid made of the surface of `field`: these bounds, or the unit cell
+    /// in them, which may be moved if it `is_free`. None if the solid stays open.
     #[must_use]
     pub fn faces(&self, field: &Formula, bounds: Bounds, is_free: bool) -> Option<Bounds> {
         if self.box_faces == BoxFaces::Open {
@@ -137,8 +137,8 @@ impl SolidSettings {
         Some(extent::unit_cell(&solid, solid.surface_periods(), &bounds))
     }
 
-    /// The box that a surface of the gallery brings with it. Around a surface that is closed
-    /// without it, there is room for a sheet whose thickness is a number.
+    /// The box of a surface of the gallery. Around a surface that is closed without its box there
+    /// is room for a sheet of a numeric thickness.
     #[must_use]
     pub fn own_box(&self, surface: &Surface) -> Bounds {
         let room = match self.thickness {
@@ -159,8 +159,8 @@ struct BoxSearch {
 }
 
 impl BoxSearch {
-    /// Does up to `budget` slices of the search around the surface of a field: its extent, once it
-    /// is known.
+    /// Does up to `budget` slices of the search around the surface of a field, and returns its
+    /// extent once it is known.
     fn step<F: Field + 'static>(&mut self, field: impl FnOnce() -> F, budget: u32) -> Option<Extent> {
         if self.found.is_none() {
             let search = self.search.get_or_insert_with(|| {
@@ -183,29 +183,29 @@ pub(super) struct Fitting {
     pub(super) choice: SolidSettings,
     /// Whether the clip box was given with the field.
     pub(super) is_given: bool,
-    /// The box around the surface that no box closes.
+    /// The box around the surface before a box closes it.
     unclosed: BoxSearch,
     /// The box around the solid that the clip box closes.
     closed: BoxSearch,
     /// The search for the creases of the surface in the box, while it is under way.
     creases: Option<(Bounds, CreaseSearch)>,
-    /// Whether the box is that of the next run.
+    /// Whether the box of the next run is known.
     pub(super) is_settled: bool,
     /// Whether the present clip box was fitted.
     pub(super) is_fitted: bool,
-    /// Whether it is larger than the fitted one, because it held another before.
+    /// Whether it is larger than the fitted one, because it contains the box before it.
     pub(super) is_grown: bool,
 }
 
 impl Fitting {
-    /// Forgets all but the choice of the user, and what belongs to another clip box.
+    /// Forgets all but the user's choice, and the search for another clip box.
     pub(super) fn discard(&mut self) {
         let (choice, closed) = (core::mem::take(&mut self.choice), core::mem::take(&mut self.closed));
         *self = Self { choice, closed, ..Self::default() };
     }
 
     /// Forgets what belongs to another field or another choice of the box; the box itself stays
-    /// until the next is known.
+    /// until the next one is known.
     pub(super) fn restart(&mut self) {
         (self.unclosed, self.closed, self.is_settled) = (BoxSearch::default(), BoxSearch::default(), false);
         self.creases = None;
@@ -213,12 +213,11 @@ impl Fitting {
 }
 
 impl Session {
-    /// Chooses the box in which the surface of a formula is sampled, and the solid that is made of
-    /// it.
+    /// Chooses the box in which the surface of a formula is sampled, and the solid made of it.
     ///
     /// # Errors
     ///
-    /// If the thickness is out of its range, or a formula that the present one cannot have;
+    /// If the thickness is out of its range, or a formula that does not fit the present one;
     /// nothing is changed then.
     pub fn choose(&mut self, choice: SolidSettings) -> Result<(), Fault> {
         choice.validate().map_err(|error| Fault::new(FaultKind::Settings, &error))?;
@@ -234,7 +233,7 @@ impl Session {
         Ok(())
     }
 
-    /// Has the surface of a model from points end at their border, or go on.
+    /// Ends the surface of a model from points at their border, or lets it continue.
     fn trim_points(&mut self, choice: BeyondPoints) {
         if let Source::Points { field, info, within } = self.run.field().clone()
             && field.data().border.is_some()
@@ -246,14 +245,14 @@ impl Session {
         }
     }
 
-    /// Finds the box of the next run and the creases of the surface in it, up to `budget` slices of
-    /// either work of some 10 to 50 microseconds each: the field with its clip box, once all is
-    /// known. [`Session::start`] does what is left. The settings may depend on the box, as lengths
-    /// do, which are shares of its diagonal there. A box that `only_grows` holds the one before it
-    /// as long as the formula stays the same: while a slider moves.
+    /// Finds the box of the next run and the creases of the surface in it, with up to `budget`
+    /// slices of either work, some 10 to 50 microseconds each, and returns the field with its clip
+    /// box once all is known. [`Session::start`] does the rest. The settings may depend on the box:
+    /// lengths become shares of its diagonal. A box that `only_grows` contains the one before it as
+    /// long as the formula stays the same: while a slider moves.
     ///
     /// A solid that the clip box closes is sampled in the box of the settings, or in one that fits
-    /// it: its faces are inside, and what they cut are creases.
+    /// it: the faces of the clip box are inside, and their cuts are creases.
     pub fn fit(
         &mut self,
         settings_in: &dyn Fn(&Bounds) -> Settings,
@@ -271,8 +270,8 @@ impl Session {
         Some(self.answer())
     }
 
-    /// The clip box, fitted to the surface that no box closes or as it was given, with the reach of
-    /// the surface where it was fitted.
+    /// The clip box, fitted to the surface before a box closes it, or as given; with the reach of
+    /// the surface if it was fitted.
     fn fit_clip(
         &mut self,
         settings_in: &dyn Fn(&Bounds) -> Settings,
@@ -299,8 +298,8 @@ impl Session {
         Some((grown, Some(found.reach)))
     }
 
-    /// Takes the solid that is made of the surface in a clip box as the field of the next run.
-    /// Returns the box, which a unit cell may have moved.
+    /// Makes the solid of the surface in a clip box the field of the next run. Returns the box,
+    /// which a unit cell may have moved.
     fn make_solid(&mut self, clip: Bounds) -> Bounds {
         let choice = self.fitting.choice.clone();
         let Some(field) = self.own_formula() else { return clip };
@@ -316,7 +315,7 @@ impl Session {
         closing.unwrap_or(clip)
     }
 
-    /// The box of the next run: around the solid where the clip box closes it, else the clip box.
+    /// The box of the next run: around the solid if the clip box closes it, else the clip box.
     fn fit_solid(
         &mut self,
         settings_in: &dyn Fn(&Bounds) -> Settings,
@@ -336,8 +335,8 @@ impl Session {
         Some((bounds, Some(found.reach)))
     }
 
-    /// Finds the creases of the surface in the box of the next run: of a formula, also of one with
-    /// a model as an operand.
+    /// Finds the creases of the surface in the box of the next run: for a formula, even with a
+    /// model as an operand.
     fn fit_creases(&mut self, budget: u32) -> Option<()> {
         if self.run.field().piecewise().is_some() && !self.run.knows_creases() {
             let bounds = self.run.bounds();
@@ -366,20 +365,20 @@ impl Session {
         self.run.field().formula().filter(|field| !field.is_constant())
     }
 
-    /// The clip box where it is not to be fitted.
+    /// The clip box if it is not to be fitted.
     pub(super) fn own_box(&self) -> Bounds {
         let of_surface = self.surface.filter(|_| !self.fitting.is_given);
         of_surface.map_or(self.own, |surface| self.fitting.choice.own_box(surface))
     }
 
-    /// Whether the user has left the box open.
+    /// Whether the user has left the choice of the box open.
     fn is_to_choose(&self) -> bool {
         self.fitting.choice.box_mode == BoxMode::Fit && !self.fitting.is_given
     }
 
-    /// Whether the box is to be fitted: not where it was given, nor around a surface of the
-    /// gallery, which has its own. How much room a sheet takes whose thickness is a formula, only a
-    /// search for its box tells.
+    /// Whether the box is to be fitted: not if it was given, nor around a surface of the gallery,
+    /// which has its own. Only a search for the box shows how much room a sheet takes whose
+    /// thickness is a formula.
     fn is_to_fit(&self) -> bool {
         let is_formula = matches!(self.fitting.choice.thickness, Thickness::Formula(_));
         let has_own_box = |surface: &Surface| !(surface.closed && is_formula);
@@ -390,7 +389,7 @@ impl Session {
     ///
     /// # Errors
     ///
-    /// A mistake in the formula of the thickness, or a name that the present one does not have.
+    /// A mistake in the formula of the thickness, or a name that the present formula does not have.
     pub fn check_thickness(&self, thickness: &Thickness) -> Result<(), Fault> {
         match (self.own_formula(), thickness) {
             (Some(field), Thickness::Formula(text)) => {
@@ -400,7 +399,7 @@ impl Session {
         }
     }
 
-    /// Ends a thickness with names that another field does not have.
+    /// Drops a thickness with names that another field does not have.
     pub(super) fn keep_thickness_of(&mut self, field: &Formula) {
         let thickness = &mut self.fitting.choice.thickness;
         if field.check_thickness(thickness).is_err() {

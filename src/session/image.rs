@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// The image whose surface is sampled, and what was chosen of it.
+/// The image whose surface is sampled, and the choices for it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct ImageInfo {
@@ -12,23 +12,23 @@ pub struct ImageInfo {
     pub size: [usize; 3],
     /// Smallest and largest voxel.
     pub range: [f64; 2],
-    /// The label whose boundary is sampled, in place of an iso value.
+    /// The label whose boundary is sampled instead of an iso value.
     pub label: Option<f64>,
-    /// The value on the surface; of a label, that of the distance from it.
+    /// The value on the surface; for a label, the value of the distance from it.
     pub iso: f64,
     /// Width of the Gaussian in voxels, 0 for none.
     pub smooth: f64,
-    /// Whether the width was chosen for the image, and not by the user.
+    /// Whether the width was chosen automatically, not by the user.
     pub is_smooth_chosen: bool,
     /// Standard deviation of the noise, in the values of the voxels.
     pub noise: f64,
     /// Whether darker voxels are inside.
     pub is_dark_inside: bool,
-    /// What was decided, in sentences.
+    /// Decisions that were made, in sentences.
     pub notes: Vec<String>,
 }
 
-/// What is known of an image before its surface is chosen.
+/// Facts about an image, before its surface is chosen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct ImageFacts {
@@ -47,7 +47,7 @@ pub struct ImageFacts {
     /// Its labels with their numbers of voxels, the background 0 included, if its values look like
     /// labels: up to 256 whole numbers.
     pub labels: Vec<LabelFacts>,
-    /// What the reader has decided, in sentences.
+    /// Decisions of the reader, in sentences.
     pub notes: Vec<String>,
 }
 
@@ -61,15 +61,15 @@ pub struct LabelFacts {
     pub voxels: u64,
 }
 
-/// What the header of a file promises.
+/// What the header of a file announces.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct ImagePromise {
-    /// Voxels along each axis; none if only the whole file tells.
+    /// Voxels along each axis; none if that takes the whole file.
     pub size: Option<[usize; 3]>,
-    /// Type of the voxels, such as `int16`; empty if only the whole file tells.
+    /// Type of the voxels, such as `int16`; empty if that takes the whole file.
     pub voxel_type: String,
-    /// Bytes of memory that reading and filtering take; 0 if only the whole file tells.
+    /// Bytes of memory for reading and filtering; 0 if that takes the whole file.
     pub memory: u64,
 }
 
@@ -85,23 +85,23 @@ mod with_images {
     use crate::session::{Fault, FaultKind};
     use std::collections::BTreeMap;
 
-    /// Steps of the slider of the iso value over the range of the voxels, at least.
+    /// Minimum number of steps of the iso value's slider over the range of the voxels.
     const STEPS: f64 = 200.0;
     /// Largest width of the Gaussian on its slider, in voxels.
     const WIDEST: f64 = 4.0;
-    /// Labels that are listed at most; more different values are grey values.
+    /// Maximum number of labels that are listed; an image with more values has grey values.
     const MOST_LABELS: usize = 256;
 
-    /// The names of a choice among the parameters of a request.
+    /// The names of the choices among the parameters of a request.
     const NAMES: [&str; 4] = ["iso", "label", "smooth", "dark"];
 
-    /// The choice that values by name make.
+    /// The choice made by named values.
     fn choice_of(values: &BTreeMap<String, f64>) -> ImageChoice {
         let [iso, label, smooth, dark] = NAMES.map(|name| values.get(name).copied());
         ImageChoice { iso, label, smooth, is_dark_inside: dark.is_some_and(|dark| dark != 0.0) }
     }
 
-    /// The values by name that make the choice of a surface.
+    /// The named values that make the choice of a surface.
     pub(in super::super) fn choice(surface: &ImageSurface) -> impl Iterator<Item = (&'static str, f64)> {
         let ImageChoice { iso, label, smooth, is_dark_inside } = *surface.choice();
         let values = [iso, label, smooth, is_dark_inside.then_some(1.0)];
@@ -126,8 +126,7 @@ mod with_images {
         }
     }
 
-    /// The sliders of a surface: that of the iso value, which a label does not have, and that of
-    /// the Gaussian.
+    /// The sliders of a surface: the iso value, unless it is of a label, and the Gaussian.
     pub(in super::super) fn parameters(surface: &ImageSurface) -> Vec<Parameter> {
         let smooth = Parameter {
             name: NAMES[2].into(),
@@ -155,8 +154,8 @@ mod with_images {
         vec![iso, smooth]
     }
 
-    /// The largest power of ten, or half or a fifth of it, that is at least [`STEPS`] times in a
-    /// range.
+    /// The largest power of ten, or half or a fifth of it, that fits at least [`STEPS`] times into
+    /// a range.
     fn step_in(range: f64) -> f64 {
         let wanted = range / STEPS;
         let power = libm::pow(10.0, libm::floor(libm::log10(wanted)));
@@ -196,11 +195,10 @@ mod with_images {
     }
 
     impl Session {
-        /// Changes the field to the surface of an image. Of the parameters of the request `iso`,
-        /// `label`, `smooth` and, if it is not 0, `dark` are an [`ImageChoice`]. A formula of the
-        /// request has the surface as an operand, see [`Formula::with_model`]. The box is that of
-        /// the request, or is fitted. [`Session::set_field`] without a surface and a formula
-        /// changes the choice.
+        /// Changes the field to the surface of an image. In the request, the parameters `iso`,
+        /// `label`, `smooth` and, if not 0, `dark` are an [`ImageChoice`]. Its formula has the
+        /// surface as an operand, see [`Formula::with_model`]. The box is given by the request, or
+        /// is fitted. [`Session::set_field`] without a surface and a formula changes the choice.
         ///
         /// [`Formula::with_model`]: crate::field::formula::Formula::with_model
         ///
@@ -234,7 +232,7 @@ mod tests {
     use crate::session::{FaultKind, FieldAnswer, FieldRequest, Session};
     use std::collections::BTreeMap;
 
-    /// A ball of the radius 8 voxels: 0 lies on it, and 100 a voxel within.
+    /// A ball of radius 8 voxels, with the value 0 on it and 100 one voxel inside.
     fn ball() -> Image {
         let off = |at: usize| (at % 24) as f64 - 11.4;
         let distance = |at: usize| (off(at).powi(2) + off(at / 24).powi(2) + off(at / 576).powi(2)).sqrt();
@@ -274,7 +272,7 @@ mod tests {
         let last = digest(&mut moved);
         assert_ne!(first, last);
         assert_eq!(last, digest(&mut fresh));
-        // What is not named stays.
+        // Parameters that are not named stay.
         let answer = moved.set_field(&request(&[("dark", 1.0)])).expect("a field");
         assert_eq!(iso(&answer), 100.0);
         assert!(answer.image.is_some_and(|image| image.is_dark_inside));

@@ -1,30 +1,31 @@
-//! The surface of a triangle mesh as the field of a session, and how far a new mesh is from it.
+//! The surface of a triangle mesh as the field of a session, and the distance of a new mesh from
+//! it.
 
 use serde::Serialize;
 
-/// The triangle mesh that is sampled anew, and what was made of it.
+/// The triangle mesh that is sampled, and what was made of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct MeshInfo {
     /// Name of the file or the array.
     pub name: String,
-    /// Number of vertices, as it was mended.
+    /// Number of vertices after the repairs.
     pub vertices: usize,
-    /// Number of faces, as it was mended.
+    /// Number of faces after the repairs.
     pub faces: usize,
-    /// Number of pieces that are not joined by edges of two faces.
+    /// Number of pieces that are not connected by edges of two faces.
     pub pieces: usize,
-    /// Number of edges with one face, those of holes.
+    /// Number of edges of holes, which have one face.
     pub border_edges: usize,
     /// Number of edges with more than two faces.
     pub fan_edges: usize,
-    /// What was mended, in words.
+    /// The repairs, in words.
     pub mended: Vec<String>,
-    /// What the reader has left out, in sentences.
+    /// What the reader left out, in sentences.
     pub notes: Vec<String>,
-    /// The smooth patches, if it was taken for a part with sharp edges.
+    /// The smooth patches, if it counts as a part with sharp edges.
     pub part: Option<MeshPart>,
-    /// The grid, if it was taken for a scan.
+    /// The grid, if it counts as a scan.
     pub scan: Option<MeshScan>,
 }
 
@@ -74,12 +75,13 @@ mod with_meshes {
     use std::collections::BTreeMap;
     use std::sync::Arc;
 
-    /// The names of a choice among the parameters of a request.
+    /// The names of the choices among the parameters of a request.
     const NAMES: [&str; 2] = ["edges", "smooth"];
-    /// Largest angle on the slider of edges, in degrees, and largest width on that of the Gaussian.
+    /// Largest edge angle on its slider, in degrees, and largest width of the Gaussian on its
+    /// slider.
     const MOST: [f64; 2] = [90.0, 10.0];
 
-    /// A triangle mesh that was opened, mended once for whatever is chosen of it.
+    /// An opened triangle mesh, repaired once for all choices.
     #[derive(Clone, Debug)]
     pub struct OpenedMesh {
         solid: MeshSolid,
@@ -87,7 +89,7 @@ mod with_meshes {
     }
 
     impl OpenedMesh {
-        /// Mends a mesh.
+        /// Repairs a mesh.
         ///
         /// # Errors
         ///
@@ -97,7 +99,7 @@ mod with_meshes {
             Ok(Self { solid, notes: mesh.notes().into() })
         }
 
-        /// Reads and mends the mesh of a file: see [`TriangleMesh::read`].
+        /// Reads and repairs the mesh of a file: see [`TriangleMesh::read`].
         ///
         /// # Errors
         ///
@@ -111,7 +113,7 @@ mod with_meshes {
         }
     }
 
-    /// The error without the names that it has in other programs.
+    /// The error without the terms that other programs use.
     fn fault_of(error: &MeshError) -> Fault {
         let kind = match error {
             MeshError::NoFaces => FaultKind::NoFaces,
@@ -139,7 +141,7 @@ mod with_meshes {
     }
 
     impl MeshSurface {
-        /// The values by name that make the choice.
+        /// The named values that make the choice.
         pub(in super::super) fn choice(&self) -> impl Iterator<Item = (&'static str, f64)> {
             let angle = match self.edges {
                 MeshEdges::Auto => None,
@@ -150,8 +152,7 @@ mod with_meshes {
             NAMES.into_iter().zip(values).filter_map(|(name, value)| Some((name, value?)))
         }
 
-        /// The slider of the surface: that of the angle of edges of a part, and that of the
-        /// Gaussian over a scan.
+        /// The slider of the surface: the edge angle of a part, or the Gaussian of a scan.
         pub(in super::super) fn parameters(&self) -> Vec<Parameter> {
             let slider = |k: usize, label: &'static str, value: f64, min, step| Parameter {
                 name: NAMES[k].into(),
@@ -193,7 +194,7 @@ mod with_meshes {
         }
     }
 
-    /// The choice that values by name make: an angle of 0 keeps no edges.
+    /// The choice made by named values: an angle of 0 keeps no edges.
     fn choice_of(values: &BTreeMap<String, f64>) -> (MeshEdges, Option<f64>) {
         let [edges, smooth] = NAMES.map(|name| values.get(name).copied());
         let edges = match edges {
@@ -212,10 +213,10 @@ mod with_meshes {
     }
 
     impl Session {
-        /// Changes the field to the surface of a triangle mesh. Of the parameters of the request
-        /// `edges` is the angle in degrees from which on an edge stays sharp, 0 for none, and
-        /// `smooth` the width of the Gaussian over a scan: see [`MeshSolid::field`]. Formula and
-        /// box are those of [`Session::set_image`], as is the change of the choice.
+        /// Changes the field to the surface of a triangle mesh. In the request, the parameter
+        /// `edges` is the angle in degrees from which an edge stays sharp, 0 for no sharp edges,
+        /// and `smooth` is the width of the Gaussian for a scan: see [`MeshSolid::field`]. Formula,
+        /// box and later changes work as in [`Session::set_image`].
         ///
         /// # Errors
         ///
@@ -241,9 +242,9 @@ mod with_meshes {
             })
         }
 
-        /// How far the mesh that [`Session::join`] has made is from the one that was opened, up to
-        /// `budget` slices of the work; nothing before it is known. Nothing inside where the
-        /// surface is not that of a mesh by itself, or no mesh has been joined.
+        /// Compares the mesh that [`Session::join`] has made with the opened one, with up to
+        /// `budget` slices of the work; none until it is done. The answer is empty if a formula
+        /// uses the surface, or no mesh has been joined.
         pub fn compare(&mut self, budget: u32) -> Option<Option<MeshChange>> {
             if self.run.mesh().is_none() {
                 self.comparison = Comparison::None;
@@ -274,7 +275,7 @@ mod tests {
     use crate::session::{FaultKind, FieldRequest, Session};
     use std::collections::BTreeMap;
 
-    /// A cube of the side 2 as an OFF file of six squares, the first of which may be missing.
+    /// A cube of side 2 as an OFF file of six squares, the first of which may be missing.
     fn cube(is_open: bool) -> Vec<u8> {
         let corners =
             (0..8).map(|k| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { "-1" } else { "1" }.to_owned()));

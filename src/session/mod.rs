@@ -1,5 +1,5 @@
-//! The session of a user: a field that is changed by requests, and runs on it. Commands go in,
-//! changes and reports come out; there is no clock, no GPU and no platform in here.
+//! The session of a user: a field that requests change, and runs on it. Commands go in, changes and
+//! reports come out; it uses no clock, no GPU and no platform function.
 
 mod asked;
 mod code;
@@ -55,15 +55,15 @@ use std::sync::Arc;
 pub struct FieldRequest {
     /// Identifier of a gallery surface to start from; without one, the present field is changed.
     pub surface: Option<String>,
-    /// Text of the formula, in the place of the surface's.
+    /// Text of the formula, which replaces the surface's own.
     pub formula: Option<String>,
     /// Values of parameters by name.
     pub parameters: BTreeMap<String, f64>,
     /// Parameters that the formula's unknown names become.
     pub declare: Vec<Parameter>,
-    /// Clip box. Without one it is that of the surface, or fitted (see [`Session::fit`]).
+    /// Clip box. Without one the surface's own is used, or one is fitted (see [`Session::fit`]).
     pub bounds: Option<Bounds>,
-    /// Points that the surface is to pass through: the parameters change for it
+    /// Points that the surface should pass through; this changes parameters
     /// ([`Formula::pass_through`]).
     pub pins: Vec<[f64; 3]>,
     /// Pulls on the surface of a model from points, one after the other.
@@ -88,18 +88,17 @@ pub struct FieldAnswer {
     pub parameters: Vec<Parameter>,
     /// Parameters that were not declared but found in the formula.
     pub auto: Vec<String>,
-    /// Clip box, whose faces close the solid where they are to; before [`Session::fit`] or a start
-    /// it may be that of the formula before.
+    /// Clip box; its faces close the solid if that is chosen. Before [`Session::fit`] or a start it
+    /// may still be the previous formula's box.
     pub bounds: Bounds,
-    /// Whether the surface, closed by no box, is bounded, if the box was fitted to it.
+    /// Whether the surface, before a box closes it, is bounded, if the box was fitted to it.
     pub reach: Option<Reach>,
-    /// Period of the surface along each axis: 0 if it does not change along it, none if it is not
-    /// known to be periodic.
+    /// Period of the surface along each axis: 0 if it does not change along it, none if no period
+    /// is known.
     pub periods: [Option<f64>; 3],
     /// The formula as MathML; none if there is no formula.
     pub mathml: Option<MathNode>,
-    /// What has become of the surface that was to pass through the pins of the request; none
-    /// without pins.
+    /// Whether the surface passes through the pins of the request, and how; none without pins.
     pub grip: Option<Grip>,
 }
 
@@ -115,7 +114,7 @@ pub enum Source {
         field: RbfField,
         /// Report of the model.
         info: ModelInfo,
-        /// The formula whose operand the model is, if one is sampled in its place.
+        /// The formula that uses the model as an operand, if it is sampled instead.
         within: Option<ModelFormula>,
     },
     /// The surface of an image or a triangle mesh.
@@ -125,7 +124,7 @@ pub enum Source {
     Function(Arc<dyn Field>),
 }
 
-/// A formula in which the model from points is an operand, by the name [`MODEL`].
+/// A formula with the model from points as an operand, by the name [`MODEL`].
 #[derive(Clone, Debug)]
 pub struct ModelFormula {
     text: String,
@@ -136,7 +135,7 @@ pub struct ModelFormula {
     field: Combined,
 }
 
-/// Two are equal that are written and set alike, whatever the model.
+/// Two are equal if their texts and parameters are, whatever the model.
 impl PartialEq for ModelFormula {
     fn eq(&self, other: &Self) -> bool {
         (&self.text, &self.parameters) == (&other.text, &other.parameters)
@@ -169,20 +168,20 @@ impl Deref for Source {
 
 /// A run whose field is changed by requests.
 pub struct Session {
-    /// The run. Its field and its box change through the session alone.
+    /// The run. Only the session changes its field and its box.
     pub run: Run<Source>,
     surface: Option<&'static Surface>,
     declared: Vec<Parameter>,
-    /// The box that was given with the field, or that of its surface.
+    /// The box given with the field, or the box of its surface.
     own: Bounds,
     /// The clip box. A run samples in it, or in a box around the solid that it closes.
     clip: Bounds,
-    /// Whether the surface, closed by no box, is bounded, if the clip box was fitted to it.
+    /// Whether the surface, before a box closes it, is bounded, if the clip box was fitted to it.
     reach: Option<Reach>,
     fitting: Fitting,
-    /// The spacing of the next runs, where a formula gives it.
+    /// The spacing of the next runs, if a formula gives it.
     spacing: Option<SpacingText>,
-    /// The spacing of the next runs, where a function of the program gives it.
+    /// The spacing of the next runs, if a function of the program gives it.
     spacing_function: Option<Spacing>,
     /// The record of the present run.
     made: Option<FileRecord>,
@@ -191,7 +190,7 @@ pub struct Session {
     /// The settings of the last start, and its spacing by a formula.
     started: Option<Settings>,
     spaced: Option<SpacingText>,
-    /// How far the joined mesh is from the one that was opened.
+    /// The comparison of the joined mesh with the opened one.
     #[cfg(all(feature = "images", feature = "points"))]
     comparison: mesh::Comparison,
 }
@@ -226,7 +225,7 @@ impl Session {
         }
     }
 
-    /// A session whose first formula is that of no surface of the gallery, whatever its text.
+    /// A session whose first formula never counts as a surface of the gallery.
     #[must_use]
     pub fn without_surface() -> Self {
         Self { surface: None, declared: Vec::new(), own: FALLBACK, clip: FALLBACK, ..Self::new() }
@@ -282,8 +281,8 @@ impl Session {
     }
 
     /// Changes the field, which ends a run on another one. Its particles stay until the next
-    /// [`Session::start`]. A thickness by a formula ends with a field that does not have its names:
-    /// the solid is to be [chosen](Session::choose) again.
+    /// [`Session::start`]. A thickness by a formula is dropped if the new field does not have its
+    /// names: the solid has to be [chosen](Session::choose) again.
     ///
     /// # Errors
     ///
@@ -306,14 +305,14 @@ impl Session {
         };
         let own = request.bounds.or(surface.map(|s| s.bounds)).unwrap_or(self.own);
         check_box(&own)?;
-        // A box stays given while the present field is changed.
+        // A given box stays while the present field is changed.
         let is_given = request.bounds.is_some() || surface.is_none() && self.fitting.is_given;
         let present = self.source().formula();
         let text = match (&request.formula, surface, present) {
             (Some(text), _, _) => text.as_str(),
             (None, Some(surface), _) => surface.formula,
             (None, None, Some(field)) => field.text(),
-            // Of a model from points or a function only the box can be changed.
+            // For a model from points or a function only the box can be changed.
             (None, None, None) => {
                 (self.own, self.clip, self.reach) = (own, own, None);
                 self.run.set_bounds(own, None);
@@ -333,22 +332,21 @@ impl Session {
         Ok(FieldAnswer { grip, ..self.answer() })
     }
 
-    /// The parameters that are declared for a formula: those of its surface or of the present
-    /// formula, and those of the request.
+    /// The declared parameters of a formula: those of its surface or of the present formula, and
+    /// those of the request.
     fn declared_for(
         &self,
         surface: Option<&'static Surface>,
         text: &str,
         request: &FieldRequest,
     ) -> Vec<Parameter> {
-        // A declared parameter that the formula does not use stays declared: it may come back with
-        // the next key.
+        // A declared parameter that the formula does not use stays declared: the next key may bring
+        // it back.
         let mut declared = surface.map_or_else(
             || if request.formula.is_none() { self.declared.clone() } else { Vec::new() },
             |surface| surface.parameters.to_vec(),
         );
-        // What a parameter stands for, and which values it can have, is known in the surface's own
-        // formula alone.
+        // Only in the surface's own formula are the meaning and the range of a parameter known.
         if surface.is_some_and(|surface| surface.formula != text) {
             for parameter in &mut declared {
                 *parameter = Parameter::automatic(&parameter.name);
@@ -363,7 +361,7 @@ impl Session {
         declared
     }
 
-    /// The field of a formula with the values that a request asks for.
+    /// The field of a formula with the values of a request.
     fn formula_field(
         &self,
         text: &str,
@@ -392,7 +390,7 @@ impl Session {
         Ok(field)
     }
 
-    /// Samples the field of a formula from now on, in the box `own`, which was given or is to be
+    /// Makes the field of a formula the present one, in the box `own`, which was given or is to be
     /// fitted. Ends a run on another field.
     fn take_formula(
         &mut self,
@@ -404,13 +402,13 @@ impl Session {
         self.keep_thickness_of(&field);
         let present = self.source().formula();
         let is_same_text = present.is_some_and(|p| p.text() == field.text());
-        // A formula that was compiled anew is not yet made to the solid that is to be sampled.
+        // A newly compiled formula has not yet been made into the solid.
         let is_same = is_same_text
             && present.is_some_and(|p| {
                 p.parameters() == field.parameters()
                     && (p.thickness(), p.closing_box()) == (field.thickness(), field.closing_box())
             });
-        // A box that is to be fitted stays what it was until it is.
+        // A box that is to be fitted stays as it was until then.
         let is_open = !is_given && surface.is_none();
         let keeps_box = is_same_text && self.fitting.is_fitted && is_open;
         self.run.set_field(Source::Formula(field), is_same);
@@ -434,9 +432,9 @@ impl Session {
     }
 
     /// Changes the field to one from points, as `pointcloud::fit` makes it, with the pulls of a
-    /// request on its surface, in the box of the request or in that of the model with room for the
+    /// request on its surface. The box is that of the request, or the model's with room for the
     /// pulls. A formula of the request has the model as an operand, see [`Formula::with_model`].
-    /// [`Session::set_field`] with a surface or a formula changes the field back. Both end a run on
+    /// [`Session::set_field`] with a surface or a formula replaces the field. Both end a run on
     /// another field, whose particles stay until the next [`Session::start`].
     ///
     /// # Errors
@@ -484,7 +482,7 @@ impl Session {
         Ok(self.answer())
     }
 
-    /// The formula of a request, in which the model is an operand.
+    /// The formula of a request, with the model as an operand.
     fn model_formula(
         text: &str,
         model: &Arc<dyn Field>,
@@ -505,9 +503,8 @@ impl Session {
         combined().map_err(|error| Fault::in_formula(error, text))
     }
 
-    /// Changes the field to that of a function of the program, in this box or in one that is fitted
-    /// to its surface. Ends a run on another field, whose particles stay until the next
-    /// [`Session::start`].
+    /// Changes the field to a function of the program, in this box or in one fitted to its surface.
+    /// Ends a run on another field, whose particles stay until the next [`Session::start`].
     ///
     /// # Errors
     ///
@@ -530,8 +527,8 @@ impl Session {
         Ok(self.answer())
     }
 
-    /// Changes the field to another one, or to the formula of a request in which it is an operand
-    /// by the name [`MODEL`], in the box of the request or in one that is fitted: see
+    /// Changes the field to another one, or to a formula of the request that uses it as an operand
+    /// by the name [`MODEL`], in the box of the request or in a fitted one: see
     /// [`Session::set_function`]. The answer has the parameters of the formula.
     ///
     /// # Errors
@@ -549,7 +546,7 @@ impl Session {
     ///
     /// # Errors
     ///
-    /// If a setting is out of its range, or there is no memory for the particles to expect.
+    /// If a setting is out of its range, or there is no memory for the expected particles.
     pub fn start(&mut self, settings: &Settings) -> Result<Start, SettingsError> {
         settings.validate()?;
         while !self.fitting.is_settled {
@@ -564,10 +561,10 @@ impl Session {
         self.run.begin(settings)
     }
 
-    /// Has the particles of the last run, which had these settings, [follow](Run::follow) its
-    /// surface to the present field, in the box that [`Session::fit`] has found. What they have
-    /// become is made from no record. `is_closed`: no particle is born, and none dies but where it
-    /// does not come to the surface.
+    /// Lets the particles of the last run, which had these settings, [follow](Run::follow) its
+    /// surface to the present field, in the box that [`Session::fit`] has found. They then have no
+    /// record. If `is_closed`, particles are neither added nor removed, except those that do not
+    /// reach the surface.
     ///
     /// # Errors
     ///
@@ -583,10 +580,9 @@ impl Session {
         Ok(())
     }
 
-    /// [`Run::report`] in slices, with what the session knows of the surface. No cause is told why
-    /// particles lie at the border of a model or an image, or of an open surface of the gallery,
-    /// whose box was chosen for it. A closed one fills its box for the values that its sliders
-    /// offer.
+    /// [`Run::report`] in slices, with what the session knows of the surface. No cause is given for
+    /// particles at the border of a model or an image, or of an open surface of the gallery, whose
+    /// box was chosen for it. A closed one fits into its box for all values of its sliders.
     pub fn measure(&mut self, measured: Measured, budget: u32) -> Option<Report> {
         self.run.measure_copy(measured, budget).map(|report| self.completed(report))
     }
@@ -598,7 +594,7 @@ impl Session {
         let has_no_cause = match self.source() {
             Source::Formula(field) => field.is_constant(),
             Source::Points { .. } => true,
-            // Beyond the border of an image a larger box finds nothing.
+            // Beyond the border of an image a larger box adds nothing.
             #[cfg(feature = "images")]
             Source::Opened(opened) => opened.is_bordered() && !self.fitting.is_given,
             Source::Function(_) => false,
@@ -631,11 +627,11 @@ impl Session {
     }
 
     /// [`Run::finish_with`], with the report of the session. `tell` is called now and then with the
-    /// [share of the work](crate::Reporting::fraction) that is done.
+    /// finished [share of the work](crate::Reporting::fraction).
     ///
     /// # Errors
     ///
-    /// The error of [`Run::finish`], and that of `tell`, which ends the measurement.
+    /// The error of [`Run::finish`], or of `tell`, which ends the measurement.
     pub fn finish<E: From<Error>>(
         mut self,
         measured: Measured,
@@ -653,7 +649,7 @@ impl Session {
         };
         drop(reporting);
         if self.run.measured().opening.is_some() {
-            // Only the field can say which of the gaps are surface.
+            // Only the field shows which of the gaps are surface.
             while self.join(SLICES).is_none() {
                 tell(1.0)?;
             }
@@ -664,8 +660,7 @@ impl Session {
     }
 }
 
-/// Sets those of the parameters that a formula has: a value for a name that it no longer has is of
-/// no consequence.
+/// Sets the parameters that a formula has; values for other names are ignored.
 fn set_known(field: &mut Formula, values: &BTreeMap<String, f64>) -> Result<(), FormulaError> {
     for (name, &value) in values {
         match field.set_parameter(name, value) {

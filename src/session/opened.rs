@@ -1,4 +1,4 @@
-//! Surfaces of files that a session has opened, images and triangle meshes, as its field.
+//! Surfaces of opened files, images and triangle meshes, as the field of a session.
 
 use super::{FieldAnswer, FieldRequest, ImageInfo, ModelFormula, Session, Source, check_box, image};
 #[cfg(feature = "points")]
@@ -10,13 +10,13 @@ use crate::image::ImageSurface;
 use crate::session::Fault;
 use std::sync::Arc;
 
-/// The surface of a file, with what was chosen of it.
+/// The surface of a file, with the choices for it.
 #[derive(Clone)]
 #[expect(clippy::large_enum_variant, reason = "there is one in a session")]
 pub(super) enum Surface {
-    /// Of an image.
+    /// The surface of an image.
     Image(ImageSurface),
-    /// Of a triangle mesh.
+    /// The surface of a triangle mesh.
     #[cfg(feature = "points")]
     Mesh(MeshSurface),
 }
@@ -46,7 +46,7 @@ impl Surface {
         }
     }
 
-    /// The values by name that make the choice.
+    /// The named values that make the choice.
     fn choice(&self) -> Vec<(&'static str, f64)> {
         match self {
             Self::Image(surface) => image::choice(surface).collect(),
@@ -72,12 +72,12 @@ impl Surface {
 pub struct OpenedSource {
     name: String,
     surface: Surface,
-    /// The formula whose operand the surface is, if one is sampled in its place.
+    /// The formula that uses the surface as an operand, if it is sampled instead.
     within: Option<ModelFormula>,
 }
 
 impl OpenedSource {
-    /// What is sampled.
+    /// The sampled field.
     pub(super) fn field(&self) -> &(dyn Field + 'static) {
         match &self.within {
             Some(formula) => &*formula.field,
@@ -85,7 +85,7 @@ impl OpenedSource {
         }
     }
 
-    /// The same, shared.
+    /// The sampled field, shared.
     pub(super) fn shared(&self) -> Arc<dyn Field> {
         match &self.within {
             Some(formula) => Arc::new(formula.field.clone()),
@@ -136,7 +136,7 @@ impl OpenedSource {
 }
 
 impl Session {
-    /// Changes the field to the surface that `chosen` makes, given the one before it, with the
+    /// Changes the field to the surface that `chosen` makes, given the previous one, with the
     /// formula and the box of a request.
     pub(super) fn set_opened(
         &mut self,
@@ -177,8 +177,8 @@ impl Session {
         Ok(self.answer())
     }
 
-    /// Changes what is sampled of the present file: values that the request does not name stay.
-    /// None if the field is of something else.
+    /// Changes the choices for the present file: values that the request does not name stay. None
+    /// if the field is not from a file.
     pub(super) fn change_opened(&mut self, request: &FieldRequest) -> Option<Result<FieldAnswer, Fault>> {
         let Source::Opened(present) = self.run.field() else { return None };
         let (surface, name) = (present.surface.clone(), present.name.clone());

@@ -1,4 +1,4 @@
-//! The record that a file carries, from which it can be made again, and the request for a mesh
+//! The record in a file, from which the particles can be made again, and the request for a mesh
 //! file.
 
 use super::{BoxFaces, Session, SolidSettings, Source, SpacingText};
@@ -9,7 +9,7 @@ use crate::sampler::{Method, Settings};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The record of a file, from which the same particles can be made again. Files carry it as JSON
+/// The record in a file, from which the same particles can be made again. Files store it as JSON
 /// ([`export::RecordText`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
@@ -18,26 +18,26 @@ pub struct FileRecord {
     pub version: String,
     /// Digest of the particles, 16 hexadecimal digits.
     pub digest: String,
-    /// Link to the page in this state, where the page has made the file.
+    /// Link to the page in this state, if the page made the file.
     #[serde(default)]
     pub link: Option<String>,
     /// Gallery surface whose formula it is.
     #[serde(default)]
     pub surface: Option<String>,
-    /// Model from points, in place of a formula.
+    /// Model from points, instead of a formula.
     #[serde(default)]
     pub model: Option<String>,
     /// Pulls on the surface of the model.
     #[serde(default)]
     pub pulls: Vec<Pull>,
-    /// Text of the formula; empty for a model by itself.
+    /// Text of the formula; empty for a model alone.
     pub formula: String,
     /// Values of its parameters.
     #[serde(default)]
     pub parameters: BTreeMap<String, f64>,
     /// Box of the run.
     pub bounds: Bounds,
-    /// Box whose faces close the solid, where they do.
+    /// Box whose faces close the solid, if they do.
     #[serde(default)]
     pub faces: Option<Bounds>,
     /// Settings of the solid that is made of the surface before it is sampled.
@@ -78,15 +78,15 @@ impl Session {
         let mut record = self.made.clone()?;
         record.digest = format!("{:016x}", self.run.particles().digest());
         record.link = link;
-        // Steps that were made after the run belong to it: ten and one are eleven.
+        // Steps made after the run count as its own: ten and one are eleven.
         if let (Method::Front, Some(progress)) = (record.settings.method, self.run.progress()) {
             record.settings.relax_steps = progress.relax_step;
         }
         Some(record)
     }
 
-    /// The record of a run that starts now; none where a file or a function of the
-    /// program gives the surface, or a function the spacing, which no record can hold.
+    /// The record of a run that starts now; none if a file or a function of the program gives the
+    /// surface, or a function the spacing: a record cannot hold these.
     pub(super) fn beginning(&self, settings: &Settings) -> Option<FileRecord> {
         if self.spacing_function.is_some() {
             return None;
@@ -104,7 +104,7 @@ impl Session {
             Source::Opened(_) => return None,
             Source::Function(_) => return None,
         };
-        // A map that is collected at once is sorted, which brings a stable sort of 3 kB.
+        // Collecting a map at once sorts it, by a stable sort that takes 3 kB.
         let mut values = BTreeMap::new();
         values.extend(parameters.iter().map(|p| (p.name.to_string(), p.value)));
         Some(FileRecord {
@@ -124,9 +124,9 @@ impl Session {
         })
     }
 
-    /// The mesh as a file, up to `budget` slices of the work: its bytes once it is complete,
-    /// nothing before. `json` gives the JSON of the record. Nothing inside for an unknown
-    /// extension, or where the file would be too large.
+    /// The mesh as a file, with up to `budget` slices of the work: its bytes once it is complete,
+    /// none before. `json` gives the JSON of the record. The answer is empty for an unknown
+    /// extension, or if the file would be too large.
     pub fn mesh_file(
         &mut self,
         request: &FileRequest,

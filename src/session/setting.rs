@@ -1,5 +1,5 @@
-//! The settings as they are shown: from this table the page builds a control for each, the command
-//! line an option, and `docs/settings.md` a row. Defaults and ranges are those of [`Settings`].
+//! The settings as users see them: from this table the page builds a control for each, the command
+//! line an option, and `docs/settings.md` a row. Defaults and ranges agree with [`Settings`].
 
 use super::fitting::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
 use crate::sampler::{GapPolicy, LawKind, Method, Sampling, Settings, SizeMode};
@@ -37,7 +37,8 @@ pub struct Setting {
     pub unit: &'static str,
     /// Values of a choice.
     pub choices: &'static [Choice],
-    /// The setting has an effect, and is shown, while all of these hold; always if there is none.
+    /// The setting has an effect, and is shown, while all of these hold; always if the list is
+    /// empty.
     pub when: &'static [Condition],
 }
 
@@ -88,8 +89,8 @@ impl Setting {
     }
 }
 
-/// A setting that is given where it has no effect, and the condition that does not hold. Beside a
-/// spacing by a function, by which the run `is_spaced`, grading has one.
+/// A given setting without effect, and the condition that fails. With a spacing by a function, when
+/// the run `is_spaced`, grading has an effect.
 #[must_use]
 pub fn without_effect(
     given: &[&str],
@@ -105,7 +106,7 @@ pub fn without_effect(
     ];
     let fails = |condition: &&Condition| {
         let chosen = choices.iter().find(|(name, _)| *name == condition.name);
-        // Steps of relaxation count where a front cannot be refined: the method is no condition.
+        // Relaxation steps matter where a front cannot be refined: the method is no condition.
         chosen.is_some_and(|&(_, value)| (value == SettingValue::Choice(condition.value)) != condition.equal)
     };
     let mut all = settings()
@@ -163,7 +164,7 @@ pub enum SettingValue {
     Number(f64),
     /// The value of a setting that is a whole number.
     Integer(u64),
-    /// The value of a setting that is a choice, as [`Choice::value`] has it.
+    /// The value of a setting that is a choice, as in [`Choice::value`].
     Choice(&'static str),
 }
 
@@ -201,7 +202,7 @@ impl From<u32> for SettingValue {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Choice {
-    /// Value, as it stands in JSON.
+    /// Value, as written in JSON.
     pub value: &'static str,
     /// Name for a person.
     pub label: &'static str,
@@ -295,13 +296,13 @@ choices!(LAWS of LawKind: ChordError "chord_error" "Chord error", MaxCurvature "
 choices!(METHODS of Method: Front "front" "Front", Refined "refined" "Refined");
 choices!(GAPS of GapPolicy: Fill "fill" "Fill", Leave "leave" "Leave");
 
-/// Every setting, in the order in which they are shown.
+/// Every setting, in display order.
 #[must_use]
 pub fn settings() -> Vec<Setting> {
     with_values(&Settings::DEFAULT)
 }
 
-/// Every setting, and beside them the [spacing](super::SpacingText), which is a text of its own.
+/// Every setting, and the [spacing](super::SpacingText), which is a text of its own.
 #[must_use]
 pub(super) fn with_spacing() -> Vec<Setting> {
     let mut all = settings();
@@ -320,7 +321,7 @@ pub(super) fn with_spacing() -> Vec<Setting> {
     all
 }
 
-/// Every setting, with the value that `run` has in the place of the default.
+/// Every setting, with the value from `run` as its default.
 pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
     let log = |setting| Setting { scale: SettingScale::Log, ..setting };
     let share = |setting| Setting { unit: "%", ..log(setting) };
@@ -461,8 +462,8 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
             ))
         },
         Setting {
-            // On a slider to the largest value accepted, the paper's ten steps would be at its very
-            // beginning.
+            // On a slider up to the largest accepted value, the paper's ten steps would be at its
+            // very beginning.
             max: 100.0,
             step: 1.0,
             unit: "steps",
@@ -499,7 +500,7 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
             GAPS,
         )),
         Setting {
-            // Six digits, which a person can copy.
+            // Six digits, short enough to copy by hand.
             max: 999_999.0,
             step: 1.0,
             ..advanced(number(

@@ -1,4 +1,4 @@
-//! The spacing of a session's runs, and values at their particles, as they are written.
+//! The spacing of a session's runs, and values at their particles, as texts.
 
 use super::{Fault, FaultKind, Session, Source};
 use crate::field::formula::{FormulaError, Parameter};
@@ -8,18 +8,18 @@ use crate::sampler::Spacing;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// A spacing by a formula, as it is written: see [`Spacing`]. A record has it beside the settings.
+/// A spacing by a formula, as text: see [`Spacing`]. A record stores it next to the settings.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct SpacingText {
     /// Distance between neighbours, in x, y, z and the parameters of the formula whose surface is
     /// sampled, such as `0.02 + 0.1 hypot(x, y)`.
     pub formula: String,
-    /// Smallest distance, which is taken where the formula is below it.
+    /// Smallest distance, used wherever the formula is below it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(test, ts(optional))]
     pub smallest: Option<f64>,
-    /// Largest distance, which is taken where the formula is above it.
+    /// Largest distance, used wherever the formula is above it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(test, ts(optional))]
     pub largest: Option<f64>,
@@ -31,7 +31,7 @@ impl SpacingText {
         self.smallest.or(self.largest).is_some()
     }
 
-    /// The formula with the values of these parameters, as it stands alone.
+    /// The formula with the values of these parameters, usable on its own.
     pub(super) fn alone(&self, parameters: &BTreeMap<String, f64>) -> String {
         let used = parameters.iter().filter(|(name, _)| self.formula.contains(name.as_str()));
         let mut text: String =
@@ -52,8 +52,8 @@ impl SpacingText {
 }
 
 impl Session {
-    /// Chooses the spacing of the next runs; none for sizes by the settings alone. It is made of
-    /// the parameters of the present formula. Where another one does not have them, there is no
+    /// Chooses the spacing of the next runs; none for sizes by the settings alone. It may use the
+    /// parameters of the present formula. If another formula does not have them, there is no
     /// spacing.
     ///
     /// # Errors
@@ -68,7 +68,7 @@ impl Session {
         Ok(())
     }
 
-    /// Chooses a spacing by a function of the program for the next runs, which no record can hold.
+    /// Chooses a spacing by a function of the program for the next runs; no record can hold it.
     pub fn space_by(&mut self, spacing: Spacing) {
         self.spacing_function = Some(spacing);
     }
@@ -81,8 +81,8 @@ impl Session {
         self.spacing.as_ref()?.spacing(self.own_parameters()).ok()
     }
 
-    /// Adds the column of a value at the particles of the last run, which is complete, up to
-    /// `budget` slices of joining the mesh if the value takes areas; nothing before it is there.
+    /// Adds the column of a value at the particles of the last run, which is complete, with up to
+    /// `budget` slices of joining the mesh if the value needs areas; none until it is there.
     pub fn add_value(&mut self, name: &str, value: &Value, budget: u32) -> Option<Result<(), ValueError>> {
         if value.needs_mesh() && self.run.mesh().is_none() {
             self.join(budget)?;
@@ -100,7 +100,7 @@ impl Session {
         text.spacing(self.own_parameters()).map(drop)
     }
 
-    /// The value of a formula, in which the parameters of the present formula have their values.
+    /// The value of a formula that may use the parameters of the present formula.
     ///
     /// # Errors
     ///

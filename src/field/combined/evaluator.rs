@@ -1,4 +1,4 @@
-//! The evaluator of a combination, and its pieces: those of its parts.
+//! The evaluator of a combination, whose pieces are those of its parts.
 
 use super::Combination;
 use crate::field::{BATCH, Evaluator, Field, Frame, Jet, Pieces, Pointwise};
@@ -6,16 +6,16 @@ use crate::math::{Bounds, Sym3};
 use crate::slices;
 use glam::{DVec3, Vec3};
 
-/// A combination at work. The pieces of a minimum or maximum are those of its two parts: label l of
-/// the first one has number 2l, of the second one 2l + 1.
+/// Evaluates a combination. The pieces of a minimum or maximum are those of its two parts: label l
+/// of the first part becomes 2l, of the second part 2l + 1.
 pub(super) struct CombinationEvaluator<'a> {
     pub(super) field: &'a Combination,
     pub(super) parts: Vec<Box<dyn Evaluator + 'a>>,
     frame: Frame,
-    /// The evaluator of a piece, once one has been asked for.
+    /// The evaluator of a piece, once one is needed.
     piece: Option<Box<PieceEvaluator<'a>>>,
-    /// Values and derivatives of the parts at the points of a batch: those of the first part, then
-    /// those of the second one.
+    /// Values and derivatives of the parts at the points of a batch: of the first part, then of the
+    /// second one.
     values: Vec<f32>,
     gradients: Vec<Vec3>,
     hessians: Vec<Sym3<f32>>,
@@ -23,7 +23,7 @@ pub(super) struct CombinationEvaluator<'a> {
     exact: (Vec<f64>, Vec<DVec3>),
 }
 
-/// The highest derivatives that a batch is asked for.
+/// The highest derivatives that a batch needs.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Order {
     Values,
@@ -46,8 +46,8 @@ impl<'a> CombinationEvaluator<'a> {
         }
     }
 
-    /// Whether batches hold values that the rule cannot be used on: arsinh(f/s), which only a
-    /// minimum or maximum goes through.
+    /// Whether batches hold values that the rule cannot be applied to: arsinh(f/s), which commutes
+    /// only with a minimum or maximum.
     fn is_compressed(&self) -> bool {
         self.frame.double.is_some() && !self.field.is_extreme()
     }
@@ -204,8 +204,8 @@ impl Pieces for CombinationEvaluator<'_> {
     }
 
     fn labels_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
-        /// Largest box, as a share of the diagonal of the box of the run, of which one point tells
-        /// enough.
+        /// Largest box that one point represents well enough, as a share of the diagonal of the box
+        /// of the run.
         const SMALL: f64 = 0.125;
         if bounds.diagonal() > SMALL * self.frame.length {
             return None;
@@ -248,7 +248,7 @@ impl Pieces for CombinationEvaluator<'_> {
     }
 }
 
-/// The smooth function of a piece, which still knows the pieces of the whole.
+/// The smooth function of a piece, which also knows the pieces of the whole.
 struct PieceEvaluator<'a> {
     whole: CombinationEvaluator<'a>,
     label: u32,

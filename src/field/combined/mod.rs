@@ -1,12 +1,13 @@
-//! Fields put together of any two: unions, intersections and differences of solids, smooth unions,
-//! and offsets.
+//! Fields that combine any two others: unions, intersections and differences of solids, smooth
+//! unions, and offsets.
 //!
-//! A minimum or a maximum of two fields has creases where the two surfaces meet. They are looked
-//! for in small [cells](ties) and followed to the digits of the numbers, as those of a formula are;
-//! but a field of the program has no bounds to prove by that none was missed.
+//! A minimum or a maximum of two fields has creases where the two surfaces meet. They are searched
+//! for in small [cells](ties) and followed to full precision, as for a formula; but a field of the
+//! program has no bounds to prove that none was missed.
 //!
-//! Signs and offsets move into the operands of a minimum or a maximum, whose creases stay known so:
-//! −max(a, b) = min(−a, −b), −min(a, b) = max(−a, −b), and max(a, b) − d = max(a − d, b − d).
+//! Signs and offsets move into the operands of a minimum or a maximum, so that its creases stay
+//! known: −max(a, b) = min(−a, −b), −min(a, b) = max(−a, −b), and max(a, b) − d = max(a − d, b −
+//! d).
 
 mod evaluator;
 mod rule;
@@ -22,8 +23,8 @@ use glam::DVec3;
 use rule::Rule;
 use std::sync::Arc;
 
-/// A field put together of others by [`union`], [`intersection`], [`difference`], [`smooth_union`]
-/// or [`offset`]. Copies share it.
+/// A field that combines others by [`union`], [`intersection`], [`difference`], [`smooth_union`] or
+/// [`offset`]. Copies share it.
 #[derive(Clone)]
 pub struct Combined(Arc<dyn Field>);
 
@@ -49,14 +50,14 @@ impl Deref for Combined {
 
 /// The union of two solids: min(a, b), which is negative where one of the two is.
 ///
-/// The operands are whatever can be [sampled](IntoField), functions of the program and models from
-/// points among them. Where their surfaces meet at an angle the particles lie on the edge, and the
-/// mesh is closed along it. Edges are looked for in cells of a 128th of the box: a loop smaller
-/// than that may be missed. There is no proof of completeness. Of two formulas, write one with
-/// `min`, `max` and `-`, which has both.
+/// The operands can be anything that can be [sampled](IntoField), including functions of the
+/// program and models from points. Where their surfaces meet at an angle the particles lie on the
+/// edge, and the mesh is closed along it. Edges are searched for in cells of a 128th of the box: a
+/// smaller loop may be missed. There is no proof of completeness. Two formulas are better written
+/// as one with `min`, `max` and `-`, which has both.
 ///
-/// An operand should have a gradient where it is zero, as a distance has. It counts as undefined
-/// where one of the two is.
+/// An operand should have a gradient where it is zero, as a distance has. The union is undefined
+/// where one operand is.
 ///
 /// ```
 /// use marching_particles::glam::{DVec3, dvec3};
@@ -108,9 +109,9 @@ where
 }
 
 /// The union of two solids, rounded where |a − b| < `width`: `smin(a, b, width)` of formulas. The
-/// width is in units of f, a length where a and b are distances; where it is not positive this is
+/// width is in units of f, a length if a and b are distances; if it is not positive this is
 /// [`union`]. An operand with edges is blended as if it were smooth, and the mesh may be open along
-/// those that remain; `smin` in a formula keeps them.
+/// the edges that remain; `smin` in a formula keeps them.
 pub fn smooth_union<A, B, K, L>(a: A, b: B, width: f64) -> Combined
 where
     A: IntoField<K, Field: 'static>,
@@ -119,8 +120,8 @@ where
     Combined(blended(shared(a), shared(b), width))
 }
 
-/// The field f − `distance`. Where f is the distance from a solid, this solid is larger by
-/// `distance`, or smaller by a negative one.
+/// The field f − `distance`. If f is the distance from a solid, the new solid is larger by
+/// `distance`, or smaller if that is negative.
 pub fn offset<A, K>(a: A, distance: f64) -> Combined
 where
     A: IntoField<K, Field: 'static>,
@@ -169,10 +170,10 @@ pub(super) fn turned(field: &Arc<dyn Field>, is_negative: bool, shift: f64) -> A
 struct Combination {
     rule: Rule,
     parts: Vec<Arc<dyn Field>>,
-    /// Pairs of a branch of the first part and one of the second that meet without an edge
-    /// somewhere, as far as that has been looked for.
+    /// Pairs of a branch of the first part and one of the second that are known to meet without an
+    /// edge somewhere.
     seams: Vec<[u32; 2]>,
-    /// Whether the zeros of the second part are no part of the surface, which ends at them.
+    /// Whether the zeros of the second part only limit the surface, which ends at them.
     is_limited: bool,
 }
 
@@ -209,8 +210,8 @@ impl Field for Combination {
         Box::new(CombinationEvaluator::new(self, frame))
     }
 
-    /// The periods that all parts have, and what any part leaves unused. The surface lies where
-    /// those of the parts do, and in the box in which all of them are known.
+    /// The periods common to all parts, and the unused names of any part. The surface lies in the
+    /// boxes that contain the parts' surfaces, and in the box in which all parts are known.
     fn facts(&self) -> Facts {
         let facts: Vec<Facts> = self.parts.iter().map(|part| part.facts()).collect();
         let mut periods = facts.iter().map(|facts| facts.periods);

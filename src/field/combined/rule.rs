@@ -1,4 +1,4 @@
-//! How the values of two fields make one, or that of one another.
+//! How the values of two fields, or of one, make a new value.
 
 use crate::field::Jet;
 use crate::math::Sym3;
@@ -13,12 +13,12 @@ pub(super) enum Rule {
     /// The smooth minimum of two values by a cubic polynomial, where they differ by less than the
     /// width: `smin` of formulas.
     Blend { width: f64 },
-    /// A value, or with the other sign, less the shift.
+    /// A value, or its negative, minus the shift.
     Turned { is_negative: bool, shift: f64 },
 }
 
 impl Rule {
-    /// The rule for values that are multiplied by a positive number.
+    /// The rule for values multiplied by a positive number.
     pub(super) fn scaled(self, scale: f64) -> Self {
         match self {
             Self::Blend { width } => Self::Blend { width: width * scale },
@@ -27,11 +27,11 @@ impl Rule {
         }
     }
 
-    /// The jet of the function, from those of the fields. It is NaN where one of them is.
+    /// The jet of the function, from the jets of the fields; NaN if one of them is NaN.
     ///
     /// # Panics
     ///
-    /// If there are fewer fields than the rule takes.
+    /// If there are fewer fields than the rule needs.
     pub(super) fn jet(self, jets: &mut dyn Iterator<Item = Jet>) -> Jet {
         let mut next = || jets.next().expect("as many fields as the rule takes");
         match self {
@@ -55,7 +55,7 @@ impl Rule {
         }
     }
 
-    /// Which of two values a minimum or maximum takes: the first one of equal ones, and one that is
+    /// Which of two values a minimum or maximum takes: the first one if they are equal or it is
     /// NaN.
     pub(super) fn taken(self, a: f64, b: f64) -> usize {
         let is_first = a.is_nan() || if self == Self::Least { a <= b } else { a >= b };
@@ -64,7 +64,7 @@ impl Rule {
 }
 
 /// The smooth minimum of two fields: (a + b)/2 − k d(u) with u = (a − b)/k and d(u) = 1/6 + u²/2 −
-/// |u|³/6, where |u| < 1. Elsewhere it is the lesser one, to the last bit.
+/// |u|³/6, where |u| < 1. Elsewhere it is exactly the lesser one.
 fn blend(a: Jet, b: Jet, width: f64) -> Jet {
     let u = (a.value - b.value) / width;
     let size = u.abs();

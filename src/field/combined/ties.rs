@@ -1,8 +1,8 @@
 //! Cells in which the two operands of a minimum or maximum may be equal on the surface.
 //!
-//! Nothing bounds a field of the program over a cell. In the middle of the cell |f|/|∇f| is the
-//! distance from the surface to first order. A surface that is farther than twice the distance of
-//! the corners does not pass through the cell.
+//! A field of the program has no bounds over a cell. In the middle of the cell |f|/|∇f| is the
+//! distance from the surface to first order. A surface farther away than twice the distance of the
+//! corners is assumed not to pass through the cell.
 
 use super::evaluator::CombinationEvaluator;
 use super::rule::Rule;
@@ -10,24 +10,25 @@ use crate::math::Bounds;
 use crate::slices::{HEAVY, pause};
 use glam::DVec3;
 
-/// Number of cells along the longest side of the box with which the search begins. A sheet of the
+/// Number of cells along the longest side of the box at the start of the search. A sheet of the
 /// surface that is closer to another one than a cell is wide may be missed.
 const SIDE: f64 = 32.0;
 /// A surface may pass through a cell up to this multiple of the distance from the middle to a
 /// corner.
 const SLACK: f64 = 2.0;
-/// Sine of the largest angle between gradients that count as parallel: only rounding parts them.
+/// Sine of the largest angle between gradients that count as parallel: only rounding separates
+/// them.
 const PARALLEL: f64 = 1e-6;
-/// Sine of the largest angle between gradients in the middle of a cell of two surfaces that meet
-/// without an edge there, where the curvature of one of them is up to a quarter of the inverse
-/// width of the cell. Larger: a search for seams along creases that have none.
+/// Sine of the largest angle between two gradients in the middle of a cell where their surfaces may
+/// meet without an edge, if one surface has a curvature up to a quarter of the inverse cell width.
+/// Larger: seams are searched for along creases that have none.
 const NEARLY_PARALLEL: f64 = 0.2;
-/// The largest number of cells that are divided further. Two surfaces that share a face have more.
+/// The largest number of cells that are divided further. Two surfaces that share a face exceed it.
 const MOST_CELLS: usize = 200_000;
 
 impl CombinationEvaluator<'_> {
-    /// The cells of a box, no wider than `width` unless they are too many, in which both parts may
-    /// be zero.
+    /// The cells of a box in which both parts may be zero, no wider than `width` unless they are
+    /// too many.
     pub(super) async fn tied_cells(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
         let first = bounds.size().max_element() / SIDE;
         let mut cells = vec![*bounds];
@@ -48,8 +49,8 @@ impl CombinationEvaluator<'_> {
         cells
     }
 
-    /// Whether the surfaces of both parts may pass through a cell, not parallel to each other as
-    /// those of f and −f are.
+    /// Whether the surfaces of both parts may pass through a cell without being parallel, as those
+    /// of f and −f are.
     fn may_be_tied(&mut self, cell: &Bounds) -> bool {
         let reach = 0.5 * SLACK * cell.diagonal();
         let slopes = [0, 1].map(|k: usize| self.parts[k].value_and_gradient(cell.middle()));
@@ -58,7 +59,7 @@ impl CombinationEvaluator<'_> {
             && u.cross(v).length_squared() > PARALLEL * PARALLEL * u.length_squared() * v.length_squared()
     }
 
-    /// The pairs of branches, one of each part, that may meet without an edge in cells in which the
+    /// The pairs of branches, one of each part, that may meet without an edge in cells where the
     /// parts are tied.
     pub(super) async fn seams_in(&mut self, cells: &[Bounds]) -> Vec<[u32; 2]> {
         let mut found = Vec::new();
@@ -101,8 +102,8 @@ impl CombinationEvaluator<'_> {
         parts.contains(&0) && parts.contains(&1)
     }
 
-    /// Whether each part may give a point of the surface in a cell: where it is zero, and the other
-    /// one is not taken in its place.
+    /// Whether each part may give a point of the surface in a cell: where it is zero, and the rule
+    /// does not take the other one.
     pub(super) fn may_give(&mut self, cell: &Bounds) -> [bool; 2] {
         let reach = 0.5 * SLACK * cell.diagonal();
         let sign = if self.field.rule == Rule::Least { -1.0 } else { 1.0 };
@@ -113,7 +114,7 @@ impl CombinationEvaluator<'_> {
         })
     }
 
-    /// Drops the cells in which no part gives a point of the surface. `origin` is the zero of the
+    /// Drops the cells in which no part gives a point of the surface. `origin` is the origin of the
     /// frame, in the coordinates of the cells.
     pub(super) async fn drop_hidden(&mut self, cells: &mut Vec<Bounds>, origin: DVec3) {
         let mut kept = Vec::new();

@@ -2,8 +2,8 @@
 //!
 //! Sums and products are flat lists. The depth of a tree is therefore bounded by
 //! [`MAX_DEPTH`](super::MAX_DEPTH), which the parser enforces, and recursive walks cannot overflow
-//! the stack. What a formula defines is not put in the places where its name stands: the tree would
-//! grow beyond all bounds.
+//! the stack. Definitions are not substituted for their names: the tree would grow beyond all
+//! bounds.
 
 use super::graph::Blend;
 use super::operations::{Binary, Unary};
@@ -37,21 +37,21 @@ pub(crate) enum ExprKind {
     Product(Vec<(Factor, Expr)>),
     Power(Box<Expr>, Box<Expr>),
     Call(Function, Vec<Expr>),
-    /// An argument of the function in whose definition it stands.
+    /// An argument, in the body of the function that it belongs to.
     Argument(Reference),
     /// A value or, with its arguments, a function that the formula defines.
     Defined(Reference, Vec<Expr>),
-    /// The second expression where the first one, a condition, holds, else the third.
+    /// A condition, the value where it holds, and the value elsewhere.
     Choice(Box<[Expr; 3]>),
-    /// A condition, as are the two that follow. The parser lets conditions stand in choices and
-    /// conditions alone.
+    /// A condition, as are the two variants below. The parser allows conditions only in choices and
+    /// in other conditions.
     Compare(Comparison, Box<[Expr; 2]>),
     /// Two or more conditions.
     Logic(Connective, Vec<Expr>),
     Not(Box<Expr>),
 }
 
-/// The place of what a name stands for, among the definitions or the arguments, and the name.
+/// A use of a name: its index among the definitions or the arguments, and the name.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Reference {
     pub(crate) index: usize,
@@ -98,7 +98,7 @@ impl Expr {
         found
     }
 
-    /// Marks the definitions whose names stand in this expression.
+    /// Marks the definitions that this expression names.
     fn mark_used(&self, is_used: &mut [bool]) {
         if let ExprKind::Defined(Reference { index, .. }, _) = &self.kind {
             is_used[*index] = true;
@@ -106,8 +106,8 @@ impl Expr {
         self.each(&mut |part| part.mark_used(is_used));
     }
 
-    /// The first condition in this expression that stands in the place of a number; one that stands
-    /// for the whole expression if that `is` no condition.
+    /// The first condition in this expression that is used as a number. The expression itself may
+    /// be a condition if `is_condition`.
     pub(crate) fn misplaced_condition(&self, is_condition: bool) -> Option<&Self> {
         if self.kind.is_condition() && !is_condition {
             return Some(self);
@@ -140,8 +140,8 @@ pub(crate) enum Factor {
 /// The formula `left`, or the equation `left = right`, with what it defines.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Equation {
-    /// Each refers to those before it. Of two with the same name the later one counts from there
-    /// on.
+    /// Each may use those before it. A later definition of the same name replaces the earlier one
+    /// from there on.
     pub(crate) definitions: Vec<Definition>,
     pub(crate) left: Expr,
     pub(crate) right: Option<Expr>,
@@ -178,8 +178,8 @@ impl Equation {
         names
     }
 
-    /// Whether the equation has the form of a definition, a name and what varies, or what has the
-    /// same name: without brackets around the name it would be taken for one.
+    /// Whether `left = right` would parse as a definition without brackets around the left side: a
+    /// lone name equals an expression of coordinates or definitions, or of that same name.
     pub(crate) fn looks_like_definition(&self) -> bool {
         let Some(right) = &self.right else { return false };
         match &self.left.kind {
@@ -245,8 +245,7 @@ pub(crate) enum Function {
     Smax(Blend),
     /// A choice, which has a node of its own in the tree.
     If,
-    /// A function that is defined by this text, in which its arguments are called as in its
-    /// signature.
+    /// A function that this text defines in terms of the argument names of its signature.
     Defined(&'static str),
 }
 
@@ -264,7 +263,7 @@ pub struct FunctionInfo {
     pub(crate) function: Function,
 }
 
-/// Entry of a function, whose name is what stands before the bracket of its signature.
+/// Entry of a function; its name is the signature up to the bracket.
 const fn described(function: Function, signature: &'static str, help: &'static str) -> FunctionInfo {
     let mut length = 0;
     while signature.as_bytes()[length] != b'(' {

@@ -1,14 +1,14 @@
 //! The smooth branches of a formula.
 //!
-//! A *choice* is an operation that passes on one of two smooth operands: a minimum, a maximum, an
-//! absolute value (u or −u), a smooth minimum whose blend has no width, or what is chosen by a
-//! condition. Where the choices on which f depends have taken a side, f is a smooth function, its
-//! *branch*. Its graph is that of f with each choice replaced by the operand that it takes, built
-//! anew, so that equal operations are one node: branches with the same root are the same function,
-//! as both sides of |x| are in |x|².
+//! A *choice* is an operation that returns one of two smooth operands: a minimum, a maximum, an
+//! absolute value (u or −u), a smooth minimum whose blend has no width, or a conditional. Once
+//! every choice that f depends on has taken a side, f is a smooth function, its *branch*. The graph
+//! of a branch is the graph of f with each choice replaced by the operand taken. Equal operations
+//! stay one node: branches with the same root are the same function, as both sides of |x| are in
+//! |x|².
 //!
-//! An absolute value to a power above 1 has a gradient at 0 and is no choice. Neither is one that
-//! no coordinate enters.
+//! An absolute value to a power above 1 has a gradient at 0 and is no choice. Neither is an
+//! operation that depends on no coordinate.
 
 use super::compiled::Compiled;
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
@@ -25,11 +25,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// three faces that meet in |x|, |y| and |z|. A smaller box has fewer.
 const MAX_LISTED: usize = 64;
 
-/// Maximum number of branches whose numbers do not depend on the order in which they are met: as
-/// many as eight choices have.
+/// The first branches, at most this many, are numbered by the formula alone; later ones in the
+/// order in which they are met. Eight choices have 256.
 const MAX_NUMBERED: usize = 256;
 
-/// Condition by which a choice takes one of its operands.
+/// Condition that decides which operand a choice takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum ChoiceCondition {
     /// The first node is at most the second.
@@ -38,23 +38,23 @@ pub(super) enum ChoiceCondition {
     NotNegative(Id),
 }
 
-/// Role of a node in the walk from f to the operands that are taken: it has a condition, which
-/// takes one of them, or takes all.
+/// Role of a node in the walk from f down to its operands: a choice leads to one operand, any other
+/// node to all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum NodeRole {
     /// The node is no choice: it takes all of its operands.
     Plain,
-    /// A power of the absolute value of this node, smooth as it is.
+    /// A power above 1 of the absolute value of this node, which is smooth.
     Raised(Id),
-    /// One thing where the condition holds, another elsewhere.
+    /// One value where the condition holds, another elsewhere.
     Choice(ChoiceCondition),
 }
 
 /// A condition on the way from f to a branch, and whether it holds.
 pub(super) type Side = (ChoiceCondition, bool);
 
-/// The operand of a choice that counts where its condition holds, or elsewhere; none if its value
-/// is a number there.
+/// The operand that a choice takes where its condition `holds` or does not; none if it takes a
+/// number there.
 pub(super) fn taken(choice: Node, holds: bool) -> Option<Id> {
     match choice {
         Node::Binary(_, a, b) | Node::Smin(_, a, b, _) | Node::Select(_, _, _, a, b) => {
@@ -66,7 +66,7 @@ pub(super) fn taken(choice: Node, holds: bool) -> Option<Id> {
     }
 }
 
-/// Part of a box, or of a point, in which a condition holds.
+/// Where in a box, or at a point, a condition holds.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Holds {
     Always,
@@ -74,8 +74,8 @@ pub(super) enum Holds {
     Somewhere,
 }
 
-/// The node that takes the place of a choice whose condition holds or does not. `new` are the nodes
-/// that its operands have become.
+/// The node that replaces a choice once its condition is known. `new` maps each operand to its own
+/// replacement.
 pub(super) fn resolved(graph: &mut Graph, choice: Node, holds: bool, new: impl Fn(Id) -> Id) -> Id {
     match taken(choice, holds).map(new) {
         _ if matches!(choice, Node::Unary(Unary::Sign, _)) => graph.constant(if holds { 1.0 } else { -1.0 }),
@@ -121,7 +121,7 @@ impl ChoiceCondition {
     }
 }
 
-/// f, or what has become of it once choices have taken sides.
+/// f, or a function that f reduces to once some choices have taken sides.
 #[derive(Clone, Debug)]
 pub(super) struct BranchPart {
     pub(super) root: Id,
@@ -129,27 +129,25 @@ pub(super) struct BranchPart {
     pub(super) nodes: Vec<Id>,
     /// The number of the branch; none while choices remain.
     pub(super) number: Option<u32>,
-    /// The part for each way in which the conditions hold or do not, in the order of
-    /// [`BranchWalk`]; sorted.
+    /// The part for each combination of sides, in the order of [`BranchWalk`]; sorted.
     taken: Vec<(Vec<bool>, TakenPart)>,
-    /// The branch compiled, once it has been asked for.
+    /// The branch, compiled when first needed.
     compiled: Option<Arc<Compiled>>,
 }
 
-/// The part of f that follows from another part, once each condition of that one is known to hold
-/// or not.
+/// The part that another part reduces to once all conditions of that part are decided.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TakenPart {
     /// Index of the part.
     pub(super) index: usize,
-    /// Whether the conditions hold together in no more than ties, as u ≥ 0 and u ≤ 0 do. Others
-    /// hold around such a place.
+    /// Whether these sides can hold together only where operands tie, as u ≥ 0 and u ≤ 0. Other
+    /// sides hold around such a place.
     pub(super) is_tie: bool,
-    /// Whether zeros of f need it: not those in ties, where other parts give f as well.
+    /// Whether zeros of f need it. In ties they do not: other parts give f there as well.
     has_zeros: bool,
 }
 
-/// A walk over the nodes of a part from its root, through the operands that are taken.
+/// A walk over the nodes of a part, from its root down through the operands taken.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BranchWalk {
     /// Number of nodes that are still to be visited.
@@ -176,9 +174,9 @@ impl BranchWalk {
         self.holds.clear();
     }
 
-    /// Walks to the end. `decide` is called with each new condition; where that holds somewhere
-    /// only, the walk through the places where it does not is left in `forks`. `visit` is called
-    /// with each node on the way, and whether its condition holds.
+    /// Walks to the end. `decide` is called with each new condition; if that holds in a part of the
+    /// box only, this walk assumes that it holds, and a walk for the other side goes to `forks`.
+    /// `visit` is called with each node on the way and whether its condition holds.
     fn run(
         &mut self,
         nodes: &[Id],
@@ -228,7 +226,7 @@ impl BranchWalk {
     }
 }
 
-/// Whether one of these nodes is at most the other, by an order of nodes that became others.
+/// Whether `ordered`, with its nodes replaced through `map`, contains this pair.
 fn holds_in(ordered: &[[Id; 2]], map: &[Id], pair: [Id; 2]) -> bool {
     ordered.iter().any(|known| known.map(|id| map[id as usize]) == pair)
 }
@@ -240,7 +238,7 @@ pub(super) struct Base {
     pub(super) roles: Vec<NodeRole>,
     /// Values of the nodes that depend on no coordinate; NaN for the others.
     uniforms: Vec<f64>,
-    /// Whether there are conditions that hold together in ties alone, as far as ways have been met.
+    /// Whether some combination of sides met so far is possible only in ties.
     has_ties: bool,
 }
 
@@ -282,9 +280,9 @@ impl Base {
         }
     }
 
-    /// The root of `part` where the conditions on the way from it hold or do not, as `holds` says.
-    /// With it, whether they hold together in ties alone, and whether the root is zero in ties
-    /// alone.
+    /// The node that `part` reduces to when its conditions take the values in `holds`. With it,
+    /// whether that combination is possible only in ties, and whether the root vanishes only in
+    /// ties.
     fn specialised(
         &mut self,
         part: &BranchPart,
@@ -313,7 +311,7 @@ impl Base {
                 }
                 (NodeRole::Choice(_), _) => resolved(graph, node, holds, new),
             };
-            // The root of a square whose sign is known, as that of max(u, 0) is.
+            // |u| is u or −u where the conditions give the sign of u.
             map[id as usize] = match graph.node(built) {
                 Node::Unary(Unary::Abs, u) if built != id && holds_in(&ordered, &map, [zero, u]) => u,
                 Node::Unary(Unary::Abs, u) if built != id && holds_in(&ordered, &map, [u, zero]) => {
@@ -324,15 +322,15 @@ impl Base {
         }
         let root = map[part.root as usize];
         self.extend(values);
-        // √(u² + v²) is zero where both are, which is an edge of the part in which one of them is
-        // not negative.
+        // √(u² + v²) vanishes where both do: on an edge of this part, if its conditions give the
+        // sign of u or v.
         let squares = self.graph.squares(root);
         let is_end = |u: &Id| holds_in(&ordered, &map, [zero, *u]) || holds_in(&ordered, &map, [*u, zero]);
         let is_edge = squares.len() > 1 && squares.iter().any(is_end);
         (root, [self.are_tied(ordered), is_edge])
     }
 
-    /// Pairs of nodes of which the first is at most the second where conditions hold or do not.
+    /// Pairs of nodes, the lesser first, as these conditions order them.
     fn ordered(&self, conditions: &[ChoiceCondition], holds: &[bool]) -> Vec<[Id; 2]> {
         let zero = self.graph.find(Node::constant(0.0));
         let pairs = conditions.iter().zip(holds).filter_map(|(&condition, &holds)| {
@@ -345,8 +343,8 @@ impl Base {
         pairs.collect()
     }
 
-    /// Returns whether a condition holds where others hold or do not, as far as those decide it. A
-    /// way that ties alone allow is none.
+    /// Whether the sides already taken decide this condition. Combinations that are possible only
+    /// where operands tie are ignored.
     fn where_free(&self, known: &[ChoiceCondition], holds: &[bool], condition: ChoiceCondition) -> Holds {
         let [is_tie, is_tie_else] = [true, false].map(|side| {
             let mut ordered = self.ordered(&[condition], &[side]);
@@ -360,8 +358,8 @@ impl Base {
         }
     }
 
-    /// Whether the nodes of some pair have to be equal, where in each pair the first is at most the
-    /// second.
+    /// Whether these inequalities, the first of each pair at most the second, force some pair to be
+    /// equal.
     fn are_tied(&self, mut ordered: Vec<[Id; 2]>) -> bool {
         let pairs = ordered.clone();
         let mut next = 0;
@@ -382,9 +380,9 @@ impl Base {
         pairs.into_iter().any(|[a, b]| self.is_at_most(&ordered, &mut found, [b, a]))
     }
 
-    /// Whether the first node is at most the second, by what is `known` of others, or was `found`
-    /// of them. Only what is known of a number and a function that has it nowhere but on surfaces
-    /// counts: max(u, v) and u, or |u| and u, may be equal in a solid.
+    /// Whether `known` inequalities, or those `found` from them, imply that the first node is at
+    /// most the second. Only inequalities between a number and a function that is constant on no
+    /// volume are used: max(u, v) = u, or |u| = u, may hold in a solid.
     fn is_at_most(&self, known: &[[Id; 2]], found: &mut Vec<[Id; 2]>, [a, b]: [Id; 2]) -> bool {
         let parts = match (self.graph.node(a), self.graph.node(b)) {
             _ if found.contains(&[a, b]) => return true,
@@ -402,7 +400,7 @@ impl Base {
         is_at_most
     }
 
-    /// Whether a node is a smooth function, or the absolute value of one, but for numbers that are
+    /// Whether a node is a smooth function, or the absolute value of one, up to numbers that are
     /// added or multiplied.
     fn is_nowhere_level(&self, mut id: Id) -> bool {
         loop {
@@ -428,8 +426,8 @@ impl Base {
     }
 }
 
-/// The branches of a formula, which its evaluators find out together. What they find does not
-/// depend on who asks first, but for the numbers of branches beyond the first [`MAX_NUMBERED`].
+/// The branches of a formula, found when needed and shared by its evaluators. The order of requests
+/// affects only the numbers of branches beyond the first [`MAX_NUMBERED`].
 #[derive(Debug, Default)]
 pub(super) struct SharedBranches(Mutex<Branches>);
 
@@ -438,7 +436,7 @@ impl SharedBranches {
         Self(Mutex::new(branches))
     }
 
-    /// A part that is half found is made again, so a panic does no harm.
+    /// A panic does no harm: a half-finished part is computed again.
     pub(super) fn lock(&self) -> MutexGuard<'_, Branches> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -454,16 +452,16 @@ impl Clone for SharedBranches {
     }
 }
 
-/// A part of the surface on which several branches meet without an edge.
+/// A smooth part of the surface that several branches share.
 #[derive(Clone, Debug)]
 pub(super) struct Patch {
     /// Its branches, ascending. It has the number of the first.
     pub(super) branches: Vec<u32>,
-    /// The function whose zeros it is.
+    /// The function whose zero set it is.
     pub(super) compiled: Arc<Compiled>,
 }
 
-/// The function of a sheet: f, in which some choices take the same side everywhere.
+/// The function of a sheet: f with some choices fixed to one side.
 #[derive(Clone, Debug)]
 pub(super) struct Sheet {
     /// The conditions of these choices, and whether they hold on the sheet.
@@ -474,12 +472,11 @@ pub(super) struct Sheet {
     pub(super) programs: Vec<FactorProgram>,
 }
 
-/// The branches of f that have been met, with their numbers. There are none of a formula without
-/// choices.
+/// The branches of f that have been met, with their numbers. A formula without choices has none.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Branches {
     pub(super) base: Base,
-    /// f, then what has become of it.
+    /// f, then the functions that it reduces to.
     pub(super) parts: Vec<BranchPart>,
     /// The part of each branch, by its number.
     numbered: Vec<usize>,
@@ -487,18 +484,18 @@ pub(super) struct Branches {
     pub(super) patches: Vec<Patch>,
     /// Pairs of patches that meet without an edge somewhere.
     pub(super) apart: Vec<[u32; 2]>,
-    /// The factors of the branches of the surface in a box, each by its branch and its number
-    /// there, if it was found that some meet in creases in that box.
+    /// The factors of the branches in a box, each by its branch and its index there, if some of
+    /// them meet in creases in that box.
     pub(super) factors: Vec<(u32, usize)>,
-    /// The sheets that choices keep apart, of a surface without creases.
+    /// The sheets that choices keep apart, if the surface has no creases.
     pub(super) sheets: Vec<Sheet>,
     /// The choices that [stand for products](by_signs).
     pub(super) products: Vec<Id>,
-    /// The graph's function, which is evaluated in the place of f where factors of a product cross:
-    /// its gradient does not vanish there.
+    /// The function that replaces f where factors of a product cross, since its gradient does not
+    /// vanish there: the function of the graph.
     pub(super) split: Option<Arc<Compiled>>,
     walk: BranchWalk,
-    /// Roles with the parameters before, kept for their memory.
+    /// The roles for the previous parameters; the memory is reused.
     before: Vec<NodeRole>,
     pub(super) doubles: Vec<f64>,
     pub(super) ranges: Vec<interval::Row<1>>,
@@ -506,13 +503,12 @@ pub(super) struct Branches {
 }
 
 impl Branches {
-    /// The branches of a function, with these values of the parameters. They are looked for when
-    /// first asked for.
+    /// The branches of a function, with these values of the parameters; found when first needed.
     pub(super) fn new(f: &Compiled, values: &[f64]) -> Self {
         Self::of(&f.graph, f.root, &[], values)
     }
 
-    /// The branches of a function whose products are [told by their signs](by_signs); none if it
+    /// The branches of a function with its products [split into factors](by_signs); none if it
     /// has no products, or is one whose factors cannot cross.
     pub(super) fn of_factors(f: &Compiled, values: &[f64]) -> Option<Self> {
         let (mut products, mut graph) = (Vec::new(), (*f.graph).clone());
@@ -538,7 +534,7 @@ impl Branches {
         };
         let nodes = graph.needed_by(&[root]);
         if nodes.iter().any(is_choice) {
-            // The numbers of the nodes in the graph of these alone.
+            // The indices of the products in the graph of these nodes alone.
             branches.products =
                 products.iter().filter_map(|id| nodes.binary_search(id).ok()).map(|k| k as Id).collect();
             branches.begin(graph, root, values);
@@ -583,8 +579,7 @@ impl Branches {
         index
     }
 
-    /// Returns the part that follows from part `of` where its conditions hold or do not, as `holds`
-    /// says.
+    /// The part that part `of` reduces to when its conditions take the values in `holds`.
     pub(super) fn taken(&mut self, of: usize, holds: &[bool], values: &[f64]) -> TakenPart {
         let known = &self.parts[of].taken;
         let place = match known.binary_search_by(|(way, _)| way.as_slice().cmp(holds)) {
@@ -598,8 +593,7 @@ impl Branches {
         part
     }
 
-    /// The ways in which the conditions of part `of` hold or do not, at most `limit`, those that
-    /// hold first.
+    /// At most `limit` combinations of the conditions of part `of`, `true` before `false`.
     pub(super) fn ways(
         &self,
         of: usize,
@@ -619,8 +613,7 @@ impl Branches {
         found
     }
 
-    /// Gives numbers to the first branches of part `of`, at most `left`, in an order that the
-    /// formula alone decides.
+    /// Numbers at most `left` branches of part `of`, in an order that depends on the formula alone.
     fn number(&mut self, of: usize, left: &mut usize, values: &[f64]) {
         if self.parts[of].number.is_some() {
             *left = left.saturating_sub(1);
@@ -666,8 +659,8 @@ impl Branches {
         }
     }
 
-    /// The numbers of the branches that may have a zero in the box where they give f, ascending;
-    /// none if there are more than [`MAX_LISTED`] ways in which conditions may hold.
+    /// The numbers of the branches that may have zeros of f in the box, ascending; none if more
+    /// than [`MAX_LISTED`] combinations of conditions are possible there.
     pub(super) fn within(&mut self, values: &[f64], bounds: &Bounds) -> Option<Vec<u32>> {
         if self.parts.is_empty() {
             return Some(vec![0]);
@@ -700,12 +693,12 @@ impl Branches {
         Some(numbers)
     }
 
-    /// Whether limits are a part of f.
+    /// Whether f includes limits.
     pub(super) fn has_limits(&self) -> bool {
         self.parts.first().is_some_and(|whole| self.base.graph.limited(whole.root).is_some())
     }
 
-    /// Whether the zeros of a branch limit the surface and are no part of it.
+    /// Whether the zeros of a branch only limit the surface and are not part of it.
     pub(super) fn is_limit(&mut self, number: u32, values: &[f64]) -> bool {
         if !self.has_limits() {
             return false;
@@ -744,8 +737,8 @@ impl Branches {
         }
     }
 
-    /// Empties the enclosures of f over boxes in which what limits the surface alone may be zero.
-    /// Where the surface may end there are no bounds of a gradient: an end faces any way.
+    /// Empties the enclosures of f over boxes where only limits may vanish. Where the surface may
+    /// end, the gradient has no bounds: an end may face any direction.
     pub(super) fn leave_out_limits(&mut self, values: &[f64], boxes: &[Bounds], out: &mut [Enclosure]) {
         if !self.has_limits() {
             return;
@@ -762,8 +755,8 @@ impl Branches {
         }
     }
 
-    /// Recomputes everything that depends on the parameters alone. The branches begin anew if
-    /// another operation is a choice now.
+    /// Recomputes everything that depends on the parameters alone. If other operations are choices
+    /// now, the search for branches starts again.
     pub(super) fn set_parameters(&mut self, values: &[f64]) {
         let of_sheets = self.sheets.iter_mut().flat_map(|sheet| &mut sheet.programs);
         of_sheets.for_each(|program| program.set_parameters(values));

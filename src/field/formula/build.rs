@@ -8,8 +8,8 @@ use super::operations::{Binary, Unary};
 use super::statements;
 use super::token::Comparison;
 
-/// Adds f = left − right to `graph` and returns its node; of an equation with limits that of max(f,
-/// [limit](Unary::Limit)). `parameters` are the parameter names by index.
+/// Adds f = left − right to `graph`, or max(f, [limit](Unary::Limit)) if the equation has limits,
+/// and returns its node. `parameters` are the parameter names by index.
 ///
 /// # Errors
 ///
@@ -20,7 +20,7 @@ pub(super) fn build(graph: &mut Graph, equation: &Equation, parameters: &[&str])
     let mut builder =
         Builder { graph, parameters, definitions, values: Vec::new(), arguments: Vec::new(), expressions: 0 };
     for definition in definitions {
-        // A function has as many values as it has calls.
+        // A function is translated at each of its calls.
         let value = if definition.arguments.is_empty() { builder.expression(&definition.body)? } else { 0 };
         builder.values.push(value);
     }
@@ -37,8 +37,8 @@ pub(super) fn build(graph: &mut Graph, equation: &Equation, parameters: &[&str])
     Ok(builder.graph.binary(Binary::Max, root, limit))
 }
 
-/// Maximum number of expressions that are translated, which functions of the formula's own
-/// multiply. A formula without such functions has no more expressions than bytes.
+/// Maximum number of expressions to translate. Each call translates a defined function again;
+/// without such calls there are no more expressions than bytes.
 const MAX_EXPRESSIONS: usize = 16 * MAX_OPERATIONS;
 
 struct Builder<'a> {
@@ -104,8 +104,8 @@ impl Builder<'_> {
         Ok(id)
     }
 
-    /// The node of a function that is at most 0 where all of these conditions hold; none if there
-    /// is none.
+    /// The node of a function that is at most 0 where all of these conditions hold; none without
+    /// conditions.
     fn limit(&mut self, conditions: &[Expr]) -> Result<Option<Id>, FormulaError> {
         let limits: Result<Vec<Id>, FormulaError> =
             conditions.iter().map(|condition| self.excess(condition)).collect();
@@ -144,8 +144,7 @@ impl Builder<'_> {
         arguments.iter().map(|argument| self.expression(argument)).collect()
     }
 
-    /// The value of the `body` of a function for these arguments; its errors are those of the
-    /// `call`.
+    /// The node of a function's `body` with these arguments. Errors in it point at the `call`.
     fn applied(&mut self, call: &Expr, body: &Expr, arguments: Vec<Id>) -> Result<Id, FormulaError> {
         let outside = core::mem::replace(&mut self.arguments, arguments);
         let result = self.expression(body);

@@ -1,15 +1,15 @@
-//! Formulas built by a program, beside those read from text.
+//! Formulas built by a program instead of read from text.
 
 use super::ast::{self, Equation, ExprKind, Factor, Function, Sign};
 use super::operations::{Binary, Unary};
 use super::{Formula, MAX_DEPTH, MAX_OPERATIONS, display};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// An expression in x, y and z, of which a [`Formula`] is made: its derivatives and bounds are
-/// exact, and its edges are found, as those of a text are.
+/// An expression in x, y and z, which becomes a [`Formula`]. As for a formula read from text, its
+/// derivatives and bounds are exact, and its edges are found.
 ///
-/// Operators take expressions, references to them and numbers; of the functions the common ones are
-/// methods, and [`Expr::call`] has all of the language.
+/// Operators take expressions, references to them and numbers. The common functions are methods;
+/// [`Expr::call`] calls any function of the language.
 ///
 /// ```
 /// use marching_particles::{Expr, Formula, Settings, sample};
@@ -24,7 +24,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expr {
     tree: ast::Expr,
-    /// Longest way from the expression to a leaf of its tree.
+    /// Height of the tree.
     depth: usize,
 }
 
@@ -44,8 +44,8 @@ impl Expr {
     ///
     /// # Panics
     ///
-    /// If the formula language has another meaning for the name, or the name is none: a letter
-    /// comes first, then letters and digits.
+    /// If the formula language gives the name another meaning, or it is not a name: a letter, then
+    /// letters and digits.
     #[must_use]
     pub fn parameter(name: &str) -> Self {
         let is_name = super::lex::is_name(name) && !super::spelling::is_known(name);
@@ -56,8 +56,7 @@ impl Expr {
         Self::of(ExprKind::Parameter(name.to_owned()), &[])
     }
 
-    /// A function of the formula language, by its name, of these arguments: see
-    /// [`FUNCTIONS`](super::FUNCTIONS).
+    /// Calls a function of the formula language by its name: see [`FUNCTIONS`](super::FUNCTIONS).
     ///
     /// # Panics
     ///

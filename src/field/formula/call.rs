@@ -1,9 +1,9 @@
 //! Calls of functions, with brackets or without: `sin(x)`, `ln 2x`, `sin^2 x cos y`.
 //!
-//! A call without brackets is read where it has one reading, and refused with brackets suggested
-//! where it has two. The function is applied to the power that follows and, after numbers and
-//! constants, to what stands directly beside them: `sin 2πx^2` is sin(2πx²). Then a sign, a bracket
-//! that closes or another function has to come: `sin x y`, `sin x/2` and `sqrt 2x` may mean either.
+//! A call without brackets is accepted if it has one reading; if it has two, it is refused and
+//! brackets are suggested. The function applies to the power that follows and, after numbers and
+//! constants, to the factors directly after them: `sin 2πx^2` is sin(2πx²). Next must come a sign,
+//! a closing bracket or another function: `sin x y`, `sin x/2` and `sqrt 2x` may mean either.
 
 use super::ast::{Expr, ExprKind, Factor, Function, Sign};
 use super::conditions::as_condition;
@@ -15,7 +15,7 @@ use super::token::{Spanned, Token, slice};
 use core::ops::Range;
 
 impl Parser<'_> {
-    /// Whether the bracket that is the next token holds a comma of its own.
+    /// Whether the next bracket contains a comma outside of inner brackets.
     pub(super) fn has_comma(&self) -> bool {
         let mut depth = 0_usize;
         for Spanned { token, .. } in &self.tokens[self.next..] {
@@ -85,8 +85,7 @@ impl Parser<'_> {
         })
     }
 
-    /// Parses the call of a function by a name that it has elsewhere, which has just been consumed
-    /// at `span`.
+    /// Parses a call by a name of another language, which has just been consumed at `span`.
     pub(super) fn call_of(&mut self, called: Called, span: Range<usize>) -> Parse {
         if let Called::Function(function) = called {
             return self.call(function, span);
@@ -184,7 +183,7 @@ impl Parser<'_> {
         Ok(Some(exponent))
     }
 
-    /// Parses what `function`, whose name stands at `span`, is applied to without brackets.
+    /// Parses the operand of `function`, named at `span`, if it has no brackets.
     fn operand(&mut self, function: Function, span: &Range<usize>) -> Parse {
         let name = function.name();
         let message = match function {
@@ -211,8 +210,8 @@ impl Parser<'_> {
         Ok(operand)
     }
 
-    /// Parses a power, and what stands directly beside it if there is one reading: after numbers
-    /// and constants anything, after coordinates written as one word the others of them.
+    /// Parses a power and the factors directly after it, if there is one reading: any factor after
+    /// numbers and constants, only coordinates after coordinates of the same word.
     fn beside(&mut self) -> Parse {
         let first = self.power()?;
         let mut is_coefficient = is_coefficient(&first.kind);
@@ -243,7 +242,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether what follows an operand might belong to it.
+    /// Whether the next token might belong to the operand before it.
     fn is_ambiguous_after(&self) -> bool {
         let is_function = |token: &Token| match token {
             Token::Name(name) => elsewhere::function(name).is_some(),
@@ -267,12 +266,12 @@ fn is_coefficient(kind: &ExprKind) -> bool {
     matches!(kind, ExprKind::Number(_) | ExprKind::Constant(_))
 }
 
-/// Whether an argument is the point itself, as programs call it.
+/// Whether an argument is a common name of the point itself.
 fn is_point(argument: &Expr) -> bool {
     matches!(&argument.kind, ExprKind::Parameter(name) if matches!(name.as_str(), "p" | "P" | "pos" | "point"))
 }
 
-/// Whether a function can have `count` arguments, in GLSL the inverse tangent two.
+/// Whether a function takes `count` arguments; in GLSL, `atan` takes two.
 fn takes(function: Function, count: usize) -> bool {
     function.takes(count) || function == Function::Unary(Unary::Atan) && count == 2
 }

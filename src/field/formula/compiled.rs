@@ -96,7 +96,7 @@ impl Compiled {
         }
     }
 
-    /// The graph of f with that of its Hessian, and the nodes of f, ∇f and ∇∇f.
+    /// The graph of f and its Hessian, and the nodes of f, ∇f and ∇∇f.
     fn with_hessian(&self) -> (Graph, Vec<Id>) {
         let mut graph = (*self.graph).clone();
         let hessian = derivative::hessian(&mut graph, self.gradient);
@@ -143,7 +143,7 @@ impl Compiled {
         scratch[self.root as usize][0].second_order()
     }
 
-    /// f and ∇f at each of these points, the same as those of [`Compiled::jet`].
+    /// f and ∇f at each of these points, equal to those of [`Compiled::jet`].
     pub(super) fn first_order<const POINTS: usize>(
         &self,
         points: [DVec3; POINTS],
@@ -193,7 +193,7 @@ impl Compiled {
             interval::bounds(&graph, &nodes, &self.values, &Bounds::point(p), &mut rows);
             let bounds = |id: Id| rows[id as usize].at(0).bounds;
             let is_held = |end: f64| end == 0.0 || (1e-100..=1e100).contains(&end.abs());
-            // Such a power is 0 because it is too small.
+            // Such a power is 0 only by underflow.
             let underflows = |id: Id, end: f64| {
                 let node = graph.node(id);
                 let is_power = matches!(

@@ -1,7 +1,7 @@
 //! Choices by conditions: `if(x < 1 and not y > 0, a, b)`, `x < 1 ? a : b`.
 //!
-//! A condition compares numbers or joins conditions. It is parsed where a number may stand, since a
-//! bracket may hold either, and is then refused wherever it is no condition of a choice.
+//! A condition compares numbers or joins conditions. It is parsed wherever a number may be, since a
+//! bracket may hold either; a condition outside of a choice is refused afterwards.
 
 use super::ast::{Connective, Expr, ExprKind};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
@@ -85,7 +85,7 @@ impl Parser<'_> {
         false
     }
 
-    /// Parses the regions that limit the surface: their conditions, all of which are to hold.
+    /// Parses the regions that limit the surface. All of their conditions must hold.
     pub(super) fn region(&mut self) -> Result<Vec<Expr>, FormulaError> {
         let mut conditions = Vec::new();
         while self.begins_region() {

@@ -1,17 +1,16 @@
 //! Parameters for which the surface passes through given points (Witkin and Heckbert 1994, §3,
 //! "control").
 //!
-//! The rows of J are ∂f/∂q at the points, over |∇f| there, so that a residual is a distance, and
-//! with each parameter in units of its range, so that none is changed more than another only
-//! because its numbers are larger. Each step is the shortest one that solves J δ = −r, that is δ =
-//! Jᵀ(J Jᵀ)⁻¹(−r). A parameter that comes to an end of its range stays there, and the others are
-//! solved for anew.
+//! The rows of J are ∂f/∂q at the points, divided by |∇f| there, so that a residual is a distance.
+//! Each parameter is in units of its range, so that none changes more only because its numbers are
+//! larger. Each step is the shortest one that solves J δ = −r, that is δ = Jᵀ(J Jᵀ)⁻¹(−r). A
+//! parameter that reaches an end of its range is held there, and the others are solved for again.
 //!
 //! # Differs from Witkin and Heckbert
 //!
-//! * The parameters are found for the places of the points, not integrated from their velocities,
-//!   so that they depend on no history.
-//! * J Jᵀ has a small multiple of the unit matrix added, in the place of a singular value
+//! * The parameters are solved for from the places of the points, not integrated from velocities,
+//!   so they do not depend on history.
+//! * A small multiple of the unit matrix is added to J Jᵀ instead of a singular value
 //!   decomposition.
 
 use super::evaluator::FormulaEvaluator;
@@ -23,49 +22,50 @@ use glam::DVec3;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// What has become of a surface that is to pass through points.
+/// The result of making a surface pass through points.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Grip {
-    /// Whether the surface passes through all points. Otherwise it has come as near as the ranges
-    /// of the parameters allow.
+    /// Whether the surface passes through all points. If not, it is as near as the ranges of the
+    /// parameters allow.
     pub holds: bool,
-    /// For each point, one of the surface that is nearest to it, found down the gradient; the point
-    /// itself if none is found.
+    /// For each point, a nearby point of the surface, found down the gradient; the point itself if
+    /// none is found.
     pub places: Vec<[f64; 3]>,
     /// The parameters that have changed, with their values.
     pub changed: BTreeMap<String, f64>,
-    /// Names of the parameters that all but do not move the surface at the points.
+    /// Names of the parameters that hardly move the surface at the points.
     pub idle: Vec<String>,
 }
 
-/// The parameters take at most this many steps towards the points. So many of the longest steps
-/// cross a range eight times.
+/// Maximum number of steps towards the points: enough to cross a range eight times by the longest
+/// steps.
 const MOST_STEPS: usize = 64;
 
 /// A step changes a parameter by at most this share of its range, so that a surface that is pulled
-/// far passes through what lies between. With longer steps fewer pulls meet their points.
+/// far moves there gradually. With longer steps fewer pulls meet their points.
 const LONGEST_STEP: f64 = 0.125;
 
 /// A step that does not bring the surface nearer to the points is halved at most this often, to a
 /// 2,000th of a range. Then the parameters stay where they are.
 const MOST_HALVINGS: usize = 8;
 
-/// Distance from a point, over its distance from the origin or over 1, at which the surface passes
-/// through it: a hundredth of what single precision, in which particles are kept, rounds off.
+/// The surface passes through a point at less than this distance, relative to the point's distance
+/// from the origin or to 1: a hundredth of the rounding of particles, which are in single
+/// precision.
 const NEAR: f64 = 1e-9;
 
-/// Multiple of the unit matrix that J Jᵀ gets, over its largest diagonal entry: half of the digits
-/// of double precision.
+/// Multiple of the unit matrix added to J Jᵀ, relative to its largest diagonal entry: half of the
+/// digits of double precision.
 const RIDGE: f64 = 1e-8;
 
-/// A parameter is idle if it moves the surface less than this share of what the strongest one does:
-/// less than a pixel of a picture that the strongest one moves across.
+/// A parameter is idle if it moves the surface by less than this share of what the strongest one
+/// does: less than a pixel while that one crosses the picture.
 const IDLE: f64 = 1e-3;
 
 /// f as a function of the parameters, three at a time.
 struct ByParameters {
-    /// The graph of f in which three parameters and the coordinates have changed places.
+    /// The graph of f with three parameters and the coordinates exchanged.
     parts: Vec<(Graph, Id)>,
     scratch: scalar::Jets<0>,
 }
@@ -112,7 +112,7 @@ impl ByParameters {
 struct Control<'a> {
     field: ByParameters,
     points: &'a [DVec3],
-    /// |∇f| at each point before anything is changed, or 1 where there is none.
+    /// |∇f| at each point before any change, or 1 if it is 0 or undefined.
     slope: Vec<f64>,
     /// The range of each parameter, and the ends of it; a value beyond an end may stay.
     range: Vec<f64>,
@@ -165,7 +165,7 @@ impl Control<'_> {
     }
 }
 
-/// The shortest δ with J δ = −r in which some entries are fixed.
+/// The shortest δ with J δ = −r and with these entries fixed.
 fn shortest_step(Residuals { distance, rows }: &Residuals, fixed: &[Option<f64>]) -> Vec<f64> {
     let free = |row: &[f64], other: &[f64]| -> f64 {
         row.iter().zip(other).zip(fixed).filter(|(_, fixed)| fixed.is_none()).map(|((a, b), _)| a * b).sum()
@@ -206,22 +206,21 @@ fn solve_positive(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
     right
 }
 
-/// The number with five significant digits or as a whole one, as a link and a box for numbers hold
-/// it.
+/// The number with five significant digits, or whole, as links and number fields show it.
 fn rounded(value: f64) -> f64 {
     let mut scale = 1.0;
     while (value * scale).abs() < 1e4 && scale < 1e12 {
         scale *= 10.0;
     }
-    // Of a whole number, the quotient by a power of ten is the number nearest to the decimal one.
+    // A whole number divided by a power of ten is the double nearest to the decimal.
     (value * scale).round() / scale
 }
 
 impl Formula {
     /// Changes the parameters, each in units of its range, as little as possible so that the
-    /// surface passes through these points, in the coordinates of the formula. Where that cannot
-    /// be, the surface comes as near as the ranges allow. Values are rounded to five significant
-    /// digits.
+    /// surface passes through these points, in the coordinates of the formula. If that is
+    /// impossible, the surface comes as near as the ranges allow. Values are rounded to five
+    /// significant digits.
     ///
     /// ```
     /// use marching_particles::field::formula::Formula;
@@ -299,7 +298,7 @@ impl Formula {
     }
 }
 
-/// Names of the parameters that all but do not move the surface at any of the points.
+/// Names of the parameters that hardly move the surface at any of the points.
 fn idle(residuals: &Residuals, parameters: &[Parameter]) -> Vec<String> {
     let strength =
         |k: usize| residuals.rows.iter().map(|row| row[k].abs()).fold(0.0, |most: f64, own| most.max(own));

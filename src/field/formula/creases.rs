@@ -1,13 +1,13 @@
 //! The choices of a formula that crease its surface.
 //!
 //! Where a surface crosses the tie of a choice, at which both operands are equal, it has a crease
-//! if the gradient of f jumps there, else a *seam*. |x| makes a seam in a blend that takes no
-//! account of it near x = 0. A minimum of functions whose zeros stay apart makes neither. A search
-//! of the box, halved again and again, excludes by interval arithmetic the cells in which f has no
-//! zero, or where no choice has both a tie and an effect on f. In a cell that is left, Newton's
-//! method finds a place where f and the difference of the operands vanish, and the gradients on
-//! both sides of it are compared. Around the choices that crease the surface smaller cells are
-//! looked at, in which the creases are then followed.
+//! if the gradient of f jumps there, else a *seam*. |x| makes a seam in a blend that ignores it
+//! near x = 0. A minimum of functions whose zeros stay apart makes neither. A search bisects the
+//! box, and excludes by interval arithmetic the cells where f has no zero, or where no choice both
+//! ties and affects f. In each cell that is left, Newton's method finds a place where f and the
+//! difference of the operands vanish, and the gradients on both sides of it are compared. The
+//! choices that crease the surface are then narrowed down to smaller cells, in which the creases
+//! are followed.
 
 use super::branches::{Base, BranchPart, Branches, ChoiceCondition, Holds, NodeRole, taken};
 use super::compiled::Compiled;
@@ -21,29 +21,29 @@ use crate::slices::pause;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Number of halvings of the box after which a place is looked for: 32 cells on every axis. Fewer
+/// Number of bisections of the box before Newton's method is tried: 32 cells on every axis. Fewer
 /// leave more edges open.
 const DEPTH: u32 = 15;
 
-/// Number of halvings after which a choice that can be neither excluded nor tested is left at what
-/// is known of it elsewhere; where that is nothing, it counts: 256 cells on every axis. Fewer leave
+/// Number of bisections after which a choice that can be neither excluded nor tested is judged by
+/// other cells; if none of them shows its kind, it counts: 256 cells on every axis. Fewer leave
 /// more edges open; more take longer.
 const DEEPEST: u32 = 24;
 
-/// Maximum number of cells of a search, as many as there are after [`DEPTH`] halvings. As many more
-/// are searched for the choices of which nothing is known by then.
+/// Maximum number of cells of a search, as many as there are after [`DEPTH`] bisections. Choices of
+/// unknown kind then get as many again.
 const MAX_CELLS: usize = 1 << DEPTH;
 
-/// Maximum number of cells that are visited to narrow creases down: those of a gyroid in its box
-/// take 50,000.
+/// Maximum number of cells that are visited to narrow creases down. The cells left are then
+/// returned as they are, wider.
 const MOST_VISITED: usize = 1 << 18;
 
-/// Maximum number of steps in a cell whose sides are looked at one by one: those of the three
-/// coordinates at a corner of a lattice, and of one more.
+/// Maximum number of steps in a cell whose combinations of sides are all bounded: three at a corner
+/// of a lattice, and one more.
 const MOST_OPEN_STEPS: usize = 4;
 
-/// Distance from the tie at which the gradients are taken, and a hundred times the error of its
-/// place; as a share of the diagonal of the box.
+/// Distance from the tie at which gradients are compared, and a hundred times the error of the
+/// tie's place; as a share of the diagonal of the box.
 const STEP: f64 = 1e-6;
 
 /// Kind of the surface where the operands of a choice are equal.
@@ -55,12 +55,12 @@ enum TieKind {
     Crease,
 }
 
-/// How far a choice counts for f in a cell.
+/// How far f depends on a choice in a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum TieReach {
-    /// Another choice or the box leaves the choice out.
+    /// Another choice or the box excludes it.
     Nowhere,
-    /// Only blends leave it out.
+    /// Only blends exclude it.
     Blended,
     Reached,
 }
@@ -73,15 +73,14 @@ struct TieCell {
 }
 
 impl Branches {
-    /// Cells of another box, no wider than `width`, outside of which the surface has no crease.
+    /// Cells of another box, no wider than `width`, that contain all creases in it.
     pub(super) async fn crease_cells(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
         let width_of_seams = (!self.apart.is_empty()).then_some(2.0 * width);
         let found = self.search_creases(values, bounds, width, width_of_seams).await;
         self.with_seams(values, found)
     }
 
-    /// The cells with creases, and those in which patches meet without an edge and are no single
-    /// patch.
+    /// The cells with creases, and those in which different patches meet without an edge.
     fn with_seams(&mut self, values: &[f64], TieCells { mut creases, seams, .. }: TieCells) -> Vec<Bounds> {
         let apart = self.apart.clone();
         if !apart.is_empty() {
@@ -93,10 +92,10 @@ impl Branches {
         creases
     }
 
-    /// Cells of the box, no wider than `width`, outside of which the surface of a function has no
-    /// crease, and the branches of the function, joined to patches; none if no choice makes a
-    /// crease. Products are told by their factors if these cross; else floors, folds and ridges are
-    /// choices.
+    /// Cells of the box, no wider than `width`, that contain all creases of the surface of a
+    /// function, and the branches of the function, joined into patches; empty if no choice makes a
+    /// crease. Products are split into factors if these cross; otherwise floors, folds and ridges
+    /// are choices.
     pub(super) async fn found_in(
         f: &Compiled,
         values: &[f64],
@@ -132,7 +131,7 @@ impl Branches {
         if is_smooth && !self.has_limits() { Vec::new() } else { self.with_seams(values, found) }
     }
 
-    /// Takes the branches of a surface in a box as those that meet in creases there.
+    /// Records that the branches of a surface in a box meet in creases there.
     fn crease(&mut self, values: &[f64], bounds: &Bounds) {
         self.factors.clear();
         for number in self.within(values, bounds).unwrap_or_default() {
@@ -147,8 +146,8 @@ impl Branches {
         }
     }
 
-    /// Cells of a box outside of which f has no crease, and no seam if these are asked for. There
-    /// are none if f has no choices that make creases, or is a product whose factors do not cross
+    /// Cells of a box that contain all creases of f, and all seams if `width_of_seams` is given.
+    /// Empty if f has no choices that make creases, or is a product whose factors do not cross
     /// there.
     async fn search_creases(
         &mut self,
@@ -175,7 +174,7 @@ impl Branches {
         };
         let mut kinds = search(&around).kinds(&choices).await;
         let search = search(bounds);
-        // The choices of products stand and fall together.
+        // Either all products are split into factors, or none.
         if self.products.iter().any(|&id| kinds[id as usize] == Some(TieKind::Crease)) {
             self.products.iter().for_each(|&id| kinds[id as usize] = Some(TieKind::Crease));
         } else if !self.products.is_empty() {
@@ -206,15 +205,16 @@ struct TieCells {
     tied: Option<Vec<Id>>,
 }
 
-/// f where a choice is tied: functions that are f where the choice is taken and its operands are
-/// equal. Their bounds are closer than those of f, and all must hold zero where the choice is tied
-/// on the surface.
+/// f on the tie of a choice: functions that equal f where the choice is reached and its operands
+/// are equal. Their bounds are tighter than those of f, and all must contain zero where the surface
+/// crosses the tie.
 ///
-/// |f| − t/2 |∇f| is the greater of f − t/2 |∇f| and −f − t/2 |∇f|. Where both are equal it is −t/2 |∇f|, which has no zero.
+/// |f| − t/2 |∇f| is the greater of f − t/2 |∇f| and −f − t/2 |∇f|. Where both are equal it is −t/2
+/// |∇f|, which has no zero.
 struct Tie {
     choice: Id,
-    /// f with the first operand in the place of the choice, with the second one, and with what is
-    /// half of their sum.
+    /// f with the choice replaced by its first operand, by its second one, and by half of their
+    /// sum.
     roots: Vec<Id>,
     /// The nodes that the roots need and f does not, in the order of the graph.
     nodes: Vec<Id>,
@@ -226,7 +226,7 @@ fn ties_of(base: &mut Base, part: &BranchPart, choices: &[Id], values: &[f64]) -
     for &choice in choices {
         let tied = match base.graph.node(choice) {
             Node::Unary(Unary::Abs, _) => vec![base.graph.constant(0.0)],
-            // Whole numbers that follow each other are nowhere equal.
+            // Successive whole numbers are nowhere equal.
             Node::Select(_, _, _, a, b) if base.is_step(choice) => vec![a, b],
             Node::Binary(_, a, b) | Node::Smin(_, a, b, _) | Node::Select(_, _, _, a, b) => {
                 vec![a, b, base.graph.combination([(a, 0.5), (b, 0.5)])]
@@ -253,14 +253,14 @@ impl Base {
         }
     }
 
-    /// The root of a part with another node in the place of a choice. Of choices above it that hang
-    /// on this one alone, the operand that leads to it is taken.
+    /// The root of a part with a choice replaced by another node. Choices on the only path up from
+    /// it take the operand on that path.
     fn root_with(&mut self, part: &BranchPart, choice: Id, other: Id) -> Id {
         let mut uses = vec![0_u32; self.graph.len()];
         part.nodes.iter().for_each(|&id| self.graph.node(id).operands(|operand| uses[operand as usize] += 1));
         let mut map: Vec<Id> = (0..self.graph.len() as Id).collect();
         map[choice as usize] = other;
-        // The last node of the only way up from the choice, as far as that has been followed.
+        // The last node, so far, of the only path up from the choice.
         let mut last = Some(choice);
         for &id in part.nodes.iter().filter(|&&id| id > choice) {
             let new = |operand: Id| map[operand as usize];
@@ -283,7 +283,7 @@ impl Base {
 #[derive(Default)]
 struct TieScratch {
     ranges: Vec<interval::Row<1>>,
-    /// The bounds with each step that is open in the cell taken on one side.
+    /// The bounds with each step that crosses the cell fixed to one side.
     stepped: Vec<interval::Row<1>>,
     reaches: Vec<TieReach>,
 }
@@ -302,14 +302,14 @@ struct TieSearch<'a> {
 }
 
 impl TieSearch<'_> {
-    /// For each node its kind, if it is one of the `choices` and tied somewhere on the surface: it
-    /// makes a seam or a crease there.
+    /// For each node seam or crease, if it is one of the `choices` and tied somewhere on the
+    /// surface.
     async fn kinds(&self, choices: &[Id]) -> Vec<Option<TieKind>> {
         let mut kinds = vec![None; self.part.root as usize + 1];
         let mut open = vec![TieCell { bounds: *self.bounds, depth: 0, choices: choices.to_vec() }];
         let (mut scratch, mut jets) = (TieScratch::default(), Vec::new());
         let (mut left, mut is_extended) = (MAX_CELLS, false);
-        // Those of which nothing can be said in some cell.
+        // Choices that some cell leaves undecided.
         let mut doubted = Vec::new();
         while let Some(mut cell) = open.pop() {
             cell.choices.retain(|&id| kinds[id as usize] != Some(TieKind::Crease));
@@ -317,8 +317,8 @@ impl TieSearch<'_> {
                 continue;
             }
             if left == 0 {
-                // What is known by now is taken for all of the surface; the rest of the box is
-                // searched for the others.
+                // A kind known by now holds for all of the surface; the rest of the box is searched
+                // for the other choices.
                 if is_extended {
                     doubted.append(&mut cell.choices);
                     continue;
@@ -363,14 +363,14 @@ impl TieSearch<'_> {
         kinds
     }
 
-    /// Kind of a choice for which no place is found anywhere. A product stays one unless its
-    /// factors cross: as one it shows where they touch.
+    /// Kind of a choice for which no place is found anywhere. A product is split only if its
+    /// factors cross: unsplit, it shows where they touch.
     fn kind_in_doubt(&self, id: Id) -> TieKind {
         if self.products.contains(&id) { TieKind::Seam } else { TieKind::Crease }
     }
 
-    /// Cells no wider than `width`, but for those at the end of a long search, in which one of
-    /// these choices may be tied on the surface with this reach at least.
+    /// Cells in which one of these choices may be tied on the surface with at least this reach.
+    /// They are no wider than `width`, except at the end of a long search.
     async fn cells(&self, choices: &[Id], least: TieReach, width: f64) -> Vec<Bounds> {
         let (mut scratch, mut found) = (TieScratch::default(), Vec::new());
         let mut open = if choices.is_empty() { Vec::new() } else { vec![*self.bounds] };
@@ -519,7 +519,7 @@ impl TieSearch<'_> {
             (of(self.part.root), tie)
         };
         let mut best = None;
-        // Off the planes of symmetry, on which other choices may be tied.
+        // Starts off the planes of symmetry, where other choices may be tied.
         for start in cell.spread(2) {
             let mut p = start;
             for _ in 0..STEPS {

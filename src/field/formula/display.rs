@@ -53,7 +53,7 @@ pub(super) fn node(graph: &Graph, id: Id, parameters: &[Parameter]) -> String {
     plain(&tree(graph, id, parameters))
 }
 
-/// The expression of a node of a graph, which is of no text.
+/// The expression of a node of a graph, without spans.
 fn tree(graph: &Graph, id: Id, parameters: &[Parameter]) -> Expr {
     let of = |id: Id| tree(graph, id, parameters);
     let with = |kind: ExprKind| Expr { kind, span: 0..0 };
@@ -120,7 +120,7 @@ pub(super) fn plain_equation(equation: &Equation) -> String {
         write(&mut out, &definition.body);
         out.push_str("; ");
     }
-    // A lone name before the `=` may be read as that of the function.
+    // A lone name before the `=` may be read as the function's name.
     let is_lone = matches!(equation.left.kind, ExprKind::Parameter(_) | ExprKind::Constant(_));
     if equation.looks_like_definition() || is_lone && equation.right.is_some() {
         out.push('(');
@@ -185,7 +185,7 @@ fn write(out: &mut String, expr: &Expr) {
             }
         }
         ExprKind::Power(base, exponent) => {
-            // `E^` may be meant for Euler's number, which is refused.
+            // `E^` is refused: it may be meant for Euler's number.
             let is_e = matches!(&base.kind, ExprKind::Parameter(name) if name == "E");
             if is_e {
                 out.push_str("(E)");

@@ -1,15 +1,14 @@
-//! Names of other languages and books: functions that are called otherwise there, modules and
-//! vectors.
+//! Names from other languages and books: functions with other names there, modules and vectors.
 
 use super::ast::{Constant, Function};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::token::{Spanned, Token, slice};
 
-/// The places of a call's arguments in [`call_elsewhere`]: the first and the second, with their
-/// names in messages. No formula has these characters.
+/// Placeholders for the first and the second argument in [`call_elsewhere`], with their names in
+/// messages. No formula has these characters.
 const PLACES: [(char, &str); 2] = [('①', "a"), ('②', "b")];
 
-/// The function that `name` is, with brackets behind it or without.
+/// The function that `name` means, with or without brackets after it.
 pub(super) fn function(name: &str) -> Option<Function> {
     let name = match name {
         "sgn" | "signum" => "sign",
@@ -80,7 +79,7 @@ pub(super) fn called(name: &str, bracket: char) -> Option<Called> {
     }))
 }
 
-/// How a call of `name` is written here, if there is no such function; several ways with different
+/// How to write a call of `name`, which is no function here; several ways if it has several
 /// meanings.
 fn call_elsewhere(name: &str) -> Option<&'static [&'static str]> {
     Some(match name {
@@ -114,14 +113,14 @@ fn call_elsewhere(name: &str) -> Option<&'static [&'static str]> {
     })
 }
 
-/// Functions of other languages that have no place here. No other name is suggested for them.
+/// Functions of other languages without a counterpart here; no name is suggested for them.
 const UNKNOWN: &[&str] = &[
     "gamma", "tgamma", "lgamma", "beta", "zeta", "besselj", "bessely", "airy", "nthroot", "surd", "sum",
     "prod", "mean", "diff", "noise", "snoise", "perlin", "rand", "random", "hash", "real", "imag", "conj",
     "arg", "sigmoid", "softplus", "relu", "any", "all",
 ];
 
-/// Functions that make grids and pictures, in small letters.
+/// Functions that make grids and pictures, in lower case.
 const PROGRAM: &[&str] = &[
     "meshgrid",
     "ndgrid",
@@ -157,12 +156,12 @@ const PROGRAM: &[&str] = &[
     "splot",
 ];
 
-/// Whether `name` is that of a function that makes grids or pictures.
+/// Whether `name` is a function that makes grids or pictures.
 pub(super) fn is_program(name: &str) -> bool {
     PROGRAM.contains(&name.to_ascii_lowercase().as_str())
 }
 
-/// The error for what is written in a function that makes grids or pictures.
+/// The error for a formula inside a call that makes grids or pictures.
 pub(super) fn formula_alone(name: &str, span: core::ops::Range<usize>) -> FormulaError {
     FormulaError::new(ErrorKind::UnknownFunction, span, format!("Type the formula alone, without `{name}`"))
 }
@@ -184,8 +183,7 @@ pub(super) fn is_vector(name: &str) -> bool {
 pub(super) const NO_VECTORS: &str =
     "There are no vectors: write coordinates, such as `hypot(x, z)` for the length of (x, z)";
 
-/// Whether a call of `name` means something elsewhere, so that `name` is hardly that of a
-/// definition of f.
+/// Whether `name` is a function in another language, and so hardly the name of a defined f.
 pub(super) fn is_elsewhere(name: &str) -> bool {
     let lower = name.to_ascii_lowercase();
     called(name, '(').is_some()
@@ -211,8 +209,8 @@ pub(super) fn logarithm(name: &str, span: core::ops::Range<usize>) -> Option<For
     Some(error.choose(choices.iter().map(|&choice| choice.to_owned())))
 }
 
-/// The error for a call that is written otherwise here: that of the name which is token `at`,
-/// before a bracket. None for the call of another function.
+/// The error for a call that is written differently here, of the name at token `at` before a
+/// bracket; none for other calls.
 pub(super) fn call_error(text: &str, tokens: &[Spanned], at: usize) -> Option<FormulaError> {
     let Spanned { token: Token::Name(name), span } = &tokens[at] else { return None };
     let error = |message: String| FormulaError::new(ErrorKind::UnknownFunction, span.clone(), message);
@@ -263,8 +261,8 @@ pub(super) fn call_error(text: &str, tokens: &[Spanned], at: usize) -> Option<Fo
     })
 }
 
-/// The arguments in the bracket that token `open` opens, as they are written, and the token that
-/// closes it. None without a bracket; no arguments where it is not closed.
+/// The arguments, as written, in the bracket that token `open` opens, and the token that closes it.
+/// None without a bracket; no arguments if it is not closed.
 fn arguments<'a>(text: &'a str, tokens: &[Spanned], open: usize) -> Option<(Vec<&'a str>, usize)> {
     let mut depth = 0_usize;
     let mut list = Vec::new();
@@ -295,8 +293,8 @@ fn as_operand(argument: &str) -> String {
     if is_one { argument.to_owned() } else { format!("({argument})") }
 }
 
-/// The error for components of a vector, as in `p.x` and `length(p.xz)`: the point stands at
-/// `point..point + 1` after a name. None for anything else.
+/// The error for components of a vector, as in `p.x` and `length(p.xz)`, where byte `point` is the
+/// point after a name; none for anything else.
 pub(super) fn component_error(text: &str, tokens: &[Spanned], point: usize) -> Option<FormulaError> {
     let [before @ .., Spanned { token: Token::Name(name), span }] = tokens else { return None };
     let components: String = text.get(point + 1..)?.chars().take_while(|c| c.is_alphanumeric()).collect();
@@ -319,7 +317,7 @@ pub(super) fn component_error(text: &str, tokens: &[Spanned], point: usize) -> O
     Some(if is_length || apart.len() == 1 { error.suggest(written) } else { error })
 }
 
-/// Whether `name` is that of a module whose functions are written `np.sin` or `std::sin`.
+/// Whether `name` is a module, whose functions are written `np.sin` or `std::sin`.
 pub(super) fn is_module(name: &str) -> bool {
     matches!(
         name,

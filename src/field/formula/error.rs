@@ -46,7 +46,7 @@ pub enum FormulaErrorKind {
     NotFinite,
     /// A declared parameter has an unusable name, range or value.
     BadParameter,
-    /// A formula beside a model from points does not use it, or otherwise than as an operand.
+    /// A formula for a model from points does not use the model as an operand.
     ModelUse,
 }
 
@@ -71,7 +71,7 @@ pub struct FormulaError {
     pub name: Option<String>,
 }
 
-/// A formula in which every mistake of a kind is corrected.
+/// A formula with every mistake of one kind corrected.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Mended {
@@ -82,7 +82,7 @@ pub struct Mended {
 }
 
 impl FormulaError {
-    /// Error for a condition in the place of a number.
+    /// Error for a condition used as a number.
     pub(super) fn misplaced_condition(span: &Range<usize>) -> Self {
         let message = "A comparison stands in the condition of a choice alone: `if(x < 1, a, b)`";
         Self::new(FormulaErrorKind::UnexpectedSymbol, span.clone(), message)

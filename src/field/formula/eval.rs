@@ -14,15 +14,15 @@ use core::cell::Cell;
 use core::iter::repeat;
 use glam::Vec3;
 
-/// Maximum number of [`Lanes`] in a block: those of a batch.
+/// Maximum number of [`Lanes`] in a block: one batch.
 pub(super) const BLOCK: usize = BATCH / LANES;
 
 /// Intended maximum size of the register file in bytes: half of a small first-level cache.
 const FILE_BYTES: usize = 16 * 1024;
 
-/// Evaluates `program` at `points`, and calls `store` with the index of each eighth point and the
-/// first `N` results at it and at those that follow. `file` is the memory of the registers, which
-/// grows as needed and is reused.
+/// Evaluates `program` at `points`. For every eight points, `store` gets the index of the first and
+/// the first `N` results at all of them. `file` is the memory of the registers, which grows as
+/// needed and is reused.
 pub(super) fn run<const N: usize>(
     program: &Program,
     file: &mut Vec<Lanes>,
@@ -122,12 +122,10 @@ fn sine_cosine(registers: &RegisterCells<'_>, i: &Instruction) {
 }
 
 /// Largest exponent of a parameter that is evaluated by products, which are faster than exp(b ln
-/// a). They are as accurate: eight factors err by seven roundings, which is 4·10⁻⁷ at most; thirty
-/// were found to err by 1.1·10⁻⁶.
+/// a). They are as accurate: eight factors err by seven roundings, which is 4·10⁻⁷ at most.
 const MAX_SMALL_INTEGER: f32 = 8.0;
 
-/// `exponent` as an integer, if it is a small one other than 0. The exponents of parameters often
-/// are.
+/// `exponent` as an integer, if it is small and not 0, as the exponents of parameters often are.
 fn small_integer(exponent: f32) -> Option<i32> {
     let small =
         exponent != 0.0 && exponent.abs() <= MAX_SMALL_INTEGER && functions::floor(exponent) == exponent;

@@ -11,19 +11,19 @@ use crate::slices;
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
-/// A formula at work, or one of its smooth branches.
+/// Evaluates a formula or one of its smooth branches.
 pub(super) struct FormulaEvaluator<'a> {
     formula: &'a Formula,
     frame: Frame,
-    /// The compiled function that is evaluated: a branch, or the one in which factors of a product
-    /// are choices. Without one it is f itself.
+    /// The compiled function that is evaluated instead of f: a branch, or f with the factors of
+    /// products as choices.
     instead: Option<Arc<Compiled>>,
     /// Whether one branch is evaluated.
     is_branch: bool,
-    /// The evaluator of the branch that was asked for last.
+    /// The evaluator of the branch that was used last.
     branch: Option<Box<FormulaEvaluator<'a>>>,
     registers: Vec<Lanes>,
-    /// Values of the nodes in double precision, with derivatives up to the second, with first ones,
+    /// Values of the nodes in double precision, with first and second derivatives, with first ones,
     /// and alone.
     jets: scalar::JetScratch,
     slopes: scalar::Jets<0>,
@@ -35,14 +35,14 @@ pub(super) struct FormulaEvaluator<'a> {
 
 /// Memory of the bounds of a function.
 struct FormulaBounds {
-    /// The factors of f; where the surface has creases those of each of its branches, and where
-    /// choices keep sheets apart those of each sheet.
+    /// The factors of f; if the surface has creases, those of each branch; if choices keep sheets
+    /// apart, those of each sheet.
     factors: Vec<Factor>,
     /// Boxes in the coordinates of the formula.
     boxes: Vec<Bounds>,
 }
 
-/// The function of which something is a factor.
+/// The function that a factor belongs to.
 #[derive(Clone, Copy)]
 enum FactorOf {
     /// The function that is evaluated.
@@ -204,7 +204,7 @@ impl Evaluator for FormulaEvaluator<'_> {
         let (compiled, frame) = (active(self.formula, &self.instead), self.frame);
         let outputs = value.chunks_mut(ABREAST).zip(gradient.chunks_mut(ABREAST));
         for (points, (value, gradient)) in points.chunks(ABREAST).zip(outputs) {
-            // The last ones are filled up with their first point.
+            // The last group is padded with its first point.
             let place = |k: usize| frame.place(points.get(k).unwrap_or(&points[0]).as_dvec3());
             let results = compiled.first_order(core::array::from_fn(place), &mut self.abreast);
             for ((value, gradient), result) in value.iter_mut().zip(gradient).zip(results).take(points.len())
@@ -230,7 +230,7 @@ impl Evaluator for FormulaEvaluator<'_> {
 }
 
 impl Pieces for FormulaEvaluator<'_> {
-    /// The numbers are the same whatever was asked before, but for those beyond the first 256.
+    /// The numbers do not depend on earlier requests, except those beyond the first 256.
     fn label(&mut self, p: DVec3) -> u32 {
         let place = self.frame.place(p);
         self.on_branches(|branches, values| branches.patch_at(values, place))

@@ -1,5 +1,5 @@
-//! Functions of place that are no surfaces, such as a thickness or a spacing: expressions in the
-//! coordinates and in names that are given.
+//! Functions of position that are not surfaces, such as a thickness or a spacing: expressions in
+//! the coordinates and in given names.
 
 use super::ast::Equation;
 use super::compiled::Compiled;
@@ -11,22 +11,22 @@ use super::{Formula, Parameter, WrittenFormula, repair, syntax};
 pub(crate) struct Noun {
     /// Its name: `thickness`.
     pub(crate) name: &'static str,
-    /// The beginning of what is said of an unknown name, up to the name.
+    /// Beginning of the message about an unknown name, up to the name.
     pub(crate) unknown: &'static str,
-    /// What it is made of beside x, y and z.
+    /// What it may use besides x, y and z.
     pub(crate) others: &'static str,
     /// Two examples, and an alternative to a condition in braces.
     pub(crate) examples: [&'static str; 3],
 }
 
 impl Formula {
-    /// The function of an expression in x, y, z and `parameters`, to be evaluated as it is written.
-    /// Its text is that of the expression.
+    /// The function of an expression in x, y, z and `parameters`, evaluated as it is written;
+    /// `text` becomes its text.
     ///
     /// # Errors
     ///
     /// Any of [`FormulaErrorKind`](super::FormulaErrorKind), with its span in bytes of `text`:
-    /// `UnknownName` for a name that is none of the parameters.
+    /// `UnknownName` for a name that is not among `parameters`.
     pub(crate) fn expression(
         text: &str,
         parameters: &[Parameter],
@@ -42,7 +42,7 @@ impl Formula {
     }
 }
 
-/// The syntax tree of an expression, whose names are those of parameters.
+/// The syntax tree of an expression in which every name is a parameter.
 pub(super) fn expression(
     text: &str,
     parameters: &[Parameter],
@@ -61,7 +61,7 @@ pub(super) fn expression(
                 format!("A {what} is a number such as `{number}`, or a formula such as `{formula}`");
             FormulaError { message, ..error }
         }
-        // What the name may be meant for is suggested, but it cannot become a slider.
+        // A correction is suggested, but the name cannot become a slider.
         (_, Some(name)) => FormulaError { message: no_parameter(name), name: None, ..error },
         _ => error,
     })?;

@@ -1,7 +1,7 @@
 //! Graph of a formula in static single-assignment (SSA) form.
 //!
-//! It is a list of operations in which operands precede their uses. Equal operations are one node
-//! (hash-consing), and constants are folded.
+//! The graph is a list of operations in which operands precede their uses. Equal operations are one
+//! node (hash-consing), and constants are folded.
 
 use super::operations::{Binary, Unary};
 use core::ops::Mul;
@@ -25,8 +25,8 @@ pub(super) enum Node {
     /// The third value where the first is at most the second, or, with `false`, where it is not;
     /// else 0.
     If(bool, Id, Id, Id),
-    /// The third value where the first is at most the second, else the fourth; whether it is known
-    /// that the last two are equal where the first two are.
+    /// The third value where the first is at most the second, else the fourth; `true` if the last
+    /// two are known to be equal where the first two are.
     Select(bool, Id, Id, Id, Id),
 }
 
@@ -130,13 +130,13 @@ pub(super) struct Graph {
     nodes: Vec<Node>,
     /// Coordinates that each node depends on: bit k stands for coordinate k.
     axes: Vec<u8>,
-    /// The nodes in the order of `Node`, among which each is found.
+    /// The nodes in the order of `Node`, for binary search.
     sorted: Vec<Id>,
     /// Whether a product with the constant 0 folds to 0. It does in derivatives, where 0 means
     /// independence of the coordinate. It does not in the formula itself: `0*ln(x)` is undefined
     /// for negative x.
     zero_annihilates: bool,
-    /// Whether sums stay in the order in which they are asked for.
+    /// Whether sums keep the order in which they are written.
     keeps_sums: bool,
 }
 
@@ -163,7 +163,7 @@ impl Graph {
         self.axes(id) == 0
     }
 
-    /// The summands of a node, each once with how often it stands there, in the order of the graph.
+    /// The summands of a node, each once with its coefficient, in the order of the graph.
     pub(super) fn summands(&self, root: Id) -> Vec<(Id, f64)> {
         self.gathered(&[(root, 1.0)])
     }
@@ -182,7 +182,7 @@ impl Graph {
         (0..).zip(shares).filter(|&(_, share)| share != 0.0).collect()
     }
 
-    /// The node of a weighted sum, in which what its terms share or what cancels stands once.
+    /// The node of a weighted sum with like terms collected.
     pub(super) fn combination(&mut self, terms: [(Id, f64); 2]) -> Id {
         let mut sum = self.constant(0.0);
         for (id, share) in self.gathered(&terms) {
@@ -193,8 +193,8 @@ impl Graph {
         sum
     }
 
-    /// The functions whose zeros together are those of `root`, each once; none if it depends on no
-    /// coordinate.
+    /// The functions whose zeros together are the zeros of `root`, each once; none if `root`
+    /// depends on no coordinate.
     ///
     /// A product is taken apart into its factors, a power into its base, and a function that
     /// vanishes only at 0 into its argument.
@@ -228,8 +228,8 @@ impl Graph {
         factors
     }
 
-    /// The functions that are zero together where `root` is, a sum of even powers or a root of one,
-    /// or the negative of such a sum; none if it is none.
+    /// If `root` is a sum of even powers, a root of one, or the negative of such a sum: the
+    /// functions that vanish together where it does. Otherwise none.
     pub(super) fn squares(&self, mut root: Id) -> Vec<Id> {
         if let Node::Unary(Unary::Neg, sum) = self.node(root) {
             root = sum;
@@ -252,7 +252,7 @@ impl Graph {
         squares
     }
 
-    /// The function of a surface, and that whose zeros limit it; none if nothing does.
+    /// The function of a surface and the function that limits it; none without limits.
     pub(super) fn limited(&self, root: Id) -> Option<[Id; 2]> {
         let Node::Binary(Binary::Max, f, limit) = self.node(root) else { return None };
         let Node::Unary(Unary::Limit, limit) = self.node(limit) else { return None };
@@ -274,8 +274,8 @@ impl Graph {
         (0..).zip(needed).filter(|&(_, is_needed)| is_needed).map(|(id, _)| id).collect()
     }
 
-    /// Evaluates `nodes` at a point: `results` gets the value of each at its index. The operands of
-    /// each have to be among them.
+    /// Evaluates `nodes` at a point, and writes the value of each to `results` at its index. The
+    /// operands of each must be among the nodes.
     pub(super) fn evaluate(&self, nodes: &[Id], parameters: &[f64], point: DVec3, results: &mut Vec<f64>) {
         let point = point.to_array();
         results.resize(self.nodes.len().max(results.len()), 0.0);
@@ -307,7 +307,7 @@ impl Graph {
         self.place(node).ok().map(|at| self.sorted[at])
     }
 
-    /// Place of the node among the sorted ones, or that where it belongs.
+    /// Place of the node among the sorted ones, or the place to insert it at.
     fn place(&self, node: Node) -> Result<usize, usize> {
         self.sorted.binary_search_by(|&id| self.node(id).cmp(&node))
     }
@@ -355,7 +355,7 @@ impl Graph {
         map[root as usize]
     }
 
-    /// A graph of `outputs` with their indices in it: `write` adds each node that they need, in the
+    /// A graph of `outputs`, and their indices in it: `write` adds each node that they need, in the
     /// same order.
     pub(super) fn rewritten(
         &self,
@@ -427,8 +427,7 @@ impl Graph {
             let sum = self.add(u, b);
             return self.add(v, sum);
         }
-        // (u − v) + w = (u + w) − v likewise: the faces of boxes that lie in one plane are then one
-        // function.
+        // (u − v) + w = (u + w) − v likewise: coplanar faces of boxes become one function.
         if self.is_uniform(b)
             && let Node::Binary(Binary::Sub, u, v) = self.node(a)
             && self.is_uniform(u)
@@ -636,13 +635,13 @@ impl Graph {
         (width, self.binary(Binary::Max, below, minus_one))
     }
 
-    /// The node of `value` where a ≤ b, or, unless `at_most`, where it is not; and of 0 elsewhere.
+    /// The node that is `value` where a ≤ b, or where a > b unless `at_most`, and 0 elsewhere.
     pub(super) fn when(&mut self, at_most: bool, a: Id, b: Id, value: Id) -> Id {
         if self.is(value, 0.0) { value } else { self.folded(Node::If(at_most, a, b, value)) }
     }
 
-    /// The node of `u` where a ≤ b and of `v` elsewhere: a minimum, a maximum or an absolute value
-    /// where it is one, whose continuity is known.
+    /// The node that is `u` where a ≤ b and `v` elsewhere. If it is a minimum, a maximum or an
+    /// absolute value it becomes that node: those are continuous.
     pub(super) fn select(&mut self, a: Id, b: Id, u: Id, v: Id) -> Id {
         if u == v {
             return u;
@@ -680,7 +679,7 @@ impl Graph {
             let node = self.node(id).mapped(|operand| map[operand as usize]);
             map[id as usize] = match node {
                 _ if node == self.node(id) => id,
-                // The choices in it are not looked into again.
+                // Inner choices are not simplified again.
                 Node::Select(..) => tied.intern(node),
                 _ => tied.built(node),
             };

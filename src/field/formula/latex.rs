@@ -1,4 +1,4 @@
-//! The commands of LaTeX that a formula may have, as it is pasted from a text.
+//! LaTeX commands that a pasted formula may contain.
 
 use super::token::{Bar, Comparison, Token};
 
@@ -13,7 +13,7 @@ pub(super) enum LatexCommand {
     Word,
     /// The sign that two sides are not equal.
     Unequal,
-    /// No meaning, nor has the group in braces that follows.
+    /// No meaning; skipped with the group in braces that follows.
     Label,
     /// A token of the formula language.
     Token(Token),
@@ -56,7 +56,7 @@ const GREEK: &[(&str, &str)] = &[
     ("Omega", "Ω"),
 ];
 
-/// The Greek letter with this name, but for π, τ and φ, which are constants.
+/// The Greek letter with this name, except π, τ and φ, which are constants.
 pub(super) fn greek(name: &str) -> Option<&'static str> {
     GREEK.iter().find(|(known, _)| *known == name).map(|&(_, letter)| letter)
 }

@@ -63,8 +63,8 @@ fn continues_name(c: char) -> bool {
 }
 
 /// The names that parameters may have, as a regular expression of JavaScript: a letter, then
-/// letters, digits and `_`. Names of coordinates, constants and functions match it, and are refused
-/// all the same.
+/// letters, digits and `_`. Names of coordinates, constants and functions match it too, but are
+/// refused.
 #[must_use]
 pub fn name_pattern() -> String {
     let letters: String = LETTERS.iter().map(|(first, last)| format!("{first}-{last}")).collect();
@@ -77,7 +77,7 @@ pub(super) fn is_name(name: &str) -> bool {
     letters.next().is_some_and(starts_name) && letters.all(continues_name)
 }
 
-/// Tokens of `text`, the last of which is `End`.
+/// Tokens of `text`, ending with `End`.
 ///
 /// A name in `declared` stays one token even where a run of coordinates such as `xy` would
 /// otherwise be a product.
@@ -154,7 +154,7 @@ impl Lexer<'_> {
             }
             ('/', Some('*')) => return self.comment(start, ['*', '/']),
             ('(', Some('*')) => return self.comment(start, ['*', ')']),
-            // The element by element operators of MATLAB, and its sign that a line goes on.
+            // MATLAB's element-wise operators, and its sign for a continued line.
             ('.', Some('^' | '*' | '/')) => return Ok(()),
             ('.', Some('.')) if self.get(self.next + 1) == Some('.') => {
                 self.skip_line();
@@ -195,7 +195,7 @@ impl Lexer<'_> {
             ('&', _) if self.text.contains('\\') => return Ok(()),
             ('&' | '∧', _) => Token::And,
             ('∨', _) => Token::Or,
-            // The sign around a formula in a text.
+            // Encloses a formula in LaTeX.
             ('$', _) => return Ok(()),
             ('\\', _) => return self.command(start),
             ('0'..='9' | '.', _) => Token::Number(self.number(start)?),
@@ -255,9 +255,9 @@ impl Lexer<'_> {
         })
     }
 
-    /// The constant of Maxima, such as `%pi`, whose sign is character `start`. After an operand the
-    /// sign is that of a remainder; at the beginning of a line it begins a comment, unless an
-    /// operator follows the name.
+    /// The constant of Maxima, such as `%pi`, whose `%` is character `start`. After an operand `%`
+    /// is the remainder; at the beginning of a line it begins a comment, unless an operator follows
+    /// the name.
     fn constant_of_maxima(&self, start: usize) -> Option<String> {
         let length = self.characters[start + 1..].iter().take_while(|(_, c)| continues_name(*c)).count();
         let name = self.written(start + 1, start + 1 + length);
@@ -272,8 +272,8 @@ impl Lexer<'_> {
         (is_constant && !is_comment && (!is_operand || self.begins_line(start))).then_some(name)
     }
 
-    /// Skips the comment that `//` at character `start` begins. What might be the divisor of a
-    /// whole division, as in Python, is an error.
+    /// Skips the comment that `//` at character `start` begins. If its text could be the divisor of
+    /// a floor division, as in Python, that is an error.
     fn remark(&mut self, start: usize) -> Result<(), FormulaError> {
         let begins_line = self.begins_line(start);
         self.skip_line();
@@ -304,8 +304,8 @@ impl Lexer<'_> {
         Err(FormulaError::new(ErrorKind::UnexpectedEnd, self.span(start, start + 2), message))
     }
 
-    /// Consumes what follows the name of a module: the name of its member, as it is called here.
-    /// None if nothing follows.
+    /// Consumes the member that follows the name of a module, and returns the token of its name
+    /// here; none if nothing follows.
     fn member(&mut self, start: usize) -> Result<Option<Token>, FormulaError> {
         loop {
             let sign = match [self.get(self.next), self.get(self.next + 1)] {
@@ -520,7 +520,7 @@ impl Lexer<'_> {
         Ok(value)
     }
 
-    /// Whether a letter stands somewhere as a name of its own, not behind a number.
+    /// Whether a letter is used somewhere as a name of its own, not after a number.
     fn names(&self, letter: char) -> bool {
         let is_alone = |at: usize| {
             let before = at.checked_sub(1).and_then(|before| self.get(before));
@@ -552,7 +552,7 @@ impl Lexer<'_> {
     }
 }
 
-/// Error for a sign that two sides are not equal.
+/// Error for a sign such as `≠`.
 fn unequal(span: Range<usize>) -> FormulaError {
     let message =
         "A surface is where two sides are equal: write `=`; a condition compares by `<`, `<=`, `>` or `>=`";

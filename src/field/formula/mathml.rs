@@ -68,7 +68,7 @@ pub enum MathNode {
 }
 
 /// Content of the `math` element for an equation. A formula without `=` gets `= 0`. With
-/// definitions it is a table, of which the surface is the last row.
+/// definitions it is a table, and the surface is its last row.
 pub(super) fn equation(equation: &Equation) -> MathNode {
     let right = equation.right.as_ref().map_or_else(|| mn("0"), expression);
     let mut parts = vec![expression(&equation.left), mo("="), right];

@@ -10,9 +10,9 @@
 //! thousand, `2e` is twice Euler's number. Superscript digits, `−`, `×`, `·`, `÷`, `√`, `π`, `τ`,
 //! `φ` and full-width characters are accepted.
 //!
-//! A fraction of two numbers multiplies what stands beside it: `9/4y^2` is (9/4)y² and `1/2x` is
-//! (1/2)x. Beside any other divisor, and for what is a number itself, as in `1/2pi`, there are two
-//! readings, which the error offers.
+//! A fraction of two numbers multiplies the factor after it: `9/4y^2` is (9/4)y² and `1/2x` is
+//! (1/2)x. After any other divisor, or if the factor is itself a number, as in `1/2pi`, there are
+//! two readings, which the error offers.
 //!
 //! `if(c, a, b)` and `c ? a : b` choose by a condition: comparisons by `<`, `<=`, `>`, `>=`, joined
 //! by `and`, `or` and `not` (`&&`, `||`, `!`). `a % b` is `mod(a, b)`, with the sign of b.
@@ -22,11 +22,11 @@
 //! `r = hypot(x, y); (r - 1)^2 + z^2 = 0.1`, `f(a, b) = a^2 + b^2; f(x, y) = z`. Comments are
 //! `// …`, `# …`, `/* … */` and `(* … *)`.
 //!
-//! Other ways to write the same are read too: `|x|`, `**` and `==`, brackets of any kind, a
-//! function without brackets where there is one reading (`sin 2x`, `sin^2 x cos y`, but not `sin x
-//! y`), the head of a definition `f(x, y, z) = …`, what LaTeX has for all this (`\frac{1}{2}`,
-//! `\sqrt[3]{x}`, `\left|x\right|`, `\sin\theta`), and what programs write: `x.^2`, `np.sin(x)`,
-//! `Sin[x]`, `pow(x, 2.0f)`, `length(vec3(x, y, z))`, `lambda x, y, z: …`.
+//! Other notations are accepted too: `|x|`, `**` and `==`, brackets of any kind, a function without
+//! brackets where there is one reading (`sin 2x`, `sin^2 x cos y`, but not `sin x y`), the head of
+//! a definition `f(x, y, z) = …`, what LaTeX has for all this (`\frac{1}{2}`, `\sqrt[3]{x}`,
+//! `\left|x\right|`, `\sin\theta`), and what programs write: `x.^2`, `np.sin(x)`, `Sin[x]`, `pow(x,
+//! 2.0f)`, `length(vec3(x, y, z))`, `lambda x, y, z: …`.
 //!
 //! An unknown name becomes an *automatic* parameter, unless it looks like a misspelling, like
 //! functions written as one with their arguments, `xsinx`, or like the imaginary unit `i`. A text
@@ -121,12 +121,11 @@ use std::sync::Arc;
 use thickness::Sheet;
 
 /// Maximum length of a formula in bytes of UTF-8. Longer text is refused before it is parsed, so
-/// that the time that a typed character takes is bounded: a sum of this length is parsed and
-/// compiled in a millisecond, a product of five hundred factors in nine.
+/// that the time per typed character is bounded.
 pub const MAX_FORMULA_BYTES: usize = 4096;
 
-/// Maximum nesting of brackets, calls, signs and exponents. So deep a formula takes less than 256
-/// kB of stack, of the 1 MiB that there is in WebAssembly.
+/// Maximum nesting of brackets, calls, signs and exponents. The deepest formula takes less than 256
+/// kB of the 1 MiB of stack in WebAssembly.
 pub const MAX_DEPTH: usize = 64;
 
 /// Maximum number of operations of a formula: one for each byte, which only powers can exceed. An
@@ -168,9 +167,9 @@ impl Parameter {
 
 /// Field f(x, y, z) given by a formula.
 ///
-/// Copies share all that does not depend on the values of the parameters; [another
-/// value](Formula::with) compiles nothing but where it makes another function of the formula, as a
-/// smooth minimum of width 0 is one. The Hessian and the bounds are compiled when first asked for.
+/// Copies share everything that does not depend on the values of the parameters. [Another
+/// value](Formula::with) compiles nothing, unless it changes which function the formula is, as a
+/// smooth minimum of width 0 does. The Hessian and the bounds are compiled when first needed.
 ///
 /// ```
 /// use marching_particles::{Field, Formula};
@@ -197,8 +196,8 @@ pub struct Formula {
     scales: Scales,
     /// The graph of the surface, and its node, from which a solid is made.
     surface: Arc<(Graph, Id)>,
-    /// The solid that is sampled in place of the surface, if one is: a sheet of some thickness,
-    /// closed by a box or not.
+    /// The solid that is sampled instead of the surface, if any: made by a thickness, a closing
+    /// box, or both.
     solid: Solid,
     parameters: Vec<Parameter>,
     /// Values of `parameters`, as the compiled formula takes them.
@@ -222,8 +221,8 @@ struct WrittenFormula {
 impl Formula {
     /// The field of a formula, whose unknown names become parameters: see [`Formula::with`].
     ///
-    /// Powers and repeated factors stand once in what is evaluated, which has the same surface and
-    /// a gradient on it.
+    /// Powers and repeated factors are evaluated once: the surface is the same, and has a gradient
+    /// on it.
     ///
     /// # Errors
     ///
@@ -299,13 +298,13 @@ impl Formula {
         }
     }
 
-    /// Field of the same surface in the form that is sampled. Powers and repeated factors stand
-    /// once: u in place of u², √u or |u|. A solid ends where one of its functions has no value, and
-    /// what a cutter leaves of a face with which it lies flush is no part of it.
+    /// Field of the same surface in the form that is sampled. Powers and repeated factors are taken
+    /// once: u instead of u², √u or |u|. A solid ends where one of its functions is undefined, and
+    /// a face that is cut flush leaves no skin.
     ///
     /// The gradient of u² vanishes on the surface u = 0, so that there is no normal; the gradient
-    /// of u does not. Text, normal form and MathML remain those of the formula. A field without
-    /// all that is returned unchanged.
+    /// of u does not. Text, normal form and MathML stay as they are. A field without any of this is
+    /// returned unchanged.
     #[must_use]
     #[doc(hidden)]
     pub fn for_sampling(mut self) -> Self {
@@ -314,8 +313,8 @@ impl Formula {
         }
         self.is_regular = true;
         if let Some(simplified) = powers::without_powers(&self.written.equation)
-            // The simplified equation is shorter, so it meets no limit; if it did, the formula
-            // itself would still do.
+            // The simplified equation is shorter, so it exceeds no limit; if it did, the formula
+            // itself would be used.
             && let Ok(compiled) = Compiled::new(&simplified, &self.parameters)
         {
             self.simplified = Some(Arc::new(simplified));
@@ -333,9 +332,9 @@ impl Formula {
     }
 
     /// Field of the solid that the faces of a box close: max(f, x − `bounds.max[0]`,
-    /// `bounds.min[0]` − x, …), which is negative in the box where f is. It is to be sampled in a
-    /// larger box. The faces of the box are creases of the surface. Text and MathML remain those of
-    /// the formula, whose surface is no longer periodic.
+    /// `bounds.min[0]` − x, …), which is negative in the box where f is. Sample it in a larger box.
+    /// The faces of the box are creases of the surface, which is no longer periodic. Text and
+    /// MathML stay as they are.
     #[must_use]
     pub fn closed_by(mut self, bounds: &Bounds) -> Self {
         self.solid.closed = Some(*bounds);
@@ -343,17 +342,17 @@ impl Formula {
         self
     }
 
-    /// [`Formula::closed_by`], and opposite faces of the box are to be the same along every axis on
-    /// which it is a whole number of [periods](Formula::surface_periods) wide: [`Facts::unit_cell`]
-    /// says which.
+    /// Like [`Formula::closed_by`], with opposite faces of the box equal along every axis on which
+    /// it is a whole number of [periods](Formula::surface_periods) wide: [`Facts::unit_cell`] says
+    /// which.
     #[must_use]
     pub fn repeated_in(mut self, bounds: &Bounds) -> Self {
         self.solid.is_cell = true;
         self.closed_by(bounds)
     }
 
-    /// The period of the surface, or of the sheet around it, which no box closes, along each axis:
-    /// see [`Facts::periods`].
+    /// The period along each axis of the surface, or of the sheet around it, before a box closes
+    /// it: see [`Facts::periods`].
     #[must_use]
     pub fn surface_periods(&self) -> [Option<f64>; 3] {
         let (graph, root) = &*self.surface;
@@ -369,8 +368,7 @@ impl Formula {
 
     /// Field of the sheet of this thickness around the surface: |f| − t/2 |∇f|, which is negative
     /// where the distance from the surface is less than t/2 to first order. A box
-    /// [closes](Formula::closed_by) the sheet, not the solid. Text and MathML remain those of the
-    /// formula.
+    /// [closes](Formula::closed_by) the sheet, not the solid. Text and MathML stay as they are.
     #[must_use]
     pub fn thickened(mut self, thickness: f64) -> Self {
         self.solid.sheet = Some(Sheet::even(thickness));
@@ -379,8 +377,8 @@ impl Formula {
     }
 
     /// [`Formula::thickened`] by a thickness t(x, y, z), an expression in the coordinates and the
-    /// parameters of this formula: |f| − t/2 |∇f|, with t and ∇f of the same place. The sheet ends
-    /// in an edge where t falls to 0; there is none where t is negative or has no value.
+    /// parameters of this formula: |f| − t/2 |∇f|, with t and ∇f at the same point. The sheet ends
+    /// in an edge where t falls to 0, and is empty where t is negative or undefined.
     ///
     /// ```
     /// use marching_particles::{Bounds, Formula, Settings, sample};
@@ -421,7 +419,7 @@ impl Formula {
         self
     }
 
-    /// Thickness of the sheet that is sampled in place of the surface, see [`Formula::thickened`].
+    /// Thickness of the sheet that is sampled instead of the surface, see [`Formula::thickened`].
     #[must_use]
     pub fn thickness(&self) -> Option<&Thickness> {
         self.solid.sheet.as_ref().map(|sheet| &sheet.thickness)
@@ -433,15 +431,15 @@ impl Formula {
         self.solid.closed
     }
 
-    /// Whether the box that closes the solid is that of a cell, see [`Formula::repeated_in`].
+    /// Whether the closing box is a cell, see [`Formula::repeated_in`].
     pub(crate) fn is_cell(&self) -> bool {
         self.solid.closed.is_some() && self.solid.is_cell
     }
 
-    /// Compiles what the surface is made to, anew from f.
+    /// Compiles the solid made of the surface again, from f.
     fn make_solid(&mut self) {
         let (mut graph, mut f) = (*self.surface).clone();
-        // A box alone closes the solid behind the surface, which ends otherwise.
+        // A box alone closes the solid behind the surface, which needs no limits.
         let is_surface = self.solid.sheet.is_some() || self.solid.closed.is_none();
         self.scales = Scales::default();
         if self.is_regular

@@ -16,9 +16,9 @@ use std::sync::Arc;
 pub const MODEL: &str = "model";
 
 impl Formula {
-    /// The field of this formula, in which the parameter [`MODEL`] stands for another field: as an
-    /// operand of minima and maxima, also smooth ones, of absolute values, after a minus, and
-    /// beside a number that is added. Everything else in the formula has its edges as usual.
+    /// The field of this formula with another field for the parameter [`MODEL`]. The formula may
+    /// use it as an operand of minima and maxima, also smooth ones, and of absolute values, negate
+    /// it, and add a number to it. Edges in the rest of the formula are found as usual.
     ///
     /// # Errors
     ///
@@ -61,7 +61,7 @@ impl Formula {
     }
 }
 
-/// A formula whose operand the model is.
+/// A formula that has the model as an operand.
 struct Operands<'a> {
     formula: &'a Formula,
     graph: &'a Graph,
@@ -71,7 +71,7 @@ struct Operands<'a> {
 }
 
 impl Operands<'_> {
-    /// The field of a node; none if that uses the model in a way that no field stands for.
+    /// The field of a node; none if the node uses the model in an unsupported way.
     fn field(&self, id: Id) -> Option<Arc<dyn Field>> {
         if !self.uses[id as usize] {
             return Some(Arc::new(self.formula.part(self.graph, id)));

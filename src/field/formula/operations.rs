@@ -25,7 +25,7 @@ pub(crate) enum Unary {
     Acosh,
     Atanh,
     Erf,
-    /// The value itself, of a function whose zeros limit the surface and are no part of it.
+    /// The identity, for a function whose zeros limit the surface without being part of it.
     Limit,
 }
 
@@ -55,8 +55,8 @@ pub(super) fn sign(a: f64) -> f64 {
     }
 }
 
-/// a^b, or NaN if either operand is NaN, where `libm::pow` may give 1, or a power of −∞ is none, as
-/// other powers of negative numbers are, where it gives 0 or ∞.
+/// a^b. NaN if either operand is NaN, where `libm::pow` may give 1, and for a fractional power of
+/// −∞, as for other negative numbers, where it gives 0 or ∞.
 fn pow(a: f64, b: f64) -> f64 {
     let is_none = a == f64::NEG_INFINITY && libm::floor(b) != b;
     if is_none || a.is_nan() || b.is_nan() { f64::NAN } else { libm::pow(a, b) }
@@ -84,7 +84,7 @@ impl Unary {
             Self::Cosh => libm::cosh(a),
             Self::Tanh => libm::tanh(a),
             Self::Asinh => libm::asinh(a),
-            // Below 1, where there is none, `libm` is not bound to give NaN.
+            // `libm` need not give NaN below 1, where it is undefined.
             Self::Acosh if a < 1.0 => f64::NAN,
             Self::Acosh => libm::acosh(a),
             Self::Atanh => libm::atanh(a),

@@ -40,7 +40,7 @@ pub(super) struct Parser<'a> {
     /// Whether the innermost bracket around the next token is a bar, which a bar after an operand
     /// closes.
     pub(super) is_in_bars: bool,
-    /// Whether a comparison stands before the next token in its bracket, so that `||` is a logical
+    /// Whether a comparison precedes the next token in its bracket, so that `||` is a logical
     /// operator.
     pub(super) has_comparison: bool,
     /// Number of brackets around the next token.
@@ -67,7 +67,7 @@ pub(super) struct CallArguments {
     /// The commas between them that may be decimal ones: the token of each, and the argument after
     /// it.
     doubtful: Vec<(usize, usize)>,
-    /// Whether a comma that is none has no space after it.
+    /// Whether a comma that cannot be decimal has no space after it.
     is_tight: bool,
 }
 
@@ -195,11 +195,10 @@ impl<'a> Parser<'a> {
         Some(FormulaError::new(ErrorKind::DecimalComma, span, message).suggest(suggestion))
     }
 
-    /// Error for a comma between the arguments of a function that may be a decimal one, where
-    /// `takes` says which numbers of arguments there may be: `min(1,5)` can have two only, `min(x,
-    /// 1,5)` two or three. Where the other commas have no space after them either, commas separate,
-    /// unless on both sides of one there is nothing but a number: `max(x-1,3-y,z)`, but not
-    /// `max(x,1,5)`.
+    /// Error for a comma between the arguments of a function that may be a decimal one. `takes`
+    /// says which numbers of arguments are possible: two only for `min(1,5)`, two or three for
+    /// `min(x, 1,5)`. If the other commas have no space after them either, commas separate, unless
+    /// one has a bare number on both sides: `max(x-1,3-y,z)`, but not `max(x,1,5)`.
     pub(super) fn doubt(&self, call: &CallArguments, takes: &dyn Fn(usize) -> bool) -> Option<FormulaError> {
         let (count, doubtful) = (call.arguments.len(), &call.doubtful);
         let &(first, _) = doubtful.first()?;
@@ -288,7 +287,7 @@ impl<'a> Parser<'a> {
         Ok(flatten(factors, ExprKind::Product))
     }
 
-    /// Error for a factor beside a divisor, which ends at byte `end`.
+    /// Error for a factor right after a divisor, which ends at byte `end`.
     fn what_divides(&self, factors: &[(Factor, Expr)], end: usize, factor: &Expr) -> FormulaError {
         let (mut start, sign) = match factors.last() {
             Some((Factor::Over, divisor)) => (divisor.span.start, '/'),
@@ -322,8 +321,8 @@ impl<'a> Parser<'a> {
         Err(FormulaError::new(ErrorKind::Ambiguous, span, message).suggest("//"))
     }
 
-    /// An error where the next token begins both a factor and a line, outside brackets: it may
-    /// begin something else. LaTeX has no lines.
+    /// An error if a factor begins a line outside brackets: it may be meant as a new statement. In
+    /// LaTeX line breaks mean nothing.
     fn check_line(&self) -> Result<(), FormulaError> {
         let Spanned { span, .. } = self.peek();
         let before = self.next.checked_sub(1).map_or(0, |last| self.tokens[last].span.end);
@@ -339,7 +338,7 @@ impl<'a> Parser<'a> {
         Err(FormulaError::new(ErrorKind::Ambiguous, span.clone(), message).suggest(format!("*{written}")))
     }
 
-    /// Whether the next token begins a factor that stands beside the one before it.
+    /// Whether the next token begins a factor without a sign before it.
     pub(super) fn begins_factor(&self) -> bool {
         match self.peek().token {
             Token::Open('{') if self.begins_region() => false,
@@ -444,7 +443,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Parses what a command of LaTeX is applied to: something in braces, or one character.
+    /// Parses the argument of a LaTeX command: braces, or one character.
     fn group(&mut self) -> Parse {
         let Spanned { token, span } = self.peek().clone();
         match token {
@@ -468,8 +467,8 @@ impl<'a> Parser<'a> {
         result
     }
 
-    /// Parses a bracket, which is the next token, with what `inside` parses; returns the span of it
-    /// all too.
+    /// Parses a bracket that begins with the next token, and what is `inside`; also returns the
+    /// whole span.
     fn bracketed<T>(
         &mut self,
         inside: impl FnOnce(&mut Self) -> Result<T, FormulaError>,
@@ -586,8 +585,7 @@ impl<'a> Parser<'a> {
             }
             Token::Equals => {
                 let before = self.next.checked_sub(1).map_or(0, |last| self.tokens[last].span.end);
-                // Editors close a bracket as soon as it is opened: that one stands too far to the
-                // right.
+                // Editors close a bracket as soon as it is opened: it may be too far to the right.
                 let late = self.late_closing();
                 let (span, inside) = match late {
                     Some(late) => (before..late.span.end, slice(self.text, &(before..late.span.start))),
@@ -614,8 +612,8 @@ pub(super) fn wrong_arity(signature: &str, wanted: usize, given: usize, span: Ra
     FormulaError::new(ErrorKind::WrongArity, span, message)
 }
 
-/// Whether a factor stands beside a fraction of two numbers: `9/4y^2` is (9/4)y². A factor that is
-/// a number itself may belong to the divisor, as in `1/2pi`.
+/// Whether a factor follows a fraction of two numbers: `9/4y^2` is (9/4)y². A factor that is a
+/// number itself may belong to the divisor, as in `1/2pi`.
 fn is_fraction_of(factors: &[(Factor, Expr)], factor: &Expr) -> bool {
     let is_fraction = matches!(
         factors,

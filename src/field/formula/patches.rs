@@ -1,11 +1,10 @@
 //! Branches that meet without an edge, as a cylinder and the ball that rounds its end do, or the
-//! faces and the rounded edges of a box. They are one patch of the surface: its function is f with
-//! those choices open that only its own branches make.
+//! faces and the rounded edges of a box. They are one patch of the surface. Its function is f with
+//! only those choices left open that decide between its own branches.
 //!
-//! In small cells of the box in which choices may be tied, points are brought onto the surface.
-//! Between two on which different branches give f the place where one gives way to the other is
-//! found by halving, and the normals on both sides of it are compared. Branches that meet at an
-//! angle anywhere stay apart.
+//! In small cells in which choices may be tied, points are projected onto the surface. Between two
+//! points on different branches, bisection finds the place where the branch changes, and the
+//! normals on both sides of it are compared. Branches that meet at an angle anywhere stay apart.
 
 use super::branches::{Branches, ChoiceCondition, Holds, NodeRole, Patch, Side, resolved};
 use super::compiled::Compiled;
@@ -23,12 +22,12 @@ const PARALLEL: f64 = 0.5 * SQRT_3;
 /// Distance between two points at which the normals of two branches are compared, as a share of the
 /// diagonal of the box.
 const APART: f64 = 1e-6;
-/// Maximum number of times that the way between two points is halved. Beside an angle of 90° it is
-/// shortened by a third each time at least.
+/// Maximum number of bisections between two points. At an edge of 90° each shortens the distance by
+/// at least a third.
 const MOST_HALVINGS: u32 = 64;
 /// A point is on the surface when a step is shorter than this share of the reach.
 const AT_REST: f64 = 1e-9;
-/// Maximum number of ways through the choices of f that are looked at.
+/// Maximum number of combinations of the choices of f that are tried.
 const MOST_WAYS: usize = 256;
 
 /// The branches that give f on the surface, and how they meet.
@@ -40,7 +39,7 @@ struct Meetings {
     tangent: Vec<[u32; 2]>,
     /// Pairs that meet at an angle somewhere.
     sharp: Vec<[u32; 2]>,
-    /// Whether of some two branches it was not found out how they meet.
+    /// Whether it is unknown of some pair how they meet.
     is_open: bool,
 }
 
@@ -52,11 +51,11 @@ struct Landed {
 }
 
 impl Branches {
-    /// Joins the branches that meet without an edge on the surface in the box to patches. They meet
-    /// in these cells. Says whether the surface has no edge there at all.
+    /// Joins the branches that meet without an edge on the surface in the box into patches; `cells`
+    /// contain the places where they meet. Returns whether the surface has no edge at all.
     pub(super) async fn join_tangent(&mut self, values: &[f64], bounds: &Bounds, cells: &[Bounds]) -> bool {
         let Meetings { seen, tangent, sharp, is_open } = self.meetings(values, bounds, cells).await;
-        // Of a pair that meets in the box one may give f nowhere on its surface.
+        // One of a pair that meets in the box may give f nowhere on its surface.
         let all = seen.iter().chain(tangent.iter().flatten()).chain(sharp.iter().flatten());
         let mut patches: Vec<u32> = all.copied().max().map_or(Vec::new(), |last| (0..=last).collect());
         for &pair in tangent.iter().filter(|pair| !sharp.contains(pair)) {
@@ -91,13 +90,13 @@ impl Branches {
         is_whole && sharp.is_empty() && !is_open
     }
 
-    /// The number of the patch on which a branch gives f.
+    /// The number of the patch that a branch belongs to.
     fn patch_of(&self, branch: u32) -> u32 {
         let patch = self.patches.iter().find(|patch| patch.branches.contains(&branch));
         patch.map_or(branch, |patch| patch.branches[0])
     }
 
-    /// The number of the patch whose branch is that at `p`.
+    /// The number of the patch at `p`.
     pub(super) fn patch_at(&mut self, values: &[f64], p: DVec3) -> u32 {
         let branch = self.at(values, p);
         self.patch_of(branch)
@@ -146,8 +145,8 @@ impl Branches {
         found
     }
 
-    /// Whether nothing new is to be learned of two branches near a point: they are known to meet at
-    /// an angle, and also without an edge, or are too far from parallel to do so there.
+    /// Whether two branches need no further look near a point: they are known to meet at an angle,
+    /// and also without an edge unless they are too far from parallel there.
     fn is_settled(&mut self, values: &[f64], pair: [u32; 2], p: DVec3, found: &Meetings) -> bool {
         found.sharp.contains(&pair)
             && (found.tangent.contains(&pair) || {
@@ -156,12 +155,12 @@ impl Branches {
                     let slope = branch.map(|branch| branch.first_order([p], &mut self.jets)[0]);
                     slope.map_or(DVec3::ZERO, |(_, gradient)| gradient.normalize_or_zero())
                 });
-                // A gradient that is none says nothing.
+                // A vanishing gradient says nothing.
                 u != DVec3::ZERO && v != DVec3::ZERO && u.dot(v) < PARALLEL
             })
     }
 
-    /// Brings points of a cell onto the surface, and looks how the branches that give f there meet.
+    /// Projects points of a cell onto the surface, and finds out how the branches there meet.
     fn look_into(&mut self, values: &[f64], bounds: &Bounds, cell: &Bounds, found: &mut Meetings) {
         let reach = 2.0 * cell.diagonal();
         let mut landed: Vec<Landed> = Vec::new();
@@ -196,8 +195,8 @@ impl Branches {
         }
     }
 
-    /// Two branches that give way to each other between two points of the surface, and whether they
-    /// do so at an angle; none if the surface is not found between them.
+    /// The two branches that meet between two points of the surface, and whether they meet at an
+    /// angle; none if the surface is not found between the points.
     fn between(&mut self, values: &[f64], ends: [Landed; 2], apart: f64) -> Option<([u32; 2], bool)> {
         let [mut from, mut to] = ends;
         let mut halvings = 0..MOST_HALVINGS;
@@ -212,7 +211,7 @@ impl Branches {
             }
         }
         let [u, v] = [from, to].map(|end| self.slope(values, end.position).1.normalize_or_zero());
-        // A gradient that is none says nothing.
+        // A vanishing gradient says nothing.
         let is_known = u != DVec3::ZERO && v != DVec3::ZERO;
         is_known.then(|| (ascending([from.branch, to.branch]), u.distance(v) > SHARP))
     }
@@ -233,9 +232,9 @@ impl Branches {
         slope
     }
 
-    /// The node of a function whose zeros are the patch of these branches: f, in which a choice
-    /// whose condition holds the same way wherever one of them gives f takes that operand. None if
-    /// it would lead to another branch that gives f on the surface.
+    /// The node of a function whose zeros are the patch of these branches: f with each choice
+    /// resolved that takes the same side on all of them. None if another branch of the surface
+    /// could still be reached.
     fn patch_root(&mut self, members: &[u32], seen: &[u32], values: &[f64]) -> Option<Id> {
         let mut allowed: Vec<Side> = Vec::new();
         let ways = self.ways(0, MOST_WAYS, &mut |_| Holds::Somewhere);
@@ -255,7 +254,7 @@ impl Branches {
             [false, true] => Holds::Never,
             _ => Holds::Somewhere,
         };
-        // Choices that take either side independently allow more than the ways of the members.
+        // Choices left open independently may combine to branches of other patches.
         for way in self.ways(0, MOST_WAYS, &mut |condition| only(condition)) {
             let is_other = |branch: &u32| seen.contains(branch) && !members.contains(branch);
             if self.reached(&way.holds, values)?.iter().any(is_other) {
@@ -291,8 +290,8 @@ impl Branches {
         Some(root)
     }
 
-    /// The branches to which a way through the choices of f leads, by whether its conditions hold;
-    /// none if there are too many.
+    /// The branches that a combination of sides of the choices of f leads to; none if there are too
+    /// many.
     fn reached(&mut self, holds: &[bool], values: &[f64]) -> Option<Vec<u32>> {
         let mut reached = Vec::new();
         let mut open = vec![(0, holds.to_vec())];

@@ -5,9 +5,9 @@ use super::operations::{Binary, Unary};
 use crate::math::SINGLE_ROUNDING;
 use core::f64::consts::{PI, TAU};
 
-/// Largest numerator and denominator of the ratio of two periods that have a common multiple. What
-/// comes together only after more of them is taken for not periodic: of 20,000 particles each of
-/// 12³ small cells in a large one has a dozen.
+/// Largest numerator and denominator of the ratio of two periods with a common multiple. Beyond it
+/// a function counts as not periodic: of 20,000 particles each of 12³ small cells in a large one
+/// has a dozen.
 const MOST_PERIODS: u32 = 12;
 
 /// The dependence of a value on one coordinate.
@@ -62,7 +62,7 @@ pub(super) fn period(graph: &Graph, root: Id, axis: u8, parameters: &[f64]) -> O
     }
 }
 
-/// Whether a width is a whole number of periods, of which 0 is that of what does not change.
+/// Whether a width is a whole number of periods. Period 0: the function does not change.
 pub(super) fn is_whole(width: f64, period: f64) -> bool {
     let whole = (width / period).round();
     period == 0.0 || whole >= 1.0 && (whole * period - width).abs() <= SINGLE_ROUNDING * width

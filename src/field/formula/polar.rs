@@ -18,12 +18,12 @@ const ANGLE_FROM_AXIS: &str = "atan2(hypot(x, y), z)";
 
 /// Names of the radius.
 const RADII: [&str; 5] = ["r", "rho", "ρ", "R", "radius"];
-/// Names of the angles; `φ` and `phi` are those of a constant, too.
+/// Names of the angles; `φ` and `phi` also name a constant.
 const THETA: [&str; 2] = ["theta", "θ"];
 const PHI: &str = "phi";
 
-/// The error for an equation in other coordinates than x, y and z; none for another equation. It
-/// holds neither x nor y, and an angle or nothing but the radius.
+/// The error for an equation in other coordinates than x, y and z; none for other equations. Such
+/// an equation contains neither x nor y, and an angle or only the radius.
 pub(super) fn error(text: &str, parsed: &Parsed, declared: &[&str]) -> Option<FormulaError> {
     let equation = &parsed.equation;
     let bodies = || equation.definitions.iter().map(|definition| &definition.body);
@@ -50,7 +50,7 @@ pub(super) fn error(text: &str, parsed: &Parsed, declared: &[&str]) -> Option<Fo
     let (kind, places) = match (radius, has(2)) {
         (None, _) | (_, true) if one_angle => ("Cylindrical", [FROM_AXIS, AROUND_AXIS, AROUND_AXIS]),
         (None, _) | (_, true) => return None,
-        // θ is the angle from the axis beside r, and that around it beside ρ, as in most books.
+        // As in most books, θ is the angle from the axis next to r, and around it next to ρ.
         (Some(_), false) if is_distance => ("Spherical", [FROM_ORIGIN, AROUND_AXIS, ANGLE_FROM_AXIS]),
         (Some(_), false) if both => ("Spherical", [FROM_ORIGIN, ANGLE_FROM_AXIS, AROUND_AXIS]),
         (Some(_), false) if one_angle => ("Polar", [FROM_AXIS, AROUND_AXIS, AROUND_AXIS]),
@@ -77,7 +77,7 @@ pub(super) fn error(text: &str, parsed: &Parsed, declared: &[&str]) -> Option<Fo
     let message =
         format!("{kind} coordinates are written by x, y and z: {}", meanings.collect::<Vec<_>>().join("; "));
     let error = FormulaError::new(ErrorKind::UnknownName, 0..text.trim_end().len(), message);
-    // Without a coordinate beside it, a slider would leave no surface.
+    // Without a coordinate in the formula, a slider would leave no surface.
     let error = match radius.or(theta).filter(|_| has(2)) {
         Some(name) => error.unknown(name),
         None => error,
@@ -92,8 +92,8 @@ pub(super) fn error(text: &str, parsed: &Parsed, declared: &[&str]) -> Option<Fo
 const POINTS: [DVec3; 3] =
     [DVec3::new(0.3, 0.7, 0.45), DVec3::new(-0.6, 0.25, 1.3), DVec3::new(1.4, -0.9, -0.35)];
 
-/// The text with other words in the place of names, if it means the same, or with the names defined
-/// before it: `sin 3theta` is not `sin 3 atan2(y, x)`.
+/// The text with the names replaced, if that keeps its meaning, or with the names defined before
+/// it: `sin 3theta` is not `sin 3 atan2(y, x)`.
 fn written(text: &str, declared: &[&str], names: &[(&str, &str)]) -> Option<String> {
     let text = text.trim_end();
     let tokens = tokens(text, declared).ok()?;

@@ -15,8 +15,8 @@ const HALVINGS: u32 = 20;
 /// The first thickness that is tried, as a share of the diagonal of the box.
 const FIRST: f64 = 1.0 / 128.0;
 
-/// Doublings or halvings of the first thickness before the wish is taken for impossible: up to 10¹²
-/// times, or down to as small a share.
+/// Doublings or halvings of the first thickness before the share counts as unreachable: a factor of
+/// 10¹² either way.
 const MOST_STEPS: u32 = 40;
 
 /// Why no sheet leaves a share of a box empty.
@@ -29,7 +29,7 @@ pub enum PorosityError {
         /// The wanted share.
         porosity: f64,
     },
-    /// The sheet leaves more of the box empty, or less of it, whatever its thickness is.
+    /// Sheets of any thickness leave more of the box empty, or less.
     #[error(
         "no thickness leaves {:.1} % of the box empty: the nearest is {:.1} %; is the surface in the box, \
          and the thickness positive all over it?", 100.0 * wanted, 100.0 * nearest
@@ -44,8 +44,7 @@ pub enum PorosityError {
 
 impl Formula {
     /// The sheet around the surface that leaves this share of a box empty, closed by the box:
-    /// [`Formula::thickness`] says how thick it is. A thickness by a formula that the sheet has is
-    /// scaled.
+    /// [`Formula::thickness`] says how thick it is. If the thickness is a formula, it is scaled.
     ///
     /// The volume is counted at 131,072 points of the box, to about 0.05 %. That of a
     /// [mesh](crate::Sample::volume) depends on the size of its triangles, too.
@@ -104,15 +103,15 @@ impl Formula {
     }
 }
 
-/// Places in a box by which the volume of a solid is counted.
+/// Sample points by which the volume of a solid in a box is counted.
 struct Places {
     frame: Frame,
     points: Vec<Vec3>,
 }
 
 impl Places {
-    /// [`POINTS`] places of a box: those of an additive sequence in three dimensions, by the powers
-    /// of the root of g⁴ = g + 1 (M. Roberts, "The unreasonable effectiveness of quasirandom
+    /// [`POINTS`] places of a box, from an additive sequence in three dimensions, by the powers of
+    /// the root of g⁴ = g + 1 (M. Roberts, "The unreasonable effectiveness of quasirandom
     /// sequences", 2018). On a grid the faces of a body that are parallel to it would count as a
     /// whole layer.
     fn of(bounds: &Bounds) -> Self {

@@ -40,7 +40,7 @@ impl Reducer<'_> {
         self.constant(side) == Some(0.0)
     }
 
-    /// The side without powers of factors; as it is without any.
+    /// The side without powers of factors; unchanged if it has none.
     fn side(&self, side: &Expr) -> Expr {
         let mut whole = side;
         // Each definition refers to earlier ones.
@@ -133,7 +133,7 @@ impl Reducer<'_> {
         }
     }
 
-    /// Product of the reduced `factors`, in which a repeated varying factor stands once.
+    /// Product of the reduced `factors`, with a repeated varying factor kept once.
     fn product(&self, factors: &[(Factor, Expr)], sole: bool, with: impl Fn(ExprKind) -> Expr) -> Expr {
         let mut kept: Vec<(Factor, Expr)> = Vec::new();
         let mut add = |relation: Factor, factor: Expr| {
@@ -174,7 +174,7 @@ impl Reducer<'_> {
         graph.as_constant(root)
     }
 
-    /// The definitions, in which those that are not constant are 0.
+    /// The definitions, with 0 for those that are not constant.
     fn constants(&self) -> Vec<Definition> {
         let zero = |body: &Expr| Expr { kind: ExprKind::Number(0.0), span: body.span.clone() };
         let constant = |definition: &Definition| match self.is_constant(&definition.body) {
@@ -184,8 +184,8 @@ impl Reducer<'_> {
         self.definitions.iter().map(constant).collect()
     }
 
-    /// Whether an expression has neither coordinates nor parameters. Functions that the formula
-    /// defines count as if they had.
+    /// Whether an expression has neither coordinates nor parameters. Calls of defined functions
+    /// count as if they had.
     fn is_constant(&self, expr: &Expr) -> bool {
         !expr.any(&|kind| match kind {
             ExprKind::Coordinate(_) | ExprKind::Parameter(_) | ExprKind::Argument(_) => true,
@@ -206,7 +206,7 @@ enum LowerBound {
     Positive,
 }
 
-/// Whether the expression depends on a coordinate; what the formula defines counts as if it did.
+/// Whether the expression depends on a coordinate; defined names count as if they did.
 fn varies(expr: &Expr) -> bool {
     expr.any(&|kind| matches!(kind, ExprKind::Coordinate(_) | ExprKind::Defined(..)))
 }

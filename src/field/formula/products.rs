@@ -1,16 +1,16 @@
-//! Products told by their factors: where these cross, the product has no gradient, and each of them
-//! has one.
+//! Products split into their factors: where factors cross, the product has no gradient, but each
+//! factor has one.
 
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
 
-/// Maximum number of products that are told by their factors: a product of five factors has 46 ways
-/// to them, fewer than are listed for a box.
+/// Maximum number of products that are split into factors: five factors need four and give 46
+/// cases, fewer than are listed for a box.
 const MAX_PRODUCTS: usize = 4;
 
-/// The node of a function with the signs, and so with the zeros, of node `root`, in which products
-/// that decide them are choices: ab has the signs of max(min(a, b), min(−a, −b)), which is ±a or
-/// ±b, whichever is smaller. These are added to `choices`.
+/// The node of a function with the signs, and so with the zeros, of node `root`, with choices
+/// instead of the products that decide them: ab has the signs of max(min(a, b), min(−a, −b)), which
+/// is ±a or ±b, whichever is smaller. The choices are added to `choices`.
 pub(super) fn by_signs(graph: &mut Graph, root: Id, choices: &mut Vec<Id>) -> Id {
     match graph.node(root) {
         Node::Unary(Unary::Neg, u) => {
@@ -33,8 +33,8 @@ pub(super) fn by_signs(graph: &mut Graph, root: Id, choices: &mut Vec<Id>) -> Id
     }
 }
 
-/// Whether the zeros of factors of a product may cross. They do not where the factors differ by
-/// numbers, as those of concentric spheres do.
+/// Whether the zeros of factors of a product may cross. They do not if the factors differ by
+/// constants, as for concentric spheres.
 pub(super) fn may_cross(graph: &mut Graph, root: Id) -> bool {
     let factors = graph.factors(root);
     factors.iter().skip(1).any(|&factor| {

@@ -106,9 +106,8 @@ impl Program {
     }
 }
 
-/// Number of operations that compute `outputs` at a point. It serves to choose between forward and
-/// backward differentiation. Each operation counts as one, whatever it takes: that hardly ever
-/// changes the choice.
+/// Number of operations that compute `outputs` at a point, to choose between forward and backward
+/// differentiation. Each operation counts as one: weights would hardly ever change the choice.
 pub(super) fn cost(graph: &Graph, outputs: &[Id]) -> usize {
     let is_operation = |&id: &Id| !graph.is_uniform(id) && !matches!(graph.node(id), Node::Coordinate(_));
     graph.needed_by(outputs).iter().filter(|id| is_operation(id)).count()
@@ -161,13 +160,12 @@ struct Compiler<'a> {
     graph: &'a Graph,
     outputs: &'a [Id],
     tape: Tape,
-    /// The nodes that the outputs need, in the order of the graph, which is that of the
-    /// instructions.
+    /// The nodes that the outputs need, in the order of the graph and of the instructions.
     needed: Vec<Id>,
     /// Index in `uniform_nodes` of each uniform node that is needed.
     uniform: Vec<u32>,
-    /// Instructions over virtual registers, each of which is set once. The coordinates have the
-    /// first three, used or not.
+    /// Instructions over virtual registers, each set once. The coordinates have the first three,
+    /// used or not.
     code: Vec<Instruction>,
     /// Number of virtual registers.
     values: usize,
@@ -313,7 +311,7 @@ impl<'a> Compiler<'a> {
     }
 }
 
-/// The lowest register that is free, which it is no longer.
+/// Takes the lowest free register.
 fn lowest_free(is_free: &mut Vec<bool>) -> u32 {
     let lowest = is_free.iter().position(|&is_free| is_free).unwrap_or_else(|| {
         is_free.push(true);

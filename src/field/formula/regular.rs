@@ -1,27 +1,27 @@
-//! Solids in their regular form: they end where one of their functions has no value, and have no
-//! skin. Surfaces that end where their function has no value.
+//! Solids in their regular form: they end where one of their functions is undefined, and have no
+//! skins. Surfaces that end where their function is undefined.
 //!
-//! A solid is put together by minima and maxima of functions, its *faces*, and lies where the whole
-//! comes to at most 0. Where only signs count, a face can be exchanged for another function of the
+//! A solid combines functions, its *faces*, by minima and maxima, and lies where the result is at
+//! most 0. Only the sign of a face matters, so a face can be replaced by another function of the
 //! same sign:
 //!
 //! - a − c √u has no value where u < 0, and an infinite slope where u = 0. It is at most 0 where
 //!   max(a/c, 0)² − u is, which has values and slopes everywhere. So the ball under z = √(1 − x² −
 //!   y²) ends at its equator, and a solid that lies deeper ends at a wall below it.
-//! - A sum of several roots, or a root within another function, is taken on beyond the end by √|u|,
-//!   and −u is a face more: max(f, −u) is at most 0 where f is, and ends with it. So does u |u|ᵖ⁻¹
-//!   take the place of uᵖ with p > 1.
+//! - A sum of several roots, or a root within another function, is continued beyond its end by
+//!   √|u|, with −u as a further face: max(f, −u) is at most 0 where f is, and ends with it.
+//!   Likewise u |u|ᵖ⁻¹ replaces uᵖ with p > 1.
 //! - Where a cutter lies flush with a face g of the solid, as in max(g, min(h, −g)), both are 0
 //!   where h < 0: a skin without thickness. The solid without its skins (the closure of its
 //!   interior; A. Requicha, "Representations for rigid solids", 1980) is max(g, h).
 //!
-//! A surface f = 0 of one function is exchanged in the same way, and has a [limit](Unary::Limit)
-//! where a solid has a further face: a − c √u = 0 is (a/c)² − u = 0 within a/c > 0. So the surface
-//! z = √(1 − x² − y²) ends in a rim.
+//! The function of a surface f = 0 is replaced in the same way, with a [limit](Unary::Limit)
+//! instead of a further face: a − c √u = 0 is (a/c)² − u = 0 within a/c > 0. So the surface z = √(1
+//! − x² − y²) ends in a rim.
 //!
-//! The factor c may depend on parameters. Which function takes the place of a − c √u then follows
-//! from its sign, and for c = 0 it is a itself that ends where u < 0. The form is made anew when
-//! the [sign](Scales) changes.
+//! The factor c may depend on parameters. Its sign decides which function replaces a − c √u; for c
+//! = 0 it is a itself, which ends where u < 0. The form is computed again when a [sign](Scales)
+//! changes.
 
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
@@ -36,14 +36,14 @@ use rand_pcg::Pcg32;
 const MAX_FACES: usize = 128;
 /// Maximum number of roots in each other that a face may have.
 const MAX_ROOTS: usize = 8;
-/// Half-widths of the boxes around the origin in which faces are compared: a bend in millimetres
-/// lies far from one in units, and beside a high power a number counts near the origin alone.
+/// Half-widths of the boxes around the origin in which faces are compared: bends may be millimetres
+/// or units away, and next to a high power a constant matters only near the origin.
 const HALVES: [f64; 6] = [0.1, 1.0, 10.0, 100.0, 1e3, 1e4];
 /// Number of places in each of the boxes.
 const PLACES: usize = 8;
 /// Least number of places at which both faces have a value, where they are compared.
 const LEAST_KNOWN: usize = 8;
-/// Largest difference of faces that count as equal, as a share of them: rounding makes it.
+/// Largest relative difference, by rounding, of faces that count as equal.
 const ROUNDING: f64 = 1e-9;
 
 /// A solid in its regular form.
@@ -64,7 +64,7 @@ pub(super) struct Scales {
 }
 
 impl Scales {
-    /// The sign of a factor, which is noted: 1 or −1, or 0 if it is 0 or no number.
+    /// Records and returns the sign of a factor: 1 or −1, or 0 if it is 0 or not finite.
     fn sign(&mut self, graph: &Graph, scale: Id, parameters: &[f64]) -> f64 {
         let own = self.graph.add_part(graph, scale);
         let sign = self.sign_now(own, parameters);
@@ -83,7 +83,7 @@ impl Scales {
         }
     }
 
-    /// Whether a factor has another sign with these parameters, so that the form is another one.
+    /// Whether these parameters change the sign of a factor, and so the form.
     pub(super) fn have_turned(&self, parameters: &[f64]) -> bool {
         self.signs.iter().any(|&(scale, sign)| self.sign_now(scale, parameters) != sign)
     }
@@ -119,8 +119,8 @@ pub(super) fn regular(graph: &Graph, root: Id, parameters: &[f64], scales: &mut 
     Some(Regular { graph, root: nodes[0], flush: nodes[1..].to_vec() })
 }
 
-/// The surface of one function in the limits within which that has values, for these values of the
-/// parameters; none if it has some everywhere, or is put together from several functions. Notes the
+/// The surface of one function within the limits in which the function is defined, for these values
+/// of the parameters; none if it is defined everywhere, or combines several functions. Notes the
 /// factors whose signs it depends on.
 pub(super) fn within_limits(
     graph: &Graph,
@@ -142,7 +142,7 @@ pub(super) fn within_limits(
         let Some(Exchanged { other, within, level }) = forming.without_inverse(f) else { break };
         f = other;
         limits.extend(within);
-        // A root is as large as a number above 0 away from its end alone.
+        // A root equals a positive number only away from its end.
         reaches_end |= !forming.graph.is_uniform(level);
     }
     if let Some((other, within)) = forming.extended(f) {
@@ -161,7 +161,7 @@ pub(super) fn within_limits(
     Some(graph.part(f))
 }
 
-/// A solid, by the nodes of its faces, each of which is at most 0 on its inner side.
+/// A solid, by the nodes of its faces. Each face is at most 0 on its inner side.
 enum Solid {
     Face(Id),
     /// The intersection of solids.
@@ -181,7 +181,7 @@ enum Sided {
 }
 
 impl Solid {
-    /// Puts the solids that `change` gives in the place of faces.
+    /// Replaces faces by the solids that `change` gives for them.
     fn with_faces(self, change: &mut dyn FnMut(Id) -> Option<Self>) -> Self {
         let mut each = |parts: Vec<Self>| parts.into_iter().map(|part| part.with_faces(change)).collect();
         match self {
@@ -212,8 +212,8 @@ impl<'a> Forming<'a> {
         Self { graph: graph.clone(), left: MAX_FACES, parameters, scales, values, flush }
     }
 
-    /// Whether the solid lies where f is positive, as that of min(√u − a, b) does: the faces of a
-    /// minimum have roots, and all of these count positively.
+    /// Whether the solid lies where f is positive, as for min(√u − a, b): f is a minimum whose
+    /// faces have roots, all with a positive sign.
     fn is_solid_where_positive(&mut self, root: Id) -> bool {
         let whole = Signed::of(&mut self.graph, root, false);
         let Opened::Both { is_max: false, .. } = whole.opened(&mut self.graph) else { return false };
@@ -259,8 +259,8 @@ impl<'a> Forming<'a> {
         nodes[1..].iter().fold(nodes[0], |total, &node| self.graph.binary(operation, total, node))
     }
 
-    /// The solid behind a face that roots end, by faces that end nowhere. Roots may be nested
-    /// `most` deep. None if the face has no root that ends it.
+    /// The solid behind a face that ends at roots, by faces that are defined everywhere. Roots may
+    /// be nested `most` deep. None if no root ends the face.
     fn ended(&mut self, face: Id, most: usize) -> Option<Solid> {
         let Some(end) = self.root_of(face).filter(|_| most > 0) else {
             let (face, ends) = self.extended(face)?;
@@ -304,7 +304,7 @@ impl<'a> Forming<'a> {
         term.scale.map_or(level, |scale| self.graph.div(level, scale))
     }
 
-    /// u |u|ᵖ⁻¹, which is uᵖ where that has a value, for p > 1.
+    /// u |u|ᵖ⁻¹ for p > 1, which is uᵖ where that is defined.
     fn odd_power(&mut self, u: Id, p: f64) -> Id {
         let size = self.graph.unary(Unary::Abs, u);
         let one_less = self.graph.constant(p - 1.0);
@@ -312,8 +312,8 @@ impl<'a> Forming<'a> {
         self.graph.mul(u, size)
     }
 
-    /// The function that takes the place of `f`, without the only root, arcsine or arccosine among
-    /// the summands of that.
+    /// The function that replaces `f`, with the only root, arcsine or arccosine among its summands
+    /// inverted.
     fn without_inverse(&mut self, f: Id) -> Option<Exchanged> {
         if let Some(end) = self.root_of(f) {
             let level = self.level_of(f, &end.term);
@@ -349,8 +349,8 @@ impl<'a> Forming<'a> {
         Some(End { term, base, inverse: 1.0 / exponent })
     }
 
-    /// The only summand of a face for which `kind` has an answer, with the answer. Factors of the
-    /// summand without coordinates are taken off before `kind` is asked. None if there are several.
+    /// The only summand of a face for which `kind` has an answer, with the answer; none if there
+    /// are several. Factors without coordinates are split off before `kind` sees the summand.
     fn only_summand<T>(
         &mut self,
         face: Id,
@@ -400,8 +400,8 @@ impl<'a> Forming<'a> {
         ends.then_some((is_sine, u))
     }
 
-    /// The base and the exponent of a power that has no value where the base is negative, if it may
-    /// be.
+    /// The base and the exponent of a power that is undefined for a negative base, if its base may
+    /// be negative.
     fn ending_power(&mut self, node: Id) -> Option<(Id, f64)> {
         let (base, exponent) = match self.graph.node(node) {
             Node::Unary(Unary::Sqrt, base) => (base, 0.5),
@@ -419,8 +419,8 @@ impl<'a> Forming<'a> {
         ends.then_some((base, exponent))
     }
 
-    /// A face that goes on where powers of it have no value, and functions that are at most 0 where
-    /// these have one; none if they have values everywhere.
+    /// A face continued beyond the places where its powers are defined, and functions that are at
+    /// most 0 where they are; none if they are defined everywhere.
     fn extended(&mut self, face: Id) -> Option<(Id, Vec<Id>)> {
         let nodes = self.graph.needed_by(&[face]);
         let (mut map, mut ends): (Vec<Id>, Vec<Id>) = ((0..self.graph.len() as Id).collect(), Vec::new());
@@ -473,7 +473,7 @@ impl<'a> Forming<'a> {
         let before = known.len();
         for part in faces.into_iter().chain(others) {
             let first = if matches!(part, Solid::Face(_)) { before } else { known.len() };
-            // Faces beside each other are not compared: max(g, −g) is a surface.
+            // Operands of one choice are not compared: max(g, −g) is a surface.
             let beside = known.split_off(first);
             let part = self.without_skins(part, known, is_new);
             known.extend(beside);
@@ -501,12 +501,12 @@ impl<'a> Forming<'a> {
         }
     }
 
-    /// Whether two faces are the same function but for a positive factor, or, with `false`, for a
+    /// Whether two faces are the same function up to a positive factor, or, with `false`, up to a
     /// negative one; none if they are different functions.
     fn compared(&mut self, face: Id, other: Id) -> Option<bool> {
         let [a, b] = [face, other].map(|face| self.values_of(face));
         let pairs = || a.iter().zip(&b).filter(|(a, b)| a.is_finite() && b.is_finite());
-        // A face that is one number at all places, as beyond its bends, tells nothing.
+        // A face with one value at all places, as beyond its bends, shows nothing.
         let is_known = pairs().count() >= LEAST_KNOWN && pairs().any(|(value, _)| *value != a[0]);
         if !is_known {
             return None;
@@ -519,8 +519,8 @@ impl<'a> Forming<'a> {
         (is_one && first * other_first != 0.0).then_some(first * other_first > 0.0)
     }
 
-    /// The values of a face at some places, with other parameters at each: what holds for some
-    /// values of the parameters alone is no reason to leave a face out.
+    /// The values of a face at some places, with other parameters at each: a relation that holds
+    /// for some values only is no reason to leave a face out.
     fn values_of(&mut self, face: Id) -> Vec<f64> {
         if let Some((_, values)) = self.values.iter().find(|(known, _)| *known == face) {
             return values.clone();
@@ -544,7 +544,7 @@ impl<'a> Forming<'a> {
 /// A function that has the zeros of another one.
 struct Exchanged {
     other: Id,
-    /// Functions that are at most 0 where the zeros are those of the other one.
+    /// Functions that are at most 0 where both functions have the same zeros.
     within: Vec<Id>,
     /// The value that the root, arcsine or arccosine has at these zeros.
     level: Id,
@@ -553,9 +553,9 @@ struct Exchanged {
 /// A summand of a face.
 struct Term {
     node: Id,
-    /// How often it stands in the face.
+    /// Its coefficient in the face.
     share: f64,
-    /// The face has this much of what the summand is but for its factors.
+    /// The factor, in the face, of the rest of the summand.
     factor: f64,
     /// A further factor that depends on parameters.
     scale: Option<Id>,

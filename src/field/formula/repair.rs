@@ -4,7 +4,7 @@ use super::error::{FormulaError, Mended};
 use super::{MAX_FORMULA_BYTES, syntax};
 
 /// The error, with the formula in which all mistakes of its kind are corrected, if there are
-/// several: each suggestion is taken until none follows, or a mistake of another kind.
+/// several: suggestions are applied until there is none, or an error of another kind.
 pub(super) fn throughout(text: &str, declared: &[&str], error: FormulaError) -> FormulaError {
     let mut mended = text.to_owned();
     let mut places = 0;
@@ -29,7 +29,7 @@ fn correction(error: &FormulaError) -> Option<&str> {
     error.suggestion.as_deref().filter(|suggestion| !suggestion.contains('…'))
 }
 
-/// Whether two errors have the same kind, and the same message but for numbers and quoted text.
+/// Whether two errors have the same kind and message, up to numbers and quoted text.
 fn is_same_kind(a: &FormulaError, b: &FormulaError) -> bool {
     let words = |error: &FormulaError| -> String {
         let unquoted = error.message.split('`').step_by(2).flat_map(str::chars);

@@ -83,7 +83,7 @@ impl<const N: usize> ForwardJet<N> {
     /// once: its square may overflow where the quotient does not.
     fn div(&self, divisor: &Self, axes: u8) -> Self {
         let has = |k: usize| axes >> k & 1 == 1;
-        // What does not depend on an axis has the derivative 0 there, also where the rest is
+        // An operand has derivative 0 along axes that it does not depend on, even where the rest is
         // infinite.
         let product = |k: usize, factor: f64, slope: f64| if has(k) { factor * slope } else { 0.0 };
         let mut out = Self::uniform(self.value / divisor.value);
@@ -116,12 +116,11 @@ impl ForwardJet<ENTRIES> {
     }
 }
 
-/// Number of points at which [`jets`] is asked for side by side: each node is looked at once for
-/// all of them.
+/// Number of points for which [`jets`] visits each node once.
 pub(super) const ABREAST: usize = 8;
 
-/// Puts the jets of all nodes up to `root` at these points in `scratch`. Those at a point are the
-/// same whatever the other points are.
+/// Writes the jets of all nodes up to `root` at these points to `scratch`. The jets at one point do
+/// not depend on the other points.
 pub(super) fn jets<const N: usize, const POINTS: usize>(
     graph: &Graph,
     root: Id,
@@ -248,8 +247,7 @@ fn binary<const N: usize>(
             ForwardJet { value, ..fixed().mul(&factor) }
         }
         Binary::Atan2 => {
-            // The derivatives are those of atan(a/b), or of −atan(b/a) where that is better
-            // conditioned.
+            // Differentiates atan(a/b), or −atan(b/a) where that is better conditioned.
             let angle = operation.evaluate(a.value, b.value);
             let jet = if a.value.abs() <= b.value.abs() {
                 let ratio = a.div(&b, of_b);

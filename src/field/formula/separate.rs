@@ -1,16 +1,16 @@
-//! The sheets of a surface that choices keep apart: the two spheres of max(|p| − 1, 0.9 − |p|), of
-//! which one is a zero of the first operand and the other one of the second.
+//! The sheets of a surface that choices keep apart: the two spheres of max(|p| − 1, 0.9 − |p|), one
+//! from zeros of the first operand, the other one from zeros of the second.
 //!
 //! A choice that f depends on everywhere on the surface, and that is tied nowhere on it, keeps its
 //! sides apart: a connected component that lay on both would cross the tie. Around the component f
-//! is the function in which the choice has taken its side, so the component is one of the zeros of
-//! that function. A point on every component of these zeros therefore includes one on every
+//! equals the function in which the choice has taken its side, so the component belongs to the
+//! zeros of that function. Points on all components of these zeros therefore include one on every
 //! component of the surface. The search for components takes these functions one by one, as it
 //! takes the factors of a product, and its cells can hold both sheets.
 //!
-//! f depends on a choice everywhere if the way to it from f passes operations and the taken sides
-//! of choices that keep their sides apart, and no others: where a choice is tied somewhere, a
-//! component may go past what lies below one of its operands.
+//! f depends on a choice everywhere if the path from f to it passes only operations and the taken
+//! sides of choices that keep their sides apart: where another choice is tied, a component may
+//! bypass one of its operands.
 
 use super::branches::{Base, BranchPart, Branches, ChoiceCondition, Holds, NodeRole, Sheet, Side};
 use super::branches::{resolved, taken};
@@ -22,8 +22,8 @@ use crate::math::Bounds;
 use glam::DVec3;
 use std::collections::VecDeque;
 
-/// Maximum number of sheets, beyond which choices stay open: the program of each one holds all of f
-/// too, so that all of them grow with the square of the number.
+/// Maximum number of sheets, beyond which choices stay open: each program holds all of f too, so
+/// that their total size grows with the square of the number.
 const MAX_SHEETS: usize = 16;
 
 impl Branches {
@@ -54,7 +54,7 @@ impl Branches {
         whole
     }
 
-    /// Empties the enclosures of a sheet over boxes in which the sheet is not.
+    /// Empties the enclosures of a sheet over boxes that it does not meet.
     pub(super) fn leave_out_sheet(
         &mut self,
         sheet: usize,
@@ -75,7 +75,7 @@ impl Branches {
         }
     }
 
-    /// Whether f is the function of a sheet at a point.
+    /// Whether the function of a sheet gives f at a point.
     pub(super) fn is_on_sheet(&mut self, sheet: usize, values: &[f64], p: DVec3) -> bool {
         let Sheet { sides, nodes, .. } = &self.sheets[sheet];
         self.base.graph.evaluate(nodes, values, p, &mut self.doubles);

@@ -11,9 +11,9 @@ use super::products::by_signs;
 use super::thickness::Sheet;
 use crate::math::Bounds;
 
-/// Maximum number of smooth functions that the sheets of a thickened surface are put together from;
-/// a function in k absolute values, one in the other, takes 2ᵏ. Beyond it the choices of f are
-/// taken as they are, and edges of a sheet may be off where gradients of different length meet.
+/// Maximum number of smooth functions that make up the sheets of a thickened surface; k nested
+/// absolute values take 2ᵏ. Beyond it a choice of f gets one sheet as a whole, whose edges may be
+/// off where gradients of different length meet.
 const MAX_SHEETS: usize = 128;
 
 /// The solid that is made of a surface: its sheet and the box that closes it. Without both it is
@@ -26,14 +26,14 @@ pub(super) struct Solid {
     pub(super) closed: Option<Bounds>,
     /// Whether that box is a [cell](crate::field::UnitCell).
     pub(super) is_cell: bool,
-    /// Whether the function that is sampled is that of the solid with the other sign.
+    /// Whether the function that is sampled is the negative of the solid's.
     is_negative: bool,
-    /// The number that is subtracted from the function after that.
+    /// The number that is then subtracted.
     shift: f64,
 }
 
 impl Solid {
-    /// Has the function g of the solid replaced by g − shift, or −g − shift.
+    /// Replaces the function g of the solid by g − shift, or −g − shift.
     pub(super) fn turn(&mut self, is_negative: bool, shift: f64) {
         self.shift = shift + if is_negative { -self.shift } else { self.shift };
         self.is_negative ^= is_negative;
@@ -41,7 +41,7 @@ impl Solid {
 
     /// The node of the function that is at most 0 in the solid made of f, which is node `root`.
     pub(super) fn made_of(&self, graph: &mut Graph, root: Id) -> Id {
-        // Of a sheet, and of what a box closes, the limits of the surface are faces.
+        // The limits of the surface become faces of a sheet or of a closed solid.
         let is_solid = self.sheet.is_some() || self.closed.is_some();
         let limited = graph.limited(root).filter(|_| is_solid);
         let surface = limited.map_or(root, |[f, _]| f);
@@ -73,14 +73,14 @@ impl Solid {
     }
 }
 
-/// The node of |f| − t/2 |∇f|, of the places whose distance from the surface is at most t/2 to
-/// first order, with node `half` for t/2. Where t varies it is that of the place, not that of the
-/// nearest point of the surface, which differs by about |∇t| t/2.
+/// The node of |f| − t/2 |∇f|, which is at most 0 where the distance from the surface is at most
+/// t/2 to first order; `half` is the node of t/2. A varying t is taken at the place itself, not at
+/// the nearest point of the surface, which differs by about |∇t| t/2.
 ///
-/// Where f has choices, so has the distance: the sheets beside max(a, b) = 0 are those beside a = 0
-/// and b = 0, each by its own gradient. These sheets meet in edges. With the one gradient of max(a,
-/// b) they would miss each other by the jump of |∇f|. Nor has a product a gradient where its
-/// factors cross: each of them has a sheet of its own.
+/// Each operand of a choice in f gets a sheet by its own gradient: max(a, b) = 0 those around a = 0
+/// and b = 0, which meet in edges. With the one gradient of max(a, b) they would miss each other by
+/// the jump of |∇f|. Factors of a product get a sheet each, too: where they cross, the product has
+/// no gradient.
 fn thickened(graph: &mut Graph, root: Id, half: Id) -> Id {
     let mut sheets = SheetBuilder { graph, half, left: MAX_SHEETS };
     let [above, below] = [false, true].map(|is_negative| {
@@ -119,7 +119,7 @@ impl Signed {
         if self.is_negative { graph.sub(self.shift, self.node) } else { graph.add(self.node, self.shift) }
     }
 
-    /// Takes signs, summands without coordinates and positive factors away, and tells what is left.
+    /// Strips signs, summands without coordinates and constant factors, and opens what is left.
     pub(super) fn opened(self, graph: &mut Graph) -> Opened {
         let Self { node, is_negative, shift } = self;
         let shifted = |node: Id, shift: Id| Self { node, is_negative, shift };
@@ -137,7 +137,7 @@ impl Signed {
                 let shift = moved(graph, u);
                 turned(v, shift).opened(graph)
             }
-            // The zeros are those of v + shift/factor.
+            // The zeros agree with v + shift/factor.
             Node::Binary(Binary::Mul, v, u) if graph.as_constant(u).is_some_and(|u| u != 0.0) => {
                 let size = graph.unary(Unary::Abs, u);
                 let shift = graph.div(shift, size);

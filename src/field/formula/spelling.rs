@@ -73,14 +73,14 @@ pub(super) fn unlikely_parameter(
         .chain(meant.iter().copied());
     let meant = similar(name, words).filter(|meant| {
         let long = name.chars().count() >= 3 && meant.chars().count() >= 3;
-        // `signal` goes on after `sign` on purpose.
+        // `signal` continues after `sign` on purpose.
         meant.eq_ignore_ascii_case(name) || (long && !indexed && !name.starts_with(meant))
     })?;
     let message = format!("Unknown name `{name}`: did you mean `{meant}`? Or add a slider `{name}`");
     Some(error(message).suggest(meant))
 }
 
-/// Whether a name is that of the imaginary unit: `i`, in Mathematica `I`, in Python `2j`.
+/// Whether a name means the imaginary unit: `i`, in Mathematica `I`, in Python `2j`.
 fn is_imaginary(text: &str, name: &str, span: &Range<usize>) -> bool {
     match name {
         "i" | "I" => true,
@@ -102,8 +102,8 @@ fn exponent(text: &str) -> &str {
     if digits > 0 { &text[..sign + digits] } else { "" }
 }
 
-/// Whether a function is one of those whose names are taken for misspelt by a lone word: others,
-/// such as `cot` and `mix`, are too short and too rare.
+/// Whether a lone word may be a misspelling of this function's name: others, such as `cot` and
+/// `mix`, are too short and too rare.
 fn is_operation(function: Function) -> bool {
     matches!(function, Function::Unary(operation) if operation != Unary::Erf)
 }
@@ -116,15 +116,15 @@ enum Piece<'a> {
     Factor(String),
 }
 
-/// The ways to read a name, of which no other is known, as functions of coordinates and other
-/// factors, each once: `xsinx` as `x*sin(x)`. Where the name `is_called`, a bracket follows, and
-/// its last piece is a function.
+/// The ways to read an unknown name as functions of coordinates and other factors, each once:
+/// `xsinx` as `x*sin(x)`. If the name `is_called`, a bracket follows, and its last piece is a
+/// function.
 ///
 /// Its pieces are functions of one argument, coordinates, numbers, constants, and other names in
 /// the formula; if these do not suffice, one letter that is a name nowhere else. So `radius_max`,
 /// `signal` and `minx` are names like any other.
 pub(super) fn readings(name: &str, names: &[&str], is_called: bool) -> Vec<String> {
-    /// Longer names are taken for names: the ways to split them are too many.
+    /// Longer names are not split: there are too many ways.
     const LONGEST: usize = 40;
     if name.contains('_') || name.len() > LONGEST {
         return Vec::new();
@@ -153,7 +153,7 @@ fn split<'a>(
     pieces: &mut Vec<Piece<'a>>,
     splits: &mut Vec<Vec<Piece<'a>>>,
 ) {
-    /// More ways are not told.
+    /// Further ways are dropped.
     const MOST: usize = 4;
     if name.is_empty() {
         splits.push(pieces.clone());

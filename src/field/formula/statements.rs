@@ -2,8 +2,8 @@
 //!
 //! `r = hypot(x, y); (r - 1)^2 + z^2 = 0.1` defines r, `f(a, b) = a^2 + b^2; f(x, y) = f(y, z)` a
 //! function. A definition ends at a `;`, or at the end of its line where the next one begins with
-//! an operand. Elsewhere lines may break anywhere but between factors without a sign. A definition
-//! may hold what is defined before it, so that none refers to itself.
+//! an operand. Elsewhere lines may break anywhere except between factors without a sign. A
+//! definition may use only earlier ones, so that none refers to itself.
 //!
 //! As the last statement, `f(x, y, z) = …` and what other languages have for it, `f = …;`, `return
 //! …`, `@(x, y, z) …`, is the surface.
@@ -65,7 +65,7 @@ struct Head {
     has_keyword: bool,
     /// Names of the arguments of a function.
     arguments: Vec<String>,
-    /// First token of what the name stands for.
+    /// First token of the definition's body.
     body: usize,
 }
 
@@ -168,7 +168,7 @@ fn separated(text: &str, tokens: Vec<Spanned>) -> Vec<Spanned> {
                 | Token::Not
         )
     };
-    // A sign goes on with the definition, unless an equation follows in its line.
+    // A leading sign continues the definition, unless its line is an equation.
     let begins_equation = |from: usize| {
         let is_sign = matches!(tokens[from].token, Token::Plus | Token::Minus);
         let line = (from..tokens.len()).take_while(|&at| at == from || !is_broken(at));
@@ -231,8 +231,7 @@ impl Parser<'_> {
         Ok(Equation { definitions, ..surface })
     }
 
-    /// Skips what a program has before the body of a function of the coordinates: `def f(x, y,
-    /// z):`.
+    /// Skips the head of a function of the coordinates in a program: `def f(x, y, z):`.
     fn skip_program(&mut self) {
         if let Some(head) = head(&self.tokens, self.next)
             && are_coordinates(&head.arguments)
@@ -261,7 +260,7 @@ impl Parser<'_> {
         (self.next..self.tokens.len()).find(ends).unwrap_or(self.tokens.len() - 1)
     }
 
-    /// Whether a name stands between two tokens.
+    /// Whether a name occurs in this range of tokens.
     fn mentions(&self, name: &str, range: Range<usize>) -> bool {
         range.into_iter().any(|at| word(&self.tokens, at) == Some(name))
     }
@@ -323,7 +322,7 @@ impl Parser<'_> {
             _ => return Err(self.unexpected()),
         }
         check_conditions(&body)?;
-        // A line that was meant to go on ends like a definition that nothing uses.
+        // A line that was meant to continue ends like a definition that nothing uses.
         let is_line = self.peek().span.is_empty();
         if is_line && !self.mentions(&name, end..self.tokens.len()) {
             let message = format!(
@@ -374,7 +373,7 @@ impl Parser<'_> {
         check_conditions(&left)?;
         right.as_ref().map_or(Ok(()), check_conditions)?;
         let equation = Equation { definitions: Vec::new(), left, right, region };
-        // Of functions that are written as one name it is asked elsewhere.
+        // Functions run together in one name have another error.
         let is_lone = |(name, _): &(String, Range<usize>)| readings(name, &[], false).is_empty();
         if let Some((name, span)) = named.filter(is_lone).filter(|_| equation.looks_like_definition()) {
             let error = |message: String| FormulaError::new(ErrorKind::Ambiguous, span, message);
@@ -393,8 +392,7 @@ impl Parser<'_> {
     }
 
     /// Skips the head of the surface, `f(x, y, z) =`, `f =` in a program, `@(x, y, z)`. Returns the
-    /// name before the `=`, with the span of both, where the name may be that of a level or of the
-    /// function.
+    /// name before the `=`, with the span of both, if the name may mean a level or the function.
     fn skip_head(
         &mut self,
         is_program: bool,
@@ -474,7 +472,7 @@ impl Parser<'_> {
     }
 }
 
-/// An error for a condition that stands in the place of a number.
+/// An error for a condition that is used as a number.
 fn check_conditions(expr: &Expr) -> Result<(), FormulaError> {
     expr.misplaced_condition(false)
         .map_or(Ok(()), |condition| Err(FormulaError::misplaced_condition(&condition.span)))

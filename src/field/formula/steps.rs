@@ -1,13 +1,13 @@
 //! Floors, folded angles and ridges as choices.
 //!
-//! In a box ⌊u⌋ takes few whole numbers. It is then a chain of choices between them, by whether u
-//! has come to the next one. asin(sin u) and acos(cos u) are folds of a line: u or −u, moved by a
-//! multiple of π, from one fold to the next. So the search for creases finds the edges of roofs,
-//! triangle waves and repeated cells as it finds those of a minimum.
+//! In a box ⌊u⌋ takes few values. It then becomes a chain of choices between them, by whether u has
+//! reached the next one. asin(sin u) and acos(cos u) are folded lines: u or −u, shifted by a
+//! multiple of π, between folds. So the search for creases finds the edges of roofs, triangle waves
+//! and repeated cells like the edges of a minimum.
 //!
-//! |u|ᵖ with p < 2 has a ridge at u = 0: its slope jumps, or it bends without bounds, and neither
-//! uᵖ nor (−u)ᵖ goes on beyond it. Close to 0 it is taken as straight. So the ridge is a crease, at
-//! which two functions meet that have values on both sides.
+//! |u|ᵖ with p < 2 has a ridge at u = 0: its slope jumps or its curvature has no bound, and neither
+//! uᵖ nor (−u)ᵖ continues beyond it. Close to 0 its tangent replaces it, so that the ridge is a
+//! crease between two functions that are defined on both sides.
 
 use super::compiled::Compiled;
 use super::graph::{Blend, Graph, Id, MIN_BLEND_WIDTH, Node};
@@ -16,16 +16,16 @@ use super::operations::{Binary, Unary};
 use crate::math::{Bounds, Interval};
 use core::f64::consts::PI;
 
-/// Maximum number of steps of a node in that room. A node with more of them stays what it is.
+/// Maximum number of steps of a node in the enlarged box. A node with more stays as it is.
 const MOST_STEPS: f64 = 64.0;
-/// Room around the box in which the choices still give f, as a share of its longest side: a coarse
-/// front marches some spacings beyond the box.
+/// Margin around the box in which the choices still give f, as a share of its longest side: a
+/// coarse front marches some spacings beyond the box.
 const MARGIN: f64 = 0.5;
 /// Half-width of the strip in which a power is straight, as a share of the largest |u|.
 const STRIP: f64 = 1e-6;
 
-/// The graph of f with its floors, folds and ridges as choices, which is f in the box and around
-/// it; none if f has none, or only such with too many steps.
+/// The graph of f with its floors, folds and ridges as choices, equal to f in and around the box;
+/// none if f has none, or only some with too many steps.
 pub(super) fn as_choices(f: &Compiled, values: &[f64], bounds: &Bounds) -> Option<(Graph, Id)> {
     let graph = &*f.graph;
     let nodes = graph.needed_by(&[f.root]);
@@ -121,7 +121,7 @@ impl Fold {
     /// The function over a range of u as a chain of choices; none if it has too many steps there.
     fn chain(self, graph: &mut Graph, u: Id, range: Interval) -> Option<Id> {
         let [first, last] = [range.lo, range.hi].map(|end| self.number(end));
-        // Written so that an endless range has too many.
+        // Written so that an infinite range has too many.
         let is_short = last - first <= MOST_STEPS;
         if !is_short {
             return None;
@@ -177,9 +177,9 @@ impl Ridge {
         (factor > 0.0 && !graph.is_uniform(u)).then_some(Self { factor, u, n, exponent })
     }
 
-    /// The power as a function of |u| that has values at negative numbers, too: for w = |u| and p =
-    /// n · e it is wᵖ above a small δ, and its tangent at δ below. None if p is not between 0 and
-    /// 2, or is 1.
+    /// The power as a function of w = |u| that is defined for negative w, too: with p = n · e it is
+    /// wᵖ above a small δ, and below δ the tangent there. None if p is not between 0 and 2, or is
+    /// 1.
     fn straight(
         self,
         graph: &mut Graph,

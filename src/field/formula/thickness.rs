@@ -11,8 +11,8 @@ use serde::de::{self, Deserializer, Visitor};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Thickness of the sheet that is sampled in place of a surface, in the units of the coordinates:
-/// a number or a text in JSON.
+/// Thickness of the sheet that is sampled instead of a surface, in the units of the coordinates: a
+/// number or a text in JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Thickness {
@@ -37,8 +37,8 @@ impl From<f64> for Thickness {
 }
 
 impl From<&str> for Thickness {
-    /// A number where the text is one, else a formula. Whether it is one that a surface can have,
-    /// [`Formula::thickened_by`](super::Formula::thickened_by) says.
+    /// A number if the text is one, else a formula, which
+    /// [`Formula::thickened_by`](super::Formula::thickened_by) checks.
     fn from(text: &str) -> Self {
         number(text).map_or_else(|_| Self::Formula(text.to_owned()), Self::Number)
     }
@@ -152,7 +152,7 @@ const NOUN: Noun = Noun {
     examples: ["0.2", "0.1 + 0.05 z", "if(z > 0, 0.2, 0.1)"],
 };
 
-/// The syntax tree of a thickness, whose names are those of parameters.
+/// The syntax tree of a thickness in which every name is a parameter.
 fn expression(text: &str, parameters: &[Parameter]) -> Result<Equation, FormulaError> {
     super::expression::expression(text, parameters, &NOUN)
 }

@@ -1,6 +1,6 @@
-//! Formulas in the calls with which other programs draw them, such as `implicit_plot3d(f, (x, -2,
+//! Formulas within the calls that draw them in other programs, such as `implicit_plot3d(f, (x, -2,
 //! 2), …)`, `ContourPlot3D[f == 0, {x, -2, 2}, …]` and `With[{R = 1}, …]`. Such a text is refused,
-//! and the formula alone is suggested, with what the text defines for it.
+//! and the formula is suggested, with the definitions that it needs.
 //!
 //! A call draws if other arguments are ranges of variables, or if an argument is a function without
 //! a name, whatever the call's name is; otherwise if its name is known.
@@ -29,7 +29,7 @@ const HOLDERS: &[&str] = &[
     "wxdraw3d",
 ];
 
-/// Calls that name constants for what they hold: `With[{R = 1}, …]`.
+/// Calls that define constants for their contents: `With[{R = 1}, …]`.
 const SCOPES: &[&str] = &["With", "Module", "Block"];
 
 /// Options that name the level of the surface.
@@ -38,10 +38,10 @@ const LEVELS: &[&str] = &["contours", "contour", "level", "levels", "isovalue", 
 /// Options with which the formula alone is not the surface: they limit it, or name coordinates.
 const OTHERS: &[&str] = &["regionfunction", "region", "coords", "transformation"];
 
-/// Parts of the names of calls whose variables are no coordinates x, y and z.
+/// Parts of the names of calls whose variables are not x, y and z.
 const CURVED: &[&str] = &["spherical", "revolution", "polar", "cylindrical"];
 
-/// Most calls around one another that are looked into.
+/// Maximum nesting of calls.
 const DEEPEST: usize = 8;
 
 /// The error for a text that draws a formula; none for another text.
@@ -130,7 +130,7 @@ fn is_path(plain: &str, all: &[Range<usize>]) -> bool {
         || COORDINATES.iter().all(|axis| is_assigned(plain, axis))
 }
 
-/// Whether `name =` stands in a text, but not as in `a = name = b`.
+/// Whether a text contains `name =`, but not as in `a = name = b`.
 fn is_assigned(text: &str, name: &str) -> bool {
     text.match_indices(name).any(|(at, _)| {
         let (before, after) = (&text[..at], text[at + name.len()..].trim_start());
@@ -138,7 +138,7 @@ fn is_assigned(text: &str, name: &str) -> bool {
     })
 }
 
-/// A text, and the same bytes with blanks in the place of comments and quoted words.
+/// A text, and the same bytes with comments and quoted words blanked out.
 #[derive(Clone, Copy)]
 struct Source<'a> {
     text: &'a str,
@@ -169,7 +169,7 @@ fn mended(earlier: &[&str], drawn: &Drawn, formula: &str, declared: &[&str]) -> 
     let own: Vec<String> =
         drawn.definitions.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let all: Vec<&str> = earlier.iter().chain(&own).map(String::as_str).collect();
-    // A side that is a name may be that of a function.
+    // A side that is only a name may name a function.
     let ways = ["(x, y, z)", "(x, y)", ""].map(|arguments| {
         let called = |side: &str| match is_name(side) && !COORDINATES.contains(&side) {
             true => format!("{side}{arguments}"),
@@ -187,10 +187,10 @@ fn mended(earlier: &[&str], drawn: &Drawn, formula: &str, declared: &[&str]) -> 
             }
         }
         let is_short = whole.len() <= MAX_FORMULA_BYTES;
-        // An ellipsis is left to fill in.
+        // An ellipsis is for the user to fill in.
         let is_read = match syntax(&whole.replace('…', "1"), declared) {
             Ok((parsed, _)) => varies(&parsed.equation),
-            // Another mistake is left to mend.
+            // Another mistake gets its own correction.
             Err(error) => error.suggestion.is_some() || !error.choices.is_empty(),
         };
         (is_short && is_read).then_some(whole)
@@ -229,13 +229,13 @@ fn is_of_name(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// Whether `name` stands in `text` as a word of its own.
+/// Whether `name` occurs in `text` as a whole word.
 fn mentions(text: &str, name: &str) -> bool {
     text.match_indices(name)
         .any(|(at, _)| !text[..at].ends_with(is_of_name) && !text[at + name.len()..].starts_with(is_of_name))
 }
 
-/// The text with blanks in the place of comments and of what stands in quotes, byte by byte.
+/// The text with each byte of comments and quotations replaced by a blank.
 fn plain(text: &str) -> String {
     let mut plain = text.as_bytes().to_vec();
     let mut at = 0;
@@ -272,8 +272,8 @@ fn plain(text: &str) -> String {
     String::from_utf8(plain).unwrap_or_default()
 }
 
-/// Calls `visit` with each character, its place and the number of brackets around it, which an
-/// opening and a closing one do not count themselves.
+/// Calls `visit` with each character, its place and the number of brackets around it; a bracket
+/// does not count itself.
 fn walk(plain: &str, range: Range<usize>, mut visit: impl FnMut(usize, char, usize)) {
     let mut depth = 0_usize;
     for (at, c) in plain[range.clone()].char_indices() {
@@ -340,7 +340,7 @@ fn assignment(plain: &str) -> Option<usize> {
     found
 }
 
-/// What a statement gives to a name, `plot = …`, or the statement.
+/// The right side of an assignment to names, `plot = …`, or the statement.
 fn without_assignment(plain: &str, range: Range<usize>) -> Range<usize> {
     let statement = &plain[range.clone()];
     match assignment(statement) {
@@ -358,7 +358,7 @@ fn trimmed(plain: &str, range: Range<usize>) -> Range<usize> {
     start..(range.start + inside.trim_end().len()).max(start)
 }
 
-/// A call: its name, its arguments, and what stands after it.
+/// A call: its name, its arguments, and the text after it.
 struct Call {
     name: String,
     bracket: char,
@@ -367,7 +367,7 @@ struct Call {
     rest: Range<usize>,
 }
 
-/// The arguments in a range; the commas between the arguments of a `lambda` separate none.
+/// The arguments in a range; the commas of a `lambda` separate none.
 fn arguments(plain: &str, inside: Range<usize>) -> Vec<Range<usize>> {
     let mut all: Vec<Range<usize>> = Vec::new();
     for part in parts(plain, inside, &[","]) {
@@ -418,7 +418,7 @@ fn call(plain: &str, range: Range<usize>) -> Option<Call> {
     Some(Call { name: name.to_owned(), bracket, arguments, inside, rest: close + 1..range.end })
 }
 
-/// What the text in a range draws, if it does.
+/// What the text in a range draws, if anything.
 fn unwrapped(source: Source<'_>, range: Range<usize>, depth: usize) -> Option<Drawn> {
     let plain = source.plain;
     let depth = depth.checked_sub(1)?;
@@ -448,8 +448,7 @@ fn unwrapped(source: Source<'_>, range: Range<usize>, depth: usize) -> Option<Dr
     }
 }
 
-/// What `f /. {a -> 1}` draws, where `inner` says what f does: names that are replaced are
-/// definitions.
+/// What `f /. {a -> 1}` draws, where `inner` gives what f draws: replaced names become definitions.
 fn replaced(
     source: Source<'_>,
     range: &Range<usize>,
@@ -555,7 +554,7 @@ fn variable(plain: &str, range: &Range<usize>) -> Option<String> {
     (matches!(inside.len(), 3 | 4) && is_name(name)).then(|| name.to_owned())
 }
 
-/// What a call of this name with these arguments draws; none for a call that does not.
+/// What a call of this name with these arguments draws; none if it draws nothing.
 fn drawing(source: Source<'_>, name: &str, arguments: &[Range<usize>]) -> Option<Drawn> {
     let Source { text, plain } = source;
     let lower = name.to_ascii_lowercase();
@@ -587,7 +586,7 @@ fn drawing(source: Source<'_>, name: &str, arguments: &[Range<usize>]) -> Option
     let mut levels: Vec<String> = option(LEVELS).map_or(Vec::new(), |value| listed_in(&value));
     let (names, body) = match functions {
         Some((names, body)) => (names, body),
-        // The grid stands before the values on it, and the level after them.
+        // The grid comes before the values on it, and the level after them.
         None if words.len() > 3
             && words.iter().zip(COORDINATES).all(|(word, axis)| word.eq_ignore_ascii_case(axis)) =>
         {
@@ -633,7 +632,7 @@ fn drawing(source: Source<'_>, name: &str, arguments: &[Range<usize>]) -> Option
         } else if !levels.is_empty() {
             drawn.formulas.extend(levels.iter().map(|level| format!("{formula} = {level}")));
         } else if lower.contains("contour") {
-            // Which levels are drawn is not said.
+            // It is unknown which levels are drawn.
             drawn.formulas.push(format!("{formula} = …"));
         } else {
             drawn.formulas.push(formula);
@@ -666,7 +665,7 @@ fn equal(source: Source<'_>, range: &Range<usize>) -> Option<String> {
     is_equal.then(|| format!("{} = {}", source.text[left.clone()].trim(), source.text[right.clone()].trim()))
 }
 
-/// The solid in which a condition holds, as the formula of its surface, which is negative inside.
+/// The solid where a condition holds, as the formula of its surface, which is negative inside.
 fn solid(plain: &str, range: &Range<usize>, depth: usize) -> Option<String> {
     let depth = depth.checked_sub(1)?;
     let range = trimmed(plain, range.clone());

@@ -1,15 +1,14 @@
-//! The border of the points of a model, beyond which its surface has none.
+//! The border of the points of a model, beyond which its surface is cut off.
 //!
-//! A function that is fitted to points goes on where there are none. Around places of its surface
-//! that are far from every point lie balls that hold none of them. The border is where the balls
-//! end, as that of an α-shape (H. Edelsbrunner, D. G. Kirkpatrick & R. Seidel, "On the Shape of a
-//! Set of Points in the Plane", 1983): a straight or bent edge of the points is kept to its last
-//! point, and a gap that no ball fits in is bridged.
+//! A function that is fitted to points continues where there are none. Around places of its surface
+//! that are far from every point lie balls without points. The border is where the balls end, as
+//! for an α-shape (H. Edelsbrunner, D. G. Kirkpatrick & R. Seidel, "On the Shape of a Set of Points
+//! in the Plane", 1983): a straight or bent edge of the points is kept to its last point, and a gap
+//! too small for a ball is bridged.
 //!
-//! For a ball with the centre c and the radius ρ the function v = (ρ² − |x − c|²)/2ρ is positive
-//! inside, and near the sphere it is the distance from there. The function of the border is the
-//! smooth maximum ln(Σ exp(β v))/β of those of all balls and of the box outside of which no ball
-//! was looked for.
+//! For a ball with centre c and radius ρ the function v = (ρ² − |x − c|²)/2ρ is positive inside,
+//! and near the sphere it is the distance from it. The border's function is the smooth maximum ln(Σ
+//! exp(β v))/β over all balls, and over the box outside of which no ball was searched for.
 
 use crate::field::{Field, Jet};
 use crate::math::{Bounds, Sym3};
@@ -18,9 +17,9 @@ use glam::DVec3;
 /// β times the smallest radius. Larger: the rim has kinks between the balls; smaller: it is farther
 /// from the points.
 const SHARPNESS: f64 = 64.0;
-/// Number of balls that reach an edge of the points at about the same place: with their spacing of
-/// a sixth of their radius and this β, along a straight edge. Their sum is larger by this factor
-/// than the largest term.
+/// Number of balls that reach an edge of the points at about the same place: along a straight edge,
+/// with a spacing of a sixth of their radius and this β. Their sum is larger by this factor than
+/// the largest term.
 const TOGETHER: f64 = 4.0;
 /// Exponents that are less than the largest by more than this are left out: e⁻⁴⁰ is below the
 /// rounding of double precision.
@@ -28,7 +27,7 @@ const NEGLIGIBLE: f64 = 40.0;
 /// Number of balls in a block.
 const BLOCK: usize = 16;
 
-/// A ball that holds no point.
+/// A ball without points inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
     /// Its centre.
@@ -37,10 +36,10 @@ pub struct Ball {
     pub radius: f64,
 }
 
-/// Balls that hold no point of a model, in a box around all of its points.
+/// Balls without points of a model, in a box around all of its points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Border {
-    /// The balls, in blocks that lie together.
+    /// The balls, in blocks of neighbours.
     balls: Vec<Ball>,
     blocks: Vec<Block>,
     bounds: Bounds,
@@ -87,7 +86,7 @@ impl Border {
     }
 }
 
-/// Sorts balls so that those of a block lie together: halves of halves along the longest side.
+/// Sorts balls so that each block holds neighbours, by repeated halving along the longest side.
 fn gather(balls: &mut [Ball]) {
     if balls.len() <= BLOCK {
         return;
@@ -108,7 +107,7 @@ fn depth(radius: f64, distance_sq: f64) -> f64 {
 }
 
 impl Block {
-    /// A number that [`depth`] of none of the balls exceeds at `p`.
+    /// An upper bound of [`depth`] for all balls at `p`.
     fn most(&self, p: DVec3) -> f64 {
         let nearest = p.clamp(self.bounds.lo(), self.bounds.hi());
         depth(self.radius, p.distance_squared(nearest))

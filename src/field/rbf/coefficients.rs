@@ -1,5 +1,4 @@
-//! Coefficients of the sum: those of single centres, and those of the polynomials that stand for
-//! many.
+//! Coefficients of the sum: of single centres, and of the polynomials that replace many.
 
 use crate::math::{LANES, Lanes};
 use glam::DVec3;

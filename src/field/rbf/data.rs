@@ -19,8 +19,8 @@ const NUMBERS: usize = 7;
 const QUAD: usize = 4;
 
 /// Centres and coefficients of f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³. The three
-/// lists have equal lengths. With them comes the border of the points, where the surface goes on
-/// beyond it.
+/// lists have equal lengths. The border of the points is included if the surface continues beyond
+/// it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RbfData {
     /// Centres cⱼ.
@@ -29,7 +29,7 @@ pub struct RbfData {
     pub alpha: Vec<f64>,
     /// Coefficients βⱼ.
     pub beta: Vec<[f64; 3]>,
-    /// The border of the points, if the surface goes on beyond it.
+    /// The border of the points, if the surface continues beyond it.
     pub border: Option<Border>,
 }
 
@@ -56,7 +56,7 @@ pub enum DataError {
         /// Index of the centre.
         index: usize,
     },
-    /// A pull tears the surface, or a number of it is not finite.
+    /// A pull tears the surface, or one of its numbers is not finite.
     #[error("pull {index} is not finite or longer than half its reach")]
     Pull {
         /// Index of the pull.
@@ -94,8 +94,8 @@ impl RbfData {
     }
 
     /// Encodes the data as bytes: eight magic bytes, then seven little-endian doubles per centre.
-    /// Before the centres stand the border's, if there is one: the number of its balls, the corners
-    /// of its box, and four doubles per ball.
+    /// Before the centres come the numbers of the border, if there is one: the number of its balls,
+    /// the corners of its box, and four doubles per ball.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut numbers = Vec::new();
@@ -170,7 +170,7 @@ impl RbfData {
         Jet { value, gradient, hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
     }
 
-    /// f and ∇f at `p`, the same as those of [`RbfData::jet`].
+    /// f and ∇f at `p`, equal to those of [`RbfData::jet`].
     pub(super) fn slope(&self, p: DVec3) -> (f64, DVec3) {
         let mut value = 0.0;
         let mut gradient = DVec3::ZERO;
@@ -189,7 +189,7 @@ impl RbfData {
         (value, gradient)
     }
 
-    /// f and ∇f at each of `points`, counted from `origin`, four at a time, equal to those of
+    /// f and ∇f at each of `points`, relative to `origin`, four at a time, equal to those of
     /// [`RbfData::jet`] up to rounding.
     pub(super) fn gradients(
         &self,
@@ -238,7 +238,7 @@ impl RbfData {
     }
 }
 
-/// The border at the start of the numbers of an encoding, and the numbers behind it.
+/// The border at the start of the numbers of an encoding, and the numbers after it.
 fn border_of(numbers: &[f64]) -> Option<(Option<Border>, &[f64])> {
     let (&[count, a, b, c, d, e, f], rest) = numbers.split_first_chunk()?;
     let (balls, rest) = rest.split_at_checked(OF_BALL.checked_mul(count as usize)?)?;

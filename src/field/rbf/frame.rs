@@ -1,4 +1,4 @@
-//! Local coordinates, in which the centres fill a box of about one unit.
+//! Local coordinates in which the centres fill a box of about one unit.
 
 use crate::math::{Bounds, power_of_two};
 use glam::DVec3;
@@ -19,7 +19,7 @@ pub struct CentredFrame {
 }
 
 impl Default for CentredFrame {
-    /// The frame in which local coordinates are those of the model.
+    /// The frame whose local coordinates equal the model's.
     fn default() -> Self {
         Self { origin: DVec3::ZERO, scale: 1.0 }
     }
@@ -57,7 +57,7 @@ impl CentredFrame {
         (p - self.origin) * self.scale
     }
 
-    /// Coordinates of the model of a local point.
+    /// A local point in the coordinates of the model.
     #[must_use]
     pub fn world(&self, p: DVec3) -> DVec3 {
         p / self.scale + self.origin

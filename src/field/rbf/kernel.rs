@@ -3,8 +3,8 @@
 //! points of one cell, with lanes over the points.
 //!
 //! Consecutive points of a front or of a relaxation step mostly share a cell, but not all do. Eight
-//! together take 5.8 times the instructions of one. With those in eight lanes too that are alone in
-//! their cell, a run on the bunny takes 19 % more.
+//! together take 5.8 times the instructions of one. If points alone in their cell took eight lanes
+//! too, a run on the bunny would take 19 % more.
 
 use super::coefficients::{Centre, DEGREE, Rows};
 use crate::math::{LANES, Lanes};
@@ -64,9 +64,9 @@ pub(super) struct LocalPoint {
 
 /// Returns f and ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy, yz, zz), in local units.
 ///
-/// The functions that it calls are not inlined: the compiler keeps lanes in registers of their own
-/// only where they come in and go out by memory. Inlined, they and those of [`sums_of_eight`] make
-/// a uniform run on the bunny take 39 % more instructions.
+/// The functions that it calls are not inlined: the compiler keeps lanes in registers only if they
+/// enter and leave through memory. Inlining them and those of [`sums_of_eight`] makes a uniform run
+/// on the bunny take 39 % more instructions.
 pub(super) fn sums<const N: usize>(rows: &Rows, near: &[Near], point: &LocalPoint) -> [f32; N] {
     let [x, y, z] = point.offset.map(Lanes::splat);
     let mut planes = [Lanes::splat(0.0); 6];
@@ -248,7 +248,7 @@ fn expand<const N: usize>(sums: &mut [[Lanes; N]; LANES], rows: &Rows, offset: &
     for (j, sums) in sums.iter_mut().enumerate() {
         let mut planes = [Lanes::splat(0.0); 6];
         for i in (0..=DEGREE - j).rev() {
-            // The rows of this power of z follow those of the larger ones.
+            // The rows of this power of z come after those of larger powers.
             let last = (DEGREE - i + 1) * (DEGREE - i + 2) / 2;
             let row = rows[last - (DEGREE - i - j + 1)..last].iter();
             nest::<N>(&mut planes, x, z, row.map(|row| Lanes::splat(row.0[j])));

@@ -30,22 +30,22 @@ use std::sync::Arc;
 
 /// A field given by centres and coefficients, defined everywhere.
 ///
-/// The cost of a point is about that of forty terms of the sum, however many centres there are (see
+/// A point costs about as much as forty terms of the sum, however many centres there are (see
 /// `tree`). The first point in a cell of the octree allocates a few kilobytes; a model has some
 /// hundred cells near its surface.
 ///
-/// The value is that of the sum in double precision to about 10⁻⁶ of the model's size, and it jumps
+/// The value equals the sum in double precision up to about 10⁻⁶ of the model's size, and it jumps
 /// by as much between cells. The Hessian has no limit at a centre with β ≠ 0; at the centre itself
 /// it is the sum over the other centres.
 ///
-/// Its surface goes on where there are no points, or, [trimmed](RbfField::trimmed), it ends at
+/// Its surface continues where there are no points, or, if [trimmed](RbfField::trimmed), ends at
 /// their border.
 #[derive(Clone)]
 pub struct RbfField {
     data: Arc<RbfData>,
     tree: Arc<tree::CellTree>,
     pulls: Pulls,
-    /// The surface that ends at the border of the points, if this one does.
+    /// The surface that ends at the border of the points, if this surface does.
     trimmed: Option<Arc<dyn Piecewise>>,
 }
 
@@ -73,8 +73,7 @@ impl RbfField {
         Ok(Self { data, tree, pulls: Pulls::default(), trimmed: None })
     }
 
-    /// This field with a surface that ends at the border of its points, if that has more than they
-    /// tell.
+    /// This field with a surface that ends at the border of its points, if there is one.
     #[must_use]
     pub fn trimmed(mut self) -> Self {
         if let Some(border) = &self.data.border {
@@ -84,7 +83,7 @@ impl RbfField {
         self
     }
 
-    /// This field with a surface that goes on where there are no points.
+    /// This field with a surface that continues where there are no points.
     #[must_use]
     pub fn untrimmed(self) -> Self {
         Self { trimmed: None, ..self }
@@ -96,7 +95,7 @@ impl RbfField {
         self.trimmed.is_some()
     }
 
-    /// Makes these pulls on the surface of the centres, in the place of those before.
+    /// Applies these pulls to the surface of the centres, replacing the previous ones.
     ///
     /// # Errors
     ///
@@ -186,11 +185,11 @@ impl Field for PulledBorder {
     }
 }
 
-/// An interpolant at work.
+/// Evaluates an interpolant.
 struct RbfEvaluator<'a> {
     field: &'a RbfField,
     frame: Frame,
-    /// The points that are pulled to those of a batch.
+    /// The points that are pulled to the points of a batch.
     places: Vec<Vec3>,
 }
 
@@ -212,7 +211,7 @@ impl RbfEvaluator<'_> {
         tree.sums(data, frame.origin, points, store);
     }
 
-    /// Takes the pulls into account of the derivatives at a point.
+    /// Applies the pulls to the derivatives at a point.
     fn pull_back(&self, p: Vec3, jet: &mut Jet) {
         self.field.pulls.pull_back(self.frame.place(p.as_dvec3()), jet);
     }

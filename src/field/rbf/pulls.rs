@@ -1,10 +1,10 @@
-//! Pulls, by which a surface is drawn out or pushed in around a place while the rest of it stays.
+//! Pulls, which draw out or push in a surface around a place and leave the rest of it.
 //!
 //! A pull by the vector b takes the surface {f = 0} to {f ∘ w = 0}, where w(x) = x − g b moves
-//! points back. The weight g = (1 − q)³ with q = |x − c|²/R² is 1 at the place c to which the
-//! surface is pulled, and 0 from the distance R on. It has two continuous derivatives, and where
-//! |b| ≤ R/2 the map w is one to one: the slope of g is at most 1.72/R, so the surface neither
-//! tears nor meets itself. Several pulls are made one after the other.
+//! points back. The weight g = (1 − q)³ with q = |x − c|²/R² is 1 at the place c that the surface
+//! is pulled to, and 0 beyond the distance R. It has two continuous derivatives, and for |b| ≤ R/2
+//! the map w is one to one: the slope of g is at most 1.72/R, so the surface neither tears nor
+//! meets itself. Several pulls are made one after the other.
 
 use super::DataError;
 use crate::field::Jet;
@@ -12,8 +12,8 @@ use crate::math::{Bounds, Sym3};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Largest way of a pull, over its reach. Space folds from 0.58 on: one over the largest slope of
-/// (1 − s²)³, which is 1.717, at s = 1/√5.
+/// Largest length of a pull, over its reach. Space folds from 0.58 on: one over the largest slope
+/// of (1 − s²)³, which is 1.717, at s = 1/√5.
 pub const LONGEST_PULL: f64 = 0.5;
 
 /// A pull on a surface.
@@ -22,10 +22,10 @@ pub const LONGEST_PULL: f64 = 0.5;
 pub struct Pull {
     /// The place that is pulled, on the surface as the pulls before have left it.
     pub at: [f64; 3],
-    /// The vector by which it is pulled.
+    /// The vector of the pull.
     pub by: [f64; 3],
-    /// Distance from where the place comes to, from which on nothing moves. It is at least twice
-    /// the length of `by`.
+    /// Distance from the pulled place's destination beyond which nothing moves. It is at least
+    /// twice the length of `by`.
     pub reach: f64,
 }
 
@@ -38,20 +38,21 @@ impl Pull {
             && by <= LONGEST_PULL * self.reach
     }
 
-    /// The offset of a point from where the place comes to, over the reach, and 1 less its square;
-    /// none beyond the reach.
+    /// The offset of a point from the destination, over the reach, and 1 minus its square; none
+    /// beyond the reach.
     fn offset(&self, p: DVec3) -> Option<(DVec3, f64)> {
         let offset = (p - DVec3::from(self.at) - DVec3::from(self.by)) / self.reach;
         let rest = 1.0 - offset.length_squared();
         (rest > 0.0).then_some((offset, rest))
     }
 
-    /// The point that comes to `p`.
+    /// The point that is moved to `p`.
     fn back(&self, p: DVec3) -> DVec3 {
         self.offset(p).map_or(p, |(_, rest)| p - DVec3::from(self.by) * (rest * rest * rest))
     }
 
-    /// Derivatives at `p` of the function whose derivatives at [`Pull::back`] are those of `jet`.
+    /// Turns the derivatives in `jet`, of a function at [`Pull::back`], into those of the pulled
+    /// function at `p`.
     fn pull_back(&self, p: DVec3, jet: &mut Jet) {
         let Some((offset, rest)) = self.offset(p) else { return };
         let by = DVec3::from(self.by);
@@ -96,12 +97,13 @@ impl Pulls {
         &self.0
     }
 
-    /// The point that comes to `p`.
+    /// The point that is moved to `p`.
     pub(super) fn back(&self, p: DVec3) -> DVec3 {
         self.0.iter().rev().fold(p, |p, pull| pull.back(p))
     }
 
-    /// Derivatives at `p` of the function whose derivatives at [`Pulls::back`] are those of `jet`.
+    /// Turns the derivatives in `jet`, of a function at [`Pulls::back`], into those of the pulled
+    /// function at `p`.
     pub(super) fn pull_back(&self, p: DVec3, jet: &mut Jet) {
         pull_back(&self.0, p, jet);
     }

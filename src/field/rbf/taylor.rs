@@ -30,8 +30,8 @@ pub(super) type Polynomial = [f64; TERMS];
 #[derive(Clone, Copy, Debug)]
 struct Term {
     powers: [usize; 3],
-    /// Index of the term with one power less along each axis; [`MORE_TERMS`], whose coefficient is
-    /// zero, if there is none. The type is a byte, so that indices need no bounds checks.
+    /// Index of the term with one power less along each axis; if there is none, [`MORE_TERMS`],
+    /// whose coefficient is zero. The type is a byte, so that indices need no bounds checks.
     less: [u8; 3],
     /// Index of the term with two powers less.
     less_two: [u8; 3],
@@ -84,7 +84,7 @@ impl Taylor {
         Self { terms, rows }
     }
 
-    /// Adds the terms of `centres`, none of which is at `middle`, to the polynomial of a cell.
+    /// Adds the terms of `centres`, which must not be at `middle`, to the polynomial of a cell.
     pub(super) fn expand(&self, polynomial: &mut Polynomial, middle: DVec3, half: f64, centres: &[Centre]) {
         let mut powers = vec![[0.0; LANES]; PLACES];
         for group in centres.chunks(LANES) {

@@ -21,13 +21,13 @@ use glam::{DVec3, Vec3};
 use std::sync::OnceLock;
 
 /// Half-width of the root cell in local units, in which the centres fill a box of half-width 1/2 to
-/// 1: the box of a fit with its margin needs at most a third of it. The field outside of the root
-/// cell is evaluated in double precision.
+/// 1: the box of a fit with its margin needs at most a third of it. Outside of the root cell the
+/// field is evaluated in double precision.
 const ROOT: f64 = 4.0;
 
 /// Largest bound on the remainder of a far centre's Taylor series, without its coefficient of about
 /// 1/300. On the surface of the bunny, half of the series then have an error below 10⁻⁷ of the
-/// model's size, which is that of rounding in the near terms.
+/// model's size, about the rounding of the near terms.
 const MAX_REMAINDER: f64 = 3e-4;
 /// Minimum distance of a far centre, in radii of the cell. The series converges beyond 1. Larger:
 /// fewer centres are far, and an evaluation takes longer.
@@ -36,8 +36,8 @@ const MIN_DISTANCE: f64 = 1.5;
 /// evaluation cheaper and the cells costlier: with 32, the cells of a model of 200 centres pay off
 /// after about 10,000 evaluations.
 const MAX_NEAR: usize = 32;
-/// Distance of the nearest centre, in radii of the cell, beyond which a cell is not split: little
-/// of the surface is there. Smaller: evaluation takes longer.
+/// A cell is not split if its nearest centre is farther than this, in radii of the cell: little of
+/// the surface is there. Smaller: evaluation takes longer.
 const CLOSE: f64 = 1.0;
 /// Half-width at which a cell is not split, even in a cluster of centres.
 const MIN_HALF_WIDTH: f64 = 1.0 / 512.0;
@@ -53,7 +53,7 @@ enum Cell {
     Leaf(Box<LeafCell>),
 }
 
-/// A cell that is split into eight, each of which is made when a point falls into it.
+/// A cell that is split into eight. Each is made when a point falls into it.
 #[derive(Debug)]
 struct BranchCell {
     middle: [f32; 3],
@@ -124,8 +124,8 @@ impl CellTree {
         }
     }
 
-    /// Calls `store` for each point, counted from `origin`, with its index and f and ∇f, and for
-    /// `N` = 10 also ∇∇f (xx, xy, xz, yy, yz, zz).
+    /// Calls `store` for each point, relative to `origin`, with its index and f and ∇f, and for `N`
+    /// = 10 also ∇∇f (xx, xy, xz, yy, yz, zz).
     pub(super) fn sums<const N: usize>(
         &self,
         data: &RbfData,
@@ -138,8 +138,8 @@ impl CellTree {
         let mut last: Option<&LeafCell> = None;
         let mut n = 0;
         while n < points.len() {
-            // Up to eight of the next points, of which those in the cell of the first one are
-            // evaluated together.
+            // Up to eight of the next points; those in the cell of the first one are evaluated
+            // together.
             let count = LANES.min(points.len() - n);
             let mut local = [Lanes::splat(0.0); 3];
             for (lane, p) in points[n..n + count].iter().enumerate() {
@@ -190,8 +190,8 @@ impl CellTree {
     }
 }
 
-/// A cell. `far` is the polynomial of its parent, shifted to this cell, and `among` are the near
-/// centres of its parent.
+/// A cell. `far` is its parent's polynomial, shifted to this cell, and `among` are the near centres
+/// of its parent.
 fn cell(
     taylor: &Taylor,
     centres: &[Centre],

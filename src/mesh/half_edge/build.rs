@@ -6,12 +6,12 @@ use crate::math::NONE;
 impl HalfEdges {
     /// The surface of some triangles over `vertices` vertices, counter-clockwise seen from outside.
     /// Face `f` is triangle `f`. None if they are not an oriented surface: a corner does not exist
-    /// or is there twice, two triangles run along the same edge in the same direction, or those at
-    /// a vertex form more than one fan.
+    /// or is repeated, two triangles run along the same edge in the same direction, or those at a
+    /// vertex form more than one fan.
     ///
     /// Vertices in no triangle have no half-edge. Edges of one triangle form the border.
     ///
-    /// Cost: linear, and n log n where a vertex has very many triangles.
+    /// Cost: linear, and n log n if a vertex has very many triangles.
     #[must_use]
     pub fn from_triangles(vertices: usize, triangles: &[[u32; 3]]) -> Option<Self> {
         let is_triangle = |&[a, b, c]: &[u32; 3]| {
@@ -30,8 +30,8 @@ impl HalfEdges {
         (mesh.pair() && mesh.choose_outgoing()).then_some(mesh)
     }
 
-    /// Finds the twins: the half-edges are sorted into one bucket for the smaller end of each, and
-    /// within it by the larger. Whether no two of them run between the same vertices in the same
+    /// Finds the twins: each half-edge is sorted into the bucket of its smaller end, and within it
+    /// by the larger end. Returns whether no two of them run between the same vertices in the same
     /// direction.
     fn pair(&mut self) -> bool {
         let mut start = vec![0_u32; self.outgoing.len() + 1];
@@ -47,7 +47,7 @@ impl HalfEdges {
             start[v + 1] += start[v];
         }
         let mut fill = start.clone();
-        // The larger end above, the half-edge below.
+        // The larger end in the high bits, the half-edge in the low ones.
         let mut buckets = vec![0_u64; self.origin.len()];
         for h in 0..half_edges {
             let (low, high) = ends(self, h);
@@ -73,7 +73,8 @@ impl HalfEdges {
         true
     }
 
-    /// Chooses the half-edge kept for each vertex. Whether the faces of each form one fan.
+    /// Chooses the half-edge stored for each vertex. Returns whether the faces of each vertex form
+    /// one fan.
     fn choose_outgoing(&mut self) -> bool {
         let mut faces_at = vec![0_usize; self.outgoing.len()];
         for h in 0..self.origin.len() as u32 {
@@ -86,7 +87,7 @@ impl HalfEdges {
         (0..).zip(faces_at).all(|(v, faces)| self.around(v).take(faces + 1).count() == faces)
     }
 
-    /// The first half-edge of the fan in which `h` is one that leaves a vertex: the one without a
+    /// The first half-edge of a fan, of which `h` is one that leaves the vertex: the one without a
     /// twin, or `h` itself.
     pub(super) fn first_of_fan(&self, h: u32) -> u32 {
         let mut at = h;

@@ -1,11 +1,11 @@
-//! Local operations, and a journal by which they can be taken back.
+//! Local operations, and a journal that can undo them.
 
 use super::{Change, HalfEdges, next, previous};
 use crate::math::{NONE, grow};
 
 impl HalfEdges {
-    /// Begins a journal: every change from now on can be taken back by [`HalfEdges::undo`]. An
-    /// earlier journal is dropped.
+    /// Begins a journal: every change from now on can be undone by [`HalfEdges::undo`]. An earlier
+    /// journal is dropped.
     pub fn begin(&mut self) {
         self.journal.clear();
         self.is_recording = true;
@@ -17,8 +17,7 @@ impl HalfEdges {
         self.is_recording = false;
     }
 
-    /// Takes back every change since [`HalfEdges::begin`], to the last number, and ends the
-    /// journal.
+    /// Undoes every change since [`HalfEdges::begin`], down to the numbering, and ends the journal.
     pub fn undo(&mut self) {
         self.is_recording = false;
         while let Some(change) = self.journal.pop() {
@@ -45,8 +44,8 @@ impl HalfEdges {
         }
     }
 
-    /// Whether the edge of `h` can be flipped: it has two faces, and the vertices across are no
-    /// neighbours yet. Both ends keep at least three faces then, because around an inner vertex
+    /// Whether the edge of `h` can be flipped: it has two faces, and the vertices across are not
+    /// yet neighbours. Both ends then keep at least three faces, because around an inner vertex
     /// with three faces all neighbours are neighbours of each other.
     #[must_use]
     pub fn can_flip(&self, h: u32) -> bool {
@@ -59,11 +58,11 @@ impl HalfEdges {
     }
 
     /// Flips the edge of `h`: its two faces get the other diagonal of their quadrilateral. `h` then
-    /// runs from the vertex across its twin to the one across itself.
+    /// runs from the vertex opposite its twin to the one opposite itself.
     ///
     /// # Panics
     ///
-    /// If `h` lies on the border. The surface is only what it should be if [`HalfEdges::can_flip`].
+    /// If `h` lies on the border. The surface stays valid only if [`HalfEdges::can_flip`].
     pub fn flip(&mut self, h: u32) {
         let t = self.twin(h);
         assert!(t != NONE, "an edge at the border cannot be flipped");
@@ -91,8 +90,8 @@ impl HalfEdges {
         self.join(t2, bc);
     }
 
-    /// Puts a new vertex into the face of `h` and returns its number: three faces take the place of
-    /// one.
+    /// Inserts a new vertex into the face of `h`, which becomes three faces, and returns its
+    /// number.
     pub fn insert(&mut self, h: u32) -> u32 {
         let (h1, h2) = (next(h), previous(h));
         let (a, b, c) = (self.origin(h), self.origin(h1), self.origin(h2));
@@ -153,9 +152,9 @@ impl HalfEdges {
         m
     }
 
-    /// Whether the edge of `h` can be collapsed: the surface stays one of the same kind. The two
-    /// ends have no common neighbour but those across the edge, which keep at least three faces
-    /// (one, at the border); and a border vertex goes only along the border.
+    /// Whether the edge of `h` can be collapsed without a change of topology. The two ends have no
+    /// common neighbours except those opposite the edge, which keep at least three faces (one, at
+    /// the border); and a border vertex moves only along the border.
     #[must_use]
     pub fn can_collapse(&self, h: u32) -> bool {
         let t = self.twin(h);
@@ -172,8 +171,8 @@ impl HalfEdges {
             let least = if self.is_border(v) { 2 } else { 4 };
             self.around(v).nth(least - 1).is_some()
         };
-        // Faces that the two ends need together, so that the one that is left has three, or one at
-        // the border.
+        // Faces that both ends need together, so that the remaining one has three, or one at the
+        // border.
         let least = match (t, self.is_border(b)) {
             (NONE, _) => 3,
             (_, true) => 5,
@@ -183,9 +182,9 @@ impl HalfEdges {
     }
 
     /// Removes the vertex at which `h` begins: its faces are handed to the one at which `h` ends,
-    /// without the two at the edge. Returns the vertex that is left.
+    /// except the two at the edge. Returns the remaining vertex.
     ///
-    /// The surface is only what it should be if [`HalfEdges::can_collapse`].
+    /// The surface stays valid only if [`HalfEdges::can_collapse`].
     pub fn collapse(&mut self, h: u32) -> u32 {
         let t = self.twin(h);
         let (a, b) = (self.origin(h), self.target(h));
@@ -210,7 +209,7 @@ impl HalfEdges {
         b
     }
 
-    /// Removes the face of `h`, whose edge has no length any more, and joins its two other sides.
+    /// Removes the face of `h`, whose edge no longer has a length, and joins its two other sides.
     /// Returns a half-edge that leaves `b`, at the end of `h`.
     fn close(&mut self, h: u32, b: u32) -> u32 {
         let (h1, h2) = (next(h), previous(h));
@@ -278,7 +277,7 @@ impl HalfEdges {
         self.record(Change::Outgoing(v, old));
     }
 
-    /// A vertex number that is free, a new one if need be.
+    /// A free vertex number, a new one if necessary.
     fn take_vertex(&mut self) -> u32 {
         if let Some(v) = self.free_vertices.pop() {
             self.record(Change::VertexTaken(v));
@@ -290,7 +289,7 @@ impl HalfEdges {
         v as u32
     }
 
-    /// The first half-edge of a face that is free, of a new one if need be.
+    /// The first half-edge of a free face, of a new one if necessary.
     fn take_face(&mut self) -> u32 {
         if let Some(f) = self.free_faces.pop() {
             self.record(Change::FaceTaken(f));

@@ -1,19 +1,18 @@
 //! A triangle surface as half-edges: its connectivity, and the operations that change it.
 //!
 //! Face `f` has the half-edges `3f`, `3f + 1` and `3f + 2`, counter-clockwise seen from outside, so
-//! that the next and the previous one follow from the number alone. What is stored is where each
+//! that the next and the previous one follow from the number. Stored are the vertex at which each
 //! half-edge begins, its twin in the face on the other side, and one half-edge that leaves each
-//! vertex. The surface knows no positions: whoever owns the particles decides what to change.
+//! vertex. The surface knows no positions: the owner of the particles decides what to change.
 //!
 //! # Invariants
 //!
-//! A test holds every operation to these:
+//! A test checks these after every operation:
 //!
-//! * Twins are each other's twins and run between the same two vertices in opposite directions. A
+//! * Twins refer to each other and run between the same two vertices in opposite directions. A
 //!   half-edge without a twin lies on the border.
-//! * The faces at a vertex form one fan. At a border vertex the half-edge kept for the vertex is
-//!   the first of the fan, the one without a twin, so that a walk counter-clockwise meets every
-//!   face.
+//! * The faces at a vertex form one fan. At a border vertex the stored half-edge is the first of
+//!   the fan, the one without a twin, so that a walk counter-clockwise meets every face.
 //! * No two half-edges run from the same vertex to the same other, and no face has a vertex twice.
 //!
 //! Source of the structure: the directed edges of S. Campagna, L. Kobbelt and H.-P. Seidel,
@@ -33,7 +32,7 @@ use crate::math::NONE;
 /// A surface of triangles.
 #[derive(Clone, Debug, Default)]
 pub struct HalfEdges {
-    /// The vertex at which a half-edge begins; [`NONE`] for those of a face that was removed.
+    /// The vertex at which each half-edge begins; [`NONE`] for those of a removed face.
     origin: Vec<u32>,
     /// The half-edge on the other side; [`NONE`] at the border.
     twin: Vec<u32>,
@@ -41,7 +40,7 @@ pub struct HalfEdges {
     outgoing: Vec<u32>,
     free_faces: Vec<u32>,
     free_vertices: Vec<u32>,
-    /// The changes since the journal was begun, newest last.
+    /// The changes since the beginning of the journal, newest last.
     journal: Vec<Change>,
     is_recording: bool,
 }
@@ -102,14 +101,14 @@ impl HalfEdges {
         self.origin.len() / 3 - self.free_faces.len()
     }
 
-    /// Whether the vertex is there and has a face.
+    /// Whether the vertex exists and has a face.
     #[inline]
     #[must_use]
     pub fn has_vertex(&self, v: u32) -> bool {
         self.outgoing[v as usize] != NONE
     }
 
-    /// Whether the half-edge belongs to a face that is there.
+    /// Whether the half-edge belongs to a face that exists.
     #[inline]
     #[must_use]
     pub fn has_half_edge(&self, h: u32) -> bool {
@@ -187,14 +186,14 @@ impl HalfEdges {
         self.neighbours(a).any(|other| other == b)
     }
 
-    /// The half-edges of all faces that are there, each edge once: by the half-edge of the smaller
-    /// number, or by the one there is.
+    /// The half-edges of all existing faces, each edge once: by the half-edge with the smaller
+    /// number, or by the only one.
     pub fn edges(&self) -> impl Iterator<Item = u32> + '_ {
         // At the border the twin is the largest number.
         (0..self.origin.len() as u32).filter(|&h| self.has_half_edge(h) && h < self.twin(h))
     }
 
-    /// The vertices of face `f`, if it is there.
+    /// The vertices of face `f`, if it exists.
     #[inline]
     #[must_use]
     pub fn face(&self, f: u32) -> Option<[u32; 3]> {
@@ -202,13 +201,13 @@ impl HalfEdges {
         (corners[0] != NONE).then(|| [corners[0], corners[1], corners[2]])
     }
 
-    /// The faces that are there, by their vertices.
+    /// The existing faces, by their vertices.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         self.origin.chunks_exact(3).filter(|corners| corners[0] != NONE).map(|c| [c[0], c[1], c[2]])
     }
 
-    /// The vertices at which the half-edges begin, face by face, [`NONE`] for those of faces that
-    /// were removed; all else is freed.
+    /// The vertices at which the half-edges begin, face by face, [`NONE`] for those of removed
+    /// faces; all else is freed.
     #[must_use]
     pub fn into_corners(self) -> Vec<u32> {
         self.origin
@@ -250,7 +249,7 @@ impl Iterator for Around<'_> {
 pub struct Neighbours<'a> {
     mesh: &'a HalfEdges,
     first: u32,
-    /// The half-edge whose face has the next neighbour but one.
+    /// The half-edge whose face has the neighbour after the next one.
     at: u32,
     /// The next neighbour.
     vertex: u32,

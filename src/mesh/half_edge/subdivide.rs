@@ -3,25 +3,25 @@
 use super::{HalfEdges, next};
 use crate::math::NONE;
 
-/// A subdivision under way: it can be left and gone on with.
+/// A subdivision under way: it can be interrupted and continued.
 ///
 /// Old vertices keep their valence and new ones have six neighbours, four on the border: a
 /// subdivision adds no defect. A vertex is followed by the middles of those of its edges that no
-/// earlier vertex has, so that what is near on the surface stays near in memory, level after level.
+/// earlier vertex has, so that vertices near on the surface stay near in memory, level after level.
 #[derive(Clone, Debug, Default)]
 pub struct Subdivision {
     fine: HalfEdges,
     ends: Vec<[u32; 2]>,
-    /// Vertex of the finer surface at each old one that is there.
+    /// Vertex of the finer surface at each existing old one.
     kept: Vec<u32>,
-    /// Vertex of the finer surface on the middle of each old half-edge; 0 before it is numbered,
-    /// which is that of an old vertex.
+    /// Vertex of the finer surface on the middle of each old half-edge; 0, the number of an old
+    /// vertex, before it is numbered.
     middle: Vec<u32>,
-    /// Place of each old face among those that are there, in the order in which the vertices come
-    /// to them.
+    /// Rank of each old face among the existing ones, in the order in which the vertices reach
+    /// them.
     rank: Vec<u32>,
     ranked: u32,
-    /// Number of vertices of the coarse surface, and of its faces after them, that are done.
+    /// Number of vertices of the coarse surface, and then of its faces, that are done.
     done: u32,
 }
 
@@ -31,11 +31,11 @@ impl Subdivision {
     pub fn new(coarse: &HalfEdges) -> Self {
         let (faces, vertices) = (coarse.faces(), coarse.vertex_slots());
         let slots = coarse.half_edge_slots();
-        // A closed surface has half as many edges as half-edges; a border adds a few, for which
-        // there is room to grow.
+        // A closed surface has half as many edges as half-edges; a border adds a few, for which the
+        // vectors may grow.
         let expected = vertices + 3 * faces / 2;
-        // Zeros are had without touching the memory, which takes longer for the first time than
-        // what is then done with it.
+        // Zeros are allocated without touching the memory: the first access takes longer than the
+        // work that follows.
         let fine = HalfEdges {
             origin: vec![0; 12 * faces],
             twin: vec![0; 12 * faces],
@@ -53,8 +53,8 @@ impl Subdivision {
         }
     }
 
-    /// Goes on with up to `budget` vertices or faces of `coarse`. Whether the subdivision is
-    /// complete.
+    /// Continues with up to `budget` vertices or faces of `coarse`. Returns whether the subdivision
+    /// is complete.
     pub fn step(&mut self, coarse: &HalfEdges, budget: u32) -> bool {
         let vertices = coarse.vertex_slots() as u32;
         let all = vertices + (coarse.half_edge_slots() / 3) as u32;
@@ -67,7 +67,7 @@ impl Subdivision {
     }
 
     /// The finer surface, once the subdivision is complete, and for each of its vertices the two
-    /// ends of the edge that it halves; `[v, NONE]` where it is the old vertex v.
+    /// ends of the edge that it halves; `[v, NONE]` for the old vertex v.
     #[must_use]
     pub fn finish(self) -> (HalfEdges, Vec<[u32; 2]>) {
         (self.fine, self.ends)
@@ -118,7 +118,7 @@ impl Subdivision {
             let (here, before) = (self.corner(h) as usize, 3 * f + (k + 2) % 3);
             let (v, m) = (self.kept[coarse.origin(h) as usize], self.middle[h as usize]);
             self.fine.origin[here..here + 3].copy_from_slice(&[v, m, self.middle[before as usize]]);
-            // The inner face begins at the middle of half-edge 0; the edge that cuts corner k off
+            // The inner face begins at the middle of half-edge 0; the edge that cuts off corner k
             // ends there.
             let across = inner + (k + 2) % 3;
             self.fine.origin[(inner + k) as usize] = m;
@@ -126,7 +126,7 @@ impl Subdivision {
             self.fine.twin[across as usize] = here as u32 + 1;
             let second = self.corner(next(h)) + 2;
             let twin = coarse.twin(h);
-            // Each half of the edge lies beside the other half of the twin.
+            // The twin of each half of the edge is the other half of the twin edge.
             let beside =
                 if twin == NONE { [NONE; 2] } else { [self.corner(next(twin)) + 2, self.corner(twin)] };
             [self.fine.twin[here], self.fine.twin[second as usize]] = beside;

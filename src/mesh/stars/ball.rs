@@ -1,4 +1,4 @@
-//! The points near a place, side by side in lanes, and the tangent plane that they are laid into.
+//! The points near a place, side by side in lanes, and their places in its tangent plane.
 
 use super::StarPoints;
 use crate::math::{LANES, Lanes, tangent_frame, unkey};
@@ -6,26 +6,27 @@ use crate::spatial::LANES_OF;
 use crate::spatial::tree::{PointsInBox, Tree};
 use glam::{Vec3, Vec4};
 
-/// Largest number of points in a ball, and of neighbours of a point, where holes are no matter. In
-/// a hexagonal lattice the first ball that is searched holds some 18.
+/// Largest number of points in a ball, and of neighbours of a point, if holes do not matter. In a
+/// hexagonal lattice the first ball that is searched holds some 18.
 pub(super) const NEAR: usize = 64;
 /// Largest number of points in a ball. Fewer leave more points without their neighbours across a
 /// hole.
 pub(super) const MOST: usize = 256;
-/// Numbers that are worked on at once: the lanes of a SIMD register.
+/// Numbers that are processed at once: the lanes of a SIMD register.
 const WIDTH: usize = 4;
-/// Two points are on one sheet only if the sine squared of the angle between their line and the
+/// Two points are on one sheet only if the squared sine of the angle between their line and the
 /// normal is at least this: the line rises by 63° at most.
 pub(super) const MIN_FLAT: f32 = 0.2;
 /// Two points are on one sheet only if their line rises from one tangent plane as it sinks below
-/// the other, up to this share of its length: that tells sheets apart that face the same way.
+/// the other, up to this share of its length: that separates sheets that face the same way.
 /// Smaller: more particles are in no triangle; larger: a surface that crosses itself gets holes.
 pub(crate) const MAX_LIFT: f32 = 0.35;
 
 /// Two points are collinear with the centre if the sine of the angle between them is at most this.
 /// Rounding in single precision turns the line between two points by 6·10⁻⁸ times their coordinates
-/// over their distance: this holds up to a thousand spacings from the origin. The circle through
-/// three such points is 10⁴ times as wide as they are apart, so no triangle of a mesh is lost.
+/// over their distance: this is enough up to a thousand spacings from the origin. The circle
+/// through three such points is 10⁴ times as wide as they are apart, so no triangle of a mesh is
+/// lost.
 const COLLINEAR: f32 = 1e-4;
 
 /// The points of a tree in a box, with their normals.
@@ -56,12 +57,12 @@ fn four(row: &PerPoint, block: usize) -> Vec4 {
     Vec4::from_array(row.as_chunks().0[block])
 }
 
-/// Points round a centre, four by four. Points on another sheet lie at the centre, infinitely far
-/// away.
+/// Points around a centre, in blocks of four. Points on another sheet are put at the centre,
+/// infinitely far away.
 pub(super) struct Ball {
     /// Number of points.
     count: usize,
-    /// The points, by their place in the tree.
+    /// The points, by their indices in the tree.
     index: [u32; MOST],
     /// Offset from the centre and normal.
     point: [PerPoint; 6],
@@ -90,8 +91,8 @@ impl Default for Ball {
 }
 
 impl Ball {
-    /// Holds the points of `surroundings` nearer to `centre` than √`bound_sq`, but not `except`;
-    /// whether there is room for all.
+    /// Takes the points of `surroundings` nearer to `centre` than √`bound_sq`, but not `except`.
+    /// Returns whether there is room for all.
     pub(super) fn take(
         &mut self,
         surroundings: &BallPoints,
@@ -130,8 +131,8 @@ impl Ball {
         true
     }
 
-    /// Holds the points within `radius` of point `i`, or the `most` nearest ones if those are more;
-    /// the square of the radius within which all are held.
+    /// Takes the points within `radius` of point `i`, or the `most` nearest ones if there are more.
+    /// Returns the squared radius within which all are held.
     pub(super) fn search(
         &mut self,
         &StarPoints { tree, normal, .. }: &StarPoints<'_>,
@@ -173,9 +174,9 @@ impl Ball {
         self.count = k + 1;
     }
 
-    /// Lays the points that face the same way into the tangent plane of the centre, whose normal is
-    /// `normal`, if the centre `is_tip` of a cone; else gives that normal to those among the
-    /// `tips`, which see the centre far above their own plane.
+    /// If the centre `is_tip` of a cone, lays the points that face the same way into its tangent
+    /// plane, with the normal `normal`; else gives that normal to the `tips` among the points,
+    /// which see the centre far above their own plane.
     pub(super) fn level(&mut self, tips: &[u32], normal: Vec3, is_tip: bool) {
         if tips.is_empty() {
             return;
@@ -200,7 +201,7 @@ impl Ball {
         self.count.div_ceil(WIDTH)
     }
 
-    /// Lays the points of the centre's sheet, but those nearer than √`twin_sq`, into its tangent
+    /// Lays the points of the centre's sheet, except those nearer than √`twin_sq`, into its tangent
     /// plane, at their true distances.
     pub(super) fn unroll(&mut self, normal: Vec3, twin_sq: f32) {
         let (u, v) = tangent_frame(normal);
@@ -240,12 +241,12 @@ impl Ball {
         self.count
     }
 
-    /// The point with a number below [`MOST`], by its place in the tree.
+    /// The point with a number below [`MOST`], by its index in the tree.
     pub(super) fn index(&self, k: usize) -> u32 {
         self.index[k]
     }
 
-    /// The points, by their places in the tree.
+    /// The points, by their indices in the tree.
     pub(super) fn indices(&self) -> impl Iterator<Item = u32> {
         self.index[..self.count].iter().copied()
     }
@@ -255,12 +256,12 @@ impl Ball {
         self.faces_another
     }
 
-    /// Distance of the nearest point, whatever its sheet; infinite if there is none.
+    /// Distance of the nearest point, on any sheet; infinite if there is none.
     pub(super) fn nearest_of_all(&self) -> f32 {
         self.nearest_sq.sqrt()
     }
 
-    /// Takes a point from the sheet of the centre.
+    /// Removes a point from the sheet of the centre.
     pub(super) fn leave_out(&mut self, k: usize) {
         (self.flat[0][k], self.flat[1][k], self.distance_sq[k]) = (0.0, 0.0, f32::INFINITY);
     }
@@ -275,9 +276,9 @@ impl Ball {
         self.least(|block| four(&self.distance_sq, block)).map(|(_, k)| k)
     }
 
-    /// The point after `from` in the hull of the inverted points: to its left where `side` is 1, to
-    /// its right where it is −1; and the square of the diameter of the circle through both and the
-    /// centre. None, and infinite, if there is none within half a turn, up to [`COLLINEAR`].
+    /// The point after `from` in the hull of the inverted points: on its left if `side` is 1, on
+    /// its right if it is −1; and the squared diameter of the circle through both and the centre.
+    /// None, and infinite, if there is none within half a turn, up to [`COLLINEAR`].
     pub(super) fn next(&self, from: usize, side: f32) -> (Option<usize>, f32) {
         let [u, v] = self.flat(from);
         let over_from_sq = self.distance_sq(from).recip();
@@ -288,7 +289,7 @@ impl Ball {
             // The cotangent of the angle at the point over the chord from the centre to `from`: the
             // circle's centre is half that many chords away from the chord.
             let cotangent = (distance_sq - (x * u + y * v)) / cross;
-            // The sine squared is at most one: no product of two small numbers is rounded to zero.
+            // The squared sine is at most one: no product of two small numbers is rounded to zero.
             let is_beside = cross.cmpgt(Vec4::ZERO)
                 & ((cross * over_from_sq) * cross).cmpgt(distance_sq * (COLLINEAR * COLLINEAR));
             Vec4::select(is_beside, cotangent, Vec4::INFINITY)
@@ -297,11 +298,11 @@ impl Ball {
         (found.map(|(_, k)| k), self.distance_sq(from) * (1.0 + cotangent * cotangent))
     }
 
-    /// The least of the numbers that the points have, and the first point that has it; none if none
+    /// The least of the numbers of the points, and the first point that has it; none if no number
     /// is finite.
     #[inline]
     fn least(&self, numbers: impl Fn(usize) -> Vec4) -> Option<(f32, usize)> {
-        // In each lane, and the block where it was first met.
+        // For each lane, and the block in which it was first found.
         let (mut least, mut met_in) = (Vec4::INFINITY, Vec4::ZERO);
         for block in 0..self.blocks() {
             let value = numbers(block);
@@ -315,7 +316,7 @@ impl Ball {
         first.filter(|_| value < f32::INFINITY).map(|first| (value, first))
     }
 
-    /// Cotangent of the angle at a point over the chord from the centre to `end`.
+    /// Cotangent of the angle at the point `at`, opposite the chord from the centre to `end`.
     pub(super) fn cotangent(&self, end: usize, at: usize) -> f32 {
         let ([u, v], [x, y]) = (self.flat(end), self.flat(at));
         (self.distance_sq[at] - (x * u + y * v)) / (x * v - y * u).abs()
@@ -325,15 +326,16 @@ impl Ball {
         [self.flat[0][k], self.flat[1][k]]
     }
 
-    /// Whether the direction of `k` lies strictly between those of `a` and `b`, which are less than
-    /// half a turn apart, counter-clockwise.
+    /// Whether the direction of `k` lies strictly between those of `a` and `b`, counter-clockwise,
+    /// which are less than half a turn apart.
     pub(super) fn is_between(&self, a: usize, k: usize, b: usize) -> bool {
         let cross = |[ax, ay]: [f32; 2], [bx, by]: [f32; 2]| ax * by - ay * bx;
         let middle = self.flat(k);
         cross(self.flat(a), middle) > 0.0 && cross(middle, self.flat(b)) > 0.0
     }
 
-    /// Whether a point before `i` in the tree is nearer to the centre than √`twin_sq`, or there.
+    /// Whether an earlier point of the tree than `i` is nearer to the centre than √`twin_sq`, or
+    /// there.
     pub(super) fn has_earlier_twin(&self, i: u32, twin_sq: f32) -> bool {
         if self.nearest_sq > twin_sq {
             return false;

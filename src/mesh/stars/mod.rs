@@ -1,9 +1,9 @@
 //! Stars: the natural neighbours of every point, counter-clockwise round its normal, in single
-//! precision. Particles are joined to a mesh by them, and their order is measured by them.
+//! precision. The mesh of the particles is made from them, and so are the figures of their order.
 //!
 //! The points of the same sheet are unrolled to the tangent plane of a point, keeping their true
-//! distance. The point's neighbours in the Delaunay triangulation there are found one after the
-//! other, from the nearest one on: the next neighbour is the point to the left whose circle through
+//! distance. The point's neighbours in the Delaunay triangulation there are found one by one,
+//! starting with the nearest one: the next neighbour is the point on the left whose circle through
 //! the centre and the last neighbour is the smallest on that side.
 
 mod ball;
@@ -23,37 +23,37 @@ use glam::Vec3;
 /// Largest circumradius of a triangle, in units of the spacing at the corner. Smaller: more
 /// particles are in no triangle; larger: more gaps of the surface are closed.
 const WIDEST: f32 = 2.0;
-/// Points nearer than this share of the ball's radius are one point.
+/// Points nearer than this share of the ball's radius are the same point.
 const TWIN: f32 = 1e-5;
 /// Marks, in [`Stars::entry`], that the point, this neighbour and the next one form a triangle.
 const WEDGE: u32 = 1 << 31;
-/// Marks, in [`Stars::entry`], that the Voronoi cells of the two points meet in a corner only, as
+/// Marks, in [`Stars::entry`], that the Voronoi cells of the two points meet only in a corner, as
 /// across a diagonal of a square.
 const CORNER: u32 = 1 << 30;
-/// The bits of an entry that are its point.
+/// The bits of an entry that hold its point.
 const POINT: u32 = CORNER - 1;
 /// An edge of a Voronoi cell is a corner if it is shorter than half this share of the distance of
-/// the two points. Rounding in single precision is less.
+/// the two points, which is above rounding in single precision.
 const SHORT: f32 = 1e-5;
 /// Leaves of the tree in a slice of work: they have eight to sixteen points each.
 const LEAVES: usize = HEAVY / 8;
 
-/// Tells sheets apart that face the same way and lie nearer to each other than their points do.
+/// Distinguishes sheets that face the same way and lie nearer to each other than their points do.
 /// Between two such sheets there is a third one that faces the other way.
 pub(crate) trait TellsApart: MaybeSend + MaybeSync {
     /// The judge of one patch, or of a surface without creases. Each thread makes its own.
     fn on(&self, patch: Option<u32>) -> Box<dyn TellsApart + '_>;
 
-    /// The distance from a point to the nearest sheet that faces the other way, of which these are
-    /// points; infinite where none is near.
+    /// The distance from a point to the nearest sheet that faces the other way, on which `others`
+    /// lie; infinite if none is near.
     fn facing_away(&mut self, point: OrientedPoint, others: &[OrientedPoint]) -> f64;
 
-    /// Whether two points that face the same way are on two sheets, where one that faces the other
-    /// way is `facing_away` from the first.
+    /// Whether two points that face the same way are on two sheets, if one that faces the other way
+    /// is `facing_away` from the first.
     fn are_two(&mut self, one: OrientedPoint, other: OrientedPoint, facing_away: f64) -> bool;
 }
 
-/// Tells no sheets apart but by the directions and heights of their points.
+/// Distinguishes sheets only by the directions and heights of their points.
 pub(crate) struct ByDirection;
 
 impl TellsApart for ByDirection {
@@ -73,16 +73,16 @@ impl TellsApart for ByDirection {
 /// Natural neighbours in tree order, all stars one after the other.
 ///
 /// [`Stars::new`] finds those that matter to a mesh: its triangles are narrow, and a star may lack
-/// neighbours across a hole. [`Stars::completed`] finds these, too.
+/// neighbours across a hole. [`Stars::completed`] finds those, too.
 #[derive(Debug, Default)]
 pub(crate) struct Stars {
     start: Vec<u32>,
     entry: Vec<u32>,
     /// Whether the star has a gap: two neighbours in a row without a triangle between them.
     pub(crate) is_open: Vec<bool>,
-    /// Whether the point is known to have no natural neighbours but these, all round it.
+    /// Whether the point is known to have no other natural neighbours, all round it.
     is_certain: Vec<bool>,
-    /// Distance of the nearest other point, of any sheet; infinite if there is none.
+    /// Distance of the nearest other point, on any sheet; infinite if there is none.
     pub(crate) nearest: Vec<f32>,
     /// Points at the place of an earlier one.
     twins: Vec<u32>,
@@ -104,7 +104,7 @@ struct Ray {
     width_sq: f32,
 }
 
-/// A star under construction; empty only where the centre has no other point on its sheet.
+/// A star under construction; empty only if the centre has no other point on its sheet.
 #[derive(Default)]
 struct Star {
     rays: Vec<Ray>,
@@ -146,7 +146,7 @@ impl Stars {
         }
     }
 
-    /// The stars of the points, as far as they matter to a mesh.
+    /// The stars of the points, as far as a mesh needs them.
     pub(crate) async fn new(points: &StarPoints<'_>, judge: &dyn TellsApart) -> Self {
         let n = points.tree.len();
         assert!(n < 1 << 30, "points are numbered with 30 bits");
@@ -193,7 +193,7 @@ impl Stars {
         }
     }
 
-    /// Ends the star of which the entries have been added.
+    /// Ends the star whose entries have been added.
     fn end_star(&mut self, nearest: f32, is_open: bool, is_certain: bool) {
         self.nearest.push(nearest);
         self.is_open.push(is_open);
@@ -201,7 +201,7 @@ impl Stars {
         self.start.push(self.entry.len() as u32);
     }
 
-    /// Adds the star of point `i`, of a leaf whose surroundings reach as far as told.
+    /// Adds the star of point `i`, of a leaf whose surroundings extend by `reach`.
     fn add(
         &mut self,
         points: &StarPoints<'_>,
@@ -215,7 +215,7 @@ impl Stars {
         let reach_sq = reach * reach;
         let has_all = ball.take(surroundings, tree.position[i], reach_sq, i as u32);
         let mut known_sq = if has_all { reach_sq } else { 0.0 };
-        // Of a few points all are known, however far away.
+        // If the points are few, all are known, however far away.
         let twin_sq = |known_sq: f32| TWIN * TWIN * if known_sq == f32::MAX { reach_sq } else { known_sq };
         ball.level(tips, normal[i], is_tip);
         star.make(ball, points, i as u32, twin_sq(known_sq), judge);
@@ -246,16 +246,16 @@ impl Stars {
         self.end_star(ball.nearest_of_all(), is_open, is_certain);
     }
 
-    /// The stars with all natural neighbours of the points, whose triangles may be wide. Only those
-    /// of points beside which there is nothing for half a turn stay open, and those of points that
-    /// are known to be at a border stay as they are.
+    /// The stars with all natural neighbours of the points, whose triangles may be wide. Only stars
+    /// of points with nothing on one side, for half a turn, stay open, and those of points known to
+    /// be at a border are not changed.
     pub(crate) async fn completed(
         &self,
         points: &StarPoints<'_>,
         is_at_border: impl Fn(usize) -> bool,
         judge: &dyn TellsApart,
     ) -> Self {
-        /// Points in a slice of work: each may look at hundreds of others.
+        /// Points in a slice of work: each may examine hundreds of others.
         const FEW: usize = HEAVY / 8;
         let n = self.len();
         let is_unknown = |i: &usize| !self.is_certain[*i] && !is_at_border(*i);
@@ -304,9 +304,10 @@ impl Stars {
         let mut known_sq = look(0.0, NEAR, star);
         let width_sq = star.width_sq();
         if width_sq > known_sq && width_sq.is_finite() {
-            // Of a wide ball that holds more points, the nearest are found sooner without it.
+            // If the ball is wide and would hold more points, a search for the nearest ones is
+            // faster.
             let is_wide = width_sq > (MOST / NEAR) as f32 * known_sq;
-            // The hundredth is for rounding.
+            // The hundredth allows for rounding.
             known_sq = look(if is_wide { 0.0 } else { 1.01 * width_sq.sqrt() }, MOST, star);
         }
         let is_certain = star.is_certain(known_sq);
@@ -314,7 +315,7 @@ impl Stars {
     }
 
     /// The [completed](Stars::completed) stars of all sheets, as those of a tree over their rows,
-    /// of which so many are on creases. A row that was left out has no neighbours.
+    /// of which the first `on_creases` are on creases. A row that was left out has no neighbours.
     pub(crate) async fn gathered(
         sheets: &Sheets,
         tree: &Tree,
@@ -382,14 +383,14 @@ impl Stars {
         (self.next(&range, entry) == Some(b)).then_some(entry)
     }
 
-    /// The next neighbour of `i`, if it makes a triangle with that of `entry`.
+    /// The neighbour after that of `entry`, if both form a triangle with the centre.
     pub(crate) fn next(&self, range: &Range<usize>, entry: usize) -> Option<u32> {
         let next = if entry + 1 == range.end { range.start } else { entry + 1 };
         (self.entry[entry] & WEDGE != 0).then(|| self.neighbour(next))
     }
 
     /// Whether `i` sees the triangle of itself, `a` and `b`, from either side: points of two sheets
-    /// may see it from opposite ones.
+    /// may see it from opposite sides.
     pub(crate) fn sees(&self, i: u32, a: u32, b: u32) -> bool {
         self.entry(i, a, b).is_some() || self.entry(i, b, a).is_some()
     }
@@ -453,8 +454,8 @@ impl Star {
         }
     }
 
-    /// Follows the hull of the inverted points from the nearest one on, to the left until it
-    /// closes, or else to both sides as far as it goes.
+    /// Follows the hull of the inverted points from the nearest one, to the left until it closes,
+    /// or else to both sides as far as it goes.
     fn follow(&mut self, ball: &Ball) {
         self.rays.clear();
         let Some(first) = ball.nearest() else { return };
@@ -484,18 +485,18 @@ impl Star {
         self.rays.rotate_left(left);
     }
 
-    /// Whether no point farther than √`known_sq` can matter.
+    /// Whether no point farther than √`known_sq` can change the star.
     fn is_certain(&self, known_sq: f32) -> bool {
         !self.rays.is_empty() && self.width_sq() <= known_sq
     }
 
-    /// The square of the largest width of a wedge; infinite where one takes half a turn or more.
+    /// The square of the largest width of a wedge; infinite if one takes half a turn or more.
     fn width_sq(&self) -> f32 {
         self.rays.iter().map(|ray| ray.width_sq).fold(0.0, f32::max)
     }
 
-    /// Whether the Voronoi cells of the centre and of the point of a ray meet in a corner only: the
-    /// circles through both and the ray on either side are one.
+    /// Whether the Voronoi cells of the centre and of the point of a ray meet only in a corner: the
+    /// circles through both and the ray on either side are the same.
     fn is_corner(&self, ball: &Ball, k: usize) -> bool {
         let n = self.rays.len();
         let [before, at, after] = [k + n - 1, k, k + 1].map(|k| self.rays[k % n]);

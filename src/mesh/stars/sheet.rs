@@ -1,5 +1,5 @@
-//! The stars of particles, patch by patch. On a surface with creases each patch is a sheet of its
-//! own, which ends at its creases; a smooth surface is one sheet.
+//! The stars of particles, patch by patch. On a surface with creases each patch is a separate
+//! sheet, which ends at its creases; a smooth surface is one sheet.
 
 use super::{StarPoints, Stars, TellsApart};
 use crate::math::sort_pairs;
@@ -27,13 +27,13 @@ pub(crate) struct Sheet {
     /// The points at the apex of a cone, in ascending order.
     tips: Vec<u32>,
     pub(crate) stars: Stars,
-    /// Pairs of rows that follow each other along a crease, with the patch on the left.
+    /// Pairs of successive rows along a crease, with the patch on the left.
     pub(crate) border: Vec<[u32; 2]>,
 }
 
 impl Sheets {
     /// The sheets of these particles. Rows without a finite position or a normal are left out, and
-    /// those at the place of an earlier one of the same patch.
+    /// so are those at the place of an earlier one of the same patch.
     pub(crate) async fn new(particles: &Particles, judge: &dyn TellsApart) -> Self {
         let mut all = Vec::new();
         if particles.patch.is_empty() {
@@ -57,12 +57,12 @@ impl Sheets {
         self.all.first().filter(|sheet| sheet.patch.is_none())
     }
 
-    /// Whether these are the sheets of so many rows, of which none was left out.
+    /// Whether these are the sheets of `rows` rows, with none left out.
     pub(crate) fn hold(&self, rows: usize) -> bool {
         self.all.iter().map(|sheet| sheet.tree.len()).sum::<usize>() == rows
     }
 
-    /// Finds the borders of all sheets, by the segments along creases.
+    /// Finds the borders of all sheets, from the segments along creases.
     fn find_borders(&mut self, particles: &Particles) {
         // The rows of each particle on a crease, one particle after the other.
         let mut of_first: Vec<(u32, u32)> = particles.twins.iter().copied().zip(0..).collect();
@@ -114,7 +114,7 @@ impl Sheet {
                 let tree = Arc::new(tree);
                 return Self { patch, tree, normal, tips, stars, border: Vec::new() };
             }
-            // They would be neighbours of everything that the first one is a neighbour of.
+            // They would have the same neighbours as the first one.
             let mut twins: Vec<u32> = stars.twins().iter().map(|&k| tree.origin[k as usize]).collect();
             twins.sort_unstable();
             rows.retain(|row| twins.binary_search(row).is_err());

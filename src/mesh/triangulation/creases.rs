@@ -1,11 +1,11 @@
-//! Triangles of several patches, which were joined each by itself.
+//! Triangles of several patches that were joined separately.
 
 use crate::math::{sort_by_key, sort_few, sort_pairs};
 use crate::particles::{OppositeFaces, Particles};
 use glam::Vec3;
 
-/// Repeats what lies on the lower of two opposite faces of a cell on the upper one: triangles and
-/// the loops around holes, by rows of particles on these patches.
+/// Repeats the triangles and the loops around holes of the lower of two opposite faces of a cell on
+/// the upper one, by rows of particles on these patches.
 pub(super) fn repeat(
     triangles: &mut Vec<[u32; 3]>,
     unfilled: &mut Vec<Vec<u32>>,
@@ -22,14 +22,14 @@ pub(super) fn repeat(
     unfilled.extend(holes.into_iter().map(|hole| hole.into_iter().rev().map(image).collect()));
 }
 
-/// Turns chords between particles on creases that two patches have in common, by rows: each patch
-/// is joined by itself, and three particles that follow each other along a crease may become a
-/// triangle of either. The chord of the patch that it follows less is turned to the other diagonal
-/// of its two triangles, where that can be.
+/// Flips chords between particles on creases that two patches have in common, by rows: each patch
+/// is joined by itself, and three successive particles along a crease may form a triangle of
+/// either. The chord of the patch that it follows less is replaced by the other diagonal of its two
+/// triangles, if possible.
 pub(super) fn separate(triangles: &mut [[u32; 3]], particles: &Particles) {
     let vertices = particles.joints();
-    // The ends of each side of a triangle between particles on creases, with the place at which it
-    // begins among all corners.
+    // The ends of each side of a triangle between particles on creases, with the place of its first
+    // corner among all corners.
     let mut sides: Vec<(u64, usize)> = Vec::new();
     for (triangle, rows) in triangles.iter().enumerate() {
         for corner in 0..3 {
@@ -68,8 +68,8 @@ struct Chord {
 }
 
 impl Chord {
-    /// The chord that two sides of triangles are, which begin at these places, if they are those of
-    /// one patch, and that is no face of which another one is the image.
+    /// The chord between two triangles, from the places at which their sides begin, if both are on
+    /// one patch that is not a repeated face or its image.
     fn between(sides: [usize; 2], triangles: &[[u32; 3]], particles: &Particles) -> Option<Self> {
         let [[a, b, c], [e, f, d]] = sides.map(|side| {
             let rows = triangles[side / 3];
@@ -82,8 +82,8 @@ impl Chord {
         ([e, f] == [b, a] && !is_face).then_some(Self { triangles, rows: [a, b, c, d], follows })
     }
 
-    /// Puts the other diagonal in its place, unless that is an edge of the mesh or its triangles
-    /// turn away from the patch.
+    /// Replaces the chord by the other diagonal, unless that is an edge of the mesh or its
+    /// triangles turn away from the patch.
     fn turn(&self, triangles: &mut [[u32; 3]], particles: &Particles, vertices: &[u32]) -> bool {
         let [a, b, c, d] = self.rows;
         let turned = [[a, d, c], [d, b, c]];
@@ -102,7 +102,7 @@ impl Chord {
 }
 
 /// Cosine of the angle between the normal of a triangle and the mean one at its corners; 0 for a
-/// triangle without an area.
+/// triangle without area.
 fn follows(rows: [u32; 3], particles: &Particles) -> f32 {
     let [a, b, c] = rows.map(|row| particles.local[row as usize]);
     let mean: Vec3 = rows.iter().map(|&row| particles.normal[row as usize]).sum();

@@ -1,4 +1,4 @@
-//! Holes: their borders are traced and the polygons are cut into triangles.
+//! Holes: their borders are traced, and the polygons are divided into triangles.
 
 use super::patch::{Gap, Patch};
 use super::rim::Rim;
@@ -7,24 +7,24 @@ use crate::particles::Particles;
 use crate::slices::pause;
 use glam::Vec3;
 
-/// Least cosine of the angle between the normal of a triangle and that of a point on it: that of
-/// 78°. The points are those that are set into the triangle, and the corners of one that fills a
-/// hole, or their mean where there is no other way.
+/// Least cosine of the angle between the normal of a triangle and that of a point on it: of 78°.
+/// The points are those inserted into the triangle, and the corners of one that fills a hole, or
+/// their mean if nothing else fits.
 pub(super) const AGREEMENT: f64 = 0.2;
 /// A vertex is at the box if it is nearer to one of the faces than this many spacings. Larger: more
 /// holes are taken for borders.
 const AT_BOX: f64 = 1.5;
-/// Rounds at most in which holes are filled and, where that fails, made larger by a vertex: a limit
-/// on time.
+/// Largest number of rounds in which holes are filled and, if that fails, enlarged by a vertex: a
+/// limit on time.
 const ROUNDS: u32 = 12;
 /// Largest number of edges of a hole that is filled. A longer loop is taken for a border of the
-/// surface. Smaller: more holes stay; larger: more borders of the surface are closed.
+/// surface. Smaller: more holes remain; larger: more borders of the surface are closed.
 const LARGEST: usize = 24;
 /// Largest number of edges of a hole along a rim that is filled: the work grows with the cube of
 /// it, to some 10 ms at this number.
 const LARGEST_AT_RIM: usize = 96;
 
-/// Rule that tells a hole of the mesh from a border of the surface.
+/// Distinguishes holes of the mesh from borders of the surface.
 pub(super) struct Borders<'a> {
     /// The box that cuts the surface.
     pub(super) bounds: Option<&'a Bounds>,
@@ -33,22 +33,22 @@ pub(super) struct Borders<'a> {
 }
 
 impl Borders<'_> {
-    /// The holes that are no borders of the surface, and not too large.
+    /// The holes that are not borders of the surface, and not too large.
     pub(super) fn holes(&self, patch: &Patch) -> Vec<Vec<u32>> {
         let mut loops = trace(patch, self.rim);
         loops.retain(|hole| !self.is_border(patch, hole));
         loops
     }
 
-    /// Whether the surface may as well end at a loop that cannot be filled: most of the vertices
-    /// see nothing near on that side.
+    /// Whether the surface may end at a loop that cannot be filled: most of the vertices see no
+    /// near points on that side.
     pub(super) fn is_open(&self, patch: &Patch, hole: &[u32]) -> bool {
         2 * hole.iter().filter(|&&v| patch.stars.is_open[v as usize]).count() > hole.len()
             && !self.rim.is_along(hole)
     }
 
-    /// Whether a loop is a border for certain: it is not beside the rim, and it is long or most of
-    /// it lies at the box.
+    /// Whether a loop is certainly a border: it is not along the rim, and it is long or most of it
+    /// lies at the box.
     fn is_border(&self, patch: &Patch, hole: &[u32]) -> bool {
         let at_box = |v: &u32| {
             let (p, reach) = (patch.place(*v), AT_BOX * patch.spacing(*v));
@@ -139,8 +139,8 @@ pub(super) async fn fill(patch: &mut Patch<'_>, borders: &Borders<'_>) -> Vec<Fi
     filled
 }
 
-/// The borders of the triangles: closed loops of vertices with the hole on the left. Where there is
-/// a rim, they are those of what the triangles leave open on its left.
+/// The borders of the triangles: closed loops of vertices with the hole on the left. If there is a
+/// rim, a hole ends at it: only what the triangles leave open on its left counts.
 fn trace(patch: &Patch, rim: &Rim) -> Vec<Vec<u32>> {
     let mut gaps: Vec<Gap> = Vec::new();
     let mut first_of = Vec::with_capacity(patch.changed().len());
@@ -160,7 +160,7 @@ fn trace(patch: &Patch, rim: &Rim) -> Vec<Vec<u32>> {
             let first = patch.list_number(to).map_or(gaps.len(), |list| first_of[list]);
             at = (first..gaps.len()).take_while(|&k| gaps[k].vertex == to).find(|&k| gaps[k].from == vertex);
         }
-        // A way along the rim may end where the box cuts that.
+        // A walk along the rim may end where the box cuts the rim.
         if !hole.is_empty() && (rim.is_empty() || at == Some(start)) {
             loops.push(hole);
         }
@@ -173,13 +173,13 @@ pub(super) fn faces_as_corners(patch: &Patch, triangle: [u32; 3]) -> bool {
     patch.agreement(triangle).0 >= AGREEMENT
 }
 
-/// Whether a triangle faces as its corners do in the mean: what can be had where neighbours'
-/// normals are far apart.
+/// Whether a triangle faces as its corners do on average, which is enough if neighbours' normals
+/// are far apart.
 fn faces_as_mean(patch: &Patch, triangle: [u32; 3]) -> bool {
     patch.agreement(triangle).1 >= AGREEMENT
 }
 
-/// Cuts polygons into triangles.
+/// Divides polygons into triangles.
 #[derive(Default)]
 struct Cutter {
     /// For each chord the least sum of circumradii on its left, and the vertex of the triangle at
@@ -190,8 +190,8 @@ struct Cutter {
 
 impl Cutter {
     /// Fills a hole with the triangles whose circumradii have the least sum, if there are any that
-    /// are right and have no edge of the mesh or of its rim but those of the hole; whether there
-    /// were.
+    /// are right and share no edge with the mesh or its rim except those of the hole. Returns
+    /// whether there were.
     fn cut(
         &mut self,
         patch: &mut Patch,
@@ -201,7 +201,7 @@ impl Cutter {
     ) -> bool {
         let n = hole.len();
         let at = |i: usize, j: usize| i * n + j;
-        // An edge of the rim has a triangle on its left alone, which may be that of another hole.
+        // An edge of the rim has a triangle only on its left, which may be that of another hole.
         let is_taken =
             |patch: &Patch, a: u32, b: u32| a == b || patch.has_edge(a, b) || rim.has(a, b) || rim.has(b, a);
         self.best.clear();
@@ -241,7 +241,7 @@ impl Cutter {
                 open.extend([(i, k), (k, j)]);
             }
         }
-        // A hole that comes to a vertex twice may use a chord twice.
+        // A hole that visits a vertex twice may use a chord twice.
         chords.sort_unstable();
         if chords.windows(2).any(|pair| pair[0] == pair[1]) {
             return false;
@@ -251,8 +251,8 @@ impl Cutter {
     }
 }
 
-/// Removes all fans but the largest at every vertex with several, so that the surface does not
-/// touch itself but where its rim does.
+/// Removes all fans but the largest at every vertex with several, so that the surface touches
+/// itself only where its rim does.
 pub(super) fn unpinch(patch: &mut Patch, rim: &Rim) {
     let mut open: Vec<u32> = patch.changed().to_vec();
     while let Some(v) = open.pop() {
@@ -279,7 +279,7 @@ mod tests {
         p * q * r / (4.0 * (s * (s - p) * (s - q) * (s - r)).sqrt())
     }
 
-    /// Least sum of circumradii of all the ways to cut a convex polygon, tried one after the other.
+    /// Least sum of circumradii over all ways to divide a convex polygon, tried one by one.
     fn least_sum(polygon: &[DVec3]) -> f64 {
         let last = polygon.len() - 1;
         let with_corner = |k: usize| {
@@ -290,9 +290,9 @@ mod tests {
         if last < 2 { 0.0 } else { (1..last).map(with_corner).fold(f64::INFINITY, f64::min) }
     }
 
-    /// Cuts the hole between convex corners, counter-clockwise in the plane, beside triangles that
-    /// are there already and edges of a rim. Numbers stand for corners, and those beyond for the
-    /// other points.
+    /// Divides the hole between convex corners, counter-clockwise in the plane, next to existing
+    /// triangles and edges of a rim. Numbers stand for corners, and those beyond for the other
+    /// points.
     fn cut(
         corners: &[Vec3],
         others: &[Vec3],
@@ -311,8 +311,8 @@ mod tests {
     #[test]
     fn a_fan_that_leads_back_into_itself_is_left() {
         let points = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::NEG_X];
-        // The second and the third triangle run in a ring around the first point, and so the first
-        // one enters it.
+        // The second and the third triangle form a ring around the first point, which the first one
+        // enters.
         let gaps = with_plane(&points, &[[0, 1, 2], [0, 2, 3], [0, 3, 2]], |patch, _, in_tree| {
             let mut gaps = Vec::new();
             patch.gaps(in_tree[0], &mut gaps);
@@ -342,7 +342,7 @@ mod tests {
 
     #[test]
     fn an_edge_of_the_mesh_or_the_rim_is_no_chord_of_a_hole() {
-        // Of the two diagonals that of 0 and 2 is the shorter one.
+        // Of the two diagonals, 0–2 is the shorter one.
         let corners = [[0.0, -1.0], [1.5, 0.0], [0.0, 1.0], [-1.5, 0.0]].map(|[x, y]| Vec3::new(x, y, 0.0));
         let has = |triangles: &[[u32; 3]], a: u32, b: u32| {
             triangles.iter().filter(|t| t.contains(&a) && t.contains(&b)).count() == 2

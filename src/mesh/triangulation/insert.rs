@@ -1,4 +1,4 @@
-//! Points in no triangle go into the triangle below them.
+//! Points in no triangle are inserted into the triangle below them.
 
 use super::holes::{AGREEMENT, faces_as_corners};
 use super::patch::Patch;
@@ -40,7 +40,7 @@ fn depth(patch: &Patch, id: u32, v: u32) -> f64 {
     let area_sq = area.length_squared();
     let rise = (patch.place(v) - patch.place(a)).dot(area);
     let facing = patch.normal[v as usize].as_dvec3().dot(area);
-    // The area is about that of a square over the triangle's longest side.
+    // The area is about that of a square over the longest side of the triangle.
     let is_above = rise * rise <= f64::from(MAX_LIFT * MAX_LIFT) * area_sq * area_sq.sqrt();
     if !(is_above && facing > 0.0 && facing * facing >= AGREEMENT * AGREEMENT * area_sq) {
         return f64::NEG_INFINITY;
@@ -49,8 +49,8 @@ fn depth(patch: &Patch, id: u32, v: u32) -> f64 {
     share(a, b).min(share(b, c)).min(share(c, a))
 }
 
-/// Replaces a triangle, and those behind it whose circles hold the point, by the triangles of the
-/// point with their outline, unless one of these faces another way than its corners.
+/// Replaces a triangle, and those behind it whose circles contain the point, by the triangles of
+/// the point and their outline, unless one of these faces another way than its corners.
 fn replace(patch: &mut Patch, id: u32, v: u32) {
     let [a, b, c] = patch.triangle(id);
     let mut gone = vec![id];
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
     use glam::{DVec2, Vec3};
 
-    /// The Delaunay triangles of points in the plane z = 0: those whose circles hold no other
+    /// The Delaunay triangles of points in the plane z = 0: those whose circles contain no other
     /// point.
     fn delaunay(points: &[Vec3]) -> Vec<[u32; 3]> {
         let place = |v: u32| points[v as usize].as_dvec3().truncate();
@@ -116,7 +116,7 @@ mod tests {
     fn a_point_put_into_a_delaunay_triangulation_makes_that_of_all_points() {
         for case in 0..20 {
             // A Weyl sequence: well spread, and no four points are on a circle. The last one is
-            // amid the others.
+            // inside the others.
             let spread =
                 |k: usize| (Vec3::new(0.754_877_7, 0.569_840_3, 0.0) * (k + 17 * case) as f32).fract();
             let mut points: Vec<Vec3> = (0..20).map(spread).collect();

@@ -3,24 +3,23 @@
 //! 1. *Stars.* The natural neighbours of every point are found in its tangent plane, among the
 //!    points of the same sheet.
 //! 2. *Agreement.* A triangle on which the stars of its three corners agree is kept. Every directed
-//!    edge then belongs to one triangle at most, and every triangle faces as its corners do.
+//!    edge then belongs to at most one triangle, and every triangle faces as its corners do.
 //! 3. *Disputes.* Four points near a circle may each prefer another diagonal, since each sees the
-//!    others in its own tangent plane. Triangles that fewer corners see are added where there is
-//!    room.
-//! 4. *Rim.* Where it is known that the surface ends, the way for the edges there is cleared, and
-//!    triangles beyond are removed. So the patches of a surface with creases are joined one by one,
-//!    and together are closed.
-//! 5. *Holes.* The borders of what is left are traced, and the polygons with few edges are cut into
-//!    triangles. Where that fails, a vertex is taken out, which makes the hole larger and its
-//!    border simpler. Where the field is at hand, it then says which of them are surface
+//!    others in its own tangent plane. Triangles that fewer corners see are added if there is room.
+//! 4. *Rim.* If it is known where the surface ends, triangles across those edges and beyond them
+//!    are removed. So the patches of a surface with creases are joined one by one, and together are
+//!    closed.
+//! 5. *Holes.* The borders of the triangles are traced, and the polygons with few edges are divided
+//!    into triangles. If that fails, a vertex is removed, which makes the hole larger and its
+//!    border simpler. If the field is known, it then decides which of the fills are surface
 //!    (`Triangulation::judged`).
-//! 6. *Points left out* go into the triangle below them.
-//! 7. *Borders* are freed of vertices where the surface touches itself.
+//! 6. *Points left out* are inserted into the triangle below them.
+//! 7. *Borders* lose vertices at which the surface touches itself.
 //!
 //! The stars are those of Gopi, Krishnan and Silva, "Surface Reconstruction based on Lower
 //! Dimensional Localized Delaunay Triangulation", Computer Graphics Forum 19(3), 2000; holes are
-//! cut by the dynamic programme of Klincsek, "Minimal Triangulations of Polygonal Domains", Annals
-//! of Discrete Mathematics 9, 1980.
+//! divided by the dynamic programme of Klincsek, "Minimal Triangulations of Polygonal Domains",
+//! Annals of Discrete Mathematics 9, 1980.
 
 mod creases;
 mod holes;
@@ -41,30 +40,31 @@ use holes::{Borders, Fill};
 use patch::Patch;
 use rim::Rim;
 
-/// Triangles over points, with their topology and the points and borders that are left.
+/// Triangles over points, with their topology, and the points and borders that remain.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangulation {
     /// Triples of particles, each by its first row, so that particles on creases are vertices that
-    /// the patches share; at the tip of a cone each sheet has a vertex of its own, and where bodies
-    /// touch in a point each body has one. They form an oriented manifold: every edge has one
-    /// triangle or two, every vertex one fan. Closed parts face outward, also where f is larger
-    /// inside; others are counter-clockwise round their normals, or face outward with the whole of
-    /// a bounded surface that its field knows. [`Self::corners`] has the same triangles by rows.
+    /// the patches share; at the tip of a cone each sheet has its own vertex, and where bodies
+    /// touch in a point each body has one. They form an oriented manifold: every edge has one or
+    /// two triangles, every vertex one fan. Closed parts face outward, even if f is larger inside;
+    /// others are counter-clockwise round their normals, or face outward like all of a bounded
+    /// surface whose field knows that it is bounded. [`Self::corners`] has the same triangles by
+    /// rows.
     pub triangles: Vec<[u32; 3]>,
-    /// Components, borders and Euler numbers, counted anew on the triangles.
+    /// Components, borders and Euler numbers, counted on these triangles.
     pub topology: Topology,
-    /// Short borders that are not at the box: places where no manifold could be had. Longer ones
-    /// are where the surface ends. Each starts at its smallest vertex and has the mesh on its left.
+    /// Short borders that are not at the box: places where no manifold was possible. The surface
+    /// ends at longer ones. Each starts at its smallest vertex and has the mesh on its left.
     pub unfilled: Vec<Vec<u32>>,
     /// Points in no triangle, in ascending order: those without a finite position or a normal,
     /// those at the place of another one, lone ones, and those that would spoil the manifold.
     pub left_out: Vec<u32>,
-    /// Sign of f inside of the closed parts; none if there is no closed part.
+    /// Sign of f inside the closed parts; none if there is no closed part.
     pub inside: Option<Inside>,
-    /// The triangles by rows, round the normals; empty where these are `triangles`.
+    /// The triangles by rows, round the normals; empty if they equal `triangles`.
     pub(crate) corners: Vec<[u32; 3]>,
-    /// For each vertex, whether the triangles around it were turned to face outward; empty where
-    /// none were.
+    /// For each vertex, whether the triangles around it were turned to face outward; empty if none
+    /// were.
     pub(crate) turned: Vec<bool>,
     /// The holes that were filled, by rows.
     pub(crate) filled: Vec<Fill>,
@@ -73,17 +73,17 @@ pub struct Triangulation {
 }
 
 impl Triangulation {
-    /// The triangulation that consists of `triangles` over the rows of particles, in slices of
-    /// work. They must be an oriented manifold whose borders are borders of the surface.
+    /// The triangulation by these `triangles` over the rows of particles, in slices of work. They
+    /// must be an oriented manifold whose borders are borders of the surface.
     pub(crate) async fn known(mut triangles: Vec<[u32; 3]>, particles: &Particles) -> Self {
         creases::separate(&mut triangles, particles);
         Joined { triangles, ..Joined::default() }.counted(particles).await
     }
 
-    /// The triangulation without the triangles that fill holes where there is no surface, by what
-    /// `has_surface` says of the largest triangle of each fill: it is open there. Where particles
-    /// end at an edge that nobody knows, as where two balls meet, they leave a loop that looks like
-    /// a hole, and a disc in it would close either ball.
+    /// The triangulation without fills over places that have no surface according to `has_surface`,
+    /// which judges the largest triangle of each fill; the mesh is open there. If particles end at
+    /// an unknown edge, as where two balls meet, they leave a loop that looks like a hole, and a
+    /// disc in it would close either ball.
     pub(crate) async fn judged(
         self,
         particles: &Particles,
@@ -103,7 +103,7 @@ impl Triangulation {
         Joined { triangles, unfilled, filled }.counted(particles).await
     }
 
-    /// Turns the triangles around these vertices round.
+    /// Reverses the triangles around these vertices.
     fn turn(&mut self, turned: Vec<bool>) {
         if self.corners.is_empty() {
             self.corners.clone_from(&self.triangles);
@@ -116,8 +116,8 @@ impl Triangulation {
         self.turned = turned;
     }
 
-    /// The triangulation of a bounded surface outside of which f is negative, if no part of it is
-    /// closed: all parts are turned to face outward.
+    /// The triangulation of a bounded surface outside which f is negative: if no part of it is
+    /// closed, all parts are turned to face outward.
     pub(crate) fn facing_outward(mut self) -> Self {
         if self.inside.is_none() && !self.triangles.is_empty() {
             let vertices = self.topology.component_of.len();
@@ -128,9 +128,9 @@ impl Triangulation {
     }
 
     /// Returns the corners of the triangles as rows of the particles. A particle on a crease has a
-    /// row for each patch, with the normal of that patch; [`Self::triangles`] names the first of
-    /// them everywhere. Corners run counter-clockwise round the normals of their rows, which point
-    /// to larger f: where f is larger inside, [`Self::triangles`] run the other way round.
+    /// row for each patch, with the normal of that patch; [`Self::triangles`] always names the
+    /// first of them. Corners run counter-clockwise round the normals of their rows, which point to
+    /// larger f: if f is larger inside, [`Self::triangles`] run the other way round.
     #[must_use]
     pub fn corners(&self) -> &[[u32; 3]] {
         if self.corners.is_empty() { &self.triangles } else { &self.corners }
@@ -157,9 +157,9 @@ impl Triangulation {
         if self.is_turned(triangle) { [a, c, b] } else { [a, b, c] }
     }
 
-    /// Volume that the triangles over these particles enclose, exact to the triangles, in cubed
+    /// Volume that the triangles over these particles enclose, exact for the triangles, in cubed
     /// units of the coordinates: the sum of a · (b × c) / 6 over them, by the divergence theorem.
-    /// Positive whether f is smaller or larger inside. `None` where they are not closed.
+    /// Positive whether f is smaller or larger inside. `None` if they are not closed.
     #[must_use]
     pub fn volume(&self, particles: &Particles) -> Option<f64> {
         let at = |i: u32| particles.local[i as usize].as_dvec3();
@@ -167,8 +167,8 @@ impl Triangulation {
         self.topology.encloses().then(|| self.triangles.iter().map(of).sum())
     }
 
-    /// Smallest angle of the triangles over these particles, in degrees, those at borders among
-    /// them; 0 for one without an area. `None` without triangles.
+    /// Smallest angle of the triangles over these particles, in degrees, including those at
+    /// borders; 0 for one without area. `None` without triangles.
     #[must_use]
     pub fn smallest_angle(&self, particles: &Particles) -> Option<f64> {
         // In a triangle the smallest angle has the largest cosine.
@@ -179,7 +179,7 @@ impl Triangulation {
                 u.dot(v) / (u.length() * v.length())
             };
             let largest = at(a, b, c).max(at(b, c, a)).max(at(c, a, b));
-            // Two corners at one place.
+            // Two corners coincide.
             if largest.is_finite() { largest } else { 1.0 }
         };
         let largest = self.triangles.iter().map(cosine).reduce(f64::max)?;
@@ -220,7 +220,7 @@ impl Joined {
             topology = Topology::in_slices(&triangles, count).await;
         }
         pause().await;
-        // A border edge has one direction, which depends on how its part was turned.
+        // A border edge has one direction, which depends on whether its part was turned.
         let mut edges: Vec<[u32; 2]> = Vec::new();
         for hole in &unfilled {
             let sides = (0..hole.len()).map(|k| [hole[(k + 1) % hole.len()], hole[k]].map(first));
@@ -255,19 +255,18 @@ impl Joined {
     }
 }
 
-/// Joins particles to triangles of their rows; where the surface has creases, each patch by itself
-/// up to its creases, which are edges of the mesh. The topology is counted over particles, each
-/// once, so that it is that of the patches together.
+/// Joins particles to triangles of their rows. If the surface has creases, each patch is joined up
+/// to its creases, which are edges of the mesh. The topology counts each particle once, so it is
+/// that of the patches together.
 ///
 /// `bounds` is the box that cuts the surface: loops along its faces are borders, however short.
 /// Without it a small one may be filled.
 ///
-/// Positions and outward normals are enough, which need not have unit length. The particles should
-/// be dense enough that the normals of neighbours are well within 90° of each other and sheets are
-/// farther apart than neighbours; where they are not, holes remain and are listed. Cost: linear,
-/// below a microsecond per particle natively. Any input is met without a panic, and the work is
-/// bounded. The result depends on the particles alone and has the same bits natively and in
-/// WebAssembly.
+/// Positions and outward normals are enough; the normals need not have unit length. The particles
+/// should be so dense that the normals of neighbours are well within 90° of each other and sheets
+/// are farther apart than neighbours; otherwise holes remain and are listed. Cost: linear, below a
+/// microsecond per particle natively. No input causes a panic, and the work is bounded. The result
+/// depends only on the particles and has the same bits natively and in WebAssembly.
 ///
 /// # Panics
 ///
@@ -277,22 +276,22 @@ pub fn triangulate(particles: &Particles, bounds: Option<&Bounds>) -> Triangulat
     slices::in_pool(|| slices::complete(in_slices(particles, bounds)))
 }
 
-/// Number of slices that joining so many points is expected to take, with their stars or without.
+/// Number of slices that joining so many points is expected to take, with or without their stars.
 pub(crate) fn expected_slices(points: usize, has_stars: bool) -> u64 {
     /// Slices for each point, of the star: [`HEAVY`](slices::HEAVY) points at once.
     const STAR: f64 = 0.032;
-    /// Slices for each point, of all else.
+    /// Slices for each point, of everything else.
     const ELSE: f64 = 0.013;
     ((if has_stars { ELSE } else { STAR + ELSE }) * points as f64) as u64
 }
 
-/// [`triangulate`] in slices of work. The last few look at all rows and triangles, for some 50 ns
-/// each.
+/// [`triangulate`] in slices of work. The last few take all rows and triangles at once, for some 50
+/// ns each.
 pub(crate) async fn in_slices(particles: &Particles, bounds: Option<&Bounds>) -> Triangulation {
     join(particles, &Sheets::new(particles, &ByDirection).await, bounds).await
 }
 
-/// Joins particles, whose sheets these are.
+/// Joins particles with these sheets.
 pub(crate) async fn join(particles: &Particles, sheets: &Sheets, bounds: Option<&Bounds>) -> Triangulation {
     let mut whole = Joined::default();
     let is_image =
@@ -327,7 +326,7 @@ impl Sheet {
     }
 
     /// Adds the triangles and holes of the sheet, in the box that cuts the surface. No triangle
-    /// lies beyond its rim, and what is open on the left of that is a hole.
+    /// lies beyond its rim; gaps on the left of the rim are holes.
     async fn join(&self, bounds: Option<&Bounds>, joined: &mut Joined) {
         let Self { tree, normal, stars, .. } = self;
         let rim = self.rim();

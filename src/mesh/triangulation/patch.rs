@@ -1,4 +1,4 @@
-//! The triangles on which stars agree, and changes to them in a few places.
+//! The triangles on which stars agree, and local changes to them.
 
 use crate::math::{NONE, sort_few, tangent_frame};
 use crate::mesh::stars::Stars;
@@ -8,8 +8,8 @@ use glam::{DVec3, Vec3};
 /// A triangle that has been removed.
 const REMOVED: [u32; 3] = [NONE; 3];
 
-/// Triangles that can be added and removed. Where nothing has changed yet, the triangles of a
-/// vertex are found through its star; a vertex where something changes gets a list of its own.
+/// Triangles that can be added and removed. Before any change the triangles of a vertex are found
+/// through its star; a vertex where something changes gets its own list.
 pub(super) struct Patch<'a> {
     pub(super) position: &'a [Vec3],
     pub(super) normal: &'a [Vec3],
@@ -17,7 +17,7 @@ pub(super) struct Patch<'a> {
     triangles: Vec<[u32; 3]>,
     /// The triangle of each entry of a star with the next entry.
     of_entry: Vec<u32>,
-    /// Number of the list of each vertex that has one of its own.
+    /// Number of the list of each vertex that has its own.
     list_of: Vec<u32>,
     lists: Vec<Vec<u32>>,
     /// The vertices with lists, in the order of the lists.
@@ -128,7 +128,7 @@ impl<'a> Patch<'a> {
         self.corners(a).any(|(next, previous)| next == b || previous == b)
     }
 
-    /// The number of the own list of `v`: its place among [`Patch::changed`].
+    /// The number of the own list of `v`: its place in [`Patch::changed`].
     pub(super) fn list_number(&self, v: u32) -> Option<usize> {
         Some(self.list_of[v as usize]).filter(|&list| list != NONE).map(|list| list as usize)
     }
@@ -138,7 +138,7 @@ impl<'a> Patch<'a> {
         self.around(a).zip(self.corners(a)).find(|&(_, (next, _))| next == b).map(|(id, _)| id)
     }
 
-    /// The corner of a triangle beside `a` and `b`.
+    /// The corner of a triangle other than `a` and `b`.
     pub(super) fn opposite(&self, id: u32, a: u32, b: u32) -> u32 {
         let [i, j, k] = self.triangle(id);
         if i != a && i != b {
@@ -177,8 +177,8 @@ impl<'a> Patch<'a> {
         self.triangles[id as usize] == REMOVED
     }
 
-    /// The own list of `v`, which from now on has one, and so is looked at where holes are searched
-    /// for.
+    /// The own list of `v`, which is made if necessary; `v` then takes part in the search for
+    /// holes.
     pub(super) fn list(&mut self, v: u32) -> &mut Vec<u32> {
         if self.list_of[v as usize] == NONE {
             let list = self.around(v).collect();
@@ -220,8 +220,8 @@ impl<'a> Patch<'a> {
             if corners.clone().any(|(_, previous)| previous == first) {
                 continue;
             }
-            // A fan starts here; it is followed to its end. Where two triangles lie on one side of
-            // an edge, a fan may lead back into itself.
+            // A fan starts here and is followed to its end. If two triangles lie on one side of an
+            // edge, a fan may lead back into itself.
             let mut last = first;
             for _ in corners.clone() {
                 let Some((_, previous)) = corners.clone().find(|&(next, _)| next == last) else { break };
@@ -247,7 +247,7 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// Mean distance of the natural neighbours of `v`; 0 if there is none.
+    /// Mean distance of the natural neighbours of `v`; 0 if it has none.
     pub(super) fn spacing(&self, v: u32) -> f64 {
         let range = self.stars.range(v as usize);
         let count = range.len().max(1) as f64;
@@ -266,7 +266,7 @@ impl<'a> Patch<'a> {
         (self.place(b) - origin).cross(self.place(c) - origin)
     }
 
-    /// Cosines of the angles between the normal of a triangle and those of its corners: the least
+    /// Cosines of the angles between the normal of a triangle and those at its corners: the least
     /// one, and that for the mean of the three. Both −1 for a triangle without a normal.
     pub(super) fn agreement(&self, triangle: [u32; 3]) -> (f64, f64) {
         let corners = triangle.map(|v| self.normal[v as usize].as_dvec3());
@@ -285,7 +285,8 @@ impl<'a> Patch<'a> {
     }
 }
 
-/// A number in 0 … 4 that grows with the angle of (x, y) from the x axis, a quarter turn a unit.
+/// A number in 0 … 4 that grows with the angle of (x, y) from the x axis, one for each quarter
+/// turn.
 pub(super) fn quarter_turns(x: f32, y: f32) -> f32 {
     let size = x.abs() + y.abs();
     let share = if size > 0.0 { y / size } else { 0.0 };
@@ -298,8 +299,8 @@ pub(super) fn quarter_turns(x: f32, y: f32) -> f32 {
     }
 }
 
-/// Does something with the patch of these triangles, over points whose normals are those of the
-/// plane z = 0. It is handed the points' tree, and for each point its number there.
+/// Calls `work` with the patch of these triangles over points with the normals of the plane z = 0,
+/// with the points' tree, and with the number of each point there.
 #[cfg(test)]
 pub(super) fn with_plane<T>(
     points: &[Vec3],

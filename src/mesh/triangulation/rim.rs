@@ -1,18 +1,18 @@
-//! The rim of a surface: edges along which it is known to end, such as the creases around a patch.
-//! Each of them becomes a side of a triangle on its left, and no triangle stays beyond.
+//! The rim of a surface: edges at which it is known to end, such as the creases around a patch.
+//! Each of them becomes a side of a triangle on its left, and no triangle beyond remains.
 
 use super::patch::{Gap, Patch, quarter_turns};
 use crate::math::{NONE, sort_by_key, sort_pairs, tangent_frame};
 use crate::slices::{MEDIUM, pause};
 use glam::Vec3;
 
-/// Edges with the surface on their left, seen from outside, in the numbers of a tree.
+/// Edges with the surface on their left, seen from outside, by indices of a tree.
 #[derive(Debug, Default)]
 pub(super) struct Rim {
     /// The edges, sorted.
     edges: Vec<[u32; 2]>,
     /// The ways of the rim through its vertices, sorted: vertex, the one before it and the one
-    /// after it, of which one is none at an end. Where the rim meets itself a vertex has several.
+    /// after it, [`NONE`] at an end. A vertex where the rim meets itself has several.
     ways: Vec<[u32; 3]>,
 }
 
@@ -31,7 +31,7 @@ impl Rim {
             let turns = AnglesAround::new(position, normal, v);
             let mut after: Vec<u32> = at.iter().map(|end| end[2]).filter(|&w| w != NONE).collect();
             for before in at.iter().map(|end| end[1]).filter(|&u| u != NONE) {
-                // What lies beyond the rim is counter-clockwise from the way in to the next way
+                // The sector beyond the rim runs counter-clockwise from the way in to the next way
                 // out.
                 let turn = |w: u32| turns.between(before, w);
                 let next = (0..after.len()).min_by(|&k, &l| turn(after[k]).total_cmp(&turn(after[l])));
@@ -70,13 +70,13 @@ impl Rim {
     }
 
     /// Whether a loop around a hole, which lies on the left, has an edge of the rim and none of its
-    /// ends: it is no border of the surface then, since the rim ends where it comes to one.
+    /// ends: it is then no border of the surface, since the rim ends at a border.
     pub(super) fn is_along(&self, hole: &[u32]) -> bool {
         let is_end = |&v: &u32| self.ways(v).iter().any(|way| way[1..].contains(&NONE));
         (0..hole.len()).any(|k| self.has(hole[k], hole[(k + 1) % hole.len()])) && !hole.iter().any(is_end)
     }
 
-    /// Clears the way for the edges of the rim, and removes the triangles beyond it.
+    /// Removes the triangles across the edges of the rim and beyond it.
     pub(super) async fn clear(&self, patch: &mut Patch<'_>) {
         for (k, &[a, b]) in self.edges.iter().enumerate() {
             patch.list(a);
@@ -88,7 +88,8 @@ impl Rim {
                 pause().await;
             }
         }
-        // Nothing lies beyond the rim, so that the triangles there have all their corners on it.
+        // There are no points beyond the rim, so that the triangles there have all their corners on
+        // it.
         let mut beyond: Vec<u32> = self.edges.iter().filter_map(|&[a, b]| patch.with_side(b, a)).collect();
         while let Some(id) = beyond.pop() {
             if patch.is_removed(id) {
@@ -107,7 +108,7 @@ impl Rim {
         }
     }
 
-    /// Takes what lies beyond the rim out of the gaps of a vertex, those from `first` on.
+    /// Removes the sectors beyond the rim from the gaps of a vertex, from number `first` on.
     pub(super) fn narrow(&self, patch: &Patch, v: u32, gaps: &mut Vec<Gap>, first: usize) {
         let ways = self.ways(v);
         let turns = AnglesAround::new(patch.position, patch.normal, v);
@@ -158,8 +159,8 @@ impl<'a> AnglesAround<'a> {
         if turn > 0.0 { turn } else { turn + 4.0 }
     }
 
-    /// Whether a gap holds what lies beyond a way of the rim: counter-clockwise from the vertex
-    /// `before` to the one `after`, of which one may be none.
+    /// Whether a gap contains the sector beyond a way of the rim: counter-clockwise from the vertex
+    /// `before` to the vertex `after`, of which one may be [`NONE`].
     fn is_beyond(&self, Gap { to, from, .. }: Gap, before: u32, after: u32) -> bool {
         if to == before || from == after {
             return true;
@@ -172,7 +173,7 @@ impl<'a> AnglesAround<'a> {
     }
 }
 
-/// Removes the triangles that the edge between `a` and `b` crosses, seen along the normals there.
+/// Removes the triangles that the edge from `a` to `b` crosses, seen along the normals there.
 fn clear_between(patch: &mut Patch, a: u32, b: u32) {
     let up = (patch.normal[a as usize] + patch.normal[b as usize]).as_dvec3().normalize_or_zero();
     let start = patch.place(a);

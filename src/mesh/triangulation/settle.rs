@@ -1,5 +1,5 @@
-//! Triangles on which only some of the stars agree: four points near a circle may each prefer
-//! another diagonal, since each sees the others in its own tangent plane. On a lattice they do so
+//! Triangles on which only some stars agree: four points near a circle may each prefer another
+//! diagonal, since each sees the others in its own tangent plane. On a lattice this happens
 //! everywhere.
 
 use super::holes;
@@ -7,8 +7,8 @@ use super::patch::Patch;
 use super::rim::Rim;
 use crate::slices::{MEDIUM, pause};
 
-/// Adds the triangles that fewer than three corners see, where their directed edges are free: those
-/// that two corners see before those that one sees, the ones with short edges first.
+/// Adds the triangles that fewer than three corners see, if their directed edges are free: those
+/// that two corners see before those that one sees, and short edges first.
 pub(super) async fn settle(patch: &mut Patch<'_>) {
     for (k, dispute) in disputed(patch).await.into_iter().enumerate() {
         if k % MEDIUM == MEDIUM - 1 {
@@ -23,9 +23,9 @@ pub(super) async fn settle(patch: &mut Patch<'_>) {
     holes::unpinch(patch, &Rim::default());
 }
 
-/// Triangles that one corner sees or two, in the order in which they are tried. From the top bit on
-/// a key has whether it is only one, the square of the longest side, and the corners with 32 bits
-/// each.
+/// Triangles that only one or two corners see, in the order in which they are tried. From the top
+/// bit on, a key holds whether it is only one, the square of the longest side, and the corners with
+/// 32 bits each.
 async fn disputed(patch: &Patch<'_>) -> Vec<u128> {
     let stars = patch.stars;
     let mut triangles = Vec::new();

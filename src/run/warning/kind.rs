@@ -1,11 +1,11 @@
-//! The codes and the severities of warnings, by which programs tell them apart.
+//! The codes and the severities of warnings, by which programs distinguish them.
 
 use super::{Severity, Warning};
 use crate::sampler::Doubt;
 use serde::{Serialize, Serializer};
 
 impl Warning {
-    /// A name by which a program tells warnings apart. It stays when the words of a warning change.
+    /// A name by which a program identifies the warning. It stays when the words change.
     #[must_use]
     pub fn code(&self) -> &'static str {
         self.kind().0
@@ -51,7 +51,7 @@ impl Warning {
             Self::MeshLeavesOut { .. } => ("mesh_leaves_out", Caution),
             Self::LargerInside(_) => ("larger_inside", Note),
             Self::FileDiffers { .. } => ("file_differs", Caution),
-            // Nothing is known to be missing, and the completeness among the figures says the same.
+            // Nothing is known to be missing, and the report's completeness says the same.
             Self::Unproven { doubt: Doubt::Cells { .. }, .. } => ("unproven", Note),
             Self::Unproven { .. } => ("unproven", Caution),
             Self::Digits { .. } => ("digits", Caution),
@@ -64,7 +64,7 @@ impl Warning {
 #[derive(Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Warning"))]
 pub(in crate::run) struct Told {
-    /// A name by which a program tells warnings apart.
+    /// A name by which a program identifies the warning.
     code: &'static str,
     /// The severity says what the warning means for the result.
     severity: Severity,

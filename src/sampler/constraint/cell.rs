@@ -1,8 +1,8 @@
-//! Opposite faces of a cell: what lies on the lower one is repeated on the upper one.
+//! Opposite faces of a cell: the features on the lower face are repeated on the upper one.
 //!
 //! The creases and corners on an upper face are replaced by those of the lower face before any
-//! particle is placed, so that the particles on them are the same but for the shift. The particles
-//! within a face are repeated once the run has placed them.
+//! particle is placed, so that the particles on both differ only by the shift. The particles inside
+//! a face are repeated after the run has placed them.
 
 use super::{Corner, Crease, Creases, ONE_END};
 use crate::field::UnitCell;
@@ -11,8 +11,8 @@ use crate::particles::{OppositeFaces, Particles};
 use crate::sampler::probe::Probe;
 use glam::{DVec3, Vec3};
 
-/// Largest difference of a branch between a point and its image, as a share of its gradient:
-/// rounding is far below it, another branch far above.
+/// Largest difference of a branch between a point and its image, as a share of its gradient: far
+/// above rounding, far below the difference of another branch.
 const SAME: f64 = 1e-4;
 
 /// Two opposite faces of a cell that the solid reaches.
@@ -25,17 +25,17 @@ pub(in super::super) struct FacePair {
     at: [f64; 2],
 }
 
-/// A crease or a corner as the image of another one.
+/// A crease or a corner that is the image of another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Image {
-    /// Number of the other one, which comes before.
+    /// Number of the other one, which precedes this one.
     pub(super) of: usize,
     /// Number of the pair of faces.
     pub(super) pair: usize,
 }
 
 impl FacePair {
-    /// The patches of the image of what lies on some patches of the lower face.
+    /// The patches of the image of a feature on these patches of the lower face.
     fn image_of(&self, patches: &[u32]) -> Vec<u32> {
         let [lower, upper] = self.patches;
         let mut image: Vec<u32> = patches.iter().map(|&p| if p == lower { upper } else { p }).collect();
@@ -57,9 +57,9 @@ impl FacePair {
 }
 
 impl Creases {
-    /// Replaces what lies on the upper faces of a cell by the images of what lies on the lower
-    /// ones, along every axis that the cell repeats. Creases are found at steps of this length.
-    /// Where the creases of two faces differ, they stay as they are.
+    /// Replaces the features on the upper faces of a cell by the images of those on the lower ones,
+    /// along every axis along which the cell repeats. Creases are searched for with this step. If
+    /// the creases of two faces differ, they stay as they are.
     pub(super) fn repeat(&mut self, probe: &mut Probe, cell: &UnitCell, step: f64) {
         for axis in (0..3).filter(|&axis| cell.repeats[axis]) {
             if let Some(pair) = self.face_pair(probe, cell, axis, step)
@@ -89,8 +89,8 @@ impl Creases {
         Some(FacePair { axis, patches: [of(at[0], -1.0)?, of(at[1], 1.0)?], at })
     }
 
-    /// The creases with images in the place of those on the upper of two faces; none if the two
-    /// faces differ.
+    /// The creases with those on the upper of two faces replaced by images; none if the two faces
+    /// differ.
     fn with_images(&self, probe: &mut Probe, pair: FacePair, step: f64) -> Option<Self> {
         let [lower, upper] = pair.patches;
         let mut faces = self.faces.clone();
@@ -99,7 +99,7 @@ impl Creases {
         let mut next = Self { unit_cell, faces, passed, bare, evaluations, ..Self::default() };
         let number = next.faces.len() - 1;
 
-        // What an image repeats is on the upper face where the image is, so that both go or stay.
+        // An image lies on the upper face exactly if its original does, so that both go or stay.
         let mut place = vec![None; self.corners.len()];
         for (k, corner) in self.corners.iter().enumerate().filter(|(_, c)| !c.patches.contains(&upper)) {
             place[k] = Some(next.corners.len());
@@ -150,7 +150,7 @@ impl Creases {
             next.curves.push(Crease {
                 branches: curve.branches.map(moved),
                 patches: pair.image_of(&curve.patches),
-                // The solid lies on the other side of the face.
+                // On the opposite face the solid lies on the other side.
                 sides: curve.sides.iter().map(|&[left, right]| [moved(right), moved(left)]).collect(),
                 points,
                 corners,
@@ -179,10 +179,10 @@ impl Creases {
         p
     }
 
-    /// Puts images of the particles within the lower faces in the place of those within the upper
-    /// ones, and says which rows of both belong together. `corners` are those of the triangles over
-    /// the rows, if there are any. Faces whose creases have different particles stay as they are.
-    /// Returns whether there are any others.
+    /// Replaces the particles inside the upper faces by images of those inside the lower ones, and
+    /// records which rows of both belong together. `corners` are those of the triangles over the
+    /// rows, if there are any. Faces whose creases have different particles stay as they are.
+    /// Returns whether any particle was replaced.
     pub(in super::super) fn repeat_faces(&self, particles: &mut Particles, corners: &mut Vec<u32>) -> bool {
         particles.opposite.clear();
         let mut repeats = Vec::new();
@@ -249,7 +249,7 @@ impl Creases {
     }
 }
 
-/// An image with the new number of what it repeats.
+/// An image with the new number of its original.
 fn moved(image: Option<Image>, place: &[Option<usize>]) -> Option<Option<Image>> {
     match image {
         Some(Image { of, pair }) => Some(Some(Image { of: place[of]?, pair })),
@@ -257,7 +257,7 @@ fn moved(image: Option<Image>, place: &[Option<usize>]) -> Option<Option<Image>>
     }
 }
 
-/// Whether each of the branches is the same at a point and at its image.
+/// Whether each of the branches has the same value and gradient at a point and at its image.
 fn is_same<'a>(probe: &mut Probe, branches: impl Iterator<Item = &'a u32>, p: DVec3, image: DVec3) -> bool {
     branches.copied().all(|branch| {
         let probe = probe.on(Some(branch));
@@ -268,7 +268,7 @@ fn is_same<'a>(probe: &mut Probe, branches: impl Iterator<Item = &'a u32>, p: DV
     })
 }
 
-/// The rows of particles on the creases of two opposite faces that belong together; none if the
+/// The pairs of corresponding rows of particles on the creases of two opposite faces; none if the
 /// faces differ.
 fn crease_pairs(particles: &Particles, pair: &FacePair) -> Option<Vec<[u32; 2]>> {
     // The two coordinates in the face, by their bits.

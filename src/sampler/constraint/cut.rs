@@ -1,8 +1,8 @@
-//! Creases that run to the box: they are traced beyond it, and cut where they pass its faces.
+//! Creases that reach the box: they are traced beyond it and cut at its faces.
 //!
-//! A coarse front grows beyond the box and is clipped there. So that the creases fit its mesh on
-//! both sides of a face, one that passes the face has a corner on it, at the common point of both
-//! branches and the plane.
+//! A coarse front grows beyond the box and is clipped at its faces. A crease that crosses a face
+//! gets a corner on it, at the common point of both branches and the plane, so that the creases fit
+//! the mesh on both sides.
 
 use super::meeting::{Third, common_point};
 use super::{Crease, Creases, ONE_CORNER, seam};
@@ -11,8 +11,8 @@ use crate::sampler::probe::Probe;
 use crate::slices::complete;
 
 impl Creases {
-    /// The creases in a `wide` box around `bounds`, cut at the faces of that; none if no crease
-    /// runs to it.
+    /// The creases in a `wide` box around `bounds`, cut at the faces of `bounds`; none if no crease
+    /// reaches those.
     pub(in super::super) fn beyond(&self, probe: &mut Probe, bounds: &Bounds, wide: &Bounds) -> Option<Self> {
         self.at_box()?;
         let width = Self::width(wide);
@@ -54,8 +54,8 @@ impl Creases {
         self.add_pieces(curve, &cuts, slack);
     }
 
-    /// Adds the pieces of a curve that is divided at corners, each after the point of this number.
-    /// What is shorter than `slack` is none.
+    /// Adds the pieces of a curve. Each of the `cuts` is the number of a point and that of the
+    /// corner after it. Pieces shorter than `slack` are dropped.
     pub(super) fn add_pieces(&mut self, curve: Crease, cuts: &[(usize, usize)], slack: f64) {
         if cuts.is_empty() {
             self.curves.push(curve);
@@ -75,7 +75,7 @@ impl Creases {
         }
         let mut last = piece(points, [from, curve.corners[1]]);
         if curve.is_closed {
-            // The last piece goes on with the first one.
+            // The last piece of a closed curve continues with the first one.
             let first = pieces.remove(0);
             last.points.extend(first.points);
             last.corners[1] = first.corners[1];

@@ -14,7 +14,7 @@ use glam::{DVec3, Vec3};
 #[derive(Clone, Debug)]
 pub(in super::super) struct CreaseParticle {
     pub(in super::super) position: Vec3,
-    /// Half the distance to the next ones along the crease.
+    /// Half the distance to the next particles along the crease.
     pub(in super::super) radius: f32,
     /// Unit vector along the crease, or along one of those that meet at the corner.
     pub(in super::super) tangent: Vec3,
@@ -23,12 +23,11 @@ pub(in super::super) struct CreaseParticle {
 }
 
 impl CreaseParticle {
-    /// The normal of the patch that is selected. Where it has none, as at the tip of a cone, that
-    /// beside the particle, along the crease if possible.
+    /// The normal of the selected patch. If it is undefined, as at the tip of a cone, the normal at
+    /// a point near the particle, along the crease if possible.
     pub(super) fn normal(&self, probe: &mut Probe) -> Option<Vec3> {
         probe.gradient(self.position).1.try_normalize().or_else(|| {
-            // In double precision, which tells places apart that are this near each other however
-            // small the particle is.
+            // Double precision distinguishes places this close, however small the particle is.
             [self.tangent, -self.tangent, Vec3::X, Vec3::Y, Vec3::Z].into_iter().find_map(|way| {
                 let aside = ASIDE * f64::from(self.radius) * way.as_dvec3();
                 probe.count(1);
@@ -39,19 +38,19 @@ impl CreaseParticle {
     }
 }
 
-/// The particles on creases, and the pairs of them that follow each other along one.
+/// The particles on creases, and the pairs of successive ones.
 #[derive(Clone, Debug, Default)]
 pub(in super::super) struct CreaseParticles {
     pub(in super::super) list: Vec<CreaseParticle>,
     pub(in super::super) segments: Vec<[u32; 2]>,
-    /// For each of them, the patches on its left and on its right.
+    /// For each segment, the patches on its left and on its right.
     sides: Vec<Vec<[u32; 2]>>,
     /// Points that divide every segment into 2ᵏ equal parts, segment by segment from its first end
     /// to its second.
     between: Vec<Vec3>,
 }
 
-/// A point of a curve, as it is filled.
+/// A point of a curve that is being filled.
 #[derive(Clone, Copy, Debug)]
 struct CurvePoint {
     position: DVec3,
@@ -62,9 +61,9 @@ struct CurvePoint {
 }
 
 impl Creases {
-    /// Fills corners and curves with particles, whose radius at a point of a patch is that of
-    /// `radius`: on each curve as many as come nearest to it. The way between two of them is to be
-    /// halved `halvings` times.
+    /// Fills corners and curves with particles. `radius` gives the wanted radius at a point of a
+    /// patch, and each curve gets the number of particles that comes closest to it. Points are also
+    /// stored for `halvings` halvings of the way between two particles.
     pub(in super::super) fn fill(
         &self,
         probe: &mut Probe,
@@ -89,7 +88,7 @@ impl Creases {
             let patches = corner.patches.clone();
             filled.list.push(CreaseParticle { position, radius, tangent: Vec3::ZERO, patches });
         }
-        // The particles of each curve, in its order, and the points between them.
+        // For each curve, its particles in order, and the points between them.
         let mut ways: Vec<(Vec<u32>, Range<usize>)> = Vec::with_capacity(self.curves.len());
         for curve in &self.curves {
             let start = filled.between.len();
@@ -152,7 +151,7 @@ impl Creases {
         images
     }
 
-    /// Fills a curve of these points, the last of which is the first one again if it is closed.
+    /// Fills a curve of these points; if it is closed, the last point repeats the first one.
     /// Returns the numbers of its particles.
     fn fill_curve(
         &self,
@@ -164,7 +163,7 @@ impl Creases {
     ) -> Vec<u32> {
         let others = filled.list.len();
         let room = points[points.len() - 1].room;
-        // A closed curve of two particles would be a line there and back.
+        // With two particles a closed curve would run back along itself.
         let least = if curve.is_closed { 3.0 } else { 1.0 };
         let parts = room.round().max(least) as usize;
         let mut numbers: Vec<u32> = Vec::with_capacity(parts + 1);
@@ -191,8 +190,8 @@ impl Creases {
             let share = ((target - a.room) / (b.room - a.room)).clamp(0.0, 1.0);
             let (place, radius) =
                 (a.position.lerp(b.position, share), a.radius + (b.radius - a.radius) * share);
-            // The chord is left for the curve. The ends of an open curve are exact already, and lie
-            // on the box.
+            // A point of the chord is moved to the curve. The ends of an open curve are exact
+            // already, and lie on the box.
             let reach = a.position.distance(b.position);
             let found = if is_end {
                 None
@@ -233,15 +232,15 @@ impl Creases {
 }
 
 impl CreaseParticles {
-    /// Adds the segments between particles that follow each other, with the patches on their left
-    /// and on their right.
+    /// Adds the segments between successive particles, with the patches on their left and on their
+    /// right.
     fn add_segments(&mut self, numbers: &[u32], sides: &[[u32; 2]]) {
         self.segments.extend(numbers.windows(2).map(|pair| [pair[0], pair[1]]));
         self.sides.resize(self.segments.len(), sides.to_vec());
     }
 
-    /// Adds a row for each patch of each particle, patch by patch, to columns that are empty.
-    /// Returns a unit vector along the crease for each row.
+    /// Adds a row for each patch of each particle, patch by patch, to empty columns. Returns a unit
+    /// vector along the crease for each row.
     pub(in super::super) fn add_rows(&self, probe: &mut Probe, particles: &mut Particles) -> Vec<Vec3> {
         let mut patches: Vec<u32> =
             self.list.iter().flat_map(|particle| particle.patches.iter().copied()).collect();
@@ -271,8 +270,8 @@ impl CreaseParticles {
         along
     }
 
-    /// The particles on creases at every level of a refinement that begins with rows of these;
-    /// those in a box where creases run on beyond it.
+    /// The particles on creases at every level of a refinement that starts from `rows`; only those
+    /// in `bounds` if creases continue beyond the box.
     pub(in super::super) fn into_ladder(self, rows: &Particles, bounds: Option<&Bounds>) -> CreaseLadder {
         CreaseLadder::new(rows, self.between, bounds)
     }

@@ -1,41 +1,40 @@
-//! Particles on creases and tips, level by level: at each level of a refinement another one halves
-//! the way between two that follow each other along a crease.
+//! Particles on creases and tips, level by level: at each level of a refinement a new particle
+//! halves the way between two successive ones on a crease.
 
 use crate::math::{Bounds, sort_by_key};
 use crate::particles::Particles;
 use glam::Vec3;
 
-/// The particles on creases and tips at every level of a refinement. All are known before it
+/// The particles on creases and tips at every level of a refinement. All are computed before it
 /// begins, so that the patches that meet at a crease have them at the same places.
 ///
-/// The crease particles of the coarse front are numbered by their first rows; those of finer levels
-/// have the numbers after these.
+/// A crease particle of the coarse front has the number of its first row; those of finer levels
+/// follow.
 #[derive(Clone, Debug)]
 pub(in super::super) struct CreaseLadder {
-    /// Pairs of particles of the coarse front that follow each other along a crease.
+    /// Pairs of successive particles of the coarse front along a crease.
     segments: Vec<[u32; 2]>,
-    /// For each of them, the patches on its left and on its right.
+    /// For each segment, the patches on its left and on its right.
     sides: Vec<Vec<[u32; 2]>>,
-    /// Equal parts of a segment at the last level.
+    /// Number of equal parts of a segment at the last level.
     parts: usize,
     /// Number of rows of the coarse front.
     rows: u32,
     /// Positions of the particles that divide the segments, segment by segment from its first end
     /// to its second.
     between: Vec<Vec3>,
-    /// For every two that follow each other at some level, the lower number first, the number of
-    /// the particle that halves the way between them. Sorted.
+    /// For every two particles that are successive at some level, the lower number first, the
+    /// number of the particle midway between them. Sorted.
     middles: Vec<([u32; 2], u32)>,
-    /// Number of ends of segments at each row of the coarse front.
+    /// Number of segments that end at each row of the coarse front.
     ends: Vec<u32>,
-    /// Whether a crease runs on beyond the box from each of them.
+    /// Whether a crease continues beyond the box from each row.
     is_at_box: Vec<bool>,
 }
 
 impl CreaseLadder {
-    /// The ladder over the rows of a coarse front, whose segments are divided by the points
-    /// `between`, as many in each. Where creases run on beyond the box, segments that lie there are
-    /// left out.
+    /// The ladder over the rows of a coarse front. The points `between` divide its segments,
+    /// equally many in each. If creases continue beyond the box, segments outside are left out.
     pub(super) fn new(rows: &Particles, mut between: Vec<Vec3>, bounds: Option<&Bounds>) -> Self {
         let count = rows.twins.len();
         let (mut segments, mut sides) = (Vec::new(), Vec::new());
@@ -81,7 +80,7 @@ impl CreaseLadder {
         ladder
     }
 
-    /// The number of the particle after so many parts of a segment.
+    /// The number of the particle `part` parts along a segment.
     fn number(&self, segment: usize, part: usize) -> u32 {
         let [start, end] = self.segments[segment];
         match part {
@@ -91,7 +90,7 @@ impl CreaseLadder {
         }
     }
 
-    /// One more than the highest number of a particle.
+    /// The highest number of a particle, plus one.
     pub(in super::super) fn len(&self) -> usize {
         self.rows as usize + self.between.len()
     }
@@ -106,16 +105,16 @@ impl CreaseLadder {
         self.is_at_box.get(number as usize).copied().unwrap_or(false)
     }
 
-    /// The number and the position of the particle that halves the way between two; none if these
-    /// do not follow each other along a crease at any level but the last.
+    /// The number and the position of the particle midway between two; none if these are successive
+    /// at no level before the last.
     pub(in super::super) fn middle(&self, a: u32, b: u32) -> Option<(u32, Vec3)> {
         let place = self.middles.binary_search_by_key(&[a.min(b), a.max(b)], |&(pair, _)| pair).ok()?;
         let number = self.middles[place].1;
         Some((number, self.between[(number - self.rows) as usize]))
     }
 
-    /// The pairs that follow each other along a crease at the level after which so many are to
-    /// come, each with the patches on its left and on its right.
+    /// The pairs of successive particles at the level that `to_come` more levels follow, each with
+    /// the patches on its left and on its right.
     pub(in super::super) fn pairs(&self, to_come: u32) -> impl Iterator<Item = ([u32; 2], &[[u32; 2]])> {
         let stride = 1 << to_come;
         (0..self.segments.len()).flat_map(move |segment| {
@@ -125,9 +124,8 @@ impl CreaseLadder {
         })
     }
 
-    /// A particle of the coarse front from which two creases lead to the next one without a third
-    /// between them, so that an edge of the mesh does not tell on which it lies; none if there is
-    /// none.
+    /// A particle of the coarse front, if any, that two creases connect directly to the same other
+    /// one, so that a mesh edge does not show on which of them it lies.
     pub(in super::super) fn ambiguous(&self) -> Option<u32> {
         let same = self.middles.windows(2).find(|pair| pair[0].0 == pair[1].0);
         same.map(|pair| pair[0].0[0])

@@ -1,4 +1,4 @@
-//! Points where branches of f are zero together.
+//! Points where several branches of f vanish.
 
 use super::{AT_REST, BESIDE};
 use crate::math::newton::{self, STEPS, StepLimits, step_to_corner, step_to_curve, step_to_surface};
@@ -6,20 +6,20 @@ use crate::math::{Bounds, SQRT_3};
 use crate::sampler::probe::Probe;
 use glam::DVec3;
 
-/// Sine of that angle down to which a crease is traced, where it fades out. At [`ASIDE`] the
-/// angle then still outweighs the bend of a branch, which is half of `ASIDE` squared where the
-/// radius of curvature is the reach.
+/// Least sine of the angle between two branches at which their crease is traced; below it the
+/// crease has faded out. At the distance [`ASIDE`] the angle then still outweighs the bend of a
+/// branch, which is half of `ASIDE` squared if the radius of curvature is the reach.
 pub(super) const FADED: f64 = 10.0 * ASIDE;
-/// Distance from a crease, as a share of the reach, at which it is asked which branch gives f: by
-/// [`FADED`] times as much the branches differ there, which is far above rounding.
+/// Distance from a crease, as a share of the reach, at which the evaluator is asked which branch
+/// gives f. The branches differ there by [`FADED`] times that distance, far above rounding.
 pub(super) const ASIDE: f64 = 1e-4;
 
-/// Distance outside of a sheet, as a share of the reach, at which it is asked which branch gives f:
-/// far above rounding, and so little that of two branches of which one is 10⁶ times as steep the
-/// other one counts, too, at [`ASIDE`].
+/// Distance outside a sheet, as a share of the reach, at which the evaluator is asked which branch
+/// gives f: far above rounding, and so small that at [`ASIDE`] a branch still counts if the other
+/// one is 10⁶ times as steep.
 const OUTSIDE: f64 = 1e-11;
 
-/// Cosine of the largest turn of a crease in one step, 30°. A step that turns more is halved.
+/// Cosine of the largest turn of a crease in one step, 30°. A step with a larger turn is halved.
 pub(super) const MOST_TURN: f64 = 0.5 * SQRT_3;
 
 /// A point where two patches meet.
@@ -51,11 +51,11 @@ pub(super) fn is_on(probe: &mut Probe, b: u32, p: DVec3, slack: f64) -> bool {
     value.abs() <= slack * gradient.length()
 }
 
-/// The point on the surface near one where two branches touch without an angle, so that what is on
-/// one is on the other.
+/// The point on the surface near a place where two branches touch without an angle, so that a point
+/// on one branch is on the other, too.
 pub(super) fn touching_point(probe: &mut Probe, [first, _]: [u32; 2], start: DVec3) -> DVec3 {
     let mut p = start;
-    // Each step doubles the digits, of which the start has some.
+    // Each step doubles the number of correct digits; the start has some.
     for _ in 0..4 {
         p -= step_to_surface(branch(probe, first, p));
     }
@@ -63,8 +63,8 @@ pub(super) fn touching_point(probe: &mut Probe, [first, _]: [u32; 2], start: DVe
 }
 
 impl Meeting {
-    /// The point near `start`, within `reach`, where both branches are zero and meet at an angle of
-    /// this sine at least, whichever branch gives f there.
+    /// The point near `start`, within `reach`, where both branches vanish and meet at an angle of
+    /// at least this sine, whichever branch gives f there.
     pub(super) fn of_branches(
         probe: &mut Probe,
         branches: [u32; 2],
@@ -86,8 +86,8 @@ impl Meeting {
     }
 
     /// Whether the patches of these branches are on the left of the crease, in the direction of its
-    /// tangent and seen from outside. There is no crease where one of the branches gives f on
-    /// neither side, or on both.
+    /// tangent and seen from outside. There is no crease if one of the branches gives f on neither
+    /// side, or on both.
     pub(super) fn are_left(&self, probe: &mut Probe, branches: &[u32], reach: f64) -> Option<Vec<bool>> {
         let mut are_left = Vec::with_capacity(branches.len());
         for &b in branches {
@@ -100,13 +100,13 @@ impl Meeting {
         Some(are_left)
     }
 
-    /// Whether a branch gives f beside its sheet to the left of the tangent, and to the right; none
-    /// if it has no sheet there. It is asked on the outer side of the sheet: within a solid, where
-    /// its bodies share a plane, each of two branches gives f on its inner side alone.
+    /// Whether a branch gives f next to its sheet, on the left and on the right of the tangent;
+    /// none if it has no sheet there. The test points are on the outer side of the sheet: inside a
+    /// solid whose bodies share a plane, each of two branches gives f only on its inner side.
     fn gives(&self, probe: &mut Probe, b: u32, reach: f64) -> Option<[bool; 2]> {
         let (_, gradient) = branch(probe, b, self.position);
         let aside = gradient.cross(self.tangent).try_normalize()?;
-        // √(u² + v²) is zero on a curve, which is no sheet: its gradient points away from it.
+        // √(u² + v²) vanishes on a curve, not on a sheet: its gradient points away from the curve.
         let (_, beside) = branch(probe, b, self.position + aside * (ASIDE * reach));
         if gradient.dot(beside) < MOST_TURN * gradient.length() * beside.length() {
             return None;
@@ -120,12 +120,12 @@ impl Meeting {
         Some([aside, -aside].map(&mut is_given))
     }
 
-    /// Whether each branch gives f on both sides, so that their sheets cross, and no patch ends.
+    /// Whether each branch gives f on both sides: their sheets cross, and no patch ends.
     pub(super) fn is_passed(&self, probe: &mut Probe, reach: f64) -> bool {
         self.branches.into_iter().all(|b| self.gives(probe, b, reach) == Some([true; 2]))
     }
 
-    /// Whether f is zero at the point, and on no surface there.
+    /// Whether f vanishes at the point without a surface there.
     pub(super) fn is_bare(&self, probe: &mut Probe, reach: f64) -> bool {
         probe.is_bare_zero(self.position, reach)
     }
@@ -137,7 +137,7 @@ impl Meeting {
     }
 
     /// The patches that meet along the crease, in ascending order: those of its branches, and of
-    /// others that are zero on it.
+    /// other branches that vanish on it.
     pub(super) fn patches(&self, probe: &mut Probe, reach: f64) -> Vec<u32> {
         let others = self.branches_near(probe, reach);
         let mut patches = self.branches.to_vec();
@@ -154,8 +154,8 @@ impl Meeting {
     }
 }
 
-/// The point near `start`, within `reach`, where a plane and two branches, or three branches, are
-/// zero together.
+/// The point near `start`, within `reach`, where a plane and two branches, or three branches,
+/// vanish.
 pub(super) fn common_point(
     probe: &mut Probe,
     branches: [u32; 2],
@@ -175,7 +175,7 @@ pub(super) fn common_point(
     newton::land(start, limits(reach), step_at).map(|(p, ())| p)
 }
 
-/// The third function that is zero at a corner, beside two branches.
+/// The third function that vanishes at a corner, in addition to two branches.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Third {
     /// A third branch.

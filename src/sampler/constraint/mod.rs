@@ -1,23 +1,23 @@
-//! What a particle may lie on besides the surface: the creases along which two smooth branches of f
-//! give way to each other, and the corners where more than two meet; and the [tips] of cones.
+//! The features that hold particles in place: creases, along which f changes from one smooth branch
+//! to another, corners, where more than two branches meet, and the [tips] of cones.
 //!
 //! A formula with maxima, minima and absolute values has a surface of *patches*. On each one smooth
 //! branch gives f, or several that meet without an edge
-//! ([`Pieces::label`](crate::field::Pieces::label)). Two patches meet along a *crease*,
-//! the curve on which both branches are zero; it ends at a corner, at the box, or runs back into
-//! itself. Where the factors of a product cross, four patches meet: each factor is
-//! two branches, one on either side of the other factor. Pieces that meet without an edge and yet
-//! are no single one have a [seam] in the place of a crease.
+//! ([`Pieces::label`](crate::field::Pieces::label)). Two patches meet along a *crease*, the curve
+//! on which both branches vanish; it ends at a corner or at the box, or is closed. Where the
+//! factors of a product cross, four patches meet: each factor is two branches, one on either side
+//! of the other factor. Pieces that meet without an edge, yet are not one patch, have a [seam]
+//! instead of a crease.
 //!
-//! 1. *Search.* The field says in which small cells of the box creases can be. There Newton's
-//!    method looks for a point on each pair of branches.
-//! 2. *Trace.* From such a point the curve is traced both ways, to where another branch takes
-//!    over: that place is a corner. From there the other creases of the corner are traced. A
-//!    crease that passes a corner of others is divided there, and so are creases that touch.
+//! 1. *Search.* The field lists the small cells of the box that may hold creases. In each cell
+//!    Newton's method searches for a point on each pair of branches.
+//! 2. *Trace.* From such a point the curve is traced both ways until another branch takes over, at
+//!    a corner. The other creases of the corner are traced from there. A crease that passes a
+//!    corner of others is divided there, and so are creases that touch.
 //! 3. *Fill.* Particles are put on corners and along curves at equal distances, as many as fit
-//!    best. They do not move any more: fronts start from them, patch by patch, and end at them. For
-//!    a refinement they are put there for every level at once, also beyond the box where the
-//!    creases run to it, and at its faces.
+//!    best. They stay fixed: fronts start and end at them, patch by patch. For a refinement they
+//!    are placed for all levels at once and, if creases reach the box, also at its faces and
+//!    beyond.
 
 mod cell;
 mod cut;
@@ -43,27 +43,27 @@ use meeting::Meeting;
 /// Side of the smallest cells of the search, and about twice the step along a curve, as a share of
 /// the diagonal of the box.
 const CELL: f64 = 1.0 / 128.0;
-/// Corners nearer to each other than this share of a step are one: the width of the smallest crease
-/// that is traced. So are a corner and a tip nearer than this share of a radius.
+/// Corners closer than this share of a step are the same one; it is the width of the smallest
+/// crease that is traced. A corner and a tip closer than this share of a radius are the same, too.
 const ONE_CORNER: f64 = 1e-3;
-/// Distance from a corner, in steps, at which the creases that end there are looked for: ten times
-/// the width of the smallest one.
+/// Distance from a corner, in steps, at which the creases that end there are searched for: ten
+/// times the width of the smallest one.
 const BESIDE: f64 = 10.0 * ONE_CORNER;
-/// Share of a step within which ends of creases that fade out are one corner, and corners on
-/// opposite faces images. Such ends are known less precisely than corners: a walk may end at an
-/// angle of [`meeting::FADED`], on three crossing cylinders a twentieth of a step before.
+/// Ends of fading creases within this share of a step are one corner, and corners on opposite faces
+/// images. Such ends are known less precisely than corners: a walk may end at an angle of
+/// [`meeting::FADED`], on three crossing cylinders a twentieth of a step before.
 const ONE_END: f64 = 0.1;
 
-/// Distance from the chord between two points of a curve, in steps, up to which a point lies on the
+/// A point at most this far from the chord between two points of a curve, in steps, lies on the
 /// curve: the chord of a curve that turns by 60° in two steps is a seventh of a step away.
 const NEAR: f64 = 0.2;
 
-/// Length of a chord, in steps, that none exceeds: a step leads at most as far beyond its end, and
+/// Upper bound of the length of a chord, in steps: a step leads at most as far beyond its end, and
 /// its last one along the box as far again.
 const LONGEST: f64 = 4.0;
 
-/// A point is found when a step is shorter than this share of the reach: Newton's method squares
-/// the share, to below any rounding.
+/// Newton's method stops once a step is shorter than this share of the reach: it squares the share,
+/// to below any rounding.
 const AT_REST: f64 = 1e-9;
 
 /// A curve along which patches meet: two, or four where two sheets cross.
@@ -73,29 +73,29 @@ pub(super) struct Crease {
     branches: [u32; 2],
     /// The patches, in ascending order.
     patches: Vec<u32>,
-    /// Pairs of a patch on its left and one on its right, seen from outside.
+    /// Pairs of a patch on the left and one on the right, seen from outside.
     sides: Vec<[u32; 2]>,
     /// Points along the curve, in its order.
     points: Vec<DVec3>,
-    /// Corners at its start and its end; none where the curve ends at the box or is closed.
+    /// Corners at its start and its end; none if the curve ends at the box or is closed.
     corners: [Option<usize>; 2],
     /// Whether the last point is followed by the first.
     is_closed: bool,
     /// Whether the patches meet without an edge.
     is_seam: bool,
-    /// The crease on the opposite face of a cell of which this one is the image.
+    /// If this is an image: the crease that it repeats, on the opposite face of a cell.
     image: Option<Image>,
 }
 
 impl Crease {
-    /// Every two points that follow each other.
+    /// The pairs of successive points.
     fn chords(&self) -> impl Iterator<Item = [DVec3; 2]> {
         let closing = self.is_closed.then(|| [self.points[self.points.len() - 1], self.points[0]]);
         self.points.windows(2).map(|pair| [pair[0], pair[1]]).chain(closing)
     }
 
-    /// Whether a chord runs within `reach` of a point, where none is longer than `longest`. Those
-    /// that follow on a chord far away are left out: they come nearer by one length each.
+    /// Whether a chord comes within `reach` of a point. No chord is longer than `longest`: after a
+    /// chord far away, those that cannot have come near yet are skipped.
     fn is_near(&self, p: DVec3, reach: f64, longest: f64) -> bool {
         let points = &self.points;
         let count = points.len() - usize::from(!self.is_closed);
@@ -124,7 +124,7 @@ pub(super) struct Corner {
     position: DVec3,
     /// The patches that meet there, in ascending order.
     patches: Vec<u32>,
-    /// The corner on the opposite face of a cell of which this one is the image.
+    /// If this is an image: the corner that it repeats, on the opposite face of a cell.
     image: Option<Image>,
 }
 
@@ -137,11 +137,11 @@ pub struct Creases {
     unit_cell: Option<UnitCell>,
     /// Opposite faces of the cell with the same creases.
     faces: Vec<FacePair>,
-    /// A place where sheets cross along a curve and no patch ends, which is not traced: three
+    /// A place on a curve that is not traced, since sheets cross there and no patch ends: three
     /// planes through one line, say.
     pub(super) passed: Option<DVec3>,
-    /// A place where branches are zero together and f is on a curve or at a point alone, as |x| +
-    /// |y| is.
+    /// A place where branches vanish together and f vanishes only on a curve or at a point, as
+    /// |x| + |y| does.
     pub(super) bare: Option<DVec3>,
     /// Whether there may be a crease where none was found.
     pub(super) is_open: bool,
@@ -150,7 +150,7 @@ pub struct Creases {
 }
 
 impl Creases {
-    /// Width of the [cells](crate::field::Pieces::seams_in) in which creases are looked for.
+    /// Width of the [cells](crate::field::Pieces::seams_in) in which creases are searched for.
     pub(super) fn width(bounds: &Bounds) -> f64 {
         CELL * bounds.diagonal()
     }
@@ -200,8 +200,8 @@ impl Creases {
         creases
     }
 
-    /// Traces the seams of patches that meet without an edge and are no single patch, and the
-    /// creases between patches that meet at their ends.
+    /// Traces the seams, where different patches meet without an edge, and the creases that start
+    /// at their ends.
     async fn trace_seams(&mut self, probe: &mut Probe<'_>, bounds: &Bounds, cells: &[Bounds], step: f64) {
         let pairs = probe.field.tangent_pairs();
         if pairs.is_empty() {
@@ -227,8 +227,8 @@ impl Creases {
         self.trace_from_corners(probe, bounds, step).await;
     }
 
-    /// Follows the creases between patches that meet at a corner: one shorter than a cell is not
-    /// always found from a cell.
+    /// Traces the creases between patches that meet at a corner: the search may miss one shorter
+    /// than a cell.
     async fn trace_from_corners(&mut self, probe: &mut Probe<'_>, bounds: &Bounds, step: f64) {
         let mut next = 0;
         while let Some(Corner { position, patches, .. }) = self.corners.get(next).cloned() {
@@ -256,20 +256,19 @@ impl Creases {
         }
     }
 
-    /// Whether a crease of two branches that is known runs through a point.
+    /// Whether a known crease of two branches runs through a point.
     fn has_point(&self, p: DVec3, branches: [u32; 2], step: f64) -> bool {
         self.runs_by(p, branches, NEAR * step, step)
     }
 
-    /// Whether a crease of two branches that is known comes within `reach` of a point.
+    /// Whether a known crease of two branches comes within `reach` of a point.
     fn runs_by(&self, p: DVec3, branches: [u32; 2], reach: f64, step: f64) -> bool {
         let has_both = |curve: &&Crease| branches.iter().all(|branch| curve.patches.contains(branch));
         self.curves.iter().filter(has_both).any(|curve| curve.is_near(p, reach, LONGEST * step))
     }
 
-    /// The first corner that lies on a crease of these branches, on the way from one of its points
-    /// to the next and farther along than `after`, and is none of the `others`: how far along it
-    /// lies, and its number.
+    /// The first corner on a chord of a crease of these branches, farther along it than `after` and
+    /// not one of the `others`: how far along it lies, and its number.
     fn corner_on(
         &self,
         probe: &mut Probe,
@@ -296,13 +295,13 @@ impl Creases {
         first
     }
 
-    /// Divides creases at the corners of other ones that lie on them. A corner keeps the patches
+    /// Divides creases at corners of other creases that lie on them. A corner keeps the patches
     /// that meet along its creases.
     fn divide(&mut self, probe: &mut Probe, step: f64) {
         for curve in core::mem::take(&mut self.curves) {
             let mut cuts = Vec::new();
             for (k, chord) in curve.chords().enumerate() {
-                // Each corner is farther along the chord than the one before, so that none comes
+                // Each corner is farther along the chord than the one before, so that none is found
                 // twice.
                 let mut after = 0.0;
                 while let Some((along, corner)) =
@@ -315,8 +314,8 @@ impl Creases {
             }
             self.add_pieces(curve, &cuts, ONE_CORNER * step);
         }
-        // A corner may also lie on the sheet of a branch that gives f nowhere around it, and that
-        // has no patch there.
+        // A corner may also lie on the sheet of a branch that gives f nowhere around it; that
+        // branch has no patch there.
         for (index, corner) in self.corners.iter_mut().enumerate() {
             let ending = self.curves.iter().filter(|curve| curve.corners.contains(&Some(index)));
             let patches: Vec<u32> = ending.flat_map(|curve| curve.patches.iter().copied()).collect();
@@ -326,8 +325,8 @@ impl Creases {
         }
     }
 
-    /// Leaves out the patches that limit the surface, and the curves and corners where only these
-    /// meet. The curves that are left are its rim.
+    /// Drops the patches that limit the surface, and the curves and corners where only these meet.
+    /// The remaining curves are the rim of the surface.
     fn end_at_limits(&mut self, probe: &mut Probe) {
         if !probe.field.has_limits() {
             return;
@@ -374,17 +373,17 @@ impl Creases {
         on_curves.chain(corners)
     }
 
-    /// Whether patches of the surface meet within `reach` of a point.
+    /// Whether a corner lies within `reach` of a point.
     pub(super) fn has_corner(&self, p: DVec3, reach: f64) -> bool {
         self.corners.iter().any(|corner| corner.position.distance(p) <= reach)
     }
 
-    /// Whether patches of the surface meet, along a crease or in a point.
+    /// Whether there are creases or corners.
     pub(super) fn are_there(&self) -> bool {
         !(self.curves.is_empty() && self.corners.is_empty())
     }
 
-    /// Number of sets of creases that hang together at corners.
+    /// Number of connected components of creases and corners.
     pub(super) fn pieces(&self) -> u32 {
         let mut joined = Forest::new(self.corners.len() + self.curves.len());
         for (k, curve) in (self.corners.len() as u32..).zip(&self.curves) {
@@ -393,7 +392,7 @@ impl Creases {
         (0..(self.corners.len() + self.curves.len()) as u32).filter(|&k| joined.find(k) == k).count() as u32
     }
 
-    /// A point at which a crease runs to the box, if there is one.
+    /// A point at which a crease ends at the box, if there is one.
     fn at_box(&self) -> Option<Vec3> {
         let mut ends = self.curves.iter().filter(|curve| !curve.is_closed).flat_map(|curve| {
             let points = [curve.points.first(), curve.points.last()];

@@ -1,8 +1,8 @@
-//! Seams: curves along which two patches meet without an edge, though they are no single patch,
-//! since they or their neighbours meet at an angle elsewhere. A fillet that fades out has one.
+//! Seams: curves along which two patches meet without an edge, yet are not one patch, since they or
+//! their neighbours meet at an angle elsewhere. A fillet that fades out has one.
 //!
-//! Both branches are zero beside a seam, too, up to the second order, so that their common zeros
-//! say little about its place. It is found on the surface by halving the way between two points of
+//! Next to a seam, too, both branches vanish up to the second order, so that their common zeros
+//! hardly determine its place. It is found on the surface, by bisection between two points of
 //! different patches.
 
 use super::meeting::{MOST_TURN, Meeting, branch, limits};
@@ -12,13 +12,14 @@ use crate::math::{Bounds, SHARP, SQRT_3, tangent_frame};
 use crate::sampler::probe::Probe;
 use glam::DVec3;
 
-/// Times that the way between two points of a seam is halved, to rounding.
+/// Bisections of the way between two points on either side of a seam, to rounding.
 const HALVINGS: u32 = 40;
-/// Radius of the circle around a point of a seam that shows its direction, as a share of the reach.
+/// Radius of the circle around a point of a seam from which its direction is found, as a share of
+/// the reach.
 const AROUND: f64 = 0.02;
 /// Points of that circle.
 const POINTS: u32 = 16;
-/// Share of the reach at which a seam is looked for on either side of a chord.
+/// Distance on either side of a chord at which a seam is searched for, as a share of the reach.
 const BESIDE_CHORD: f64 = 0.2;
 
 /// A point of the surface.
@@ -43,8 +44,8 @@ fn normal(probe: &mut Probe, patch: u32, p: DVec3) -> DVec3 {
     branch(probe, patch, p).1.normalize_or_zero()
 }
 
-/// The place on the way from a point of the first patch to one of the second where one gives way to
-/// the other. `at` is the point of the surface after a share of the way.
+/// The place between a point of the first patch and one of the second where the patch changes. `at`
+/// is the point of the surface after a share of the way.
 fn turn(pair: [u32; 2], mut at: impl FnMut(f64) -> Option<Landed>) -> Option<DVec3> {
     let [mut from, mut to] = [0.0, 1.0];
     let mut place = at(from).filter(|first| first.patch == pair[0])?;
@@ -69,7 +70,7 @@ impl Meeting {
     /// A point in or near a cell where these patches meet without an edge.
     pub(super) fn on_seam(probe: &mut Probe, pair: [u32; 2], cell: &Bounds) -> Option<Self> {
         let reach = cell.diagonal();
-        // Pieces that meet at an angle have a crease there. A gradient that is none says nothing.
+        // Pieces that meet at an angle have a crease there. A vanishing gradient decides nothing.
         let [u, v] = pair.map(|patch| normal(probe, patch, cell.middle()));
         if u != DVec3::ZERO && v != DVec3::ZERO && u.dot(v) < MOST_TURN {
             return None;
@@ -77,7 +78,7 @@ impl Meeting {
         let mut ends: [Option<Landed>; 2] = [None; 2];
         // A seam may run along the face of a cell.
         let around = Bounds::new(cell.lo() - 0.3 * cell.size(), cell.hi() + 0.4 * cell.size());
-        // Little is to be asked of a cell through which no branch gives way to another.
+        // Skips a cell if the corners of the box around it all have the same patch.
         let [one, others @ ..] = around.corners().map(|corner| probe.field.label(corner));
         if others.iter().all(|&other| other == one) {
             return None;
@@ -128,8 +129,8 @@ impl Meeting {
             let end = turn([here, next], |share| place(probe, (f64::from(k) + share) * step))?;
             found[way] = Some(end);
         }
-        // Counter-clockwise, the first patch gives way to the second in the direction that has the
-        // first one on its right.
+        // Counter-clockwise, the change from the first patch to the second lies in the direction
+        // that has the first one on its right.
         let [Some(behind), Some(ahead)] = found else { return None };
         let tangent = (ahead - behind).normalize_or_zero();
         Some(Self { position, branches: pair, tangent, sine: 0.0 })
@@ -157,7 +158,7 @@ impl Meeting {
         is_ahead.then_some(Self { position, tangent: way, ..*self })
     }
 
-    /// The point of a seam beside one of its chords.
+    /// The point of the seam near the point `place` of a chord with the direction `way`.
     pub(super) fn beside_chord(probe: &mut Probe, pair: [u32; 2], place: DVec3, way: DVec3) -> Option<DVec3> {
         let reach = way.length();
         let first = landed(probe, place, reach)?;

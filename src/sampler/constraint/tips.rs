@@ -1,10 +1,10 @@
 //! Tips: isolated points of the surface at which sheets end as cones, with one particle each.
 //!
-//! The *link* of a point is what a small sphere around it cuts out of the surface: around a smooth
-//! point one circle, around a tip a closed curve for each *nappe*, the sheets that meet there (J.
-//! Milnor, "Singular Points of Complex Hypersurfaces", §2, 1968). The particle of a tip has a row
-//! for each nappe. Around each nappe, on the link at the distance of neighbours, stands a ring of
-//! particles from which the front grows.
+//! The *link* of a point is the intersection of the surface and a small sphere around it: around a
+//! smooth point one circle, around a tip a closed curve for each *nappe*, the sheets that meet
+//! there (J. Milnor, "Singular Points of Complex Hypersurfaces", §2, 1968). The particle of a tip
+//! has a row for each nappe. On the link of each nappe, at the distance of neighbours, a ring of
+//! particles is placed, from which the front grows.
 
 use super::{AT_REST, ONE_CORNER};
 use crate::math::newton::STEPS;
@@ -13,28 +13,28 @@ use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::probe::Probe;
 use glam::{DMat3, DVec3, Vec3};
 
-/// Divisions of the edge of an octahedron whose faces, thrown onto the sphere, show the link: the
-/// narrowest nappe is three of them wide.
+/// Divisions of each edge of an octahedron whose faces, projected onto the sphere, sample the link:
+/// the narrowest nappe is three of them wide.
 const DIVISIONS: i32 = 8;
-/// Radius of the sphere that tells how many nappes a tip has, in spacings of the survey. Rounded
-/// coefficients open a cone to a neck of a ten-thousandth of a spacing.
+/// Radius of the sphere that determines how many nappes a tip has, in spacings of the survey.
+/// Rounded coefficients open a cone to a neck of a ten-thousandth of a spacing.
 const SMALL: f64 = 1.0 / 32.0;
-/// Rounds in which the place of a tip is found, on spheres of which each is a quarter of the one
+/// Rounds in which the place of a tip is found, each on a sphere a quarter as large as the one
 /// before: the error falls with the square.
 const ROUNDS: u32 = 10;
 /// Determinant of the mean of nnᵀ over the normals n of a link below which the surface is smooth: a
 /// cone flatter than 3°.
 const SMOOTH: f64 = 1e-5;
-/// Least cosine of the angle between a nappe's normals and their mean. The rows of the tip on two
-/// nappes are told apart by it.
+/// Least cosine of the angle between a nappe's normals and their mean. It distinguishes the rows of
+/// the tip on two nappes.
 const LEAST_COSINE: f64 = 0.1;
-/// Cosine of the angle within which a nappe on a larger sphere is the one on the smaller: 45°.
+/// Cosine of the angle within which nappes on a larger and a smaller sphere are the same: 45°.
 const ONE_NAPPE: f64 = 0.7;
 /// Least number of particles around a tip: three on a narrow cone would face away from each other.
 /// With more, fewer particles have six neighbours.
 pub(in super::super) const LEAST_RING: u32 = 4;
-/// Largest distance of a ring from its tip, in spacings. A nappe narrower than 16° has none that is
-/// nearer.
+/// Largest distance of a ring from its tip, in spacings. A nappe narrower than 16° has no closer
+/// one.
 const FARTHEST: f64 = 1.4;
 
 /// A point of the surface, by the unit vector to it from the centre of a sphere, with its unit
@@ -45,7 +45,7 @@ struct LinkPoint {
     normal: DVec3,
 }
 
-/// A closed curve in which a sphere cuts the surface.
+/// A closed curve of the intersection of a sphere and the surface.
 type Loop = Vec<LinkPoint>;
 
 /// A tip.
@@ -54,15 +54,15 @@ pub(in super::super) struct Tip {
     pub(in super::super) position: DVec3,
     /// The patch around it.
     pub(in super::super) patch: u32,
-    /// Unit vectors towards the middle of each nappe.
+    /// Unit vectors towards the middle of each nappe, from the tip.
     nappes: Vec<DVec3>,
     /// Largest curvature of the nappes, times the distance from the tip.
     bend: f64,
 }
 
 impl Tip {
-    /// The tip at a singular point of a patch, which is selected; none if the patch is smooth there
-    /// or elsewhere, or its sheets are no cones that face different ways.
+    /// The tip at a singular point of the selected patch; none if the patch is smooth or absent
+    /// there, or its sheets are not cones that face different ways.
     pub(in super::super) fn at(
         probe: &mut Probe,
         patch: Option<u32>,
@@ -89,17 +89,17 @@ impl Tip {
 
     /// Whether a curvature at a point is no larger than a cone with this tip would have there.
     pub(in super::super) fn explains(&self, point: Vec3, curvature: f64) -> bool {
-        /// The sheets bend by themselves as well.
+        /// The sheets may also bend by themselves.
         const MORE: f64 = 1.5;
         curvature * self.position.distance(point.as_dvec3()) <= MORE * self.bend
     }
 
-    /// Largest distance of a tip from the place near which it is looked for, in spacings: the steps
-    /// are at most 2, 2/4, 2/16, …
+    /// Largest distance of a tip from the place near which it is searched for, in spacings: the
+    /// steps are at most 2, 2/4, 2/16, …
     pub(in super::super) const REACH: f64 = 8.0 / 3.0;
 
-    /// The tip of a patch, which is selected, near `start`: the point in which the tangent planes
-    /// around it meet.
+    /// The tip of the selected patch near `start`: the point in which the tangent planes around it
+    /// meet.
     pub(in super::super) fn near(
         probe: &mut Probe,
         patch: Option<u32>,
@@ -124,8 +124,8 @@ impl Tip {
         Self::at(probe, patch, position, spacing)
     }
 
-    /// The nappes at a distance from the tip, in their order; none if the sphere of that radius
-    /// shows others.
+    /// The nappes at a distance from the tip, in their order; none if the sphere of that radius has
+    /// a different number.
     fn nappes(&self, probe: &mut Probe, distance: f64) -> Option<Vec<Loop>> {
         let mut open = link_on_patch(probe, self.patch, self.position, distance)?;
         if open.len() != self.nappes.len() {
@@ -139,7 +139,7 @@ impl Tip {
     }
 
     /// A ring around each nappe, on the patch of the tip. The distances along and around the nappe
-    /// are a spacing in the mean.
+    /// average one spacing.
     fn rings(&self, probe: &mut Probe, spacing: f64) -> Option<Vec<Ring>> {
         let nappes = self.nappes(probe, spacing)?;
         let ring = |curve: &Loop| {
@@ -167,9 +167,9 @@ struct Ring {
     points: Vec<LinkPoint>,
 }
 
-/// Adds a particle for each tip to columns that hold nothing but particles on creases, and then a
-/// ring of particles around each nappe. A tip that has no room for its rings gets none; one in
-/// which patches meet has a particle already.
+/// Adds a particle for each tip to columns that hold only particles on creases, and then a ring of
+/// particles around each nappe. A tip without room for its rings gets none; one at which patches
+/// meet has a particle already.
 pub(in super::super) fn add(
     probe: &mut Probe,
     tips: &[Tip],
@@ -226,12 +226,12 @@ pub(in super::super) fn add(
     }
 }
 
-/// Every two points of a curve that follow each other, the last and the first among them.
+/// The sides of a closed curve: the pairs of successive points, and the last with the first.
 fn sides(curve: &Loop) -> impl Iterator<Item = [&LinkPoint; 2]> {
     (0..curve.len()).map(|k| [&curve[k], &curve[(k + 1) % curve.len()]])
 }
 
-/// The unit vector along the mean of something over a curve.
+/// The unit vector along the mean of a vector over a curve.
 fn mean(curve: &Loop, of: impl Fn(&LinkPoint) -> DVec3) -> DVec3 {
     let weighted = sides(curve).map(|[a, b]| (of(a) + of(b)) * a.direction.distance(b.direction));
     weighted.sum::<DVec3>().normalize_or_zero()
@@ -288,12 +288,12 @@ fn landed(probe: &mut Probe, centre: DVec3, radius: f64, direction: DVec3) -> Op
     None
 }
 
-/// The closed curves in which a sphere cuts the surface, as far as a grid of triangles on the
-/// sphere shows them; none where f is not defined, or no point of the surface is found.
+/// The closed curves of the intersection of a sphere and the surface, on a grid of triangles; none
+/// if f is undefined somewhere, or a point of the surface is not found.
 fn link(probe: &mut Probe, centre: DVec3, radius: f64) -> Option<Vec<Loop>> {
     let mut values = vec![f64::INFINITY; (SIDE * SIDE * SIDE) as usize];
-    // The ways of the link through the triangles, each by the two sides that it crosses, from both
-    // ends.
+    // The segments of the link in the triangles, each as the two triangle sides that it connects,
+    // in both directions.
     let mut ways: Vec<[u32; 2]> = Vec::new();
     for triangle in triangles() {
         for v in triangle {
@@ -318,7 +318,7 @@ fn link(probe: &mut Probe, centre: DVec3, radius: f64) -> Option<Vec<Loop>> {
     sort_pairs(&mut ways);
     let mut is_open = vec![true; ways.len()];
     let mut curves = Vec::new();
-    // Two ways lead from each side.
+    // Two segments start at each side.
     for first in (0..ways.len()).step_by(2) {
         let (mut curve, mut next) = (Vec::new(), Some(first));
         while let Some(place) = next.filter(|&place| is_open[place]) {
@@ -337,8 +337,8 @@ fn link(probe: &mut Probe, centre: DVec3, radius: f64) -> Option<Vec<Loop>> {
     Some(curves)
 }
 
-/// The curves of the link of a branch, which is selected, on which it gives f; none if it gives f
-/// on a part of one only.
+/// The curves of the link of the selected branch on which it gives f; none if it gives f on only a
+/// part of one.
 fn link_on_patch(probe: &mut Probe, patch: u32, centre: DVec3, radius: f64) -> Option<Vec<Loop>> {
     let mut link = link(probe, centre, radius)?;
     let mut is_cut = false;
@@ -350,7 +350,7 @@ fn link_on_patch(probe: &mut Probe, patch: u32, centre: DVec3, radius: f64) -> O
     (!is_cut).then_some(link)
 }
 
-/// Numbers of a coordinate of a corner of the octahedron.
+/// Number of values of a coordinate of a corner of the octahedron.
 const SIDE: u32 = 2 * DIVISIONS as u32 + 1;
 /// Bits that hold the number of a corner: 2¹³ is above 17³.
 const SHIFT: u32 = 13;

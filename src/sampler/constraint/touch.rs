@@ -1,5 +1,5 @@
-//! Creases that touch: two of a cube's face circles meet in the middle of an edge where a ball
-//! touches that, and run on. They share a corner there.
+//! Creases that touch: if a ball touches an edge of a cube, the circles on two faces meet in a
+//! point of the edge and continue. They share a corner there.
 //!
 //! Three branches are zero at such a point, but one of them does not change its sign along the
 //! crease of the other two, so that no walk along the crease ends there, and Newton's method for
@@ -16,10 +16,10 @@ use glam::DVec3;
 /// Larger: creases that pass each other closely share a corner. Smaller: rounding hides that they
 /// touch.
 const TOUCH: f64 = 1e-6;
-/// Share of a chord by which it is prolonged along the crease, since nothing turns at the end of a
-/// chord.
+/// Share of a chord by which it is extended at both ends, since an extreme at the very end of a
+/// chord is not found.
 const OVERLAP: f64 = 0.1;
-/// Times that the way to a touching point is halved.
+/// Bisections of the way to a touching point.
 const BISECTIONS: u32 = 30;
 
 impl Creases {
@@ -62,8 +62,8 @@ impl Creases {
 }
 
 impl Meeting {
-    /// Whether the sheet of another branch touches the crease at a point so near that a place
-    /// beside the crease may lie beyond that sheet.
+    /// Whether the sheet of another branch touches the crease so near to this point that a place
+    /// next to the crease may lie beyond that sheet.
     pub(super) fn is_touched(&self, probe: &mut Probe, step: f64) -> bool {
         let chord = [self.position - self.tangent * step, self.position + self.tangent * step];
         self.branches_near(probe, step).into_iter().any(|third| {
@@ -74,8 +74,8 @@ impl Meeting {
     }
 }
 
-/// The point on the crease of two branches, between two points of it, at which a third branch is
-/// zero and extreme along the crease. A branch that is zero along the crease has none.
+/// The point on the crease of two branches, between two of its points, at which a third branch
+/// vanishes and is extreme along the crease. A branch that vanishes along the crease has none.
 pub(super) fn touching_point(
     probe: &mut Probe,
     branches: [u32; 2],

@@ -7,17 +7,17 @@ use crate::sampler::probe::Probe;
 use crate::slices::{Work, pause};
 use glam::DVec3;
 
-/// Times that a step is halved, at most: a closed crease as wide as a thousandth of the usual step,
+/// Largest number of halvings of a step: a closed crease as wide as a thousandth of the usual step,
 /// in twelve turns of 30°, is traced.
 const HALVINGS: u32 = 12;
-/// Times that the way to the end of a crease is halved where it ends at no corner: it is found to a
-/// billionth of a step.
+/// Bisections of the way to the end of a crease that ends at no corner: it is found to a billionth
+/// of a step.
 const BISECTIONS: u32 = 30;
 /// Largest number of steps on one curve: 80 times the diagonal of the box. A longer one is divided,
 /// so that no walk is endless.
 pub(super) const MOST_STEPS: usize = 20_000;
 
-/// Corners that may lie within one step of a walk, one before the other, each of a branch that
+/// Largest number of corners within one step of a walk, one before the other, each of a branch that
 /// gives f at no other.
 const MOST_RETREATS: u32 = 8;
 
@@ -31,7 +31,7 @@ enum WalkEnd {
     Corner(usize),
 }
 
-/// Traces the crease through `start` and adds it with its corners. Beside a point at which another
+/// Traces the crease through `start` and adds it with its corners. Next to a point at which another
 /// sheet touches the crease nothing is traced.
 pub(super) fn trace<'a>(
     probe: &'a mut Probe<'_>,
@@ -60,15 +60,15 @@ pub(super) fn trace<'a>(
             }
             points.reverse();
         }
-        // A crease that is met on the box begins twice there.
+        // A crease that starts on the box has its first point twice.
         points.dedup();
-        // At a corner two patches that have nothing else in common are met, too.
+        // A start may also be a corner at which two patches meet that share nothing else.
         let length: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
         if !is_closed && length <= ONE_CORNER * step {
             return;
         }
         let [end, first] = corners;
-        // The points follow the tangent of the start.
+        // The points are in the direction of the tangent at the start.
         let on = |left: bool| {
             let sides = patches.iter().zip(are_left.iter().flatten());
             sides.filter(move |&(_, &is_left)| is_left == left).map(|(&patch, _)| patch)
@@ -94,14 +94,15 @@ struct Walk<'a, 'f> {
     start: Meeting,
     /// The patches that meet.
     patches: &'a [u32],
-    /// On which side they are: where a ridge becomes a groove a crease ends and another one begins.
+    /// Whether each is on the left: where a ridge becomes a groove, one crease ends and another
+    /// begins.
     are_left: Option<&'a [bool]>,
     /// Usual length of a step.
     step: f64,
 }
 
 impl Walk<'_, '_> {
-    /// Walks on from the last of the `points`, and adds those on the way.
+    /// Continues from the last of the `points`, and adds the points on the way.
     async fn run(&mut self, creases: &mut Creases, direction: DVec3, points: &mut Vec<DVec3>) -> WalkEnd {
         let origin = self.start.position;
         let (mut last, mut direction) = (self.start, direction);
@@ -140,7 +141,7 @@ impl Walk<'_, '_> {
                 let end = creases.corners[corner].position;
                 return self.end_at(creases, [here, end], self.patches, ONE_CORNER, points);
             }
-            // Of the 1.2 the part above 1 allows for the turn of a step.
+            // The part of 1.2 above 1 allows for the turn of a step.
             let to_start = origin - here;
             let is_back = to_start.dot(direction) > 0.0 && to_start.length() <= 1.2 * length;
             if left_start && is_back && next.position.distance(origin) <= length {
@@ -154,7 +155,7 @@ impl Walk<'_, '_> {
         WalkEnd::Corner(creases.corner_at(last.position, self.patches, ONE_CORNER * self.step))
     }
 
-    /// The next point of the curve on which both branches are zero, and the length of the step.
+    /// The next point of the curve on which both branches vanish, and the length of the step.
     fn next(&mut self, here: DVec3, direction: DVec3) -> Option<(Meeting, f64)> {
         let mut length = self.step;
         for _ in 0..=HALVINGS {
@@ -189,7 +190,7 @@ impl Walk<'_, '_> {
         None
     }
 
-    /// The point, between the last one of the walk and one behind it, where the angle between the
+    /// The point, between the last one of the walk and one after it, where the angle between the
     /// branches changes its sign: the crease fades out there, and another one may begin.
     fn turn(&mut self, mut before: Meeting, mut after: Meeting, direction: DVec3, is_forward: bool) -> DVec3 {
         let branches = self.start.branches;
@@ -210,8 +211,8 @@ impl Walk<'_, '_> {
         before.position
     }
 
-    /// Ends the walk between its last point and one behind which other branches give f: at a
-    /// corner, if a third branch is zero there.
+    /// Ends the walk between its last point and the point `beyond`, where other branches give f: at
+    /// a corner, if a third branch vanishes there.
     fn end_before(
         &mut self,
         creases: &mut Creases,
@@ -230,8 +231,8 @@ impl Walk<'_, '_> {
                     && (corner - here).dot(way) > 0.0
                     && corner.distance(here) <= (1.0 + BESIDE) * way.length()
                 {
-                    // Another corner may come before it, of a branch that gives f at neither end of
-                    // the step.
+                    // There may be a corner before this one, of a branch that gives f at neither
+                    // end of the step.
                     let share = (corner.distance(here) - BESIDE * self.step) / way.length();
                     if share > 0.0
                         && share < 1.0 - BESIDE
@@ -264,8 +265,8 @@ impl Walk<'_, '_> {
     }
 
     /// Ends the walk on its way from one point to another: at the corner of these patches there,
-    /// which is that within a `share` of a step, or at the box, if the corner lies beyond it by
-    /// more than rounding.
+    /// which is a known one within a `share` of a step, or at the box, if the corner lies beyond it
+    /// by more than rounding.
     fn end_at(
         &mut self,
         creases: &mut Creases,
@@ -282,13 +283,13 @@ impl Walk<'_, '_> {
         WalkEnd::Corner(creases.corner_at(inside, patches, share * self.step))
     }
 
-    /// Whether the patches lie beside a point of the curve as they do at its start.
+    /// Whether the patches are on the same sides of the curve at a point as at its start.
     fn is_same_crease(&mut self, point: &Meeting, reach: f64) -> bool {
         point.are_left(self.probe, self.patches, reach).as_deref() == self.are_left
     }
 
-    /// Whether another branch touches the crease on the way to a point or soon behind it, and gives
-    /// f beside it there, but not farther on.
+    /// Whether another branch touches the crease on the way to a point or soon after it, and gives
+    /// f next to it there, but not farther on.
     fn is_touched(&mut self, here: DVec3, next: &Meeting) -> bool {
         let (branches, way) = (self.start.branches, next.position - here);
         let behind = next.position + way;
@@ -310,7 +311,7 @@ impl Walk<'_, '_> {
         found
     }
 
-    /// The branches, other than those of the walk, that give f at a point and beside it.
+    /// The branches, other than those of the walk, that give f at a point and around it.
     fn branches_around(&mut self, point: &Meeting) -> Vec<u32> {
         let aside = BESIDE * self.step;
         let offsets = [DVec3::ZERO, DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];

@@ -1,9 +1,9 @@
 //! The audit at the end of a run: whether a particle lies on the component of every witness.
 //!
-//! The audit says which components hold particles, for the particles as they are after the
-//! relaxation has moved them. So each witness is connected with a particle anew, by proof. Where
-//! that fails and no particle near it even seems to be on its sheet, the witness is named as
-//! [`Unsampled`], with the distance to which its component can be explored.
+//! The audit says which components hold particles, after the relaxation has moved them. So each
+//! witness is connected with a particle again, by proof. If that fails and no particle near it even
+//! seems to be on its sheet, the witness is reported as [`Unsampled`], with the distance to which
+//! its component can be explored.
 
 use crate::field::{Bounded, Enclosure};
 use crate::math::newton::step_to_surface;
@@ -20,13 +20,13 @@ use glam::DVec3;
 /// Particles within this many of their radii of a witness are tried. A closed cover leaves no hole
 /// larger than 1.85. Smaller: components with particles seem to have none.
 const REACH: f32 = 2.5;
-/// Particles that are handed to the witnesses around them, for one unit of work: a search in a tree
-/// takes an eighth of the time in which a particle is placed.
+/// Particles assigned to the witnesses around them in one unit of work: a search in a tree takes an
+/// eighth of the time of placing a particle.
 const SCANNED: usize = 8;
 /// Units of work that a witness counts for. One takes 21,000 to 190,000 instructions as a seed and
 /// 87,000 to 410,000 in the audit, and a unit of the front 2,400 to 5,100.
 pub(super) const UNITS: u32 = 32;
-/// Components that are named, and witnesses left open, after which the others are not looked at and
+/// After this many named components and open witnesses the remaining witnesses are not examined and
 /// count as open.
 const MOST_NAMED: usize = 256;
 /// Distance, in radii, to which a component without a particle is explored. One that reaches
@@ -45,9 +45,9 @@ struct NearParticle {
 pub(crate) struct Audit {
     /// The particles nearest to each witness, nearest first.
     near: Vec<Vec<NearParticle>>,
-    /// Index of the next particle while particles are handed out, then of the next witness.
+    /// Index of the next particle to assign, then of the next witness.
     next: usize,
-    /// Whether all particles have been handed out.
+    /// Whether all particles have been assigned.
     is_scanned: bool,
     is_done: bool,
     /// Number of witnesses that are neither proven to be on the component of a particle nor named.
@@ -69,7 +69,7 @@ pub(crate) struct Audited<'a, 'b> {
     pub(crate) slack: f64,
     /// Usual radius of a particle.
     pub(crate) radius: f64,
-    /// Rule that tells sheets apart.
+    /// Rule that distinguishes sheets.
     pub(crate) rule: SheetRule,
     /// The region that was searched.
     pub(crate) region: Region,
@@ -110,7 +110,7 @@ impl Audit {
         budget
     }
 
-    /// Hands particles to the witnesses near them.
+    /// Assigns particles to the witnesses near them.
     fn scan(&mut self, audited: &Audited, mut budget: u32) -> u32 {
         let Audited { particles, seeds, .. } = audited;
         self.near.resize(seeds.len(), Vec::new());
@@ -142,7 +142,7 @@ impl Audit {
         budget
     }
 
-    /// Counts so many witnesses, of which this is the first, as open.
+    /// Counts this many witnesses, beginning with this one, as open.
     fn leave_open(&mut self, first: DVec3, count: u64) {
         self.first_open = if self.open == 0 { first } else { self.first_open };
         self.open += count;
@@ -183,7 +183,7 @@ impl Audit {
         self.named.push(seed);
     }
 
-    /// Whether a witness is proven to be on the component of a named one, of those within `reach`.
+    /// Whether a witness within `reach` of a named one is proven to be on the same component.
     fn is_on_named(&self, prover: &mut Prover, from: ExactPoint, reach: f64) -> bool {
         let of_factor = self.named.iter().filter(|named| named.factor == prover.factor);
         let mut near: Vec<(f64, DVec3)> = of_factor
@@ -196,8 +196,8 @@ impl Audit {
     }
 }
 
-/// The particles, of those near a witness, that lie on the factor of the field which vanishes
-/// there: the others are on other sheets.
+/// The particles near a witness that lie on the factor of the field that vanishes there: the others
+/// are on other sheets.
 fn on_factor(
     field: &mut dyn Bounded,
     factor: usize,
@@ -212,8 +212,8 @@ fn on_factor(
     let index_if_on = |(near, known): (&NearParticle, Enclosure)| {
         let p = particles.local[near.index].as_dvec3();
         let steepest = DVec3::from_array(known.gradient.map(Interval::magnitude)).length();
-        // As near as the particle is to its own sheet: that of another factor may be within the
-        // slack too.
+        // At least as near as the particle is to its own sheet: another factor's sheet may be
+        // within the slack too.
         let (value, gradient) = field.value_and_gradient(p);
         let own = value.abs() / gradient.length() + ROUNDING * p.abs().max_element();
         (known.value.magnitude() <= 2.0 * own.min(slack) * steepest).then_some(near.index)
@@ -221,18 +221,18 @@ fn on_factor(
     near.iter().zip(known).filter_map(index_if_on).collect()
 }
 
-/// Explores the zero set of a factor of the field from the point `from` of it, to a distance of
-/// `most`: along its cuts with eight half-planes through the normal.
+/// Explores the zero set of a factor of the field from its point `from`, to a distance of `most`:
+/// along its cuts with eight half-planes through the normal.
 pub(crate) fn explore(field: &mut dyn Bounded, factor: usize, from: DVec3, most: f64) -> Unsampled {
     /// Eight lanes. The reach of a path half-way between two axes of an ellipse is at least 0.92 of
     /// the longer one: cos 22.5°.
     const PATHS: usize = 8;
-    /// Steps of a path, of which a circle takes 32, and the long way around a spheroid with axes of
-    /// 1 and 3 takes 200. With fewer a small component may count twice.
+    /// Steps of a path. A circle takes 32, the long way around a spheroid with axes of 1 and 3
+    /// takes 200. With fewer a small component may count twice.
     const STEPS: u32 = 256;
     /// A step as a share of the radius of curvature: its sagitta is a fiftieth of that.
     const SHARE: f64 = 0.2;
-    /// Largest step as a share of `most`: what is flat at its start may bend farther on.
+    /// Largest step as a share of `most`: a path that is flat at its start may bend farther on.
     const LARGEST: f64 = 1.0 / 16.0;
     let gradient = value_at(field, factor, from).1;
     let normal = gradient.try_normalize().unwrap_or(DVec3::Z);
@@ -253,7 +253,7 @@ pub(crate) fn explore(field: &mut dyn Bounded, factor: usize, from: DVec3, most:
     // The half-plane of each path is perpendicular to this.
     let across = heading.map(|direction| normal.cross(direction));
     let mut farthest = [0.0_f64; PATHS];
-    // A path is closed where it comes back to its start in the direction in which it left.
+    // A path is closed once it returns to its start in the direction in which it left.
     let mut is_closed = [false; PATHS];
     let reach_of = |farthest: [f64; PATHS]| farthest.into_iter().fold(0.0, f64::max);
     for _ in 0..STEPS {
@@ -290,8 +290,8 @@ pub(crate) fn explore(field: &mut dyn Bounded, factor: usize, from: DVec3, most:
     Unsampled { position: from.to_array(), reach: reach_of(farthest), goes_on }
 }
 
-/// Whether one of the particles with these indices lies on the small piece around a seed that
-/// reaches so far.
+/// Whether one of the particles with these indices lies on the small piece around a seed, which has
+/// this reach.
 pub(crate) fn holds_any(
     field: &mut dyn Bounded,
     particles: &Particles,

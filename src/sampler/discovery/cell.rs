@@ -1,5 +1,5 @@
 //! The cells of the [octree](super::octree) and of the quadtrees and binary trees on its boundary,
-//! and what bounds tell of one.
+//! and the conclusions from bounds over one.
 
 use crate::field::Enclosure;
 use crate::math::Bounds;
@@ -18,7 +18,7 @@ pub(super) struct Cell {
     pub(super) level: u8,
 }
 
-/// The free axes of a stratum, by the parts that they have in the search.
+/// The free axes of a stratum, by their roles in the search.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axes {
     /// Sides of the footprint; none where a face or an edge of the box fixes the coordinate.
@@ -81,10 +81,10 @@ pub(super) fn is_discarded(cell: &Cell, known: &Enclosure) -> bool {
         || cell.axes().sides.into_iter().flatten().any(|side| known.gradient[side].excludes_zero())
 }
 
-/// The most by which a surface that passes through a box rises or falls over its footprint, by
-/// bounds of the gradient over the box: the mean value theorem makes it Σ max|∂f/∂side| · width /
-/// min|∂f/∂up|. None where the surface may not be a graph over the footprint: where f jumps, is not
-/// defined, or is not monotone along up. An axis along which the box has no width is no side.
+/// The most by which a surface through a box rises or falls over its footprint, from bounds of the
+/// gradient over the box: by the mean value theorem it is Σ max|∂f/∂side| · width / min|∂f/∂up|.
+/// None if the surface may not be a graph over the footprint: where f jumps, is undefined, or is
+/// not monotone along up. An axis along which the box has no width is no side.
 pub(super) fn rise(bounds: &Bounds, up: usize, known: &Enclosure) -> Option<f64> {
     let least = known.gradient[up].away_from_zero()?;
     let size = bounds.size();

@@ -6,21 +6,22 @@
 //!   searched ([`Search`]).
 //! * *Sampled*: every witnessed component larger than a stated size holds particles ([`Sampled`]).
 //!   The others are named, with their places and sizes ([`Unsampled`]).
-//! * *At this radius*: components and Euler number of the report are those of the neighbour graph
-//!   of the particles. A neck or a needle thinner than a particle may join or divide them.
+//! * *At this radius*: the components and the Euler number in the report are those of the
+//!   particles' neighbour graph. A neck or a needle thinner than a particle may join or divide
+//!   them.
 
 use serde::Serialize;
 
-/// Method by which the first points of the connected components were found.
+/// How the first points of the connected components were found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Search {
-    /// Interval arithmetic proves that there is a witness on every component, and that each witness
-    /// is on the component of a particle or named among the [`Unsampled`].
+    /// Interval arithmetic proves that every component has a witness, and that each witness is on
+    /// the component of a particle or listed among the [`Unsampled`].
     Proven,
-    /// The nodes of a grid were looked at, which can miss a component smaller than its cells; or
-    /// the proof left cells or witnesses open.
+    /// Only the nodes of a grid were examined, which can miss a component smaller than its cells;
+    /// or the proof left cells or witnesses open.
     #[default]
     Searched,
 }
@@ -30,11 +31,10 @@ pub enum Search {
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Sampled {
     /// Every witnessed component that reaches farther than this from its witness holds particles; 0
-    /// if all do. None where this is not proven.
+    /// if all do. None if this is not proven.
     pub above: Option<f64>,
-    /// Number of witnessed components without a particle; none where there was no search for
-    /// witnesses. A component counts twice if two of its witnesses could not be proven to be
-    /// connected.
+    /// Number of witnessed components without a particle; none without a search for witnesses. A
+    /// component counts twice if two of its witnesses could not be proven to be connected.
     pub missing: Option<usize>,
     /// A witness of each component without a particle: at most 256.
     pub without: Vec<Unsampled>,
@@ -48,17 +48,18 @@ pub struct Unsampled {
     pub position: [f64; 3],
     /// Largest distance from the witness at which a point of the component was found.
     pub reach: f64,
-    /// Whether the component was explored no further than that, so that it may be larger.
+    /// Whether the exploration stopped there, so that the component may be larger.
     pub goes_on: bool,
 }
 
-/// Why a search is not proven. There is a doubt exactly where the [`Search`] is only searched.
+/// Why a search is not proven. There is a doubt exactly if the [`Search`] is only searched.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Doubt {
     /// The field has no bounds to prove anything by.
     NoBounds,
-    /// The surface has creases, which are searched: the proof holds for components that have none.
+    /// The surface has creases, which are found by searching: the proof holds for components
+    /// without.
     Creases,
     /// The run ended before the search or the audit did.
     Unfinished,
@@ -68,7 +69,7 @@ pub enum Doubt {
         position: [f64; 3],
         /// Distance from that point to the other sheet.
         gap: f64,
-        /// Least distance at which sheets are told apart here.
+        /// Least distance at which sheets are distinguished here.
         least: f64,
     },
     /// The proof could not decide in some cells of the box.
@@ -80,8 +81,7 @@ pub enum Doubt {
         /// Length of the longest side of that cell.
         size: f64,
     },
-    /// There are witnesses of which it could not be proven whether a particle lies on their
-    /// component.
+    /// For some witnesses it could not be proven whether a particle lies on their component.
     Witnesses {
         /// Number of witnesses.
         count: u64,

@@ -3,8 +3,8 @@
 
 use glam::Vec3;
 
-/// An edge is looked at between its ends if |f| there is expected to fall below this share of its
-/// larger value at them. To look at every edge takes more evaluations, and finds no more.
+/// An edge is examined between its ends if |f| there is expected to fall below this share of its
+/// larger value at them. Examining every edge takes more evaluations, and finds no more.
 const SHARE: f32 = 0.1;
 
 /// An end of an edge.
@@ -37,7 +37,8 @@ pub(super) struct Crossing {
 pub(super) enum Bottom {
     /// f has the other sign there than at the ends, and vanishes on both sides of the bottom.
     Crossed([Crossing; 2]),
-    /// f has the sign of the ends, but the part of the edge on one side of it may dip deeper.
+    /// f has the sign of the ends, but the part of the edge on one side of the bottom may dip
+    /// deeper.
     SameSign(Option<Dip>),
 }
 
@@ -56,8 +57,8 @@ impl Dip {
         // The cubic is a + falling t + square t² + cube t³.
         let cube = 2.0 * (a - b) + falling + rising;
         let square = 3.0 * (b - a) - 2.0 * falling - rising;
-        // Its slope changes its sign once on the edge. Of the two forms of the root the one without
-        // a difference is taken.
+        // Its slope changes its sign once on the edge. The root is taken in the form without a
+        // difference.
         let root = (square * square - 3.0 * cube * falling).sqrt();
         let t = if square >= 0.0 { -falling / (square + root) } else { (root - square) / (3.0 * cube) };
         let least = a + t * (falling + t * (square + t * cube));
@@ -70,17 +71,17 @@ impl Dip {
     }
 
     /// Takes the value and the gradient of f at the bottom, and returns the crossings, or the part
-    /// of the edge to look at next.
+    /// of the edge to examine next.
     pub(super) fn look(&self, value: f32, gradient: Vec3) -> Bottom {
         let bottom = End { place: self.bottom(), value, gradient };
         let [from, to] = self.ends;
-        // Where f only touches zero, as between two solids that share a face, nothing is crossed.
+        // Where f only touches zero, as between two solids that share a face, there is no crossing.
         if !value.is_finite() || value * from.value >= 0.0 {
             let part =
                 Self::along(self.axis, [from, bottom]).or_else(|| Self::along(self.axis, [bottom, to]));
             return Bottom::SameSign(part);
         }
-        // From the bottom to each end f is taken for a parabola whose vertex is there.
+        // From the bottom to each end f is approximated by a parabola with its vertex there.
         Bottom::Crossed(self.ends.map(|end| {
             let share = (value / (value - end.value)).sqrt();
             Crossing {

@@ -16,14 +16,14 @@ const LEAST_RISE: f64 = 0.02;
 /// footprint: the longer part of a side.
 const BESIDE: f64 = 1.0 - CUT;
 
-/// The search goes on with a cell in one of these ways, unless the cell is discarded.
+/// What happens next to a cell that is not discarded.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Fate {
-    /// It is halved, or the part of it that can hold a highest point is.
+    /// It is halved, or its part that can hold a highest point is.
     Halved(Cell),
-    /// It is halved: f jumps in it or is not defined.
+    /// It is halved: f jumps in it or is undefined.
     Irregular(Cell),
-    /// f may not be monotone along up in it, as beside a singular point.
+    /// f may not be monotone along up in it, as next to a singular point.
     Doubtful(Cell, Enclosure),
     /// It is decided, and this is its witness.
     Decided(DVec3),
@@ -44,9 +44,9 @@ pub(super) struct Judge {
 #[derive(Clone, Copy, Debug)]
 struct Tall {
     cell: Cell,
-    /// Length by which the cell is taller at each end.
+    /// Length added to the cell at each end.
     room: f64,
-    /// Largest rise of the surface over the footprint; none where the surface may not be a graph.
+    /// Largest rise of the surface over the footprint; none if the surface may not be a graph.
     rise: Option<f64>,
 }
 
@@ -88,8 +88,8 @@ impl BoxBounds {
         field.enclose(factor, &self.boxes, &mut self.known[..n]);
     }
 
-    /// Bounds f and its gradient over the boxes, the mean value forms included; behind these bounds
-    /// stand those in the middles of the boxes.
+    /// Bounds f and its gradient over the boxes, including the mean value forms. The bounds in the
+    /// middles of the boxes are appended.
     fn refine(&mut self, field: &mut dyn Bounded, factor: usize) {
         let n = self.boxes.len();
         if n == 0 {
@@ -165,7 +165,7 @@ impl Judge {
         core::mem::take(&mut self.fates)
     }
 
-    /// Decides the cells that are to be made taller, or has them halved.
+    /// Decides the cells that are to be made taller, or marks them for halving.
     fn decide(&mut self, field: &mut dyn Bounded, factor: usize, region: &Bounds) {
         self.bounds.boxes.clear();
         self.bounds.boxes.extend(self.tall.iter().map(Tall::bounds));

@@ -6,11 +6,11 @@ use crate::sampler::probe::{BATCH, Probe};
 use glam::{DVec3, Vec3};
 
 /// Grid cells along the longest side of the box. 32³ evaluations are a few per cent of a run with
-/// 50,000 particles. With fewer, more components are left without a particle.
+/// 50,000 particles. Fewer: more components are left without a particle.
 pub(crate) const CELLS: f64 = 32.0;
-/// Grid cells along the longest side of the box for fields without bounds, of which only the grid
-/// shows the surface. It does not miss a sphere whose radius is 1.4 % of the box's longest side:
-/// half the diagonal of a cell.
+/// Grid cells along the longest side of the box for fields without bounds, whose surface only the
+/// grid shows. It misses no sphere whose radius is at least 1.4 % of the box's longest side: half
+/// the diagonal of a cell.
 pub(crate) const DENSE_CELLS: u32 = 64;
 
 /// The regular grid at whose nodes the field is evaluated.
@@ -20,13 +20,12 @@ pub(super) struct Grid {
     pub(super) step: DVec3,
     /// Number of nodes along each axis.
     pub(super) nodes: [usize; 3],
-    /// Wanted distance between two nodes; along the longest side of the box it is met.
+    /// Wanted distance between two nodes; along the longest side of the box it is exact.
     pub(super) spacing: f64,
 }
 
 impl Grid {
-    /// The grid over a box, which has a whole number of blocks if it is to have so many `dense`
-    /// cells.
+    /// The grid over a box. A grid of `dense` cells has a whole number of blocks.
     pub(super) fn over(bounds: &Bounds, dense: Option<u32>) -> Self {
         let size = bounds.hi() - bounds.lo();
         let spacing = size.max_element() / dense.map_or(CELLS, f64::from);
@@ -96,11 +95,11 @@ pub(super) struct Dense {
     pub(super) is_near: Vec<bool>,
 }
 
-/// Grid cells along the edge of the first blocks of a dense grid: a power of two. Each block costs
-/// its corners, of which there are 64 times fewer than nodes.
+/// Grid cells along the edge of the first blocks of a dense grid: a power of two. Only the corners
+/// of each block are evaluated, 64 times fewer than the nodes.
 const COARSEST: usize = 4;
-/// A block may hold the surface if at one of its corners |f| is no more than the largest |∇f| at
-/// them times so many diagonals. No point of a block is farther than half a diagonal from all
+/// A block may hold the surface if at one of its corners |f| is at most the largest |∇f| at the
+/// corners times this many diagonals. No point of a block is farther than half a diagonal from all
 /// corners; between them |∇f| may be somewhat larger.
 const REACH: f32 = 0.7;
 

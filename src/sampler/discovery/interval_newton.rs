@@ -1,4 +1,4 @@
-//! Narrows the part of a cell in which the highest point of a component of the surface can lie.
+//! Narrows a cell to the part in which the highest point of a component of the surface can lie.
 //!
 //! At such a point p the function f and its derivatives along the sides vanish: as many equations
 //! as there are free axes. By Taylor's theorem from p to the middle m of the cell, with d = m − p,
@@ -18,10 +18,10 @@ use crate::math::{Bounds, Interval, ROUNDING, Sym3};
 use crate::sampler::discovery::cell::{Axes, Cell};
 use glam::DVec3;
 
-/// Rounds of narrowing. Without any there are more cells; more rounds save no more of them.
+/// Rounds of narrowing. Without any there are more cells; further rounds save no more.
 const ROUNDS: u32 = 2;
 
-/// The part of `range` in which `slope` · d = `right` has a solution d; none if there is none.
+/// The part of `range` in which `slope` · d = `right` has a solution d; none if it has no solution.
 fn solved(range: Interval, slope: Interval, right: Interval) -> Option<Interval> {
     let right = right.widened(ROUNDING * (right.magnitude() + slope.magnitude() * range.magnitude()));
     if slope.excludes_zero() {
@@ -34,8 +34,8 @@ fn solved(range: Interval, slope: Interval, right: Interval) -> Option<Interval>
 }
 
 /// The part of a cell in which f and its derivatives along the free sides can vanish together; none
-/// if they cannot. `known` and `second` are bounds of f and of its second derivatives over the
-/// cell; `middle` are those of f at its middle.
+/// if they cannot. `known` and `second` bound f and its second derivatives over the cell, `middle`
+/// bounds f at the middle of the cell.
 pub(crate) fn narrowed(
     cell: &Cell,
     known: &Enclosure,
@@ -85,7 +85,7 @@ pub(crate) fn narrowed(
                     let rest = -(coefficients[1 - k] * d[other]);
                     d[axis] = solved(d[axis], coefficients[k], combined(rights) + rest)?;
                 }
-                // Also without the inverse, which is of no use where the equations are nearly
+                // Also without the inverse, which does not help where the equations are nearly
                 // dependent.
                 for (axis, other) in [(i, j), (j, i)] {
                     let rest = -(h(axis, other) * d[other]);
@@ -102,7 +102,7 @@ pub(crate) fn narrowed(
     let room = ROUNDING * (lo.abs() + hi.abs());
     let from = m - DVec3::from_array(d.map(|range| range.hi)) - room;
     let to = m - DVec3::from_array(d.map(|range| range.lo)) + room;
-    // A range without width would pin a free axis, so the old one is kept there.
+    // A range without width would pin a free axis, so the old range is kept there.
     let is_wide = from.max(lo).cmplt(to.min(hi));
     Some(Bounds::new(DVec3::select(is_wide, from.max(lo), lo), DVec3::select(is_wide, to.min(hi), hi)))
 }

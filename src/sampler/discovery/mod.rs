@@ -1,9 +1,9 @@
-//! A first point on every connected component of the surface, and the proof that it is every one.
+//! A first point on every connected component of the surface, and the proof that none is missed.
 //!
-//! The [`survey`] looks at a grid of the box. What it may miss, the [`octree`] finds by interval
-//! arithmetic: a highest point of every component. The [`search`] hands those points out that no
-//! particle covers yet. At the end of a run the [`audit`] finds out which of them have a particle
-//! on their component.
+//! The [`survey`] evaluates the field on a grid of the box. What it may miss, the [`octree`] finds
+//! by interval arithmetic: a highest point of every component. The [`search`] returns those points
+//! that no particle covers yet. At the end of a run the [`audit`] finds out which of them have a
+//! particle on their component.
 
 pub(crate) mod audit;
 mod cell;

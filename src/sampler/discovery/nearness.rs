@@ -1,30 +1,30 @@
 //! Distance to another sheet of the surface, in double precision: single precision may hold both at
 //! one place.
 //!
-//! Beside another sheet at a distance g the field along the normal is about s t (1 − t/g), so that
-//! its second derivative is large against its slope s. One evaluation shows where that is not so,
-//! which is nearly everywhere. Elsewhere the sign of the field beyond decides, and bisection finds
-//! the distance.
+//! Next to another sheet at a distance g the field along the normal is about s t (1 − t/g), so that
+//! its second derivative is large compared with its slope s. One evaluation rules this out nearly
+//! everywhere. Elsewhere the sign of the field beyond decides, and bisection finds the distance.
 //!
-//! Sheets that near each other keep rules of their own
-//! ([`SheetRule`](crate::sampler::sheet::SheetRule)): precision is not what they lack. A child 2r
-//! away comes to whichever sheet is nearest to its circle, however precisely that is known.
+//! Sheets so near to each other still need rules of their own
+//! ([`SheetRule`](crate::sampler::sheet::SheetRule)), because precision is not their problem. A
+//! child 2r away lands on whichever sheet is nearest to its circle, however precisely that is
+//! known.
 
 use crate::field::Evaluator;
 use glam::DVec3;
 
-/// Sheets nearer than this many of the distances that single precision resolves are not told apart,
-/// in runs of one size and of many: a particle may be one such distance away from its sheet, and
-/// the lift of two particles has to be four times that (see
+/// Sheets nearer than this many of the distances that single precision resolves are not
+/// distinguished, in uniform and in adaptive runs: a particle may be one such distance away from
+/// its sheet, and the lift of two particles has to be four times that (see
 /// [`SheetRule`](crate::sampler::sheet::SheetRule)). Particles of many sizes need more. Smaller:
 /// components and Euler numbers of near sheets come out wrong.
 pub(crate) const UNRESOLVED: [f64; 2] = [16.0, 48.0];
-/// Distances, over that of the second zero of the quadratic, at which the sign is looked at. Of
+/// Distances at which the sign is tested, over the distance of the quadratic's second zero. With
 /// three sheets at equal distances the quadratic puts the second one at two thirds of its distance,
-/// of sixty at a fifth. Neighbours differ by √2 or so, so that between a second sheet and a third
-/// one twice as far there is one of them.
+/// with sixty at a fifth. Neighbouring values differ by a factor of about √2, so that one of them
+/// lies between a second sheet and a third one twice as far.
 const LOOKS: [f64; 6] = [0.8, 1.2, 1.7, 2.4, 3.4, 4.8];
-/// Newton steps to a point: far from several sheets at once each step goes only a part of the way.
+/// Newton steps to a point: near several sheets at once each step covers only a part of the way.
 pub(super) const STEPS: u32 = 48;
 
 /// Another sheet near a point of the surface.
@@ -48,11 +48,11 @@ struct Profile {
     bend: f64,
 }
 
-/// The profile of the point that Newton's method finds from `p`. None where another zero can be no
-/// nearer than `most`, and where there is no point.
+/// The profile at the point that Newton's method finds from `p`. None if another zero cannot be
+/// nearer than `most`, or if there is no point.
 fn profile(field: &mut dyn Evaluator, mut p: DVec3, most: f64) -> Option<Profile> {
     /// Length of a last step, over the distance of the other zero: Newton's method squares it,
-    /// which leaves an error of 10⁻⁶ of it.
+    /// which leaves a relative error of 10⁻⁶.
     const LAST: f64 = 1e-3;
     let start = p;
     for _ in 0..STEPS {
@@ -61,8 +61,8 @@ fn profile(field: &mut dyn Evaluator, mut p: DVec3, most: f64) -> Option<Profile
         let normal = jet.gradient / slope;
         let bend = normal.dot(jet.hessian.apply(normal));
         let (step, other) = (jet.value / slope, 2.0 * slope / bend.abs());
-        // From a point off the surface the other zero seems nearer or farther by its distance.
-        // False for NaN.
+        // From a point off the surface the other zero seems nearer or farther by the point's
+        // distance. False for NaN.
         let is_near = other <= most + 4.0 * step.abs() && (p - start).length() <= 4.0 * most;
         if !is_near {
             return None;
@@ -77,7 +77,7 @@ fn profile(field: &mut dyn Evaluator, mut p: DVec3, most: f64) -> Option<Profile
 
 /// The sheet next to the surface near `from`, if it is no farther than `most`.
 pub(crate) fn nearness(field: &mut dyn Evaluator, from: DVec3, most: f64) -> Option<Nearness> {
-    /// Halvings of the bracket around the other sheet, to a thousandth of its distance.
+    /// Bisections of the bracket around the other sheet, to a thousandth of its distance.
     const HALVINGS: u32 = 12;
     let Profile { position, normal, slope, bend } = profile(field, from, most)?;
     let second = -2.0 * slope / bend;
@@ -96,7 +96,7 @@ pub(crate) fn nearness(field: &mut dyn Evaluator, from: DVec3, most: f64) -> Opt
     (gap <= most).then_some(Nearness { position, gap, slope })
 }
 
-/// The nearest of the sheets found from the points, and at how many of them there was one.
+/// The nearest of the sheets found from the points, and at how many points one was found.
 pub(crate) fn nearest(
     field: &mut dyn Evaluator,
     points: impl Iterator<Item = DVec3>,
@@ -128,7 +128,7 @@ mod tests {
             ] {
                 let field = Formula::as_written(&formula, &[]).expect("a formula");
                 let field = &mut *field.evaluator(Frame::default());
-                // From beside all sheets, as far as a particle may be.
+                // From outside of all sheets, as far as a particle may be.
                 let found = nearness(field, DVec3::new(0.1, 0.2, 0.3 - 0.9 * gap), 2e-3)
                     .unwrap_or_else(|| panic!("{formula}"));
                 assert!((found.gap / gap - 1.0).abs() < 1e-2, "{formula}: {found:?}");

@@ -9,7 +9,7 @@
 //! direction on the surface goes up from it: ∂f/∂x = ∂f/∂y = 0. Where it lies inside a face x =
 //! const., q is the highest point of K in the face, and ∂f/∂y = 0; inside a face y = const.,
 //! ∂f/∂x = 0; and inside a face z = const. it is the point of the largest y there, and ∂f/∂x = 0.
-//! On an edge of the box nothing is asked. (Computing one point in every component from the
+//! On an edge of the box there is no condition. (Computing one point in every component from the
 //! critical points of a coordinate: F. Rouillier, M.-F. Roy, M. Safey El Din, "Finding at least one
 //! point in each connected component of a real algebraic set defined by a single equation", J.
 //! Complexity 16, 2000.) In each of these 1 + 6 + 12 *strata* of the box one coordinate is *up*,
@@ -31,8 +31,8 @@
 //! component: along the graph it never leaves through the top of the box, because nothing of the
 //! component is higher, and a graph that might leave through the bottom is not accepted.
 //!
-//! The bounds are those of the expressions, and, since these are loose in all but small cells, also
-//! those of the mean value forms: g(C) ⊆ g(m) + g′(C)(C − m) with m the middle of C, for the
+//! The bounds come from the expressions and, since these are loose in all but small cells, also
+//! from the mean value forms: g(C) ⊆ g(m) + g′(C)(C − m) with m the middle of C, for the
 //! derivatives (with bounds of the second derivatives) and for f itself. Their excess falls with
 //! the square of the width (Moore 1966). A product is searched factor by factor: near the zeros of
 //! one factor the others do not matter, and where two vanish together the product has no gradient
@@ -51,10 +51,10 @@
 //! # What is proven
 //!
 //! If no cell is left undecided, every connected component of the surface in the box holds a
-//! witness; without a witness there is no surface. The box is enlarged by [`MARGIN`] for it, so
-//! that a surface that touches its box from inside is inside. At kinks the bounds hold the
-//! generalised gradient, for which both arguments are the same. Where f jumps, has a pole or is not
-//! defined the surface may end, and nothing is concluded from slopes.
+//! witness; without a witness there is no surface. For this the box is enlarged by [`MARGIN`], so
+//! that a surface that touches it from inside is inside. At kinks the bounds hold the generalised
+//! gradient, for which both arguments are the same. Where f jumps, has a pole or is not defined the
+//! surface may end, and nothing is concluded from slopes.
 
 use crate::field::{Bounded, Enclosure, MARGIN};
 use crate::math::{Bounds, sort_by_key};
@@ -69,13 +69,13 @@ use std::collections::VecDeque;
 /// Halvings after which a cell is left undecided: 2⁻¹⁶ of the box, a sixth of the smallest particle
 /// allowed. With fewer, fewer surfaces are proven; with more, there are more cells.
 const DEPTH: u8 = 16;
-/// Halvings after which a cell is left undecided where f jumps or is not defined. Such cells lie
+/// Halvings after which a cell is left undecided where f jumps or is undefined. Such cells lie
 /// along curves and faces, so there are many. More halvings prove no more.
 const IRREGULAR_DEPTH: u8 = 6;
-/// Largest number of cells visited, and how many more for every particle that is expected: a cell
-/// takes about as long as a third of a particle. Most smooth surfaces of the gallery take 100 to
-/// 8,000 cells, and two take 60,000 to 70,000. Sixteen cone points add none; Barth's sextic with
-/// fifty takes 36,000.
+/// Largest number of cells visited, and how many more for every expected particle: a cell takes
+/// about a third of the time of a particle. Most smooth surfaces of the gallery take 100 to 8,000
+/// cells, and two take 60,000 to 70,000. Sixteen cone points add none; Barth's sextic with fifty
+/// takes 36,000.
 const MOST_CELLS: usize = 8_192;
 const CELLS_PER_PARTICLE: f64 = 0.5;
 /// Largest number of cells visited where each level has hardly more of them than the one before it:
@@ -86,23 +86,23 @@ const HARDLY_MORE: f64 = 1.3;
 /// choice.
 const SINGULAR_FROM: u8 = 3;
 const SINGULAR_EVERY: u8 = 2;
-/// Largest number of cells of a factor in which they are searched. There are more where they form a
-/// curve, of which half as many cells name half as many points.
+/// Largest number of cells of a factor in which singular points are searched for. A curve of them
+/// takes more; half as many cells then give half as many of its points.
 const MOST_TRIED: usize = 512;
 /// Units of work that a cell counts for. One takes 8,000 to 30,000 instructions, and a unit of the
 /// front 2,400 to 5,100.
 const UNITS: u32 = 8;
-/// A cell is halved along the sides that are longer than this share of the longest: those nearer to
-/// it than to its half. Where all sides are halved there are more cells.
+/// A cell is halved along the sides that are longer than this share of the longest: those closer to
+/// the longest than to its half. Halving all sides makes more cells.
 const LONG: f64 = 0.7;
 
 /// The state of the search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum SearchState {
-    /// The field has no bounds to search by.
+    /// The field has no bounds.
     #[default]
     Unavailable,
-    /// No cell has been visited, and it is not known whether the bounds are finite.
+    /// No cell has been visited, and whether the bounds are finite is unknown.
     Ready,
     Running,
     Done,
@@ -126,7 +126,7 @@ pub(crate) struct Seed {
     pub(crate) factor: usize,
 }
 
-/// The region in which the components of the surface are searched.
+/// The region in which components of the surface are searched for.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Region {
     /// The box of the run with a margin around it.
@@ -139,15 +139,15 @@ pub(crate) struct Region {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Octree {
     state: SearchState,
-    /// The region that is searched.
+    /// The region searched.
     pub(crate) region: Region,
     /// Largest number of cells that the searches of all factors together may visit.
     most: usize,
-    /// The search that is under way.
+    /// The search under way.
     search: FactorSearch,
     turns: Turns,
     judge: Judge,
-    /// Points where f and its gradient vanish; of curves of them a selection.
+    /// Points where f and its gradient vanish; of curves of such points a selection.
     pub(crate) singular: Vec<Singular>,
     /// Witnesses, at least one on every component of the surface.
     pub(crate) witnesses: Vec<Witness>,
@@ -171,24 +171,24 @@ struct FactorSearch {
     cells: usize,
     /// Boxes left out of the search.
     isolated: Vec<Bounds>,
-    /// Number of cells in which a singular point was looked for.
+    /// Number of cells in which a singular point was searched for.
     searched: usize,
-    /// Singular points that were found, so that each is treated once.
+    /// Singular points found so far, so that each is treated once.
     met: Vec<DVec3>,
 }
 
-/// The strata of the box and the parts of the field in which it has to name cells.
+/// The strata of the box and the parts of the field whose cells the field has yet to name.
 #[derive(Clone, Debug, Default)]
 struct Unnamed {
     strata: Vec<Cell>,
     parts: usize,
-    /// The part that is next.
+    /// The next part.
     next: usize,
 }
 
-/// The searches of the factors take turns, so that those that need few cells leave theirs to the
-/// others: in each round every search that is not at its end may visit an equal share of the cells
-/// that are left.
+/// The searches of the factors take turns, so that those that need few cells leave their share to
+/// the others: in each round every unfinished search may visit an equal share of the cells that are
+/// left.
 #[derive(Clone, Debug, Default)]
 struct Turns {
     /// The searches that wait for a turn.
@@ -213,7 +213,7 @@ impl Octree {
     }
 
     /// The search of a factor of the field, which begins with the box, its faces and its edges, or
-    /// with the cells that the field names in them.
+    /// with the cells that the field names in these.
     fn search_of(&self, field: &mut dyn Bounded, factor: usize) -> FactorSearch {
         let mut strata = vec![Cell { bounds: self.region.bounds, level: 0 }];
         push_boundary(&mut strata, &self.region.bounds);
@@ -224,7 +224,7 @@ impl Octree {
         }
     }
 
-    /// Has the field name the cells of one of its parts in all strata, and returns their number.
+    /// Lets the field name the cells of one of its parts in all strata, and returns their number.
     fn name_cells(&mut self, field: &mut dyn Bounded) -> usize {
         let whole = self.region.bounds.size().max_element();
         let FactorSearch { factor, unnamed, level, .. } = &mut self.search;
@@ -234,7 +234,7 @@ impl Octree {
             found.clear();
             field.cells(*factor, unnamed.next, &stratum.bounds, &sides, &mut found);
             level.extend(found.iter().map(|&bounds| {
-                // What a cell of this size would be after its halvings.
+                // The level that halvings lead to at this size.
                 let share = (whole / bounds.size().max_element()).clamp(1.0, f64::from(1_u32 << DEPTH));
                 Cell { bounds, level: libm::floor(libm::log2(share)) as u8 }
             }));
@@ -243,8 +243,8 @@ impl Octree {
         level.len() - before
     }
 
-    /// Gives the next search its turn. Those for which no cell is left end; the cells that are open
-    /// then are undecided.
+    /// Gives the next search its turn. Searches with no cells left to visit end; their open cells
+    /// are undecided.
     fn begin_turn(&mut self) {
         while let Some(next) = self.turns.waiting.pop_front() {
             if self.turns.left == 0 {
@@ -263,7 +263,7 @@ impl Octree {
         }
         self.state = SearchState::Done;
         self.search = FactorSearch::default();
-        // Turns bring those of a factor apart.
+        // Turns separate those of a factor.
         sort_by_key(&mut self.witnesses, |witness| witness.factor as u64);
     }
 
@@ -283,7 +283,7 @@ impl Octree {
         self.state != SearchState::Unavailable
     }
 
-    /// Whether the search is over, or not available.
+    /// Whether the search is complete, or not available.
     pub(crate) fn is_done(&self) -> bool {
         !matches!(self.state, SearchState::Ready | SearchState::Running)
     }
@@ -350,8 +350,8 @@ impl Octree {
         }
     }
 
-    /// Whether the cell lies in a box that is left out of the search: one there is already, or a
-    /// new one around a singular point in or near the cell.
+    /// Whether the cell lies in a box that is left out of the search: a known one, or a new one
+    /// around a singular point in or near the cell.
     fn is_isolated(&mut self, field: &mut dyn Bounded, cell: &Cell, known: &Enclosure) -> bool {
         if is_left_out(cell, &self.search.isolated) {
             return true;
@@ -384,15 +384,15 @@ impl Octree {
         point.is_alone && self.isolate(field, cell, at)
     }
 
-    /// Leaves out a box around a singular point that is known and in the cell, or within `room` of
-    /// it; whether the cell lies in that box.
+    /// Leaves out a box around a known singular point in the cell, or within `room` of it; returns
+    /// whether the cell lies in that box.
     fn isolate_tip(&mut self, field: &mut dyn Bounded, cell: &Cell, room: f64) -> bool {
         let around = cell.bounds.enlarged(room);
         let tip = self.singular.iter().map(|point| point.position).find(|&at| around.holds(at));
         tip.is_some_and(|at| self.isolate(field, cell, at))
     }
 
-    /// Leaves out a box around a singular point, if it can; whether the cell lies in it.
+    /// Leaves out a box around a singular point, if possible; returns whether the cell lies in it.
     fn isolate(&mut self, field: &mut dyn Bounded, cell: &Cell, at: DVec3) -> bool {
         let isolated = &self.search.isolated;
         let Some(around) = isolating_box(field, self.search.factor, at, &self.region.bounds, isolated) else {
@@ -406,7 +406,7 @@ impl Octree {
     /// Halves a cell along its longer sides, unless it has been halved `depth` times.
     fn halve(&mut self, field: &mut dyn Bounded, cell: Cell, depth: u8) {
         if cell.level >= depth {
-            // The tip of a branch need be none of f, where another branch gives f beside it.
+            // The tip of a branch need not be a tip of f, where another branch gives f next to it.
             if !self.isolate_tip(field, &cell, self.region.margin) {
                 self.undecided.push(cell.bounds);
             }
@@ -433,8 +433,8 @@ impl Octree {
     }
 }
 
-/// Whether the field has finite bounds at all, tested on a small box that is not in the middle,
-/// where f may have a pole.
+/// Whether the field has finite bounds at all, tested on a small box off the middle, where f may
+/// have a pole.
 fn bounds_say_something(field: &mut dyn Bounded, bounds: &Bounds) -> bool {
     let boxes: Vec<Bounds> = bounds.spread(1).map(|p| Bounds::new(p, p + MARGIN * bounds.size())).collect();
     let mut known = [Enclosure::UNKNOWN];
@@ -450,7 +450,7 @@ mod tests {
 
     #[test]
     fn a_cell_has_the_same_fate_in_a_batch_as_alone() {
-        // The search of one factor, in which small spheres lie about a large one.
+        // The search of one factor, with small spheres around a large one.
         let text =
             "atan((x^2 + y^2 + z^2 - 0.25)((x-0.6)^2 + y^2 + z^2 - 0.003)(x^2 + (y+0.3)^2 + z^2 - 0.01))";
         let field = Formula::as_written(text, &[]).expect("a formula");
@@ -462,7 +462,7 @@ mod tests {
             octree.search = octree.search_of(field, 0);
             octree
         };
-        // All that visiting the cells leads to, and the cells of the next level among it.
+        // All results of visiting the cells, including the cells of the next level.
         let visited = |field: &mut dyn Bounded, cells: &[Cell]| {
             let mut octree = begun(field);
             octree.search.level = cells.to_vec();

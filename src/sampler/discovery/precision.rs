@@ -1,5 +1,5 @@
-//! Whether single precision holds the values of a field. Where it does not, the field is to be
-//! evaluated in double precision, compressed to a scale that is found here.
+//! Whether single precision holds the values of a field. If not, the field is evaluated in double
+//! precision, compressed to a scale that is found here.
 
 use super::grid::CELLS;
 use super::survey::{FEW, SAMPLES, ulps};
@@ -9,33 +9,32 @@ use crate::particles::Particles;
 use glam::{DVec3, Vec3};
 
 /// Nodes along each side of the grid on which both precisions are compared: 729 in all, of which
-/// the share below is 15.
+/// [`MOST_LOST`] allows 15.
 const SIDE: usize = 9;
-/// Share of them that single precision may lose. A choice.
+/// Share of the nodes that single precision may lose. A choice.
 const MOST_LOST: f64 = 0.02;
-/// Ratio of all nodes to those at which the distance is measured by which single precision moves
-/// the level set: a hundred do for a median, and as 7 does not divide [`SIDE`] they are in all
-/// rows.
+/// One in so many nodes is used to measure the distance by which single precision moves the level
+/// set: a hundred are enough for a median, and as 7 does not divide [`SIDE`] they are in all rows.
 const ONE_IN: usize = 7;
-/// Double precision is taken where the median of those distances is more than this times that by
-/// which coordinates in single precision are rounded. On the gallery's formulas it is at most 0.3
-/// times that.
+/// Double precision is used if the median of those distances is more than this times the distance
+/// by which single precision rounds coordinates. On the gallery's formulas it is at most 0.3 times
+/// that.
 const MOST_BLUR: f64 = 4.0;
-/// Nodes along each side of the grid on which the gradient at the surface is looked for: 4,096, a
-/// tenth of those of the survey.
+/// Nodes along each side of the grid on which the gradient at the surface is measured: 4,096, a
+/// tenth of the survey's.
 const FINE_SIDE: usize = 16;
 /// Share of the distance between neighbours by which rounding may move a particle: a five-hundredth
 /// of the scatter of such distances on a relaxed surface.
 const MOST_MOVED: f64 = 1e-4;
 /// Lengths of the rays on which rounding is measured, as shares of the distance between neighbours.
-/// On the first one the curvature of a surface, of which the radius is that distance, moves it by
-/// half of [`MOST_MOVED`]. Those that follow measure more.
+/// On the first one, curvature with that distance as radius moves a surface by half of
+/// [`MOST_MOVED`]. The longer ones measure more.
 const REACHES: [f64; 4] = [0.01, 0.04, 0.16, 0.64];
 /// A scatter below this share of the length of a ray is resolved on it.
 const RESOLVED: f64 = 0.2;
 /// Points of a ray.
 const ON_RAY: u32 = 4;
-/// Least slope along a ray, as a share of that of f: on one along the surface f is constant,
+/// Least slope along a ray, as a share of the slope of f: on a ray along the surface f is constant,
 /// rounded or not.
 const LEAST_SLOPE: f64 = 0.3;
 /// Largest error over the scatter of a few points.
@@ -46,15 +45,15 @@ const WORST: f64 = 4.0;
 pub(crate) struct Blur {
     /// Index of the particle.
     pub(crate) particle: usize,
-    /// Largest distance by which rounding in double precision moves the level set there.
+    /// Largest distance by which double precision moves the level set there.
     pub(crate) distance: f64,
 }
 
 /// Finds the particle, among a selection, at which rounding in double precision moves the level set
-/// farthest for the particle's size. There is none if it moves by less than [`MOST_MOVED`], or if f
-/// has no bounds. The bounds of f at a single point are at least as wide as the rounding error of f
-/// there. They are far wider where f jumps at the point, or repeats an operation many times, so
-/// that the error is [measured](scatter) before it counts.
+/// farthest in relation to the particle's size. None if it moves by less than [`MOST_MOVED`], or if
+/// f has no bounds. The bounds of f at a single point are at least as wide as its rounding error
+/// there. They are far wider where f jumps at the point, or repeats an operation many times, so the
+/// error is [measured](scatter) before it counts.
 pub(crate) fn blur(field: &mut dyn Evaluator, particles: &Particles) -> Option<Blur> {
     let field = field.bounded()?;
     let mut most = (MOST_MOVED, None);
@@ -87,8 +86,8 @@ pub(crate) fn blur(field: &mut dyn Evaluator, particles: &Particles) -> Option<B
 }
 
 /// Measures the distance by which rounding in double precision moves the level set at a point of
-/// the surface: the difference of f from its linear part on rays that start there. A jump or a kink
-/// at the point shows on some of the rays, rounding on all.
+/// the surface: the difference of f from its linear part on rays from there. A jump or a kink at
+/// the point shows on some of the rays, rounding on all.
 fn scatter(field: &mut dyn Evaluator, p: DVec3, spacing: f64) -> f64 {
     let (value, gradient) = field.value_and_gradient(p);
     let slope = gradient.length();
@@ -108,7 +107,7 @@ fn scatter(field: &mut dyn Evaluator, p: DVec3, spacing: f64) -> f64 {
             ways.map(|way| difference(field, way)).fold(0.0, f64::max)
         };
         least = rays.iter().map(|&ray| largest(ray)).fold(f64::INFINITY, f64::min);
-        // What is constant between roundings differs by the reach itself.
+        // A value that is constant between roundings differs by the reach itself.
         if least < RESOLVED * reach {
             break;
         }
@@ -116,10 +115,10 @@ fn scatter(field: &mut dyn Evaluator, p: DVec3, spacing: f64) -> f64 {
     least
 }
 
-/// The scale at which the field is to be compressed in double precision; none if single precision
-/// will do. It does if it has a value, beyond underflow, at nearly all places where double
-/// precision has one, and if its rounding moves level sets by hardly more than that of the
-/// coordinates does.
+/// The scale at which the field is compressed in double precision; none if single precision
+/// suffices. It does if it gives a value, above underflow, at nearly all places where double
+/// precision does, and if its rounding moves level sets hardly more than the rounding of
+/// coordinates.
 pub(crate) fn double_scale(field: &mut dyn Evaluator, bounds: &Bounds) -> Option<f64> {
     let points: Vec<Vec3> = bounds.spread(SIDE).map(|p| p.as_vec3()).collect();
     let (mut value, mut gradient) = (vec![0.0; points.len()], vec![Vec3::ZERO; points.len()]);
@@ -138,8 +137,8 @@ pub(crate) fn double_scale(field: &mut dyn Evaluator, bounds: &Bounds) -> Option
 }
 
 /// Whether the rounding of `values`, which are in single precision, moves level sets by far more
-/// than the rounding of the coordinates does: f is small beside its terms, as cos(0.001 x) −
-/// 0.999999 is. A field without bounds has one precision only.
+/// than the rounding of the coordinates does: f is small compared with its terms, as cos(0.001 x) −
+/// 0.999999 is. A field without bounds has only one precision.
 fn is_blurred(field: &mut dyn Evaluator, bounds: &Bounds, points: &[Vec3], values: &[f32]) -> bool {
     if field.bounded().is_none() {
         return false;
@@ -154,19 +153,19 @@ fn is_blurred(field: &mut dyn Evaluator, bounds: &Bounds, points: &[Vec3], value
     median(moves.collect()).is_some_and(|usual| usual > MOST_BLUR * f64::from(ulps(bounds)))
 }
 
-/// Whether f is beyond double precision somewhere.
+/// Whether f overflows double precision somewhere.
 pub(crate) fn overflows_double(field: &mut dyn Evaluator, bounds: &Bounds) -> bool {
     bounds.spread(SIDE).any(|p| field.jet(p).value.is_infinite())
 }
 
-/// Whether f has different values in a box, which single precision may not tell apart.
+/// Whether f has different values in a box, which single precision may not distinguish.
 pub(crate) fn varies(field: &mut dyn Evaluator, bounds: &Bounds) -> bool {
     let mut values = bounds.spread(SIDE).map(|p| field.jet(p).value).filter(|value| value.is_finite());
     values.next().is_some_and(|first| values.any(|value| value != first))
 }
 
-/// The usual |∇f| at the surface times the width of a cell of the survey; the usual |f| where no
-/// surface is seen.
+/// The usual |∇f| at the surface times the width of a cell of the survey; the usual |f| if no
+/// surface is found.
 fn scale(field: &mut dyn Evaluator, bounds: &Bounds) -> f64 {
     let grid: Vec<DVec3> = bounds.spread(FINE_SIDE).collect();
     let value: Vec<f64> = grid.iter().map(|&p| field.jet(p).value).collect();
@@ -206,7 +205,7 @@ mod tests {
     use crate::field::{Field, Frame};
     use crate::particles::Slots;
 
-    /// The rounding that is said of a formula at some points.
+    /// The blur that is reported for a formula at some points.
     fn blur_at(text: &str, points: impl Iterator<Item = Vec3>) -> Option<Blur> {
         let mut particles = Particles::default();
         points.for_each(|p| particles.push(p, Vec3::Z, 0.01, Particles::NO_PARENT, 0, Slots::default()));

@@ -29,14 +29,14 @@ pub(crate) struct ComponentSearch {
     /// Number of witnesses whose projection did not converge, and the first of them.
     lost: u64,
     first_lost: DVec3,
-    /// The nearest sheet beside a witness, if it is nearer than particles tell apart.
+    /// The sheet nearest to a witness, if it is nearer than particles distinguish.
     unresolved: Option<Nearness>,
-    /// Distance at which f is looked at around a witness, where it may be a zero on no surface.
+    /// Distance at which f is examined around a witness, where it may be a zero on no surface.
     bare_size: Option<f64>,
 }
 
 impl ComponentSearch {
-    /// Begins the search on a new field, of which these singular points are known.
+    /// Begins the search on a new field, with its known singular points.
     pub(crate) fn begin(&mut self, field: &mut dyn Evaluator, bounds: &Bounds, singular: &[Singular]) {
         self.octree.begin(field.bounded().is_some(), bounds);
         self.octree.singular.extend_from_slice(singular);
@@ -46,7 +46,8 @@ impl ComponentSearch {
         self.restart();
     }
 
-    /// Leaves witnesses out at which f has no surface, to be looked at to such a distance; or none.
+    /// Sets the distance to which f is examined around witnesses, to leave out those on no surface;
+    /// none to keep all.
     pub(crate) fn leave_out_bare(&mut self, size: Option<f64>) {
         self.bare_size = size;
     }
@@ -56,7 +57,7 @@ impl ComponentSearch {
         self.octree.expect(particles);
     }
 
-    /// Begins again with the first witness.
+    /// Starts again with the first witness.
     pub(crate) fn restart(&mut self) {
         self.next = 0;
         self.audit.restart();
@@ -93,13 +94,13 @@ impl ComponentSearch {
         if self.octree.is_done() { left } else { 0 }
     }
 
-    /// The witnesses in the box, of those that are connected with each other a few.
+    /// The witnesses in the box; of those connected with each other only a few.
     fn starts(&mut self, field: &mut dyn Bounded, bounds: &Bounds, tolerance: Tolerance) -> Vec<Witness> {
         let slack = f64::from(2.0 * tolerance.residual);
         let mut prover = Prover { field, factor: 0, slack, region: self.octree.region };
-        // A zero of a branch that does not give f there is no point of the surface. It is asked a
-        // little outside: where two bodies share a face, each of two branches gives f on its inner
-        // side alone.
+        // A zero of a branch that does not give f there is no point of the surface. The test is
+        // made a little outside: where two bodies share a face, each of two branches gives f only
+        // on its inner side.
         self.octree.witnesses.retain(|&Witness { position, factor }| {
             let (value, gradient) = value_at(&mut *prover.field, factor, position);
             let outside = (slack * gradient.length() - value) / gradient.length_squared();
@@ -107,7 +108,7 @@ impl ComponentSearch {
             prover.field.gives(factor, outside)
         });
         self.octree.witnesses = thinned_out(&mut prover, &self.octree.witnesses);
-        // A witness whose component lies in the margin alone is not needed.
+        // A witness whose component lies only in the margin is not needed.
         let start = |&Witness { position, factor }: &Witness| {
             prover.factor = factor;
             let position =
@@ -148,14 +149,14 @@ impl ComponentSearch {
         }
     }
 
-    /// The next witness, if there is one, and what is left of the budget.
+    /// The next witness, if any, and what is left of the budget.
     pub(crate) fn next(&mut self, budget: u32) -> (Option<Seed>, u32) {
         let witness = self.points.get(self.next).copied();
         self.next += 1;
         (witness, budget.saturating_sub(UNITS))
     }
 
-    /// Points where f and its gradient vanish together, as far as the search met them.
+    /// Points found by the search at which f and its gradient vanish together.
     pub(crate) fn singular(&self) -> &[Singular] {
         &self.octree.singular
     }
@@ -166,8 +167,8 @@ impl ComponentSearch {
     }
 
     /// Whether the witness lies on the component of one of the particles `near` it, the nearest
-    /// first. By proof; or, where the bounds are too wide for one, by the field at a point between
-    /// the two. The [audit](super::audit) asks again.
+    /// first: by proof, or, if the bounds are too wide for one, by the field at a point between the
+    /// two. The [audit](super::audit) checks again.
     pub(crate) fn is_covered(
         &self,
         probe: &mut Probe,
@@ -196,7 +197,7 @@ impl ComponentSearch {
             })
     }
 
-    /// The piece of the surface around the last witness, if it is small and closed in itself.
+    /// The piece of the surface around the last witness, if it is small and closed.
     pub(crate) fn small_piece(&self, field: &mut dyn Bounded, radius: f32) -> Option<(Seed, f64)> {
         let seed = *self.points.get(self.next.checked_sub(1)?)?;
         let piece = explore(field, seed.factor, seed.exact, EXPLORED * f64::from(radius));
@@ -235,9 +236,9 @@ impl ComponentSearch {
         if self.unwitnessed() == Some(0) { Search::Proven } else { Search::Searched }
     }
 
-    /// The doubts that there is a witness on every component, or that each witness is on the
-    /// component of a particle or named; empty where both are proven. Sheets nearer than
-    /// `least_gap` are not told apart, of which the survey may have seen one.
+    /// The doubts that every component has a witness, or that each witness is on the component of a
+    /// particle or named; empty if both are proven. Sheets nearer than `least_gap`, of which the
+    /// survey may have found one, are not distinguished.
     pub(crate) fn doubts(&self, surveyed: Option<Nearness>, least_gap: f64) -> Vec<Doubt> {
         let nearness = [surveyed, self.unresolved].into_iter().flatten();
         let nearest = nearness.min_by(|a, b| a.gap.total_cmp(&b.gap)).filter(|near| near.gap < least_gap);
@@ -287,8 +288,8 @@ impl ComponentSearch {
             .then_some(self.octree.undecided.len() as u64 + self.lost)
     }
 
-    /// Cells left undecided, witnesses that were lost, and witnesses of which the audit does not
-    /// know whether their component holds particles; none without a search.
+    /// Undecided cells, lost witnesses, and witnesses for which the audit does not know whether
+    /// their component holds particles; none without a search.
     pub(crate) fn open_questions(&self) -> Option<u64> {
         self.unwitnessed().map(|open| open + self.audit.open)
     }

@@ -1,5 +1,5 @@
 //! Proves by bounds of the gradient that two points lie on one sheet: that the surface connects
-//! them. What only seems so is told by the rules of [`sheet`](crate::sampler::sheet).
+//! them. The rules of [`sheet`](crate::sampler::sheet) decide without proof.
 
 use crate::field::{Bounded, Enclosure};
 use crate::math::newton::{self, StepLimits, step_to_surface};
@@ -8,7 +8,7 @@ use crate::sampler::discovery::cell::rise;
 use crate::sampler::discovery::octree::Region;
 use glam::DVec3;
 
-/// Largest number of segments that are tested in one call, and so of the nearest points to which a
+/// Largest number of segments tested in one call, and so of the nearest points to which a
 /// connection is tried. A choice.
 pub(crate) const TOGETHER: usize = 10;
 
@@ -32,7 +32,7 @@ pub(crate) struct Prover<'a> {
     pub(crate) factor: usize,
     /// Largest distance of the points from the surface.
     pub(crate) slack: f64,
-    /// The region in which the surface is searched.
+    /// The region in which the surface is searched for.
     pub(crate) region: Region,
 }
 
@@ -40,10 +40,10 @@ impl Prover<'_> {
     /// For each of at most [`TOGETHER`] segments, whether bounds of the gradient prove that the
     /// surface connects its ends, in the box `within`, if there is one.
     ///
-    /// The proof is that of the [octree](super::octree), on a box around both points. f is monotone
-    /// along the axis nearest the normal, and the surface through the first point leaves the box
-    /// through its sides only. So it is the graph of a function over the rectangle between the two,
-    /// and meets the line through the second point exactly once.
+    /// The proof is the one of the [octree](super::octree), on a box around both points. f is
+    /// monotone along the axis nearest the normal, and the surface through the first point leaves
+    /// the box only through its sides. So it is the graph of a function over the rectangle between
+    /// the two, and meets the line through the second point exactly once.
     pub(crate) fn are_connected(
         &mut self,
         segments: &[Segment],
@@ -67,24 +67,23 @@ impl Prover<'_> {
             let [known, ends @ ..] = [0, 1, 2].map(|m| known[3 * k + m]);
             let Interval { lo, hi } = known.gradient[up];
             let least = lo.abs().min(hi.abs());
-            // Ends that are not quite on the surface have it within 2 slacks above or below.
+            // Ends slightly off the surface have it within 2 slacks above or below.
             within.is_none_or(|within| within.holds(bounds.lo()) && within.holds(bounds.hi()))
                 && rise(&bounds, up, &known).is_some_and(|rise| rise <= room - 4.0 * slack)
                 && ends.iter().all(|end| end.value.magnitude() <= 2.0 * slack * least)
         })
     }
 
-    /// Whether two points of the surface are proven to be connected, straight or by a way around.
+    /// Whether two points of the surface are proven to be connected, directly or by a detour.
     pub(crate) fn is_connected(&mut self, segment: Segment) -> bool {
         self.is_connected_by_segments(segment) || self.is_connected_around(segment)
     }
 
-    /// Whether the ends of a segment are connected by a chain of segments, each of which
-    /// [is proven](Self::are_connected). Points between which the surface bends too much for one
-    /// box need more than one: a segment without a proof is halved, at a point of the surface in
-    /// the region.
+    /// Whether the ends of a segment are connected by a chain of [proven](Self::are_connected)
+    /// segments. If the surface bends too much between the ends for one box, it takes more than
+    /// one: a segment without a proof is halved at a point of the surface in the region.
     pub(crate) fn is_connected_by_segments(&mut self, whole: Segment) -> bool {
-        /// Largest number of rounds, in each of which segments without a proof are halved.
+        /// Largest number of rounds; each halves the segments without a proof.
         const MOST_ROUNDS: u32 = 8;
         let mut waiting = vec![whole];
         for _ in 0..MOST_ROUNDS {
@@ -110,7 +109,7 @@ impl Prover<'_> {
         false
     }
 
-    /// Whether the ends of a segment are connected by two such chains, by way of a point beside
+    /// Whether the ends of a segment are connected by two such chains, through a point next to
     /// their chord. On a small piece the middle of the chord between opposite points lies inside
     /// the piece, where no step leads to the surface.
     fn is_connected_around(&mut self, Segment { from, to }: Segment) -> bool {
@@ -127,8 +126,8 @@ impl Prover<'_> {
         })
     }
 
-    /// The point of the surface that Newton's method along the gradient finds from `p`, to the
-    /// precision of a number.
+    /// The point of the surface that Newton's method along the gradient finds from `p`, to full
+    /// precision.
     fn land(&mut self, p: DVec3) -> Option<ExactPoint> {
         let limits = StepLimits { share_at_rest: ROUNDING, ..StepLimits::steps(newton::STEPS) };
         let (position, gradient) = newton::land(p, limits, |p| Some(self.newton_step(p)))?;
@@ -148,11 +147,11 @@ impl Prover<'_> {
     }
 
     /// A point in a box, within a thousandth of the margin of the surface, near `p` in the margin
-    /// outside: by turns to the nearest point of the box without its margin and one step to the
-    /// surface. None where the surface does not reach into the box there.
+    /// outside: found by alternating between the nearest point of the box without its margin and
+    /// one step to the surface. None if the surface does not reach into the box there.
     pub(crate) fn moved_inside(&mut self, mut p: DVec3, bounds: &Bounds) -> Option<DVec3> {
-        /// Each turn shortens the way by the cosine squared of the angle between surface and face:
-        /// at 26° so many by a thousand.
+        /// Each turn shortens the distance by the cosine squared of the angle between surface and
+        /// face: at 26° this many turns shorten it by a thousand.
         const MOST_TURNS: u32 = 32;
         let margin = self.region.margin;
         let inner = bounds.enlarged(-margin);
@@ -187,7 +186,7 @@ struct GraphBox {
     bounds: Bounds,
     /// The axis nearest the normal.
     up: usize,
-    /// Distance by which the box reaches beyond the ends along that axis.
+    /// Distance by which the box extends beyond the ends along that axis.
     room: f64,
 }
 
@@ -196,10 +195,10 @@ impl GraphBox {
         /// Room above and below the ends, over the rise of the tangent plane between them. Less
         /// proves fewer connections, more no more.
         const RISES: f64 = 1.5;
-        /// Room for what the surface bends, as a share of the longest side. Without it proofs take
-        /// longer.
+        /// Room for the bending of the surface, as a share of the longest side. Without it proofs
+        /// take longer.
         const BEND: f64 = 0.25;
-        /// Room for the slack: twice what the proof takes. With just that, small components may
+        /// Room for the slack: twice what the proof needs. With just that, small components may
         /// count twice.
         const SLACKS: f64 = 8.0;
         let size = from.normal.abs();

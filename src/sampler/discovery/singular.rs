@@ -5,15 +5,15 @@
 //!
 //! Let B be a box in the interior of which f has no local extremum. Then every connected component
 //! of the surface S in B reaches the boundary of B. For suppose that a component K does not. It has
-//! a neighbourhood U in B on whose boundary f is not 0; take the part of U that holds K, and with
-//! it the holes in it: an open set W with a connected boundary, on which f has one sign, say the
-//! positive one. Every neighbourhood of a point of K holds places where f is negative, else that
-//! point were a minimum. So f has a negative minimum in W: a local extremum.
+//! a neighbourhood U in B on whose boundary f is not 0; take the part of U that holds K, and fill
+//! its holes: an open set W with a connected boundary, on which f has one sign, say positive. Every
+//! neighbourhood of a point of K holds places where f is negative, otherwise that point would be a
+//! minimum. So f has a negative minimum in W: a local extremum.
 //!
-//! There is none where the second derivative of f along one fixed direction is positive throughout
-//! B, and along another one negative: at a minimum neither is negative, at a maximum neither
-//! positive. This is so around a cone point, whose tangent cone is that of an indefinite quadratic
-//! form, up to a size that bounds of the second derivatives tell.
+//! There is no extremum if the second derivative of f along one fixed direction is positive
+//! throughout B, and along another one negative: at a minimum neither is negative, at a maximum
+//! neither positive. This holds around a cone point, whose tangent cone is the zero set of an
+//! indefinite quadratic form, up to a size that bounds of the second derivatives give.
 
 use crate::field::{Bounded, Enclosure, Evaluator};
 use crate::math::{Bounds, Forest, Interval, ROUNDING, Sym3, sort_few};
@@ -23,25 +23,25 @@ use crate::spatial::tree::Tree;
 use core::f64::consts::TAU;
 use glam::{DMat3, DVec3, Vec3};
 
-/// Number of sizes of a box around a singular point that are tried: the longest side of the whole
-/// box, and each half the one before.
+/// Number of sizes that are tried for a box around a singular point: the longest side of the whole
+/// box, then each half of the one before.
 const SIZES: usize = 10;
-/// Number of sizes, above the largest one that is proven as a whole, that are tried in sub-boxes.
-/// Without any, fewer surfaces with cone points are proven.
+/// Number of sizes, above the largest one that is proven as a whole, to try in sub-boxes. Without
+/// any, fewer surfaces with cone points are proven.
 const MOST_LARGER: usize = 2;
 /// Number of sub-boxes: three along each axis.
 const SUB_BOXES: usize = 27;
 /// Distances of the sides of a box around a singular point from the point, in units of its size.
 /// They differ, because in a symmetric box a symmetric surface has several of its highest points in
-/// one place, where they cannot be told apart.
+/// one place, where they cannot be separated.
 const BELOW: DVec3 = DVec3::new(0.967, 0.983, 0.941);
 const ABOVE: DVec3 = DVec3::new(0.953, 0.929, 0.991);
 
-/// Largest number of Newton steps to a singular point: so many halvings, as at a cusp, lead to less
-/// than 10⁻⁷ of the way.
+/// Largest number of Newton steps to a singular point: even if each only halves the distance, as at
+/// a cusp, less than 10⁻⁷ of it is left.
 const MOST_STEPS: u32 = 24;
-/// Distance from an isolated singular point, and from another one, at which the steps have ended,
-/// over the search distance. At a cusp each step only halves the distance.
+/// Step lengths at which Newton's method ends, over the search distance: at an isolated singular
+/// point, and at another one. At a cusp each step only halves the distance.
 const ENDS: [f64; 2] = [1e-12, 1e-7];
 /// Largest |f| that counts as zero at a saddle of f, in units of |H| d², where H is the Hessian and
 /// d the search distance. It is far above rounding: cone points open where coefficients are
@@ -52,31 +52,31 @@ const LARGEST_VALUE: f64 = 1e-8;
 /// have opened are proven.
 const LARGEST_NECK: f64 = 1e-3;
 /// A direction along which the second derivatives are smaller than this share of the largest is
-/// taken for that of a singular curve: the Newton step does not run along it. It is the root of the
-/// precision to which second derivatives are known.
+/// taken for the direction of a singular curve: the Newton step does not run along it. The share is
+/// the root of the precision of second derivatives.
 const SMALL: f64 = 1e-6;
-/// Share in the place of [`SMALL`] where a Newton step leads too far: beside a curve of singular
-/// points the step runs along the curve. Without it curves are found in pieces.
+/// Share that replaces [`SMALL`] where a Newton step leads too far: near a curve of singular points
+/// the step would run along the curve. Without it curves are found in pieces.
 const DAMPED: f64 = 0.1;
-/// Factors by which steps shrink where the first derivatives that do not vanish are of third to
-/// eighth order: (n − 2)/(n − 1). Such a step is lengthened to where the steps would end. Without
-/// this some cusps are missed.
+/// Factors by which steps shrink if the first nonzero derivatives are of third to eighth order: (n
+/// − 2)/(n − 1). Such a step is lengthened to the limit of the steps. Without this some cusps are
+/// missed.
 const SLOW: core::ops::Range<f64> = 0.45..0.88;
 /// Two singular points count as one if they are nearer to each other than this share of the search
-/// distance: Newton's method ends at 10⁻¹² of it. A tip as near to one is that point.
+/// distance: Newton's method ends at 10⁻¹² of it. A tip so near to one is the same point.
 pub(crate) const SAME: f64 = 1e-6;
 /// Distance from a point of the survey within which a singular point is searched, in spacings of
 /// its grid: the diagonal of a cell.
 const NEAR: f64 = 1.75;
-/// Points of a curve around which the signs of f are looked at.
+/// Points of a curve around which the signs of f are examined.
 const LOOKED_AT: usize = 8;
-/// Radius of the circles on which they are, as a share of the search distance. Smaller: the two
-/// sides of a cusp are too near to each other to be seen; larger: other sheets are met.
+/// Radius of the circles for this, as a share of the search distance. Smaller: the two sides of a
+/// cusp are too near to each other to be distinguished; larger: other sheets are met.
 const ROUND: f64 = 0.25;
-/// Points on such a circle. Sheets that cross at less than 0.4° are not seen to.
+/// Points on such a circle. Sheets that cross at less than 0.4° are not recognised.
 const AROUND: usize = 1024;
-/// Extent of linked points that are no curve, as a share of the search distance: at a point where
-/// sheets touch, Newton's method ends within a hundredth of it.
+/// Linked points within this share of the search distance are no curve: at a point where sheets
+/// touch, Newton's method ends within a hundredth of it.
 const ONE_PLACE: f64 = 0.25;
 
 /// A point where the gradient of f vanishes and f is 0, or nearly so.
@@ -85,21 +85,21 @@ pub(crate) struct Singular {
     pub(crate) position: DVec3,
     /// Distance within which the point was searched for.
     pub(crate) reach: f64,
-    /// Whether f is 0 at the point: up to rounding where f has a minimum or a maximum there, around
-    /// which the surface is a small sphere or tube, or nothing; at a saddle up to a small neck.
+    /// Whether f is 0 at the point: up to rounding if f has a minimum or a maximum there, around
+    /// which the surface is a small sphere or tube, or empty; at a saddle up to a small neck.
     pub(crate) is_zero: bool,
     /// Whether the point is isolated: the Hessian is regular, so the gradient vanishes nowhere else
     /// near it.
     pub(crate) is_alone: bool,
     /// Whether f has both signs on lines through the point, to second order.
     pub(crate) has_two_signs: bool,
-    /// Whether f changes along one direction alone, to second order.
+    /// Whether f changes along only one direction, to second order.
     is_flat: bool,
 }
 
 impl Singular {
-    /// Whether two points belong to one place: they are the same one, or on one curve, found by
-    /// searches that overlap, but for the part of a search farther than `farthest`.
+    /// Whether two points belong to one place: they are equal, or on one curve and found by
+    /// overlapping searches. A search counts only up to the distance `farthest`.
     fn is_linked(&self, other: &Self, farthest: f64) -> bool {
         let share = if self.is_alone { SAME } else { 2.0 };
         let most = share * self.reach.min(other.reach).min(farthest);
@@ -128,15 +128,15 @@ pub(crate) struct SingularPlace {
     /// A point of the place.
     pub(crate) position: DVec3,
     pub(crate) kind: SingularKind,
-    /// The points that are known of a curve, or the one at which sheets touch.
+    /// The known points of a curve, or the point at which sheets touch.
     pub(crate) points: Vec<Singular>,
 }
 
 impl SingularPlace {
     /// The kind of the place by the signs of f around its points. Around a crossing, and across
-    /// sheets that touch, there are four changes or more, around a cusp two, the one close after
-    /// the other. Second derivatives do not tell these apart: beside a cusp they differ from 0, and
-    /// Newton's method ends beside it.
+    /// sheets that touch, there are four changes or more, around a cusp two, close together. Second
+    /// derivatives do not distinguish these: near a cusp they differ from 0, and Newton's method
+    /// ends near it.
     pub(crate) fn kind_by_signs(&self, field: &mut dyn Evaluator) -> SingularKind {
         match self.kind {
             SingularKind::Touch => self.kind_of_touch(field),
@@ -151,7 +151,7 @@ impl SingularPlace {
         let (mut crosses, mut ends) = (false, false);
         for point in self.points.iter().step_by(self.points.len().div_ceil(LOOKED_AT)) {
             let radius = ROUND * point.reach;
-            // Of points that are nearer, the direction is that of rounding.
+            // For nearer points, rounding determines the direction.
             let away = |other: &&Singular| other.position.distance_squared(point.position);
             let others = self.points.iter().filter(|other| away(other) > radius * radius);
             let nearest = others.min_by(|a, b| away(a).total_cmp(&away(b)));
@@ -204,8 +204,8 @@ fn sign_changes_around(field: &mut dyn Evaluator, at: DVec3, along: DVec3, radiu
 #[derive(Debug, Default)]
 pub(crate) struct NearSurvey {
     pub(crate) points: Vec<Singular>,
-    /// Points of the survey, far from each other, around which the surface bends sharply and there
-    /// is no such point; the sharpest first.
+    /// Points of the survey, far from each other, around which the surface bends sharply without a
+    /// singular point; the sharpest first.
     pub(crate) bends: Vec<Bend>,
 }
 
@@ -217,7 +217,7 @@ pub(crate) struct Bend {
     sharpness: f64,
 }
 
-/// The singular points near those of a survey, on a grid of this spacing: where the gradient
+/// The singular points near the points of a survey, on a grid of this spacing: where the gradient
 /// vanishes within a distance d, it is no longer than the Hessian times d.
 pub(crate) fn near_survey(
     field: &mut dyn Evaluator,
@@ -332,7 +332,7 @@ fn has_two_signs(hessian: &Sym3<f64>) -> bool {
 }
 
 /// Whether the gradient of f may jump on the surface in a box, as at the tip of a cone where f is a
-/// distance; not known where f has no bounds.
+/// distance. True if f has no bounds.
 pub(crate) fn may_be_rough(field: &mut dyn Evaluator, bounds: &Bounds) -> bool {
     let Some(field) = field.bounded() else { return true };
     (0..field.factors()).any(|factor| {
@@ -352,10 +352,9 @@ fn may_be_zero(field: &mut dyn Evaluator, p: DVec3) -> bool {
     })
 }
 
-/// The places at which these points are: isolated points, and groups of the others that are linked.
-/// `spacing` is that of the grid of the survey, which meets every curve on the surface: of two
-/// points that a farther search has found, others lie on the way from one to the other if they are
-/// on one curve.
+/// The places of these points: isolated points, and groups of the others that are linked. `spacing`
+/// is the grid spacing of the survey, which meets every curve on the surface: if two points that a
+/// farther search has found are on one curve, others lie between them.
 pub(crate) fn places(points: &[Singular], spacing: f64) -> Vec<SingularPlace> {
     let farthest = NEAR * spacing;
     let mut groups = Forest::new(points.len());
@@ -427,7 +426,7 @@ fn size_sq(m: &DMat3) -> f64 {
 }
 
 /// The largest of [`SIZES`] boxes around the singular point `at` in which one factor of the field
-/// has no local extremum. It lies inside the box `within` and meets none of the boxes `taken`.
+/// has no local extremum, inside the box `within` and disjoint from the boxes `taken`.
 pub(crate) fn isolating_box(
     field: &mut dyn Bounded,
     factor: usize,
@@ -490,7 +489,7 @@ fn is_saddle(second: &Sym3<Interval>) -> bool {
 /// Directions along which the second derivative is about the largest and about the smallest, if
 /// these have different signs.
 fn extreme_directions(second: &Sym3<f64>) -> Option<[DVec3; 2]> {
-    /// Squarings of a matrix: enough to tell eigenvalues apart that differ by a tenth.
+    /// Squarings of a matrix: enough to separate eigenvalues that differ by a tenth.
     const SQUARINGS: u32 = 7;
     let hessian = matrix(second);
     let size = size_sq(&hessian).sqrt();

@@ -1,6 +1,6 @@
 //! The survey of the field on a regular grid over the box. It finds a first point on every
-//! component that the grid resolves, and estimates the area of the surface and the precision with
-//! which single precision resolves it.
+//! component that the grid resolves, and estimates the area of the surface and how finely single
+//! precision resolves it.
 
 use crate::field::Evaluator;
 use crate::field::descent::Descent;
@@ -15,11 +15,11 @@ use crate::sampler::projection::{ResidualLimits, Tolerance, tolerance};
 use glam::{DVec3, Vec3};
 use rand_core::Rng;
 
-/// Largest number of evaluations of f on an edge that look for two crossings. Fewer miss more of
-/// sheets that are near each other.
+/// Largest number of evaluations of f on an edge to find two crossings. Fewer: more sheets near
+/// each other are missed.
 const LOOKS: usize = 3;
 /// Distance at which the size of f distinguishes a zero from a pole, in tolerances of the survey.
-/// At a single tolerance rounding may decide.
+/// At one tolerance rounding may decide.
 const POLE_PROBE: f32 = 4.0;
 
 /// The result of a survey.
@@ -38,25 +38,25 @@ pub(crate) struct Survey {
     pub(crate) gradient_scale: f32,
     /// Distance by which rounding can move the computed surface.
     pub(crate) resolution: f32,
-    /// Least distance, along the normal, of a point of the surface from another sheet beyond which
-    /// there is a third one; infinite where none was seen.
+    /// Least distance along the normal, from a point of the surface, of another sheet with a third
+    /// one beyond; infinite if none was found.
     pub(crate) crowding: f32,
-    /// The nearest pair of sheets, where some are so near that a particle's usual tolerance could
-    /// put it on the wrong one.
+    /// The nearest pair of sheets, if some are so near that a particle's usual tolerance could put
+    /// it on the wrong one.
     pub(crate) nearness: Option<Nearness>,
     /// Largest distance of a point from the surface.
     residual: f32,
     /// Whether f mostly touches zero without changing its sign.
     pub(crate) touches: bool,
-    /// A place where f comes to zero on a curve or at a point alone, if one was seen.
+    /// A place where f vanishes only on a curve or at an isolated point, if one was found.
     pub(crate) bare: Option<DVec3>,
     /// Whether points were left out because they lie beyond the limits of the surface.
     is_limited: bool,
-    /// Share of the nodes of the grid at which f has a value.
+    /// Share of the nodes of the grid at which f is defined.
     pub(crate) defined: f64,
-    /// The values of f in ascending order, where it takes no others.
+    /// The values of f in ascending order, if it takes only a few.
     pub(crate) steps: Vec<f64>,
-    /// Why the survey has no points, where it has none.
+    /// Why the survey has no points, if it has none.
     pub(crate) absence: Absence,
     /// Whether the points come from another search.
     pub(crate) is_adopted: bool,
@@ -70,9 +70,9 @@ pub(crate) enum Absence {
     None,
     /// f has the same value everywhere.
     Constant,
-    /// f has no value anywhere.
+    /// f is undefined everywhere.
     Undefined,
-    /// f is too large for double precision wherever it has a value.
+    /// f is too large for double precision wherever it is defined.
     TooLarge,
     /// Interval arithmetic proves that f has no zero in the box.
     Proven,
@@ -80,11 +80,11 @@ pub(crate) enum Absence {
     NoZero,
     /// The grid shows no change of sign. A feature finer than the grid may have been missed.
     NotSeen,
-    /// f comes to zero on curves and at points alone.
+    /// f vanishes only on curves and at isolated points.
     Bare,
-    /// Nothing of the surface is within its limits.
+    /// No part of the surface is within its limits.
     Limited,
-    /// f takes a few values only, and jumps between them.
+    /// f takes only a few values, and jumps between them.
     Steps,
 }
 
@@ -93,8 +93,7 @@ struct Candidates {
     place: Vec<Vec3>,
     /// Area that each candidate stands for; none where f keeps its sign.
     areas: Vec<Option<f32>>,
-    /// Whether f need not change its sign beside a candidate: it is zero at a node, or keeps its
-    /// sign.
+    /// Whether f need not change its sign at a candidate: it is zero at a node, or keeps its sign.
     is_unsure: Vec<bool>,
     /// Sum of the areas.
     area: f64,
@@ -102,10 +101,10 @@ struct Candidates {
     greatest: f32,
     /// Nodes at which f is defined.
     defined: usize,
-    /// Nodes that have been looked at, and those of them at which f is flat.
+    /// Nodes examined, and those of them at which f is flat.
     seen: usize,
     flat: usize,
-    /// Edges that the surface may cross twice, until they have been looked at.
+    /// Edges that the surface may cross twice, until they are examined.
     dips: Vec<Dip>,
 }
 
@@ -134,7 +133,7 @@ impl Candidates {
         }
     }
 
-    /// Looks at layer number `z`, which is `lower`, and at its edges along the axes. `upper` is the
+    /// Examines layer number `z`, which is `lower`, and its edges along the axes. `upper` is the
     /// layer above; the last layer has none.
     fn look_at(
         &mut self,
@@ -202,7 +201,7 @@ impl Candidates {
         self.areas.push(Some(area as f32));
     }
 
-    /// Looks at the edges that the surface may cross twice, and adds the places where it does.
+    /// Examines the edges that the surface may cross twice, and adds the places where it does.
     fn look_into_dips(&mut self, probe: &mut Probe, grid: &Grid) {
         for _ in 0..LOOKS {
             let dips = core::mem::take(&mut self.dips);
@@ -245,7 +244,7 @@ pub(crate) fn spacing(bounds: &Bounds) -> f64 {
     Grid::over(bounds, None).spacing
 }
 
-/// Surveys `field` over `bounds`, on a grid of so many `dense` cells if there is such a number.
+/// Surveys `field` over `bounds`, on a grid of `dense` cells if that number is given.
 ///
 /// Three kinds of candidates are tried: grid edges whose ends differ in sign, edges between whose
 /// ends f has the other sign (two sheets within a cell), and nodes whose first-order distance
@@ -310,14 +309,15 @@ pub(crate) fn survey(probe: &mut Probe, bounds: &Bounds, dense: Option<u32>) -> 
 
 /// The values of a field, in ascending order, if it takes a few only and jumps between them.
 fn steps(field: &mut dyn Evaluator, bounds: &Bounds) -> Option<Vec<f64>> {
-    /// Points along a side of the grid on which the values are listed. Larger: fewer values that
-    /// are taken in small regions are missed.
+    /// Points along a side of the grid on which the values are listed. Larger: fewer values of
+    /// small regions are missed.
     const SIDE: usize = 16;
-    /// Values that are few. A function of one coordinate alone takes one for each of its sixteen.
+    /// Largest number of values that are few. A function of one coordinate takes one for each of
+    /// its sixteen.
     const MOST: usize = 64;
-    /// Ways between two points along which f is looked at, to tell jumps from steep slopes.
+    /// Paths between two points along which f is evaluated, to distinguish jumps from steep slopes.
     const WAYS: usize = 16;
-    /// Values that f may take at a jump alone, as sign does at 0. On a slope each step gives one.
+    /// Values that f may take only at a jump, as sign does at 0. On a slope each step gives one.
     const MOST_AT_A_JUMP: usize = 2;
     let points: Vec<DVec3> = bounds.spread(SIDE).collect();
     // Adding 0 makes −0 equal to 0.
@@ -370,18 +370,18 @@ fn steps(field: &mut dyn Evaluator, bounds: &Bounds) -> Option<Vec<f64>> {
     Some(values.into_iter().map(given).collect())
 }
 
-/// Candidates that are moved onto the surface.
+/// Candidates to move onto the surface.
 struct Starts<'a> {
     place: &'a mut [Vec3],
     /// Area that each stands for, if it is at a crossing.
     areas: &'a [Option<f32>],
     is_unsure: &'a [bool],
-    /// The branch to whose surface they are moved, as far as it gives f; none for f itself.
+    /// The branch onto whose surface they are moved, where it gives f; none for f itself.
     branch: Option<u32>,
 }
 
-/// Moves the candidates onto the surface and keeps those that converge inside the box, but for
-/// zeros on a curve or at a point alone.
+/// Moves the candidates onto the surface and keeps those that converge inside the box, except zeros
+/// on a curve or at an isolated point.
 fn project(probe: &mut Probe, bounds: &Bounds, starts: Starts, spacing: f32, out: &mut Survey) {
     let Starts { place: start, areas, is_unsure, branch } = starts;
     out.residual = ResidualLimits::UNLIMITED.residual(spacing).max(ulps(bounds));
@@ -402,8 +402,8 @@ fn project(probe: &mut Probe, bounds: &Bounds, starts: Starts, spacing: f32, out
             }
         }
     }
-    // Of a function with edges some solids may share a face. There f touches zero from below: it is
-    // no surface of the solid that they are together.
+    // In a function with edges, solids may share a face. There f touches zero from below: that is
+    // no surface of their union.
     let is_black_box = probe.field.bounded().is_none() && probe.field.pieces().is_some();
     let (touching, inner) =
         touching(probe, start, &landed, |k| is_black_box || is_unsure[k], LARGEST * spacing);
@@ -419,7 +419,7 @@ fn project(probe: &mut Probe, bounds: &Bounds, starts: Starts, spacing: f32, out
     if selection(&touching, SAMPLES).any(|&k| is_bare(k)) {
         let bare: Vec<Vec3> = touching.iter().filter(|&&k| is_bare(k)).map(|&k| start[k]).collect();
         out.bare = out.bare.or(bare.first().map(|place| place.as_dvec3()));
-        // Newton's method comes less near to the zero from some places.
+        // From some places Newton's method ends less near to the zero.
         let is_near =
             |place: Vec3| bare.iter().any(|other| other.distance_squared(place) <= spacing * spacing);
         for k in touching.into_iter().filter(|&k| is_near(start[k])) {
@@ -437,8 +437,8 @@ fn project(probe: &mut Probe, bounds: &Bounds, starts: Starts, spacing: f32, out
 }
 
 /// Moves the candidates onto the surface by the branches that give f there, if there are several.
-/// Of the distance to a box, √(max(u, 0)² + …) + min(max(u, …), 0), the root has no gradient where
-/// it is zero, and that is on the surface.
+/// In the distance to a box, √(max(u, 0)² + …) + min(max(u, …), 0), the root has no gradient where
+/// it vanishes, which includes the surface.
 fn project_on_branches(
     probe: &mut Probe,
     bounds: &Bounds,
@@ -466,8 +466,8 @@ fn project_on_branches(
     }
 }
 
-/// Those of the points that have landed, with these normals, on both sides of which f has the same
-/// sign, and those of them where it is negative. Only those are looked at that `is_asked` says.
+/// The landed points, with these normals, that have the same sign of f on both sides, and those
+/// among them where that sign is negative. Only points for which `is_asked` holds are examined.
 fn touching(
     probe: &mut Probe,
     points: &[Vec3],
@@ -497,7 +497,7 @@ fn touching(
     (touching, inner)
 }
 
-/// The first of a selection of points that is a zero of f on a curve, or a point by itself.
+/// The first of a selection of points at which f vanishes only on a curve or at an isolated point.
 pub(crate) fn bare_among(
     probe: &mut Probe,
     points: impl Iterator<Item = DVec3>,
@@ -507,14 +507,15 @@ pub(crate) fn bare_among(
     selection(&points, SAMPLES).find(|&&p| probe.is_bare_zero(p, bare_size(spacing))).copied()
 }
 
-/// Distance at which f is looked at around a zero that may be on no surface, for a grid of this
+/// Distance at which f is examined around a zero that may be on no surface, for a grid of this
 /// spacing.
 pub(crate) fn bare_size(spacing: f64) -> f64 {
     f64::from(LARGEST) * spacing
 }
 
-/// The median |∇f| at the candidates where f changes its sign, or at all if it nowhere does. Where
-/// f is small beside its gradient without a change of sign, both may be of any size.
+/// The median |∇f| at the candidates where f changes its sign, or at all candidates if it never
+/// does. Where f is small compared with its gradient without a change of sign, both may be of any
+/// size.
 fn gradient_scale(probe: &mut Probe, start: &[Vec3], areas: &[Option<f32>]) -> f32 {
     let by_crossings = areas.iter().any(Option::is_some);
     let mut slopes = Vec::new();
@@ -536,14 +537,14 @@ impl Survey {
 
     /// Limits for the residual of particles on this surface.
     pub(crate) fn residual_limits(&self) -> ResidualLimits {
-        /// Share of the crowding, which is the distance of the nearest other sheet or up to twice
-        /// that: a particle stays within a fifth of the way there.
+        /// Share of the crowding, which is one to two times the distance of the nearest other
+        /// sheet: a particle stays within a fifth of the way there.
         const SHARE: f32 = 0.1;
         let gap = self.nearness.map_or(f32::INFINITY, |near| near.gap as f32);
         ResidualLimits { finest: self.resolution, coarsest: SHARE * self.crowding.min(gap) }
     }
 
-    /// Sheets nearer to each other than this are not told apart.
+    /// Sheets nearer to each other than this are not distinguished.
     pub(crate) fn least_gap(&self, is_adaptive: bool) -> f64 {
         UNRESOLVED[usize::from(is_adaptive)] * f64::from(self.resolution)
     }
@@ -554,8 +555,8 @@ impl Survey {
         Tolerance { residual, ..tolerance(0.0, ResidualLimits::UNLIMITED, self.gradient_scale) }
     }
 
-    /// Takes over the points that another search has `found`, where the survey has none, or its
-    /// proof that there are none.
+    /// Takes over the points that another search has `found`, if the survey has none, or its proof
+    /// that there are none.
     pub(crate) fn adopt(
         &mut self,
         field: &mut dyn Evaluator,
@@ -567,7 +568,7 @@ impl Survey {
         let mut slopes = Vec::new();
         for (position, normal) in found {
             let jet = field.jet(position.as_dvec3());
-            // Of f as a whole, which may have no gradient where its branches have one.
+            // By f as a whole, which may have no gradient where its branches have one.
             slopes.extend(Some(jet.gradient.length() as f32).filter(|slope| slope.is_finite()));
             // A sphere of the same curvature has the area 4π/κ².
             let size = jet.gradient.length_squared()
@@ -592,16 +593,16 @@ impl Survey {
     }
 
     /// A point at which a random line through the box meets the surface; none if many lines miss
-    /// it. It is anywhere on the surface with equal probability (L. A. Santaló, "Integral Geometry
-    /// and Geometric Probability", §14.3, 1976), and moves little when the surface does, which a
-    /// point of the survey does not.
+    /// it. It is uniformly distributed on the surface (L. A. Santaló, "Integral Geometry and
+    /// Geometric Probability", §14.3, 1976), and moves little when the surface does, unlike a point
+    /// of the survey.
     pub(crate) fn on_random_line(
         &self,
         probe: &mut Probe,
         bounds: &Bounds,
         random: &mut impl Rng,
     ) -> Option<OrientedPoint> {
-        /// Lines that are tried. A third of them meet a surface that its box fits.
+        /// Lines tried. In a box that fits the surface a third of them meet it.
         const LINES: u32 = 64;
         /// Least cosine of the angle between line and normal: 60°. Where a line grazes the surface,
         /// the point moves more than that. Smaller: holes are wider.
@@ -636,8 +637,8 @@ impl Survey {
         None
     }
 
-    /// Whether f comes to zero at a point of the survey and not to a pole, where |f|/|∇f| vanishes
-    /// too: |f| grows away from a zero and falls away from a pole.
+    /// Whether f has a zero at a point of the survey and not a pole, where |f|/|∇f| vanishes too:
+    /// |f| grows away from a zero and falls away from a pole.
     pub(crate) fn is_zero(&self, probe: &mut Probe, point: OrientedPoint) -> bool {
         let OrientedPoint { position: p, normal: n } = point;
         let step = POLE_PROBE * self.residual.max(self.resolution);
@@ -647,19 +648,19 @@ impl Survey {
     }
 }
 
-/// Largest distance at which f is looked at on either side of a point, as a share of the grid's
-/// spacing: it halves from there.
+/// Largest distance at which f is evaluated on either side of a point, as a share of the grid's
+/// spacing; it is halved from there.
 const LARGEST: f32 = 0.125;
-/// Number of points at which a median or a quartile is taken, which then rests on 12 of them.
+/// Number of points for a median or a quartile, which then rests on 12 of them.
 pub(super) const FEW: usize = 48;
-/// Number of points or particles that are looked at, spread over all: a share of them is that of
-/// all to 3 %.
+/// Number of points or particles to examine, spread over all: a share among them equals the share
+/// among all to 3 %.
 pub(crate) const SAMPLES: usize = 256;
-/// Distance, in resolutions, below which rounding may decide the sign of f: that at which sheets
-/// are told apart.
+/// Distance, in resolutions, below which rounding may decide the sign of f: the least distance at
+/// which sheets are distinguished.
 const NOISE: f32 = UNRESOLVED[0] as f32;
 
-/// At most so many of some values, spread over all of them.
+/// At most `most` of some values, spread over all of them.
 fn selection<T>(all: &[T], most: usize) -> impl Iterator<Item = &T> {
     all.iter().step_by(all.len().div_ceil(most).max(1))
 }
@@ -671,8 +672,8 @@ pub(super) fn ulps(bounds: &Bounds) -> f32 {
     2.0 * f32::EPSILON * reach
 }
 
-/// Finds out how near the surface particles have to be: by rounding, by sheets near each other, and
-/// whether f only touches zero.
+/// Finds out how near to the surface particles have to be, considering rounding and sheets near
+/// each other, and whether f only touches zero.
 fn measure_precision(probe: &mut Probe, bounds: &Bounds, spacing: f32, out: &mut Survey) {
     out.resolution = ulps(bounds).max(rounding(probe, &out.position));
     // A field without bounds is one through points, whose sheets are as far from each other as the
@@ -689,7 +690,7 @@ fn measure_precision(probe: &mut Probe, bounds: &Bounds, spacing: f32, out: &mut
     out.touches = !is_facing_another && touches(probe, out, LARGEST * spacing);
 }
 
-/// Looks for near sheets in double precision at a selection of the points. Returns whether more
+/// Searches in double precision for near sheets at a selection of the points. Returns whether more
 /// than half of these have one.
 fn look_for_near_sheets(field: &mut dyn Evaluator, out: &mut Survey, spacing: f32) -> bool {
     /// Largest distance, in grid spacings, at which the tolerance of particles depends on another
@@ -699,13 +700,13 @@ fn look_for_near_sheets(field: &mut dyn Evaluator, out: &mut Survey, spacing: f3
     let (found, count) = nearest(field, points.iter().copied(), f64::from(MOST * spacing));
     out.nearness = found;
     if let Some(Nearness { slope, .. }) = out.nearness {
-        // At the sheets themselves f is far less steep than beside all of them.
+        // On the sheets themselves f is far less steep than outside of all of them.
         out.gradient_scale = out.gradient_scale.min(slope as f32);
     }
     2 * count > points.len()
 }
 
-/// Moves the points to where near sheets are told apart, and drops those that find none.
+/// Moves the points to where near sheets are distinguished, and drops those that find none.
 fn land_anew(probe: &mut Probe, out: &mut Survey) {
     let residual = out.residual_limits().residual(f32::INFINITY);
     out.residual = residual.min(out.residual);
@@ -734,7 +735,7 @@ fn touches(probe: &mut Probe, survey: &Survey, distance: f32) -> bool {
         };
         let mut d = distance;
         let mut is_same = is_same_at(d);
-        // Nearer than some resolutions the sign is that of rounding.
+        // Nearer than some resolutions, rounding decides the sign.
         while is_same && 0.5 * d > NOISE * survey.resolution {
             d *= 0.5;
             is_same = is_same_at(d);
@@ -745,18 +746,18 @@ fn touches(probe: &mut Probe, survey: &Survey, distance: f32) -> bool {
     2 * same > seen
 }
 
-/// Looks for [`Survey::crowding`] at a selection of the points: for the sign that f has beyond
-/// another sheet. Of a plate with two sides the normals tell the sheets apart; so f has to have
-/// that sign on both sides, or its own again beyond.
+/// Searches for [`Survey::crowding`] at a selection of the points: for the sign that f has beyond
+/// another sheet. The normals distinguish the two sides of a plate; so f must have that sign on
+/// both sides, or its own again beyond.
 fn crowding(probe: &mut Probe, survey: &Survey, spacing: f32) -> f32 {
-    /// Distances, each half the one before, down to 10⁻⁵ of the grid's spacing. One of them lies
-    /// between any two sheets of which the farther one is twice as far.
+    /// Distances, each half of the one before, down to 10⁻⁵ of the grid's spacing. One of them lies
+    /// between any two sheets if one is twice as far as the other.
     const DISTANCES: usize = 14;
     let distances: [f32; DISTANCES] = core::array::from_fn(|k| LARGEST * spacing / (1_u32 << k) as f32);
     let mut least = f32::INFINITY;
     let mut points: Vec<Vec3> = selection(&survey.position, SAMPLES).copied().collect();
-    // The points may be as far from their sheets as those are from each other. One that cannot come
-    // nearer tells nothing.
+    // The points may be as far from their sheets as the sheets are from each other. A point that
+    // cannot come nearer shows nothing.
     let limits = Descent { residual: 2.0 * survey.resolution, reach: survey.residual, trust: 0.0 };
     let landed = probe.land_all(&mut points, survey.tolerance().min_gradient, limits, newton::STEPS);
     for (p, normal) in points.into_iter().zip(landed) {
@@ -766,7 +767,7 @@ fn crowding(probe: &mut Probe, survey: &Survey, spacing: f32) -> f32 {
         for (side, nearest) in [1.0, -1.0].into_iter().zip(&mut nearest) {
             let (value, _) = probe.gradients(&distances.map(|d| p + n * (side * d)));
             let mut comes_back = false;
-            // From far to near; nearer than some resolutions the sign is that of rounding.
+            // From far to near; nearer than some resolutions, rounding decides the sign.
             for (&d, &value) in distances.iter().zip(value).filter(|(d, _)| **d > NOISE * survey.resolution) {
                 let is_beyond = value * side < 0.0;
                 *nearest = if is_beyond { d } else { *nearest };

@@ -15,28 +15,28 @@ use crate::sampler::constraint::CreaseLadder;
 use core::slice;
 use glam::Vec3;
 
-/// Match tolerance of a coarse front. It places fewer particles where grains meet than the paper's
-/// front does, whose relaxation cannot remove one. With the paper's 0.7 a particle may stand two
-/// spacings from the tip of a narrow cone.
+/// Match tolerance of a coarse front. Where grains meet it places fewer particles than the paper's
+/// front, whose relaxation cannot remove one. With the paper's 0.7 a particle may be two spacings
+/// from the tip of a narrow cone.
 pub(crate) const MATCH_TOLERANCE: f64 = 0.8;
 
-/// Radius of a coarse front over that of its share of the particles, of which it places fewer where
-/// its grains meet. What it is off by is made up for at the first level. Larger: fewer particles
-/// have six neighbours; smaller: the closest pairs on solids are nearer.
+/// Radius of a coarse front over the radius for its share of the particles: it places fewer where
+/// its grains meet. The first level makes up for the difference. Larger: fewer particles have six
+/// neighbours; smaller: the closest pairs on solids are nearer.
 pub(crate) const FRONT_RADIUS: f64 = 0.95;
 
-/// Largest number of halvings: with it a million particles come from 240.
+/// Largest number of halvings: with it 240 particles become a million.
 const MAX_LEVELS: u32 = 6;
 /// Largest product of coarse spacing and curvature. Smaller: fewer particles of a closed surface
-/// have six neighbours. Larger: a small ball beside a large one gets fewer particles than are due
-/// to it, because so few do not know its area.
+/// have six neighbours. Larger: a small ball next to a large one gets too few particles, because so
+/// few do not show its area.
 const MAX_BEND: f64 = 0.9;
 /// Largest product of spacing and curvature for a front that is refined once, or healed at full
 /// resolution: beyond it an edge spans half a turn. Smaller: fewer particles of a strongly bent
 /// surface have six neighbours.
 const MAX_BEND_LEAST: f64 = 3.2;
 
-/// Largest curvature at each of some points of the surface; infinite where there is none.
+/// Largest curvature at each of some points of the surface; infinite where it is undefined.
 pub(crate) fn largest_curvatures(field: &mut dyn Evaluator, points: &[Vec3]) -> Vec<f64> {
     let mut curvature = vec![Curvature::default(); points.len()];
     curvatures(field, points, &mut curvature);
@@ -51,19 +51,19 @@ pub(crate) fn largest_curvatures(field: &mut dyn Evaluator, points: &[Vec3]) -> 
     curvature.iter().map(largest).collect()
 }
 
-/// Number of times that a front can be refined that has `count` particles in the end, where the
-/// spacing times the largest curvature is `bend`; 0 if order is made at full resolution, and `None`
-/// if it cannot be made.
+/// How often a front can be refined that has `count` particles in the end, with `bend` the spacing
+/// times the largest curvature; 0 if it can only be ordered at full resolution, and `None` if not
+/// even that.
 pub(crate) fn halvings(bend: f64, count: f64) -> Option<u32> {
     let particles = |halvings: u32| count / f64::from(1_u32 << (2 * halvings));
     let is_large = |halvings: &u32| particles(*halvings) >= f64::from(LEAST_PARTICLES);
     let bends_up_to = |most: f64| move |&halvings: &u32| bend * f64::from(1_u32 << halvings) <= most;
     let coarsest = (1..=MAX_LEVELS).rev().filter(is_large).find(bends_up_to(MAX_BEND));
-    // With fewer particles the front has no fewer defects than a mesh that is healed.
+    // With fewer particles the front has as many defects as a mesh that is healed.
     coarsest.or_else(|| [1, 0].into_iter().filter(|_| is_large(&1)).find(bends_up_to(MAX_BEND_LEAST)))
 }
 
-/// The triangles between the particles of a front, by rows, if they can be had beyond doubt.
+/// The triangles between the particles of a front, by rows, if they are beyond doubt.
 pub(super) fn triangles(particles: &Particles, bounds: &Bounds) -> Result<Vec<[u32; 3]>, Refusal> {
     let radius = particles.radius.iter().copied().fold(0.0, f32::max);
     let grown = border::grown(bounds, f64::from(radius));
@@ -74,8 +74,8 @@ pub(super) fn triangles(particles: &Particles, bounds: &Bounds) -> Result<Vec<[u
 
 /// A part of a front that is refined by itself: a component of the surface, or a patch of it.
 pub(super) struct FrontPart<'a> {
-    /// The particles; where the surface has creases those on them come first, and `twins` has their
-    /// numbers.
+    /// The particles; if the surface has creases the particles on them come first, with their
+    /// numbers in `twins`.
     pub(super) particles: &'a Particles,
     pub(super) triangles: &'a [[u32; 3]],
     pub(super) patch: Option<u32>,
@@ -109,9 +109,8 @@ pub(super) fn join(ground: &mut Ground, part: &FrontPart, surface: &SurfaceFacts
     Ok(net)
 }
 
-/// Gives a particle on a crease a vertex for each of the fans of triangles around it: where a patch
-/// touches itself there are several. Returns the row of each vertex, which for the first ones is
-/// their own number.
+/// Gives a particle on a crease a vertex for each fan of triangles around it: where a patch touches
+/// itself there are several. Returns the row of each vertex; the first vertices are their own rows.
 fn split_fans(triangles: &mut [[u32; 3]], particles: &Particles) -> Vec<u32> {
     let mut rows: Vec<u32> = (0..particles.len() as u32).collect();
     let on_creases = particles.twins.len();
@@ -145,7 +144,7 @@ fn split_fans(triangles: &mut [[u32; 3]], particles: &Particles) -> Vec<u32> {
     rows
 }
 
-/// Judges the border of a patch: it is made of creases, or lies at the box.
+/// Checks the border of a patch: it must consist of creases, or lie at the box.
 fn judge_creases(net: &Net, ladder: &CreaseLadder) -> Result<(), Refusal> {
     let is_open = |&h: &u32| {
         let [a, b] = [net.mesh.origin(h), net.mesh.target(h)];
@@ -159,14 +158,14 @@ fn judge_creases(net: &Net, ladder: &CreaseLadder) -> Result<(), Refusal> {
     }
 }
 
-/// Judges the triangles in the box: beyond it they are cut away.
+/// Checks the triangles in the box; those beyond are cut away.
 fn judge_triangles(joined: &Triangulation, particles: &Particles, bounds: &Bounds) -> Result<(), Refusal> {
     let is_inside = |&v: &u32| bounds.contains(particles.local[v as usize]);
     let mut left_out = joined.left_out.iter().copied().filter(is_inside);
     if let Some(v) = joined.unfilled.iter().flatten().copied().find(is_inside) {
         return Err(doubtful(particles, v));
     }
-    // The only particle of a small component, say, which would be lost.
+    // For example the only particle of a small component, which would be lost.
     let is_seed = |&v: &u32| particles.parent[v as usize] == Particles::NO_PARENT;
     if let Some(v) = left_out.find(is_seed) {
         return Err(doubtful(particles, v));

@@ -1,13 +1,12 @@
-//! The components of a surface, each of which is refined as often as its own curvature and size
-//! allow.
+//! The components of a surface. Each is refined as often as its own curvature and size allow.
 //!
-//! A first front covers all of them, with the radius at which each comes out well: the one that
-//! bends most, or is smallest, decides. For each component that may be coarser another front grows
-//! from one of its particles. The components are then refined level by level, the coarsest first.
+//! A first front covers all of them, with a radius at which each succeeds: the component that bends
+//! most, or is smallest, decides. For each component that may be coarser another front grows from
+//! one of its particles. The components are then refined level by level, the coarsest first.
 //!
-//! Where the surface has creases, each patch takes the place of a component. All are refined
-//! equally often, and have their particles on creases from one [`CreaseLadder`], so that they fit
-//! together at every level.
+//! On a surface with creases, patches are refined instead of components. All are refined equally
+//! often, and take their particles on creases from one [`CreaseLadder`], so that they fit together
+//! at every level.
 
 use super::coarse::{self, FrontPart, halvings, largest_curvatures};
 use super::refusal::Refusal;
@@ -25,10 +24,10 @@ use glam::Vec3;
 #[derive(Clone, Debug)]
 struct AcceptedComponent {
     refinement: Refinement,
-    /// Share of the particles that the component should have, relative to the other components.
+    /// Share of the particles due to the component, relative to the other components.
     weight: f64,
-    /// The particles of the last finished level, or of the front. Those on creases come first, and
-    /// `twins` has their numbers in the [`CreaseLadder`].
+    /// The particles of the last finished level, or of the front. Particles on creases come first,
+    /// with their numbers in the [`CreaseLadder`] in `twins`.
     particles: Particles,
 }
 
@@ -43,14 +42,14 @@ struct Candidate {
 pub(crate) struct SurfaceFacts<'a> {
     /// The box that is sampled. Coarse fronts grow beyond it.
     pub(crate) bounds: Bounds,
-    /// The sizes that are wanted, where they differ.
+    /// The wanted sizes, if they vary.
     pub(crate) sizing: Option<&'a Sizing>,
     /// The particles on creases at every level, where there are creases.
     pub(crate) ladder: Option<&'a CreaseLadder>,
     /// Point of the surface with the largest curvature.
     pub(crate) bend: Vec3,
-    /// Number of refinements that could not go on. Each takes one level from every component that
-    /// is tried anew, so that there is an end to the attempts.
+    /// Number of failed refinements. Each takes one level from every component that is tried again,
+    /// so that the attempts end.
     pub(crate) failures: u32,
 }
 
@@ -60,7 +59,7 @@ impl SurfaceFacts<'_> {
     }
 }
 
-/// The fronts from which a refinement begins, one after the other.
+/// The fronts from which a refinement begins, made one after the other.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CoarseFronts {
     components: Vec<AcceptedComponent>,
@@ -74,32 +73,32 @@ pub(crate) struct CoarseFronts {
 
 /// The step that follows a front.
 pub(crate) enum Next {
-    /// A front over one component, whose radius is halved so many times.
+    /// A front over one component, with its radius halved this many times.
     Front(u32),
     /// The refinement.
     Refine(Components),
 }
 
 impl CoarseFronts {
-    /// The particles known of the component that the next front covers alone, from the first of
-    /// which it grows; none if it covers all components.
+    /// The known particles of the component that the next front covers alone, growing from the
+    /// first of them; none if the front covers all components.
     pub(crate) fn known(&self) -> Option<&Particles> {
         self.candidates.last().map(|candidate| &self.components[candidate.component].particles)
     }
 
-    /// Gives up the candidates. Returns the particles of the first front, if another one has begun.
+    /// Drops the candidates. Returns the particles of the first front, if another one has begun.
     pub(crate) fn end(&mut self) -> Option<Particles> {
         self.candidates.clear();
         let first = mem::take(&mut self.first);
         (!first.is_empty()).then_some(first)
     }
 
-    /// Takes in a front that has ended. `target` says how it is to be refined. When no front is
-    /// left to try, `particles` become those of the first front again.
+    /// Accepts a front that has ended. `target` says how it is to be refined. When no front is left
+    /// to try, `particles` are restored from the first front.
     ///
     /// # Errors
     ///
-    /// The defect for which the first front is refused.
+    /// The defect that refuses the first front.
     pub(crate) fn take_in(
         &mut self,
         probe: &mut Probe,
@@ -114,8 +113,8 @@ impl CoarseFronts {
         if let Some(candidate) = self.candidates.last() {
             return Ok(Next::Front(candidate.halvings));
         }
-        // Sizes that differ are healed at full resolution beside coarser components only: alone,
-        // pairs and holes may come out worse.
+        // With varying sizes, healing at full resolution needs coarser components next to it:
+        // alone, the closest pair and largest hole may get worse.
         let is_whole = |component: &AcceptedComponent| component.refinement.target.halvings == 0;
         if surface.sizing.is_some() && self.components.iter().all(is_whole) {
             return Err(surface.bent());
@@ -139,7 +138,7 @@ impl CoarseFronts {
         }
         let &SurfaceFacts { ref bounds, failures, .. } = surface;
         let mut parts = split(particles);
-        // Beyond the box there may be others.
+        // There may be others beyond the box.
         parts.retain(|part| part.local.iter().any(|&p| bounds.contains(p)));
         *self = Self { are_several: parts.len() > 1, ..Self::default() };
         for part in &parts {
@@ -159,7 +158,7 @@ impl CoarseFronts {
                 }
             }
             let weight = refinement.weight(probe, surface.sizing);
-            // A lone component hands its levels on by itself.
+            // A lone component hands on its own levels.
             let particles = if self.are_several { part } else { Particles::default() };
             self.components.push(AcceptedComponent { refinement, weight, particles });
         }
@@ -205,14 +204,14 @@ impl CoarseFronts {
                 let is_at_box = number.is_some_and(|&number| ladder.is_at_box(number));
                 surface.bounds.contains(part.local[row]) && !is_at_box
             };
-            // Beyond the box there may be others.
+            // There may be others beyond the box.
             if !(0..part.len()).any(is_in_box) {
                 continue;
             }
             let front = FrontPart { particles: &part, triangles, patch: Some(patch) };
             let mut refinement = Refinement::new(probe, surface, &front, target)?;
             let weight = refinement.weight(probe, surface.sizing);
-            // Those are numbers in the ladder, and no rows.
+            // These are numbers in the ladder, not rows.
             let mut numbers = mem::take(&mut part.twins);
             let place = part.keep_within(&surface.bounds);
             let mut places = place.iter();
@@ -223,7 +222,7 @@ impl CoarseFronts {
         Ok(())
     }
 
-    /// Takes a coarser front of a component, or tries one that is less so.
+    /// Accepts a coarser front of a component, or tries a less coarse one.
     fn take_coarser(
         &mut self,
         probe: &mut Probe,
@@ -246,7 +245,8 @@ impl CoarseFronts {
     }
 }
 
-/// The particles of each component. Those of one front lie on one component, and neighbours do.
+/// The particles of each component. Particles of one front are on one component, and so are
+/// neighbours.
 fn split(particles: &Particles) -> Vec<Particles> {
     let fronts = particles.parent.iter().filter(|&&parent| parent == Particles::NO_PARENT).count();
     if fronts == 1 {
@@ -278,7 +278,7 @@ struct Parts {
     place: Vec<u32>,
 }
 
-/// Gathers the particles of each part, in their order; those on creases keep their first rows of
+/// Gathers the particles of each part, in their order; those on creases keep their first rows among
 /// all particles.
 fn gather(particles: &Particles, part_of: impl Iterator<Item = usize>) -> Parts {
     let mut parts = Parts { particles: Vec::new(), place: Vec::with_capacity(particles.len()) };
@@ -323,18 +323,18 @@ impl Components {
         self.components.iter().all(|component| component.refinement.is_in_order)
     }
 
-    /// Halvings of the component that is refined least.
+    /// Halvings of the least refined component.
     pub(crate) fn fewest_halvings(&self) -> u32 {
         self.components.iter().map(|component| component.refinement.target.halvings).min().unwrap_or(0)
     }
 
-    /// Halvings of the component that is refined most.
+    /// Halvings of the most refined component.
     pub(crate) fn most_halvings(&self) -> u32 {
         self.components.iter().map(|component| component.refinement.target.halvings).max().unwrap_or(0)
     }
 
-    /// The components that have a level with so many to come, by their numbers, and the share of
-    /// its particles that each of them has.
+    /// The components that have the level with `to_come` levels after it, by index, and the share
+    /// of its particles that each has.
     pub(crate) fn at_level(&self, to_come: u32) -> Vec<(usize, f64)> {
         let all = self.components.iter().enumerate();
         let there = all.filter(|(_, component)| component.refinement.target.halvings >= to_come);
@@ -378,7 +378,7 @@ impl Components {
     }
 }
 
-/// Places of the rows of a component among those of all: `crease` is that of its first row on a
+/// Where the rows of a component lie among all rows: `crease` is the place of its first row on a
 /// crease, `inner` of its first other row.
 #[derive(Clone, Copy, Debug)]
 struct RowPlaces {
@@ -406,8 +406,8 @@ impl RowPlaces {
     }
 }
 
-/// The particles of all components in one set of columns, for a level with so many to come: first
-/// those on creases of all patches, then the others.
+/// The particles of all components in one set of columns, for the level with `to_come` levels after
+/// it: first those on creases of all patches, then the others.
 fn joined(components: &[AcceptedComponent], to_come: u32, ladder: Option<&CreaseLadder>) -> Particles {
     let places = RowPlaces::of(components);
     let (mut joint, mut patches) = (Particles::default(), Vec::new());
@@ -434,7 +434,7 @@ fn joined(components: &[AcceptedComponent], to_come: u32, ladder: Option<&Crease
     joint
 }
 
-/// Names the first row of every particle on a crease in place of its number, and the pairs of rows
+/// Replaces the number of every particle on a crease by its first row, and lists the pairs of rows
 /// that follow each other at this level.
 fn join_creases(particles: &mut Particles, to_come: u32, ladder: &CreaseLadder) {
     let mut first = vec![NONE; ladder.len()];
@@ -446,7 +446,7 @@ fn join_creases(particles: &mut Particles, to_come: u32, ladder: &CreaseLadder) 
     particles.share_radii();
     for (pair, sides) in ladder.pairs(to_come) {
         let rows = pair.map(|number| first[number as usize]);
-        // Pieces beyond the box are left out, and what only they have in common.
+        // Pieces beyond the box are left out, with what only they share.
         if !rows.contains(&NONE) {
             particles.segments.push(rows);
             particles.sides.push(sides.to_vec());
@@ -462,7 +462,7 @@ mod tests {
     use crate::particles::Slots;
     use crate::sampler::probe::ProbeMemory;
 
-    /// A spiral over the unit sphere, with about the radius of so many particles.
+    /// A spiral over the unit sphere, with about the radius of this many particles.
     fn sphere(count: u32) -> Particles {
         let mut particles = Particles::default();
         for k in 0..count {
@@ -504,7 +504,7 @@ mod tests {
         assert_eq!(tried, [4, 3, 2]);
         assert_eq!(fronts.components[0].refinement.target.halvings, 2);
         assert_eq!(fronts.components[0].particles.len(), 1_000);
-        // None is tried that is no coarser than what there is.
+        // Only fronts coarser than the present one are tried.
         let candidate = Candidate { component: 0, halvings: 3 };
         fronts.take_coarser(&mut probe, &surface, &sphere(2), target(3), candidate);
         assert!(fronts.candidates.is_empty());

@@ -1,20 +1,21 @@
 //! The refinement of a coarse front: order is made where particles are few, and kept where they are
 //! many.
 //!
-//! A front freezes the seams in where its grains meet, and no relaxation of all its particles mends
+//! A front freezes the seams where its grains meet, and no relaxation of all its particles mends
 //! them. But dividing every face of a mesh into four adds no defect: old particles keep their
-//! neighbours, and those on the middles of edges have six. So the front marches with a radius 2ᵏ
-//! times as large, is joined to a mesh and brought into order there, where a few hundred particles
-//! cost next to nothing; and then every edge is halved, k times, with a few sweeps at each level.
+//! neighbours, and those in the middles of edges have six. So the front marches with a radius 2ᵏ
+//! times as large, is joined to a mesh and ordered there, where a few hundred particles cost next
+//! to nothing; then every edge is halved, k times, with a few sweeps at each level.
 //!
-//! * *Sweeps* move every particle by the springs to its neighbours, in the manner of Gauss and
-//!   Seidel, and edges are flipped to those of Delaunay.
-//! * *Surgery* tries one particle more or one fewer beside a defect. On a curved surface an even
-//!   lattice has scars, lines of particles with five and seven neighbours in turn, that grow as the
-//!   spacing shrinks: M. J. Bowick, D. R. Nelson and A. Travesset, "Interacting topological defects
-//!   on frozen topographies", Physical Review B 62, 2000. Surgery makes and removes them where that
-//!   lowers the energy. Early rounds also accept a loss, so that a scar can leave a bad place: G.
-//!   Dueck and T. Scheuer, "Threshold accepting", Journal of Computational Physics 90, 1990.
+//! * *Sweeps* move every particle by the springs to its neighbours (Gauss–Seidel), and flip edges
+//!   that are not Delaunay.
+//! * *Surgery* tries one particle more or one fewer at a defect. On a curved surface an even
+//!   lattice has scars, lines of alternating particles with five and seven neighbours, that grow as
+//!   the spacing shrinks: M. J. Bowick, D. R. Nelson and A. Travesset, "Interacting topological
+//!   defects on frozen topographies", Physical Review B 62, 2000. Surgery makes and removes them
+//!   where that lowers the energy. Early rounds also accept a loss, so that a scar can leave a bad
+//!   place: G. Dueck and T. Scheuer, "Threshold accepting", Journal of Computational Physics 90,
+//!   1990.
 //! * *Lloyd's method*, at the last level of one size and near defects only, evens out the cells
 //!   that the springs leave too small at fives and too large at sevens: Q. Du, V. Faber and M.
 //!   Gunzburger, "Centroidal Voronoi Tessellations", SIAM Review 41(4), 1999.
@@ -54,31 +55,31 @@ use recipe::{LevelFacts, Pass, Recipe, TUNING};
 use surgery::{Aim, Surgeon};
 use tally::Tally;
 
-/// Rounds in which the spacing and the number of edges on the border are found from each other.
-/// Each leaves of the error half the share that edges of the border have among the faces: with one
-/// in ten, four leave 10⁻⁵ of it.
+/// Rounds that alternately compute the spacing and the number of edges on the border. Each
+/// multiplies the error by half the share of border edges among the faces: with one in ten, four
+/// rounds leave 10⁻⁵ of it.
 const BORDER_ROUNDS: u32 = 4;
 
 /// Units that a trial of surgery counts for. One takes 83,000 to 89,000 instructions, and a unit of
 /// the front 2,400 to 5,100.
 const TRIAL_UNITS: u32 = 32;
-/// Half-edges looked at for a unit. An edge takes 120 instructions, a particle of a sweep 1,500,
-/// and a face that is measured 1,600.
+/// Half-edges examined per unit. An edge takes 120 instructions, a particle of a sweep 1,500, and a
+/// face that is measured 1,600.
 const HALF_EDGES_PER_UNIT: u32 = 12;
 
 /// Fewest particles of a coarse front. Fewer: more particles have six neighbours, and angles are
 /// smaller. More: fewer have six, and a run takes longer.
 const LEAST_PARTICLES: u32 = 180;
 
-/// The number of levels, the radius and the count that a refinement is to reach.
+/// The number of levels, the radius and the count that a refinement should reach.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Target {
     /// Number of levels after the coarse one, k.
     pub(crate) halvings: u32,
-    /// Repulsion radius r of the particles of the last level; of sizes that differ, the one at
-    /// which as many of one size would cover the surface.
+    /// Repulsion radius r of the particles of the last level; with varying sizes, the radius at
+    /// which as many of equal size would cover the surface.
     pub(crate) radius: f32,
-    /// Largest slope of the radius, where sizes differ.
+    /// Largest slope of the radius, if sizes vary.
     pub(crate) grading: Option<f32>,
     /// Wanted number of particles of the last level.
     pub(crate) count: Count,
@@ -93,40 +94,39 @@ pub(crate) enum Count {
     PerCell(f64),
 }
 
-/// A refinement of one component or patch under way, or of components that are told apart by no
-/// front.
+/// The refinement under way of one component or patch, or of components that no front separates.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Refinement {
     target: Target,
-    /// The patch that is refined, of a surface with creases.
+    /// The patch that is refined, if the surface has creases.
     patch: Option<u32>,
     net: Net,
     shape: Shape,
     level: Goals,
     memory: Memory,
-    /// Sums over the faces, as far as the pass under way has come.
+    /// Sums over the faces that the pass under way has reached.
     tally: Tally,
     /// Number of passes of the recipe that have begun.
     begun: usize,
     /// Whether no particle had a defect when the level under way began.
     is_in_order: bool,
-    /// The finished mesh, by the particles at the corners of its faces.
+    /// The finished mesh: the particles at the corners of its faces.
     corners: Vec<u32>,
 }
 
-/// Properties that hold on every level of a refinement.
+/// Properties shared by all levels of a refinement.
 #[derive(Clone, Copy, Debug, Default)]
 struct Shape {
     euler: i64,
     has_border: bool,
     /// Whether creases are part of the border.
     is_creased: bool,
-    /// Wanted number of particles of the last level, once the surface has been measured.
+    /// Wanted number of particles of the last level, once the surface is measured.
     wanted: f64,
 }
 
-/// The part of the particles of a mesh at which surgery looks in a frame: part number `at` of `of`,
-/// in the order in which they came.
+/// The particles that surgery examines in one frame: part number `at` of `of`, in the order of
+/// their creation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turn {
     pub(crate) at: u32,
@@ -136,17 +136,17 @@ pub(crate) struct Turn {
 /// Goals of the level under way, and the recipe that leads to them.
 #[derive(Clone, Debug, Default)]
 struct Goals {
-    /// Whether it is the level of the front, where order is made. At full resolution the goals of a
-    /// last level follow on it.
+    /// Whether it is the level of the front, where the lattice is ordered. At full resolution the
+    /// goals of a last level follow.
     is_first: bool,
-    /// The turn of surgery, if it is no level but a frame of a mesh that follows a moving surface.
+    /// The turn of surgery, for a frame of a mesh that follows a moving surface instead of a level.
     turn: Option<Turn>,
     /// Levels still to come after this one.
     to_come: u32,
     recipe: Recipe,
     /// Spacing of the hexagonal lattice with the wanted number of particles of this level.
     spacing: f32,
-    /// Number of faces that this level is to have.
+    /// Wanted number of faces of this level.
     faces: f32,
 }
 
@@ -159,14 +159,13 @@ struct Memory {
     near: Vec<u32>,
 }
 
-/// A net whose faces have been divided, from which the particles of the finer one come.
+/// A net whose faces have been divided; the finer net takes its particles from it.
 #[derive(Debug)]
 pub(crate) struct Coarse {
     net: Net,
-    /// The edge that each particle of the finer net halves; `[v, NONE]` where it is particle v of
-    /// this one.
+    /// The edge that each particle of the finer net halves; `[v, NONE]` for particle v of this one.
     ends: Vec<[u32; 2]>,
-    /// Particles so far that have a defect.
+    /// Particles with a defect so far.
     defects: u32,
 }
 
@@ -188,7 +187,7 @@ impl Refinement {
     ///
     /// # Errors
     ///
-    /// The defect for which the front is refused.
+    /// The defect that refuses the front.
     fn of_component(
         probe: &mut Probe,
         surface: &SurfaceFacts,
@@ -203,7 +202,7 @@ impl Refinement {
     ///
     /// # Errors
     ///
-    /// The defect for which the front is refused.
+    /// The defect that refuses the front.
     fn new(
         probe: &mut Probe,
         surface: &SurfaceFacts,
@@ -227,7 +226,7 @@ impl Refinement {
                 to_come: target.halvings,
                 is_graded: target.grading.is_some(),
                 has_border: shape.has_border,
-                // The first recipe does not depend on it.
+                // The first recipe does not use it.
                 defects: 0.0,
             }),
             net,
@@ -240,8 +239,8 @@ impl Refinement {
         }
     }
 
-    /// Share of the particles that is due to it: its area, or ∫ dA / r² where the radius r differs,
-    /// in units that all components share.
+    /// The share of the particles due to it: its area, or ∫ dA / r² if the radius r varies, in
+    /// units common to all components.
     fn weight(&mut self, probe: &mut Probe, sizing: Option<&Sizing>) -> f64 {
         let Some(sizing) = sizing else { return self.area() };
         let probe = &mut probe.on(self.patch);
@@ -266,7 +265,7 @@ impl Refinement {
         tally
     }
 
-    /// Levels that come after the present one.
+    /// Levels after the present one.
     pub(crate) fn to_come(&self) -> u32 {
         self.level.to_come
     }
@@ -274,7 +273,7 @@ impl Refinement {
     /// Share of the passes of this level that have ended.
     pub(crate) fn share(&self) -> f64 {
         let at = self.begun.saturating_sub(1) as f64 / self.level.recipe.passes.len() as f64;
-        // At full resolution the goals of a last level follow on those of the first one.
+        // At full resolution the goals of a last level follow those of the first one.
         match (self.target.halvings, self.level.is_first) {
             (0, true) => 0.5 * at,
             (0, false) => 0.5 + 0.5 * at,
@@ -296,8 +295,8 @@ impl Refinement {
             };
         }
         let share = f64::from(1_u32 << (2 * self.level.to_come));
-        // Half of the faces at a crease are those of the other patch, so that a patch has two for
-        // each of its particles.
+        // Half of the faces at a crease belong to the other patch, so a patch has two for each of
+        // its particles.
         let euler = if self.shape.is_creased { 0.0 } else { self.shape.euler as f64 };
         let is_graded = self.net.is_graded();
         // A closed surface has 2 (N − χ) faces, and a division makes four of each.
@@ -314,8 +313,7 @@ impl Refinement {
         };
         let mut faces = closed;
         if tally.border > 0.0 {
-            // With a border there are as many fewer as there are edges on it, and a division makes
-            // two of each of those.
+            // A border edge takes one face away, and a division makes two of each border edge.
             for _ in 0..BORDER_ROUNDS {
                 faces = (closed - tally.border / (spacing(faces) * share.sqrt())).max(1.0);
             }
@@ -328,7 +326,7 @@ impl Refinement {
     /// after the last pass.
     pub(crate) fn begin_pass(&mut self) -> Option<Range<u32>> {
         if self.begun == self.level.recipe.passes.len() && self.level.is_first && self.level.to_come == 0 {
-            // At full resolution the lattice comes to rest where order was made.
+            // At full resolution the lattice relaxes on the level where it was ordered.
             let net = &self.net;
             let all = (0..net.mesh.vertex_slots() as u32).filter(|&v| net.mesh.has_vertex(v));
             let (count, defects) =
@@ -364,12 +362,12 @@ impl Refinement {
         })
     }
 
-    /// Goes on with a pass: does the blocks of its range that the budget allows, and takes them
-    /// from the range. Says whether the pass has ended.
+    /// Continues a pass: does the blocks of its range that the budget allows, and takes them from
+    /// the range. Returns whether the pass has ended.
     ///
     /// # Errors
     ///
-    /// The defect for which the refinement cannot go on.
+    /// The defect that stops the refinement.
     pub(crate) fn go_on(
         &mut self,
         probe: &mut Probe,
@@ -440,7 +438,7 @@ impl Refinement {
                 }
             }
             Pass::Find => {
-                // Where the box cuts the surface, the springs leave fives alone better: Lloyd's
+                // Where the box cuts the surface, the springs handle lone fives better: Lloyd's
                 // method there costs 0.5° of the mean angle.
                 let is_cut = self.shape.has_border && !self.shape.is_creased;
                 let is_defect = |&v: &u32| {
@@ -464,7 +462,7 @@ impl Refinement {
         Ok(units)
     }
 
-    /// Begins a level after the coarse one. A share of its particles has `defects`.
+    /// Begins a level after the coarse one. `defects` is the share of its particles with a defect.
     fn begin_level(&mut self, to_come: u32, defects: f32) {
         let (is_graded, has_border) = (self.target.grading.is_some(), self.shape.has_border);
         self.level = Goals::new(&LevelFacts { is_first: false, to_come, is_graded, has_border, defects });
@@ -477,13 +475,13 @@ impl Refinement {
         sizes::slope(self.target.grading.unwrap_or(0.0), self.level.to_come) / spacing
     }
 
-    /// Ends a pass: does the work that its particles, half-edges or faces need together.
+    /// Ends a pass: does the work that concerns all its particles, half-edges or faces together.
     fn end_pass(&mut self) -> Result<(), Refusal> {
         match self.kind() {
             Pass::Measure => self.measure(),
             Pass::Find => self.memory.surgeon.widen(&self.net.mesh, &mut self.memory.near),
             Pass::Mend { .. } if !self.memory.surgeon.take_kept() => {
-                // There is nothing new to be brought to rest.
+                // Nothing new has to relax.
                 let is_calm = |pass: &&Pass| matches!(pass, Pass::Sweep | Pass::Flip);
                 self.begun += self.level.recipe.passes[self.begun..].iter().take_while(is_calm).count();
             }
@@ -500,16 +498,16 @@ impl Refinement {
         Ok(())
     }
 
-    /// Begins to put the particles of a finished level in order.
+    /// Begins to sort the particles of a finished level.
     pub(crate) fn begin_order(&mut self) -> Rings {
         let block = core::mem::take(&mut self.memory.block);
-        // Before the columns of the finished level take their place.
+        // Memory is freed before the columns of the finished level take its place.
         self.memory =
             if self.level.to_come == 0 { Memory::default() } else { Memory { block, ..Memory::default() } };
         Rings::new(&self.net, self.target.radius * (1_u32 << self.level.to_come) as f32)
     }
 
-    /// Goes on with the order of the particles, until all are in order.
+    /// Continues to sort the particles, until all are in order.
     pub(crate) fn put_in_order(&self, rings: &mut Rings, left: &mut u32) -> Option<Rings> {
         rings.go_on(&self.net, left).then(|| core::mem::take(rings))
     }
@@ -517,8 +515,8 @@ impl Refinement {
     /// The particles of the finished level, in their order.
     pub(crate) fn end_level(&mut self, rings: Rings) -> Particles {
         if self.level.to_come == 0 {
-            // Of the net nothing else is needed any more. Surgery, which removes faces, may have
-            // been at work on a last level that is the first one too.
+            // Nothing else of the net is needed any more. On a last level that is also the first,
+            // surgery may have removed faces.
             let corners = core::mem::take(&mut self.net).mesh.into_corners();
             self.corners = corners.into_iter().filter_map(|v| rings.place(v)).collect();
         }
@@ -530,7 +528,7 @@ impl Refinement {
         Subdivision::new(&self.net.mesh)
     }
 
-    /// Goes on with a division. Once every face is divided, the net that they were of is returned.
+    /// Continues a division. Once every face is divided, returns the net before it.
     pub(crate) fn divide(&mut self, division: &mut Subdivision, left: &mut u32) -> Option<Coarse> {
         while *left > 0 {
             let is_done = division.step(&self.net.mesh, BLOCK as u32);
@@ -545,13 +543,13 @@ impl Refinement {
         None
     }
 
-    /// Puts the particles of a net whose faces were divided, and those between them, onto the
-    /// surface and into the columns of the finer net. Says whether all are there; the level of the
-    /// finer net begins then.
+    /// Puts the particles of a divided net, and those between them, onto the surface and into the
+    /// columns of the finer net. Returns whether all are there; the level of the finer net begins
+    /// then.
     ///
     /// # Errors
     ///
-    /// The particle that does not come to the surface.
+    /// The particle that does not reach the surface.
     pub(crate) fn land(
         &mut self,
         probe: &mut Probe,
@@ -567,7 +565,7 @@ impl Refinement {
             let end = ends.len().min(start + BLOCK);
             for &ends in &ends[start..end] {
                 net.push_from(coarse, ends, surface.ladder);
-                // A particle on the middle of an edge has none.
+                // A particle in the middle of an edge has none.
                 *defects += u32::from(matches!(ends, [old, NONE] if coarse.excess(old) != 0));
             }
             let mut ground = Ground { probe: &mut *probe, block: &mut self.memory.block };
@@ -583,7 +581,7 @@ impl Refinement {
     }
 }
 
-/// Share of the work that is done when a front is placed that has so many levels to come, each of
+/// Share of the work that is done when a front is placed with this many levels to come, each of
 /// which takes four times as long as the one before.
 pub(crate) fn coarse_share(halvings: u32) -> f64 {
     1.0 / f64::from(1_u32 << (2 * (halvings + 1)))

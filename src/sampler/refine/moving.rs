@@ -1,13 +1,13 @@
 //! The mesh of a refined run that follows a surface while it moves, frame by frame.
 //!
-//! Newton's method brings the particles to the new surface, the springs and flips of a level keep
-//! the lattice even, and surgery lets particles be born and die where that costs least order: M.
-//! Botsch and L. Kobbelt, "A Remeshing Approach to Multiresolution Modeling", Symposium on Geometry
-//! Processing 2004, with the trials of this module in place of splits and collapses by length.
-//! Where sizes differ, those of the radius field are found anew at the new places, in every frame.
+//! Newton's method moves the particles onto the new surface, the springs and flips of a level keep
+//! the lattice even, and surgery lets particles be born and die where that disturbs the order
+//! least: M. Botsch and L. Kobbelt, "A Remeshing Approach to Multiresolution Modeling", Symposium
+//! on Geometry Processing 2004, with trials instead of splits and collapses by length. Varying
+//! sizes are taken from the radius field at the new places, in every frame.
 //!
-//! Where a particle does not come to the surface, or a face looks against it, the surface has torn
-//! or joined. The mesh is given up then, and the particles go on without it:
+//! If a particle does not reach the surface, or a face looks against it, the surface has torn or
+//! joined. The mesh is then given up, and the particles continue without it:
 //! [`Flow`](crate::sampler::flow::Flow).
 
 use super::net::{Ground, MovedBlock, Net};
@@ -29,8 +29,8 @@ pub(crate) struct MovingMesh {
 
 impl MovingMesh {
     /// Begins a frame with the particles of the frame before, and the mesh between them by its
-    /// `corners`. Particles are born and die among those whose `turn` it is. None if the mesh does
-    /// not end at the box.
+    /// `corners`. Particles are born and die among those whose `turn` it is. None if the mesh ends
+    /// somewhere off the box.
     pub(crate) fn new(
         particles: &Particles,
         corners: &[u32],
@@ -51,11 +51,11 @@ impl MovingMesh {
         Some(Self { refinement, area })
     }
 
-    /// Joins particles that have followed the surface without a mesh to one.
+    /// Joins particles that have followed the surface without a mesh into one.
     ///
     /// # Errors
     ///
-    /// The place where that is in doubt.
+    /// The place where the mesh is in doubt.
     pub(crate) fn join(
         probe: &mut Probe,
         particles: &Particles,
@@ -73,14 +73,14 @@ impl MovingMesh {
         Ok(Self { refinement, area })
     }
 
-    /// Factor by which lengths on the surface have grown in this frame.
+    /// Factor by which lengths on the surface grew in this frame.
     pub(crate) fn growth(&self) -> f64 {
         (self.refinement.area() / self.area).sqrt()
     }
 
-    /// Puts the particles of the finished frame into the columns of the frame before, those that
-    /// were born last, and the mesh into `corners`. A frame that was cancelled before leaves both
-    /// as they were.
+    /// Writes the particles of the finished frame to the columns of the frame before, new ones
+    /// last, and the mesh to `corners`. A frame that was cancelled earlier leaves both as they
+    /// were.
     pub(crate) fn hand_on(self, radius: f32, particles: &mut Particles, corners: &mut Vec<u32>) {
         let net = self.refinement.net;
         let (old, born): (Vec<u32>, Vec<u32>) = (0..net.position.len() as u32)
@@ -112,8 +112,8 @@ impl MovingMesh {
 }
 
 impl Net {
-    /// The net of particles with these triangles between them, with sizes in units of the radius of
-    /// the target. None if that is no manifold.
+    /// The net of particles with these triangles between them, with sizes in units of the target's
+    /// radius. None if it is no manifold.
     fn over(
         particles: &Particles,
         triangles: &[[u32; 3]],
@@ -138,7 +138,7 @@ impl Net {
         })
     }
 
-    /// Lets the particles of the border stay on the planes of the box on which they lie. Returns
+    /// Binds the particles of the border to the planes of the box on which they lie. Returns
     /// whether each of them lies on one.
     fn hold_border(&mut self) -> bool {
         for v in 0..self.position.len() as u32 {

@@ -1,4 +1,4 @@
-//! The particles of one level and the surface between them: sweeps, flips and the way back onto the
+//! The particles of one level and the surface between them: sweeps, flips and the return to the
 //! surface.
 
 use super::walls::{Planes, Site, Walls};
@@ -10,27 +10,27 @@ use crate::sampler::constraint::{CreaseLadder, tips::LEAST_RING};
 use crate::sampler::probe::{BATCH, Probe};
 use glam::Vec3;
 
-/// Particles that are moved before they are brought back onto the surface together. A choice.
+/// Particles that are moved before they return to the surface together. A choice.
 pub(super) const BLOCK: usize = 64;
 
 /// No move is longer than this share of the spacing. Larger: more narrow wedges are refused;
 /// smaller: fewer. Elsewhere it hardly matters.
 const MAX_MOVE: f32 = 0.3;
-/// A particle whose correction is longer than this share of the spacing has left the surface; it
-/// goes back to where it was. Larger: a mesh may get an Euler number that the surface has not.
+/// A particle whose correction is longer than this share of the spacing has left the surface and is
+/// put back. Larger: a mesh may get an Euler number that the surface does not have.
 const MAX_CORRECTION: f32 = 0.5;
-/// No step to a surface that has moved is longer than this share of the spacing. Particles without
-/// a mesh are followed as far.
+/// No step to a surface that has moved is longer than this share of the spacing, as for particles
+/// without a mesh.
 const LONGEST_WAY: f32 = 1.0;
-/// An edge is flipped only if its angles exceed π by so much that rounding cannot flip it back, as
+/// An edge is flipped only if its angles exceed π by more than rounding, which could flip it back
 /// on a symmetric surface.
 const FLIP_SLACK: f32 = 1e-5;
 
 /// Neighbours nearer to each other than this share of the spacing move apart in Lloyd's method.
 /// Smaller: the closest pairs are nearer, and the smallest angles smaller.
 const SHORT: f32 = 0.86;
-/// Share of the missing length by which each of the two moves. Two halves would restore one edge,
-/// but a particle has several short ones, and would be moved too far.
+/// Share of the missing length by which each of the two moves. With halves one edge would be
+/// restored, but a particle with several short ones would move too far.
 const PUSH: f32 = 1.0 / 3.0;
 
 /// The springs between neighbours: their energy is Σ (l − θa)² over the edges.
@@ -45,8 +45,8 @@ pub(super) struct Springs {
     pub(super) spacing: f32,
     /// Rest length over spacing, θ.
     pub(super) theta: f32,
-    /// Over-relaxation factor ω. With 1 a particle moves to where its springs would be at rest if
-    /// all others were held.
+    /// Over-relaxation factor ω. With 1 a particle moves to the equilibrium of its springs with all
+    /// others held.
     pub(super) omega: f32,
 }
 
@@ -62,16 +62,16 @@ pub(super) struct Ground<'a, 'field> {
     pub(super) block: &'a mut MovedBlock,
 }
 
-/// Particles that have been moved and not yet been brought back onto the surface.
+/// Particles that have been moved and not yet returned to the surface.
 #[derive(Clone, Debug, Default)]
 pub(super) struct MovedBlock {
     which: Vec<u32>,
     /// Positions of the particles of the block before the move.
     before: Vec<Vec3>,
     points: Vec<Vec3>,
-    /// Principal curvatures at the particles of the block, from which their sizes follow.
+    /// Principal curvatures at the particles of the block, which determine their sizes.
     pub(super) curvature: Vec<Curvature>,
-    /// Particles that could not be brought back onto the surface.
+    /// Particles that could not return to the surface.
     pub(super) refused: Vec<u32>,
 }
 
@@ -98,15 +98,15 @@ pub(super) struct Net {
     pub(super) normal: Vec<Vec3>,
     /// Fates of the slots of the particles that the front placed; undecided for all others.
     pub(super) slots: Vec<Slots>,
-    /// Wanted spacing at each particle, in units of that of the springs. Empty where it is the same
+    /// Wanted spacing at each particle, in units of the springs' spacing. Empty if it is the same
     /// everywhere.
     pub(super) size: Vec<f32>,
-    /// The box, and the planes of it on which the particles lie.
+    /// The box, and its planes on which the particles lie.
     pub(super) walls: Walls,
     /// The number of each particle on a crease or a tip: see [`CreaseLadder`]. [`NONE`] for the
-    /// others; empty where the surface has neither.
+    /// others; empty if the surface has neither.
     pub(super) on_crease: Vec<u32>,
-    /// Whether each particle was born since the surface moved. Empty where no surface moves.
+    /// Whether each particle was born since the surface moved. Empty if no surface moves.
     pub(super) is_born: Vec<bool>,
 }
 
@@ -122,13 +122,13 @@ impl Net {
         }
     }
 
-    /// Wanted spacing at `v`, in units of that of the springs.
+    /// Wanted spacing at `v`, in units of the springs' spacing.
     #[inline]
     pub(super) fn size_of(&self, v: u32) -> f32 {
         self.size.get(v as usize).copied().unwrap_or(1.0)
     }
 
-    /// Whether sizes differ.
+    /// Whether sizes vary.
     pub(super) fn is_graded(&self) -> bool {
         !self.size.is_empty()
     }
@@ -139,10 +139,10 @@ impl Net {
         0.5 * (self.size_of(a) + self.size_of(b))
     }
 
-    /// Moves each particle by its springs, and then brings them back onto the surface together.
+    /// Moves each particle by its springs, and then returns them to the surface together.
     ///
-    /// A particle sees the new places of those before it, as in the method of Gauss and Seidel.
-    /// That these are not yet back on the surface changes a distance in second order only.
+    /// As in the Gauss–Seidel method, a particle sees the new places of those before it. These are
+    /// not yet back on the surface, which changes distances only in second order.
     #[inline]
     pub(super) fn relax(
         &mut self,
@@ -153,8 +153,8 @@ impl Net {
         self.shift(ground, springs.spacing, particles, |net, v| net.pull(springs, v));
     }
 
-    /// Moves each particle by its springs along its tangent plane, and does not bring it back onto
-    /// the surface.
+    /// Moves each particle by its springs along its tangent plane, without returning it to the
+    /// surface.
     pub(super) fn drift(&mut self, springs: Springs, particles: impl Iterator<Item = u32>) {
         for v in particles.filter(|&v| self.mesh.has_vertex(v)) {
             self.position[v as usize] = self.moved(v, springs.spacing, self.pull(springs, v));
@@ -177,7 +177,7 @@ impl Net {
         force * (springs.omega / (degree * stiffness))
     }
 
-    /// Mean length of the edges of `v`, in units of the wanted ones.
+    /// Mean length of the edges of `v`, relative to the wanted lengths.
     pub(super) fn mean_stretch(&self, springs: Springs, v: u32) -> f32 {
         let p = self.position[v as usize];
         let (mut sum, mut degree) = (0.0, 0.0_f32);
@@ -247,8 +247,8 @@ impl Net {
         moment / (3.0 * area)
     }
 
-    /// Moves each particle by the tangential part of `step`, one after the other, and brings all
-    /// back onto the surface.
+    /// Moves each particle by the tangential part of `step`, one after the other, and returns all
+    /// to the surface.
     #[inline]
     fn shift(
         &mut self,
@@ -270,8 +270,8 @@ impl Net {
         self.settle(ground, spacing, false);
     }
 
-    /// The position of a particle after the tangential part of a step, which is no longer than a
-    /// share of the spacing.
+    /// The position of a particle after the tangential part of a step, at most a share of the
+    /// spacing long.
     #[inline]
     fn moved(&self, v: u32, spacing: f32, step: Vec3) -> Vec3 {
         let (p, n) = (self.position[v as usize], self.normal[v as usize]);
@@ -283,12 +283,12 @@ impl Net {
         if length > farthest {
             step *= farthest / length;
         }
-        // Two particles at one place have no direction.
+        // Two particles at one place define no direction.
         if step.is_finite() { p + step } else { p }
     }
 
-    /// Brings particles that were put near the surface onto it, or those of a surface that has
-    /// moved to it: out of the box if they `may_leave` it.
+    /// Moves particles near the surface onto it, or particles of a moved surface onto the new one:
+    /// out of the box if they `may_leave` it.
     pub(super) fn land(
         &mut self,
         ground: &mut Ground,
@@ -304,9 +304,9 @@ impl Net {
         self.settle(ground, spacing, may_leave);
     }
 
-    /// Brings the particles of the block back onto the surface, by one step of Newton's method
-    /// along the gradient, and onto the planes of the box on which they lie, out of the box if they
-    /// `may_leave` it. Those that could not be go back to where they were.
+    /// Returns the particles of the block to the surface by one step of Newton's method along the
+    /// gradient, and to their planes of the box, out of the box if they `may_leave` it. Particles
+    /// that cannot return are put back.
     fn settle(&mut self, ground: &mut Ground, spacing: f32, may_leave: bool) {
         let MovedBlock { which, before, points, refused, .. } = &mut *ground.block;
         refused.clear();
@@ -327,7 +327,7 @@ impl Net {
     }
 
     /// The position of a particle at `p` after one step of Newton's method, and the normal there;
-    /// none if it cannot be brought back.
+    /// none if it cannot return.
     #[inline]
     fn landing(
         &self,
@@ -390,7 +390,7 @@ impl Net {
         (d - a).cross(c - a).dot(up) > 0.0 && (c - b).cross(d - b).dot(up) > 0.0 && self.mesh.can_flip(h)
     }
 
-    /// Flips the edges of these half-edges that are not Delaunay's; each edge is looked at once.
+    /// Flips the edges of these half-edges that are not Delaunay; each edge is examined once.
     pub(super) fn flip(&mut self, half_edges: core::ops::Range<u32>) {
         for h in half_edges {
             if self.mesh.has_half_edge(h) && h < self.mesh.twin(h) && self.wants_flip(h) {
@@ -406,8 +406,8 @@ impl Net {
     }
 
     /// Whether a face with this [area vector](Self::area_vector) faces as the surface does at its
-    /// corner `v`: the cosine of the angle between them is above `least`. Any face does at a tip,
-    /// where the surface has no normal.
+    /// corner `v`: the cosine of the angle between them is above `least`. At a tip, where the
+    /// surface has no normal, any face does.
     pub(super) fn faces_as(&self, area: Vec3, v: u32, least: f32) -> bool {
         // Written so that NaN does not.
         area.dot(self.normal[v as usize]) > least * area.length() || self.is_tip(v)
@@ -430,7 +430,7 @@ impl Net {
         }
     }
 
-    /// The normals at two neighbours. At a tip there is none: along a ray of a cone it is
+    /// The normals at two neighbours. A tip has none: along a ray of a cone the normal is
     /// everywhere that of the other end.
     fn normals(&self, a: u32, b: u32) -> [Vec3; 2] {
         let own = |v: u32, other: u32| self.normal[if self.is_tip(v) { other } else { v } as usize];
@@ -459,8 +459,8 @@ impl Net {
         Site::smooth(position, normal, self.planes_between(a, b))
     }
 
-    /// Whether a particle stays where it is, with the normal that it has: creases end there, or it
-    /// is a tip, where f has no gradient.
+    /// Whether a particle is fixed, with its normal: creases end there, or it is a tip, where f has
+    /// no gradient.
     #[inline]
     fn is_pinned(&self, v: u32) -> bool {
         self.walls.planes(v).is_crease_end()
@@ -478,9 +478,9 @@ impl Net {
         self.is_tip(v) && self.mesh.valence(v) <= LEAST_RING as usize
     }
 
-    /// Difference between a particle's valence and that of a particle without a defect: six, and
-    /// four on the border, where three triangles of 60° fill the half-plane. Where creases end and
-    /// at tips every valence is as good.
+    /// Difference between a particle's valence and the valence without a defect: six, and four on
+    /// the border, where three triangles of 60° fill the half-plane. Where creases end and at tips
+    /// every valence is good.
     #[inline]
     pub(super) fn excess(&self, v: u32) -> i32 {
         if self.is_pinned(v) {
@@ -490,15 +490,15 @@ impl Net {
         self.mesh.valence(v) as i32 - wanted
     }
 
-    /// The site of the one of two particles that is bound to more planes, that of `b` if they are
-    /// bound to as many.
+    /// The site of the particle that is bound to more planes, `b` if both are bound to equally
+    /// many.
     pub(super) fn more_bound(&self, a: u32, b: u32) -> Site {
         let [first, second] = [a, b].map(|v| self.site(v));
         if first.planes.count() > second.planes.count() { first } else { second }
     }
 
-    /// Gives every column that is filled so many rows: those that are new are to be
-    /// [put](Self::put_new) somewhere.
+    /// Resizes every filled column to this many rows; new rows have to be [put](Self::put_new)
+    /// somewhere.
     pub(super) fn resize(&mut self, rows: usize) {
         fn resize<T: Copy>(column: &mut Vec<T>, rows: usize, value: T) {
             if !column.is_empty() {
@@ -514,8 +514,8 @@ impl Net {
         resize(&mut self.is_born, rows, true);
     }
 
-    /// Puts a new particle of this size to a site. Its number is the next one, or that of one which
-    /// was merged into another.
+    /// Puts a new particle of this size at a site. Its number is the next one, or that of a merged
+    /// particle.
     pub(super) fn put_new(&mut self, v: u32, site: Site, size: f32) {
         self.resize(self.position.len().max(v as usize + 1));
         self.put(v, site);
@@ -528,7 +528,7 @@ impl Net {
         }
     }
 
-    /// Puts a particle to a site.
+    /// Moves a particle to a site.
     pub(super) fn put(&mut self, v: u32, site: Site) {
         self.position[v as usize] = site.position;
         self.normal[v as usize] = site.normal;
@@ -538,7 +538,7 @@ impl Net {
         }
     }
 
-    /// Lets the particles on creases, which have these numbers, stay where they are.
+    /// Fixes the particles on creases, which have these numbers.
     pub(super) fn hold_creases(&mut self, ladder: &CreaseLadder, numbers: Vec<u32>) {
         self.walls.planes.resize(self.position.len(), Planes::INNER);
         for (v, &number) in (0..).zip(&numbers).filter(|(_, number)| **number != NONE) {
@@ -568,9 +568,9 @@ impl Net {
         if is_between { ladder.middle(m, n) } else { None }
     }
 
-    /// Adds the next particle of a level finer than `coarse`: the one that halves an edge between
-    /// two particles of that, or the old one v where the ends are `[v, NONE]`. On creases it is
-    /// that of the ladder.
+    /// Adds the next particle of a level finer than `coarse`: the middle of an edge between two of
+    /// its particles, or the old one v if the ends are `[v, NONE]`. On creases the ladder's
+    /// particle is used.
     pub(super) fn push_from(&mut self, coarse: &Self, ends: [u32; 2], ladder: Option<&CreaseLadder>) {
         let (mut site, slots, size) = match ends {
             [old, NONE] => (coarse.site(old), coarse.slots[old as usize], coarse.size_of(old)),
@@ -592,9 +592,9 @@ impl Net {
         self.walls.planes.extend(coarse.walls.is_near().then_some(site.planes));
     }
 
-    /// Whether the two ends of a half-edge can be merged: the mesh stays one of the same kind,
-    /// corners stay, and a particle on the border is merged along the border only. One on a crease
-    /// stays, and takes in one beside it on a face of the box.
+    /// Whether the two ends of a half-edge can be merged: the mesh keeps its topology, corners
+    /// stay, and a particle on the border is merged only along the border. A particle on a crease
+    /// stays, and only takes in one next to it on a face of the box.
     pub(super) fn can_merge(&self, h: u32) -> bool {
         let [m, n] = [self.mesh.origin(h), self.mesh.target(h)].map(|v| self.walls.planes(v));
         let is_along_box = self.mesh.twin(h) == NONE && !m.common(n).of_box().is_inner();
@@ -610,7 +610,7 @@ impl Net {
             return true;
         }
         if self.mesh.twin(h) != NONE {
-            // An inner particle goes to the border; the other way, the border would be moved.
+            // An inner particle is merged into the border; the other way would move the border.
             return m.is_inner();
         }
         !(m.common(n).is_inner() || m.is_corner() && n.is_corner())

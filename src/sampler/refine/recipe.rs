@@ -3,33 +3,33 @@
 /// A pass over the particles, the half-edges or the faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Pass {
-    /// Takes the sizes from the radius field or, if not `is_whole`, their square roots: half-way
-    /// from one size to those of the field.
+    /// Takes the sizes from the radius field or, if not `is_whole`, their square roots: halfway
+    /// from one size to the field's.
     Size { is_whole: bool },
     /// Limits the slope of the sizes, from the first particle to the last one or back.
     Limit { back: bool },
-    /// Measures the faces, from which the spacing follows.
+    /// Measures the faces, which determines the spacing.
     Measure,
     /// A sweep of the springs.
     Sweep,
     /// Flips the edges that are not Delaunay's.
     Flip,
-    /// A round of surgery, which also keeps trials that lose up to `loss`, in units of the spacing
-    /// squared.
+    /// A round of surgery, which also accepts trials that lose up to `loss`, in units of the
+    /// spacing squared.
     Mend { loss: f32 },
     /// Finds the particles near defects.
     Find,
     /// A step of Lloyd's method for the particles near defects.
     Centre,
-    /// Takes out one of each pair of particles that crowd at the border.
+    /// Removes one of each pair of particles that crowd at the border.
     Thin,
-    /// A step of Newton's method for every particle, so that positions and normals are those of the
+    /// A step of Newton's method for every particle, so that positions and normals are on the
     /// surface.
     Land,
     /// A step of Newton's method to a surface that has moved for every particle, out of the box if
     /// it leads there.
     Follow,
-    /// Cuts away what lies beyond the box.
+    /// Cuts away the part beyond the box.
     Clip,
     /// Checks the orientation of the finished faces.
     Inspect,
@@ -43,8 +43,8 @@ pub(super) struct Recipe {
     pub(super) theta: f32,
     /// Price of a defect, in units of the spacing squared.
     pub(super) delta: f32,
-    /// Share by which the edges of a particle without a defect are too short or too long on average
-    /// where surgery is tried on it as well.
+    /// Surgery also tries a particle without a defect if its edges are too short or too long by
+    /// this share on average.
     pub(super) stretch: f32,
 }
 
@@ -61,35 +61,34 @@ pub(super) struct Plan {
 
 /// Tuning parameters of the recipes.
 pub(super) struct Tuning {
-    /// Plan of the coarse level, whose particles are few: order is made there.
+    /// Plan of the coarse level, where the few particles are ordered.
     first: Plan,
-    /// Plan of the levels between, where order is kept while scars grow.
+    /// Plan of the levels between, which keep the order while scars grow.
     between: Plan,
-    /// Plan of the last level, where the lattice comes to rest. With one size surgery would add
-    /// more defects there than it removes.
+    /// Plan of the last level, where the lattice relaxes. With one size surgery would add more
+    /// defects there than it removes.
     last: Plan,
     /// Rounds of surgery at every level before the last one, with a sweep after each. The first
-    /// half of them is left out where they cost most: on the last level but one, and on a first
-    /// level at full resolution, which then comes to rest by the plan of the last one.
+    /// half of them is skipped where they cost most: on the last level but one, and on a first
+    /// level at full resolution, which then relaxes by the last level's plan.
     rounds: usize,
-    /// Share by which edges are too short or too long where surgery is tried on a particle without
-    /// a defect.
+    /// Surgery tries a particle without a defect if its edges are too short or too long by this
+    /// share.
     stretch: f32,
-    /// Share by which edges are too short or too long where surgery is tried on a particle without
-    /// a defect in a frame of a moving mesh, and at the last level of sizes that differ. There
-    /// order is to be kept.
+    /// The same share for a frame of a moving mesh, and for the last level of varying sizes, where
+    /// order has to be kept.
     kept_stretch: f32,
-    /// Least gain of a trial in a frame of a moving mesh, and at the last level of sizes that
-    /// differ, in units of the spacing squared.
+    /// Least gain of a trial in a frame of a moving mesh, and at the last level of varying sizes,
+    /// in units of the spacing squared.
     least_gain: f32,
     /// Loss that the first round of surgery accepts, in units of the spacing squared. It falls to 0
-    /// in the last one.
+    /// by the last round.
     loss: f32,
     /// Over-relaxation of the sweeps.
     pub(super) omega: f32,
     /// Decrease of the rest length of the last level per share of particles with a defect: the more
     /// defects there are, the more the lattice between them is strained, and the stiffer in shear
-    /// it has to be.
+    /// it must be.
     theta_per_defect: f32,
     /// Shortest rest length of the last level.
     least_theta: f32,
@@ -97,9 +96,9 @@ pub(super) struct Tuning {
     most_theta: f32,
     /// Steps of Lloyd's method near the defects of the last level.
     lloyd: usize,
-    /// Rounds of surgery at the sizes half-way from one size to those of the radius field, at which
-    /// the other rounds of the first level follow; and as many rounds at the last level of sizes
-    /// that differ, the first one at which they may be as steep as they are wanted.
+    /// Rounds of surgery at sizes halfway between one size and the radius field; the other rounds
+    /// of the first level follow at full sizes. The last level of varying sizes, the first with the
+    /// full slope, has as many rounds.
     graded_rounds: usize,
 }
 
@@ -112,7 +111,7 @@ pub(super) const TUNING: Tuning = Tuning {
     first: Plan { sweeps: 10, theta: 0.8, delta: 0.045 },
     // If both θ and δ are smaller, holes are wider.
     between: Plan { sweeps: 4, theta: 0.9, delta: 0.015 },
-    // θ without a defect, before the limits below.
+    // θ without defects, before the limits below.
     last: Plan { sweeps: 6, theta: 1.3, delta: 0.0 },
     // More are no better. At full resolution the second half of them heals as much as all.
     rounds: 10,
@@ -120,12 +119,12 @@ pub(super) const TUNING: Tuning = Tuning {
     stretch: 0.04,
     // Without it holes are wider; smaller: a frame takes longer.
     kept_stretch: 0.2,
-    // With 0 fewer of the first particles live to the end. Larger: more do, and holes are wider.
+    // With 0 fewer of the first particles survive. Larger: more do, and holes are wider.
     least_gain: 0.2,
     // Smaller: holes are wider. Larger: fewer particles of a surface that a box cuts have six
     // neighbours.
     loss: 0.1,
-    // Half-way from 1, where sweeps are slow, to 2, where those of a quadratic energy diverge.
+    // Halfway from 1, where sweeps are slow, to 2, where they diverge for a quadratic energy.
     omega: 1.5,
     // The limits below then hold for one defect in a hundred particles and for one in forty.
     // Smaller: pairs are farther apart, and angles smaller; larger: the other way round.
@@ -143,11 +142,11 @@ pub(super) const TUNING: Tuning = Tuning {
 /// The level for which a recipe is made.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LevelFacts {
-    /// Whether it is the coarse level, where order is made.
+    /// Whether it is the coarse level, where the lattice is ordered.
     pub(super) is_first: bool,
     /// Levels still to come after this one.
     pub(super) to_come: u32,
-    /// Whether sizes differ.
+    /// Whether sizes vary.
     pub(super) is_graded: bool,
     pub(super) has_border: bool,
     /// Share of the particles that have a defect.
@@ -184,7 +183,7 @@ impl Recipe {
         } else {
             recipe.rounds(plan, &losses, is_graded);
         }
-        // Lloyd's method is for one size: it would draw small particles and large ones to one
+        // Lloyd's method is only for one size: it would bring small and large particles to one
         // distance.
         if is_last && !is_graded {
             recipe.passes.push(Pass::Find);
@@ -223,8 +222,8 @@ impl Recipe {
         recipe
     }
 
-    /// The sweeps of a plan, and rounds of surgery with a sweep after each. Sizes that differ are
-    /// found anew before each round.
+    /// The sweeps of a plan, and rounds of surgery with a sweep after each. Varying sizes are
+    /// looked up again before each round.
     fn rounds(&mut self, plan: Plan, losses: &[f32], is_graded: bool) {
         if is_graded {
             self.size(true);
@@ -239,8 +238,8 @@ impl Recipe {
         }
     }
 
-    /// The first level of sizes that differ: it is brought to rest with one size, and led to the
-    /// others in two steps.
+    /// The first level of varying sizes: it relaxes with one size, and reaches the wanted sizes in
+    /// two steps.
     fn blend(&mut self, plan: Plan, losses: &[f32]) {
         let (half, whole) = losses.split_at(TUNING.graded_rounds);
         self.sweep(plan.sweeps);
@@ -259,8 +258,8 @@ impl Recipe {
     }
 
     fn size(&mut self, is_whole: bool) {
-        // There and back: what is far in that order is near on the surface at one of the two, since
-        // the order is breadth first.
+        // Both ways, because the order is breadth first: what is far in one direction is near on
+        // the surface in the other.
         self.passes.extend([
             Pass::Size { is_whole },
             Pass::Limit { back: false },

@@ -11,13 +11,13 @@ use serde::Serialize;
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Refusal {
-    /// The survey leads to expect too few particles for a refinement.
+    /// The survey predicts too few particles for a refinement.
     #[error(
         "Not refined: that takes at least {} particles, and {expected} were expected.",
         4 * LEAST_PARTICLES
     )]
     Few {
-        /// Number of particles that the survey of the surface leads to expect.
+        /// Number of particles that the survey predicts.
         expected: u64,
     },
     /// The limit on particles leaves no room.
@@ -32,7 +32,7 @@ pub enum Refusal {
         /// A place where the surface bends too much.
         at: Spot,
     },
-    /// The gradient vanishes on the surface, and not at the tip of a cone.
+    /// The gradient vanishes on the surface somewhere else than at the tip of a cone.
     #[error("Not refined: near {at} the gradient vanishes on the surface.")]
     Singular {
         /// A place where the gradient vanishes.
@@ -62,7 +62,7 @@ pub enum Refusal {
         /// A place where the particles were not joined.
         at: Spot,
     },
-    /// Particles beside a tip could not be joined, or halving their edges led off the surface.
+    /// Particles next to a tip could not be joined, or halving their edges led off the surface.
     #[error("Not refined: near {at} the surface has a tip that is too narrow for particles of this size.")]
     Tip {
         /// Position of the tip.
@@ -104,7 +104,7 @@ impl Refusal {
         self
     }
 
-    /// The place that it names, if it names one.
+    /// The place that it names, if any.
     pub(crate) fn at(&mut self) -> Option<&mut Spot> {
         match self {
             Self::Few { .. } | Self::Full => None,
@@ -118,7 +118,7 @@ impl Refusal {
         }
     }
 
-    /// Whether a finer front may do.
+    /// Whether a finer front may succeed.
     pub(crate) fn is_coarse(self) -> bool {
         !matches!(self, Self::Few { .. } | Self::Full | Self::Bent { .. } | Self::Singular { .. })
     }

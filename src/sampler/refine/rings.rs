@@ -4,19 +4,19 @@ use super::net::Net;
 use crate::math::NONE;
 use crate::particles::Particles;
 
-/// A breadth-first walk over the surface that fills the columns. It can be left and gone on with.
+/// A breadth-first walk over the surface that fills the columns. It can be interrupted and
+/// continued.
 ///
 /// The generation level of a particle is its distance, in edges, from the first particle of its
-/// component, or from the creases around its patch, and its parent is the neighbour from which the
-/// walk came to it. Particles on creases come first; their numbers stand in place of their first
-/// rows.
+/// component, or from the creases around its patch. Its parent is the neighbour from which the walk
+/// reached it. Particles on creases come first, with their numbers instead of their first rows.
 #[derive(Debug, Default)]
 pub(crate) struct Rings {
-    /// Vertices in the order in which they were met.
+    /// Vertices in the order in which the walk met them.
     order: Vec<u32>,
-    /// Place in `order` of the vertex whose neighbours are met next.
+    /// Place in `order` of the vertex whose neighbours are visited next.
     next: usize,
-    /// Vertex from which on the next root is looked for, once there is none to go on from.
+    /// Vertex from which the search for the next root starts, once the walk is stuck.
     root: u32,
     /// Radius of a particle of size 1.
     radius: f32,
@@ -39,7 +39,7 @@ impl Rings {
         let is_held = |&(v, &number): &(u32, &u32)| number != NONE && net.mesh.has_vertex(v);
         for (v, &number) in (0..).zip(&net.on_crease).filter(is_held) {
             // Where a patch touches itself, a particle has a vertex for each of its fans. The
-            // nappes at a tip keep rows of their own.
+            // nappes at a tip keep their own rows.
             let new = rings.order.len() as u32;
             let first = &mut met[number as usize];
             if !net.is_tip(v) {
@@ -55,7 +55,7 @@ impl Rings {
         rings
     }
 
-    /// Goes on for so many particles. Says whether all are in order.
+    /// Continues for `left` particles. Returns whether all are in order.
     pub(super) fn go_on(&mut self, net: &Net, left: &mut u32) -> bool {
         while *left > 0 {
             *left -= 1;
@@ -71,7 +71,7 @@ impl Rings {
         false
     }
 
-    /// Meets the neighbours of a vertex, and writes its own row.
+    /// Visits the neighbours of a vertex, and writes its own row.
     fn pass(&mut self, net: &Net, v: u32) {
         for other in net.mesh.neighbours(v) {
             if self.place[other as usize] == NONE {

@@ -1,5 +1,4 @@
-//! Sizes that differ: those that the radius field asks for, and the slope at which a level can
-//! follow them.
+//! Varying sizes: those of the radius field, and the slope at which a level can follow them.
 
 use super::net::{Ground, Net};
 use crate::differential::{Curvature, curvatures};
@@ -8,12 +7,12 @@ use core::ops::Range;
 
 /// Steepest slope of the spacing along the surface, whatever the level. The sizes of neighbours
 /// then differ by a factor of 1.7 at most; beyond it triangles of the wanted sizes have angles that
-/// no mesh of six neighbours each has. Larger: angles are smaller, and the closest pairs farther
-/// apart.
+/// are impossible with six neighbours each. Larger: angles are smaller, and the closest pairs
+/// farther apart.
 const MAX_SLOPE: f32 = 0.5;
 
-/// Slope of the spacing at a level with so many to come, where that of the radius is `grading`:
-/// with the spacing, the slope doubles from level to level.
+/// Slope of the spacing at the level with `to_come` levels after it, if the radius has the slope
+/// `grading`: with the spacing, the slope doubles from level to level.
 pub(super) fn slope(grading: f32, to_come: u32) -> f32 {
     let own = 2.0 * grading;
     (own * (1_u32 << to_come) as f32).min(own.max(MAX_SLOPE))
@@ -21,7 +20,7 @@ pub(super) fn slope(grading: f32, to_come: u32) -> f32 {
 
 impl Net {
     /// Takes the sizes of some particles from the radius field, in units of the radius `unit`:
-    /// wholly, or half-way from one size everywhere.
+    /// fully, or halfway from one size everywhere.
     pub(super) fn find_sizes(
         &mut self,
         ground: &mut Ground,
@@ -45,8 +44,8 @@ impl Net {
         }
     }
 
-    /// Lowers the sizes of some particles to what their neighbours allow, if they differ by `rise`
-    /// per unit of length at most.
+    /// Lowers the sizes of some particles as far as their neighbours require, so that sizes differ
+    /// by at most `rise` per unit of length.
     pub(super) fn limit_sizes(&mut self, rise: f32, particles: impl Iterator<Item = u32>) {
         for v in particles {
             let p = self.position[v as usize];

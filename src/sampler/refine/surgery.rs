@@ -1,5 +1,4 @@
-//! Surgery: trials with one particle more or one fewer beside a defect, of which those are kept
-//! that pay.
+//! Surgery: trials with one particle more or one fewer at a defect. Those that pay are kept.
 
 use super::net::{Ground, Net, Springs};
 use super::walls::{Planes, Site};
@@ -17,17 +16,16 @@ const SWEEPS: u32 = 2;
 /// must come to rest within a few. With less or more, fewer particles have six neighbours.
 const OMEGA: f32 = 1.3;
 /// A trial ends early if the gain of its last sweep, times this, would not be enough. In 19 of 20
-/// trials a sweep gains no more than 0.35 of what the one before it did, and so all that follow no
-/// more than 0.54 of it.
+/// trials a sweep gains at most 0.35 of what the sweep before gained, so all that follow gain at
+/// most 0.54 of it.
 const STILL_TO_GAIN: f32 = 0.5;
-/// Price of a particle, in units of the spacing squared, over the share by which the faces exceed
-/// the wanted number. Smaller: the count is farther off; larger: fewer particles have six
-/// neighbours.
+/// Price of a particle, in units of the spacing squared, per share of faces above the wanted
+/// number. Smaller: the count is farther off; larger: fewer particles have six neighbours.
 const COUNT_PRICE: f32 = 20.0;
 
-/// Least cosine of the angle between the normal of a face that a trial leaves and that of the
-/// surface at its corners: that of 60°. Without this rule a body may lose a thin ear; with a
-/// smaller cosine fewer such bodies are refined.
+/// Least cosine of the angle between the normal of a face after a trial and the surface normal at
+/// its corners: cos 60°. Without this rule a body may lose a thin ear; with a smaller cosine fewer
+/// such bodies are refined.
 const LEAST_AGREEMENT: f32 = 0.5;
 
 /// Parameters of a round of surgery.
@@ -38,10 +36,10 @@ pub(super) struct Aim {
     pub(super) delta: f32,
     /// Wanted number of faces.
     pub(super) faces: f32,
-    /// Loss that a trial may make and still be kept, in units of the spacing squared.
+    /// Loss up to which a trial is still kept, in units of the spacing squared.
     pub(super) loss: f32,
-    /// Share by which the edges of a particle without a defect are too short or too long on average
-    /// where it is tried as well.
+    /// A particle without a defect is tried as well if its edges are too short or too long by this
+    /// share on average.
     pub(super) stretch: f32,
 }
 
@@ -62,7 +60,7 @@ struct Effect {
     at: u32,
     /// Change of Σ (valence − wanted)².
     badness: i32,
-    /// Particles added; one on the border counts half, as it has half the faces.
+    /// Particles added; one on the border counts half, since it has half the faces.
     added: f32,
 }
 
@@ -71,11 +69,11 @@ struct Effect {
 pub(super) struct Surgeon {
     /// The particles that a trial moves.
     patch: Vec<u32>,
-    /// Trial in which a particle was last in the patch.
+    /// The last trial that had each particle in its patch.
     stamp: Vec<u32>,
     trial: u32,
-    /// Number of neighbours that a particle had when it was last tried, in vain; 0 if what is
-    /// around it has changed since.
+    /// Number of neighbours that a particle had when it was last tried, in vain; 0 if its
+    /// surroundings have changed since.
     tried: Vec<u32>,
     /// Whether a trial was kept.
     has_kept: bool,
@@ -86,10 +84,10 @@ pub(super) struct Surgeon {
 }
 
 impl Surgeon {
-    /// Tries to mend `v`, if it has not six neighbours or if its edges are too short or too long:
-    /// with too few neighbours it is merged with the nearest of them, with too many another one is
-    /// inserted into the widest of its faces. What has failed is tried again only when something
-    /// around it has changed. Returns whether it was tried.
+    /// Tries to mend `v`, if it does not have six neighbours or if its edges are too short or too
+    /// long: with too few neighbours it is merged with the nearest of them, with too many another
+    /// particle is inserted into the widest of its faces. A failed trial is repeated only when
+    /// something around it has changed. Returns whether it was tried.
     pub(super) fn mend(&mut self, net: &mut Net, ground: &mut Ground, aim: Aim, v: u32) -> bool {
         if !net.mesh.has_vertex(v) || self.tried.get(v as usize) == Some(&(net.mesh.valence(v) as u32)) {
             return false;
@@ -112,7 +110,7 @@ impl Surgeon {
         is_tried
     }
 
-    /// Whether a trial was kept since this was last asked.
+    /// Whether a trial was kept since the last call.
     pub(super) fn take_kept(&mut self) -> bool {
         core::mem::take(&mut self.has_kept)
     }
@@ -123,10 +121,10 @@ impl Surgeon {
     }
 
     /// Does the operation and relaxes the particles around it, and undoes both unless they lower
-    /// the energy enough. Returns whether they stand. `size` is the size of the particles there.
+    /// the energy enough. Returns whether they are kept. `size` is the size of the particles there.
     ///
-    /// The particles move in their tangent planes, which changes a distance in second order only;
-    /// those of a trial that is kept are brought back onto the surface in the end.
+    /// The particles move in their tangent planes, which changes distances only in second order.
+    /// After a trial that is kept they return to the surface.
     fn attempt(
         &mut self,
         net: &mut Net,
@@ -179,7 +177,7 @@ impl Surgeon {
             }
         }
         net.mesh.undo();
-        // A particle that the trial added comes after those that were there.
+        // A particle that the trial added comes after the existing ones.
         for (&v, &site) in self.patch.iter().zip(&self.saved) {
             net.put(v, site);
         }
@@ -219,7 +217,7 @@ impl Surgeon {
         let mesh = &net.mesh;
         self.trial += 1;
         self.patch.clear();
-        // One more than there are: an insertion may take it.
+        // One more than at present: an insertion may take it.
         let rows = mesh.vertex_slots() + 1;
         grow(&mut self.stamp, rows, 0);
         grow(&mut self.tried, rows, 0);
@@ -302,8 +300,8 @@ impl Surgeon {
     }
 
     /// Whether each face around a particle of the patch is within 60° of the surface there. Without
-    /// this rule trials shorten a thin part of the surface from its rim on: each of them leaves a
-    /// narrow face across the rim, between the two sides.
+    /// this rule trials shorten a thin part of the surface from its rim: each leaves a narrow face
+    /// across the rim, between the two sides.
     fn lies_on_surface(&self, net: &Net) -> bool {
         let area_of = |h: u32| net.area_vector([h, next(h), previous(h)].map(|h| net.mesh.origin(h)));
         let mut patch = self.patch.iter().copied().filter(|&v| net.mesh.has_vertex(v));
@@ -329,7 +327,7 @@ impl Surgeon {
         }
     }
 
-    /// Flips the edges of the patch that are not Delaunay's; returns the change of Σ (valence −
+    /// Flips the edges of the patch that are not Delaunay; returns the change of Σ (valence −
     /// wanted)². An edge must keep an end in the patch, else its energy would be lost.
     fn flip(&mut self, net: &mut Net) -> i32 {
         let mut change = 0;
@@ -363,9 +361,9 @@ fn badness(net: &Net, particles: &[u32]) -> i32 {
         .sum()
 }
 
-/// The operation that may mend a particle inside, if there is one: with too few neighbours it is
-/// merged with the nearest of them, with too many another one is inserted into the widest of its
-/// faces. With as many as wanted, the lengths of its edges decide.
+/// The operation that may mend an inner particle, if any: with too few neighbours it is merged with
+/// the nearest of them, with too many another one is inserted into the widest of its faces. With as
+/// many as wanted, the lengths of its edges decide.
 fn operation(net: &Net, aim: Aim, v: u32) -> Option<Operation> {
     let mesh = &net.mesh;
     let p = net.position[v as usize];

@@ -5,7 +5,7 @@ use crate::math::SQRT_3;
 use core::ops::Range;
 use glam::Vec3;
 
-/// Sums over faces, which can be left and gone on with.
+/// Sums over faces, which can be interrupted and continued.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tally {
     /// Twice the area of the faces.
@@ -13,22 +13,22 @@ pub(super) struct Tally {
     /// Twice the area of the four faces that each would be divided into, with lifted middles of
     /// edges.
     fine: f64,
-    /// Area of the faces in units of the faces that are wanted where they are.
+    /// Area of the faces in units of the local wanted face.
     cells: f64,
-    /// Length of the border in units of the spacing that is wanted where it is.
+    /// Length of the border in units of the local wanted spacing.
     pub(super) border: f64,
-    /// A corner of the first face that looks against the normal of a corner.
+    /// A corner of the first face that faces against the normal of a corner.
     pub(super) inverted: Option<Vec3>,
     /// A corner of the first face that is stretched.
     pub(super) stretched: Option<Vec3>,
 }
 
-/// A face is stretched if its circumcircle is wider than this, over that of the lattice's faces.
-/// The front that would stand in its place has holes of 1.25 to 1.4. Most meshes with a stretched
-/// face have another Euler number than their front.
+/// A face is stretched if its circumcircle is wider than this, relative to the lattice's faces. The
+/// front that would replace it has holes of 1.25 to 1.4. Most meshes with a stretched face have
+/// another Euler number than their front.
 const WIDEST: f32 = 1.33;
-/// A face is stretched if it has an angle with a larger cosine, that of 30°. The front has angles
-/// of 31° to 35°.
+/// A face is stretched if it has an angle with a larger cosine: below 30°. The front has angles of
+/// 31° to 35°.
 const LARGEST_COS: f32 = 0.866;
 
 impl Tally {
@@ -61,7 +61,7 @@ impl Tally {
         }
     }
 
-    /// Looks for stretched faces that are not at the border among some faces of one size.
+    /// Looks for stretched faces off the border among some faces of one size.
     pub(super) fn inspect_shapes(&mut self, net: &Net, spacing: f32, faces: Range<u32>) {
         let widest = WIDEST * spacing / SQRT_3 as f32;
         for face in faces.filter_map(|f| net.mesh.face(f)) {
@@ -82,14 +82,13 @@ impl Tally {
         }
     }
 
-    /// Area of the surface, by Richardson's extrapolation. That of the faces alone gives small
-    /// components too few particles.
+    /// Area of the surface, by Richardson's extrapolation. The area of the faces alone would give
+    /// small components too few particles.
     pub(super) fn area(&self) -> f64 {
         0.5 * (4.0 * self.fine - self.coarse) / 3.0
     }
 
-    /// Number of equilateral faces of the wanted sizes that cover the surface, where the spacing
-    /// is 1.
+    /// Number of equilateral faces of the wanted sizes that cover the surface, if the spacing is 1.
     pub(super) fn cells(&self) -> f64 {
         self.cells * self.area() / (0.5 * self.coarse)
     }

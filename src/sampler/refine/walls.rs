@@ -5,9 +5,9 @@ use crate::math::{Bounds, NONE};
 use glam::Vec3;
 
 /// A step of Newton's method along the border that is shorter than this share of its reach is the
-/// last one: the next one would be shorter than the square of it, which single precision does not
-/// tell from none. A particle may be beyond a plane by as large a share of the spacing, as such a
-/// step moves one that touches the box.
+/// last one: the next would be shorter than the square of it, which single precision cannot
+/// resolve. A particle may be beyond a plane by the same share of the spacing, since such a step
+/// moves one that touches the box.
 pub(super) const AT_REST: f32 = 1e-4;
 
 /// The constraints of a particle besides the surface: bit 2k for the lower plane of axis k of the
@@ -18,7 +18,7 @@ pub(super) struct Planes(u8);
 impl Planes {
     /// No plane.
     pub(super) const INNER: Self = Self(0);
-    /// A crease, on which a particle stays where it is.
+    /// A crease, on which a particle is fixed.
     pub(super) const CREASE: Self = Self(1 << 6);
     /// A point at which creases meet or end, with the planes of the box if they end there.
     pub(super) const CREASE_END: Self = Self(3 << 6);
@@ -104,15 +104,15 @@ pub(super) struct Walls {
     /// The largest box of single-precision numbers in the box that is sampled.
     pub(super) lo: Vec3,
     pub(super) hi: Vec3,
-    /// Largest distance beyond a plane from which a particle is put back onto it.
+    /// A particle at most this far beyond a plane is put back onto it.
     pub(super) slack: f32,
-    /// The planes of each particle; empty where no particle is near the box.
+    /// The planes of each particle; empty if no particle is near the box.
     pub(super) planes: Vec<Planes>,
 }
 
 impl Walls {
-    /// The walls around particles none of which lies on a plane yet. They have no effect if no
-    /// particle is within a `spacing` of a plane, or beyond it.
+    /// The walls around particles that lie on no plane yet. They have no effect if no particle is
+    /// within a `spacing` of a plane, or beyond it.
     pub(super) fn new(bounds: &Bounds, position: &[Vec3], spacing: f32) -> Self {
         let [lo, hi] = bounds.single();
         let farthest = lo.abs().max(hi.abs()).max_element();
@@ -153,7 +153,7 @@ impl Walls {
         if plane.is_multiple_of(2) { p[axis] - self.lo[axis] } else { self.hi[axis] - p[axis] }
     }
 
-    /// The planes on which a point lies to the last bit.
+    /// The planes on which a point lies exactly.
     pub(super) fn planes_at(&self, p: Vec3) -> Planes {
         (0..Planes::ALL)
             .filter(|&plane| self.depth(p, plane) == 0.0)
@@ -168,8 +168,8 @@ impl Walls {
         p
     }
 
-    /// The part of a step that a particle with the normal `n` can make: along the surface and the
-    /// planes on which it lies.
+    /// The part of a step that a particle with the normal `n` can make: along the surface and its
+    /// planes.
     pub(super) fn along(&self, planes: Planes, n: Vec3, step: Vec3) -> Vec3 {
         let (step, n) = (step * planes.free(), n * planes.free());
         let slide = step - n * (step.dot(n) / n.length_squared());
@@ -177,8 +177,8 @@ impl Walls {
     }
 
     /// The position of a particle at `p` after one step of Newton's method on its planes. The
-    /// position is on the planes to the last bit, and in the box unless it `may_leave` it. None if
-    /// the step is longer than `longest` or leads out of the box.
+    /// position is exactly on the planes, and in the box unless it `may_leave` it. None if the step
+    /// is longer than `longest` or leads out of the box.
     pub(super) fn landing(
         &self,
         planes: Planes,

@@ -1,5 +1,5 @@
-//! The envelope of the radius: the largest function of a given slope below some radii at points of
-//! the surface.
+//! The envelope of the radius: the largest function of limited slope that is not above given radii
+//! at points of the surface.
 
 use crate::math::{Bounds, SQRT_3};
 use crate::sampler::discovery::grid::CELLS;
@@ -9,17 +9,17 @@ use glam::Vec3;
 /// grid; in a thin band of nodes the shortest path may turn back around a bend.
 const ROUNDS: usize = 2;
 
-/// A function on the nodes of a regular grid. Only the nodes near the surface, the *active* ones,
-/// have a meaning.
+/// A function on the nodes of a regular grid. Only the values at the nodes near the surface, the
+/// *active* ones, have a meaning.
 #[derive(Clone, Debug)]
 pub(super) struct Envelope {
     /// Position of the first node.
     lo: Vec3,
     inverse_cell: f32,
     pub(super) cell: f32,
-    /// Last position in the box that is in a cell, in units of cells.
+    /// Last position of the box that lies in a cell, in units of cells.
     last: Vec3,
-    /// Number of nodes along each axis. The outermost ones are never active, so an active node has
+    /// Number of nodes along each axis. The outermost nodes are never active, so an active node has
     /// all its neighbours.
     nodes: [usize; 3],
     value: Vec<f32>,
@@ -31,12 +31,12 @@ pub(super) struct Envelope {
 /// in the box.
 const MARGIN: usize = 2;
 
-/// Distance of the last position in the box from its last node, in cells, which puts that position
-/// into the last cell: far above the last digit of a coordinate of 37 cells in single precision.
+/// Distance of the last position in the box from its last node, in cells, so that it falls into the
+/// last cell: far above the last digit of a coordinate of 37 cells in single precision.
 const LAST_CELL: f32 = 1e-4;
 
 impl Envelope {
-    /// Makes the grid for a box, with as many cells as that of the survey, so that a cell that the
+    /// Makes the grid of a box, with as many cells as that of the survey, so that a cell that the
     /// surface meets holds some of its points. The nodes near the `points` are active.
     pub(super) fn new(bounds: &Bounds, points: impl Iterator<Item = Vec3>) -> Self {
         let size = (bounds.hi() - bounds.lo()).as_vec3();
@@ -102,7 +102,7 @@ impl Envelope {
     }
 
     /// Lowers every active node to what the others allow at this slope, with distances along paths
-    /// over active nodes.
+    /// through active nodes.
     pub(super) fn spread(&mut self, slope: f32) {
         let steps = [1.0, core::f32::consts::SQRT_2, SQRT_3 as f32].map(|length| slope * length * self.cell);
         for _ in 0..ROUNDS {

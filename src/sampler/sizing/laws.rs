@@ -2,14 +2,14 @@
 //!
 //! A law gives a radius from 0 to ∞; [`SizingLaw`] clamps it to the smallest and largest radius of
 //! the run. Where the curvature is undefined (see [`Curvature::is_defined`]: cone points, creases,
-//! the border of the domain of f) every law gives the smallest radius, which is also the limit if
-//! the curvature grows towards such a point.
+//! the border of the domain of f) every law gives the smallest radius, which is also its limit as
+//! the curvature grows.
 
 use crate::differential::Curvature;
 use crate::sampler::settings::{LawKind, Settings};
 
-/// Returns the radius that a law gives where the surface has a curvature. `size` is the chord error
-/// ε of the law by it, a length; of the others it is the factor s, a pure number.
+/// Returns the radius that a law gives for a curvature. For the chord error, `size` is the error ε,
+/// a length; for the other laws it is the factor s, a pure number.
 ///
 /// * Chord error: the middle of an equilateral triangle of side h, inscribed in a sphere of radius
 ///   R, is ε away from the sphere if h = √(6εR − 3ε²). With R = 1/max(|κ₁|, |κ₂|) and neighbours 2r
@@ -30,7 +30,7 @@ fn law_radius(law: LawKind, size: f32, curvature: &Curvature) -> f32 {
     }
 }
 
-/// A law of the curvature with its clamp.
+/// A law of the curvature with its smallest and largest radius.
 #[derive(Clone, Copy, Debug)]
 struct Bend {
     law: LawKind,
@@ -40,9 +40,8 @@ struct Bend {
     greatest: f32,
 }
 
-/// The law of a run: the radius that follows the curvature, the one that is asked for at a place,
-/// or the smaller one of both, with its clamp and the factor on all radii that makes the count
-/// match.
+/// The law of a run: the radius that follows the curvature, the one requested at a place, or the
+/// smaller of both, with its clamp and the factor on all radii that makes the count match.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SizingLaw {
     /// The law of the curvature, if the radius follows it.
@@ -54,7 +53,7 @@ pub(crate) struct SizingLaw {
 }
 
 impl SizingLaw {
-    /// Returns the law that `settings` ask for in a box with this diagonal, of radii that follow
+    /// Returns the law that `settings` request in a box with this diagonal, of radii that follow
     /// the curvature.
     pub(crate) fn new(settings: &Settings, diagonal: f64) -> Self {
         let law = settings.radius_law;
@@ -69,7 +68,7 @@ impl SizingLaw {
     }
 
     /// Returns the law of a spacing by a function, whose radii lie between `least` and `greatest`.
-    /// Where a law of the curvature is given, too, a particle has the smaller radius of both.
+    /// If a law of the curvature is given, too, a particle has the smaller of both radii.
     pub(crate) fn asked(bend: Option<Self>, [least, greatest]: [f32; 2]) -> Self {
         Self { bend: bend.and_then(|law| law.bend), least, greatest, factor: 1.0 }
     }
@@ -94,8 +93,8 @@ impl SizingLaw {
         self.greatest * self.factor
     }
 
-    /// Returns the radius where the surface has this curvature, and `asked` is asked for: infinity
-    /// where nothing is.
+    /// Returns the radius for this curvature and the radius `asked`, the one requested at the
+    /// place; infinity if none is.
     #[inline]
     pub(crate) fn radius(&self, asked: f32, curvature: &Curvature) -> f32 {
         let bend = self.bend.as_ref().map_or(f32::INFINITY, |bend| {

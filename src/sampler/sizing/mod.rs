@@ -3,10 +3,10 @@
 //!
 //! r(x) = min(law(x, κ(x)), envelope(x)). The envelope is the minimum over the points y of the
 //! survey and of the creases of law(y, κ(y)) + L |x − y|: the largest function of slope L that is
-//! not above the law at these points. So the radius grows no faster than this away from a bend,
-//! also away from a crease beside a patch so small that no point of the survey lies on it. The
-//! envelope is stored on the nodes of a grid near the surface and interpolated between them. Beside
-//! jumps of a function of place it is too coarse: points are added there, and asked one by one.
+//! not above the law at these points. So the radius grows no faster than this away from a bend, and
+//! away from a crease next to a patch so small that no point of the survey lies on it. The envelope
+//! is stored on the nodes of a grid near the surface and interpolated. Near jumps of a function of
+//! place it is too coarse: points are added there, and evaluated one by one.
 
 mod envelope;
 mod laws;
@@ -26,37 +26,37 @@ use crate::sampler::spacing::Spacing;
 use glam::{DVec3, Vec3};
 
 /// Rounds towards a predicted count. Each scales the radii by the square root of the ratio of the
-/// counts; more than one is necessary only because of the clamps and the slope.
+/// counts; the clamps and the slope make more than one necessary.
 const MAX_ROUNDS: u32 = 6;
-/// Relative error at which a predicted count counts as met; the prediction itself is not more
+/// Relative error at which a predicted count is accepted; the prediction itself is not more
 /// accurate.
 const PREDICTION_TOLERANCE: f64 = 2e-3;
 
-/// Share by which the slope may lower a wanted radius before that counts as smoothing.
+/// Share by which the slope must lower a wanted radius to count as smoothing.
 const SMOOTHED: f32 = 0.05;
 
-/// The distance from the step of a function to which the envelope is too coarse, in cells: nodes
+/// Distance from the step of a function within which the envelope is too coarse, in cells: nodes
 /// are up to a diagonal away, and the survey has a point within another cell.
 const STEP_REACH: f32 = 3.0;
 
-/// A spacing by a function that is asked for.
+/// A spacing that is requested by a function.
 #[derive(Clone, Debug)]
 pub(crate) struct Wish {
     pub(crate) spacing: Spacing,
-    /// Whether the radius also follows the curvature, and is the smaller one of both.
+    /// Whether the radius also follows the curvature: the smaller of both is used.
     pub(crate) bends: bool,
-    /// The point from which places are counted.
+    /// The point that places are relative to.
     pub(crate) origin: DVec3,
 }
 
-/// Where the slope keeps the radius below the one that is asked for.
+/// Where the slope keeps the radius below the requested one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Smoothing {
-    /// Share of the area where it does, by more than a twentieth.
+    /// Share of the area where it does so by more than a twentieth.
     pub(crate) share: f64,
-    /// The largest ratio of the radius that is asked for and the one that is met.
+    /// The largest ratio of the requested radius and the actual one.
     pub(crate) ratio: f64,
-    /// The place where it is, counted from the origin of the run.
+    /// The place of the largest ratio, relative to the origin of the run.
     pub(crate) position: Vec3,
 }
 
@@ -67,10 +67,10 @@ pub(crate) struct Sizing {
     law: SizingLaw,
     /// Largest slope L.
     slope: f32,
-    /// The points of the survey, and those of the creases.
+    /// The points of the survey, those of the creases, and those next to jumps.
     samples: Vec<SurfaceSample>,
     envelope: Envelope,
-    /// The last ones of the points, which lie beside jumps, by their numbers; none without any.
+    /// The last of the points, which lie next to jumps, by their numbers; none without any.
     steps: Option<Steps>,
     predicted: f64,
     smallest: f32,
@@ -82,14 +82,14 @@ pub(crate) struct Sizing {
 struct SurfaceSample {
     position: Vec3,
     curvature: Curvature,
-    /// Radius that is asked for; infinite where none is.
+    /// Requested radius; infinite if none is.
     asked: f32,
-    /// Area of the surface that the point represents; none on a crease.
+    /// Area of the surface that the point represents; 0 on a crease or next to a jump.
     weight: f32,
 }
 
 impl Sizing {
-    /// Makes the radius field that `settings` ask for, or a `wish`. This evaluates a Hessian at
+    /// Makes the radius field that `settings` or a `wish` request. This evaluates a Hessian at
     /// every point of the survey, and on every patch at each of the `creases`.
     pub(crate) fn new(
         probe: &mut Probe,
@@ -155,8 +155,8 @@ impl Sizing {
         radius[0]
     }
 
-    /// Writes the repulsion radius of a particle at each of some points of the surface, which have
-    /// these curvatures: [`Sizing::radius`].
+    /// Writes the repulsion radius of a particle at each point of the surface, with these
+    /// curvatures: [`Sizing::radius`].
     #[inline]
     pub(crate) fn radii(&self, positions: &[Vec3], curvatures: &[Curvature], radii: &mut [f32]) {
         match &self.wish {
@@ -168,7 +168,7 @@ impl Sizing {
         }
     }
 
-    /// The largest radius that the slope allows.
+    /// The largest radius that the slope allows at a position.
     #[inline]
     fn limit_at(&self, position: Vec3) -> f32 {
         let mut limit = self.envelope.at(position);
@@ -182,7 +182,7 @@ impl Sizing {
         limit
     }
 
-    /// Checks the radii that are asked for at the points of the survey and of the creases.
+    /// Checks the radii requested at the points of the survey and of the creases.
     ///
     /// # Errors
     ///
@@ -194,7 +194,7 @@ impl Sizing {
         spacing.check(*origin, &places, &asked)
     }
 
-    /// Where the slope keeps the radius below the one that is asked for, if it does.
+    /// Where the slope keeps the radius below the requested one, if anywhere.
     pub(crate) fn smoothing(&self) -> Option<Smoothing> {
         self.wish.as_ref()?;
         let (mut area, mut smoothed, mut worst) = (0.0, 0.0, (1.0 + SMOOTHED, None));
@@ -220,7 +220,7 @@ impl Sizing {
     }
 
     #[cfg(test)]
-    /// Returns an upper bound of the radius at `position`, without a Hessian. It is not close where
+    /// Returns an upper bound of the radius at `position`, without a Hessian. It is not tight where
     /// the surface bends more than at the nearest points of the survey.
     #[inline]
     pub(crate) fn envelope(&self, position: Vec3) -> f32 {
@@ -252,7 +252,7 @@ impl Sizing {
         self.largest
     }
 
-    /// The radius field as the settings ask for it, before any [`Sizing::scale`].
+    /// The radius field as requested by the settings, before any [`Sizing::scale`].
     pub(crate) fn unscaled(mut self, settings: &Settings) -> Self {
         self.law = self.law.unscaled();
         self.slope = settings.grading as f32;
@@ -285,7 +285,7 @@ impl Sizing {
         }
     }
 
-    /// Makes the envelope of the present law, and predicts the count.
+    /// Computes the envelope of the present law, and predicts the count.
     fn grade(&mut self) {
         self.envelope.fill(self.law.greatest());
         for sample in &self.samples {
@@ -312,11 +312,10 @@ impl Sizing {
     }
 }
 
-/// The smallest and the largest radius that are taken of those asked for. Where a number of
-/// particles is wanted they are shares of what is to be scaled, and the points of the survey show
-/// how large they are.
+/// The smallest and the largest of the requested radii that are used. If a number of particles is
+/// wanted, the radii are only relative, and the points of the survey show how large they are.
 fn limits_of(settings: &Settings, bounds: &Bounds, samples: &[SurfaceSample]) -> [f32; 2] {
-    /// What lies between the points of the survey may be smaller by this factor.
+    /// Between the points of the survey radii may be smaller by this factor.
     const DEEPER: f32 = 0.25;
     let asked = samples.iter().map(|sample| sample.asked).filter(|asked| *asked > 0.0 && asked.is_finite());
     let [least, greatest] =
@@ -327,8 +326,8 @@ fn limits_of(settings: &Settings, bounds: &Bounds, samples: &[SurfaceSample]) ->
     [LEAST_SHARE, MOST_SHARE].map(|share| (share * bounds.diagonal()) as f32)
 }
 
-/// Adds points beside the steps of the function, as samples of no area. Returns where they are, if
-/// there are any.
+/// Adds points next to the steps of the function, as samples without area. Returns where they are,
+/// if there are any.
 fn add_steps(wish: &Wish, samples: &mut Vec<SurfaceSample>, reach: f32) -> Option<Steps> {
     let places: Vec<Vec3> = samples.iter().map(|sample| sample.position).collect();
     let asked: Vec<f32> = samples.iter().map(|sample| sample.asked).collect();

@@ -1,33 +1,33 @@
-//! Where the radius that is asked for changes much between neighbouring points of the survey, as at
+//! Places where the requested radius changes much between neighbouring points of the survey, as at
 //! a jump: points are added on the smaller side, up to a small share of a cell from it.
 
 use crate::spatial::CellGrid;
 use core::fmt::{self, Debug, Formatter};
 use glam::Vec3;
 
-/// Ratio of the radii of neighbouring points from which on a step between them is looked for.
-/// Smaller: more points are added, which gives nothing where the function is smooth.
+/// Ratio of the radii of neighbouring points above which a step between them is searched for.
+/// Smaller: more points are added, without use where the function is smooth.
 const STEEP: f32 = 1.25;
 
-/// Halvings of the way between two such points: a jump is found to a 32nd of their distance.
+/// Bisections of the way between two such points: a jump is found to a 32nd of their distance.
 const HALVINGS: u32 = 5;
 
-/// Largest number of points that are added, for each one of the survey. Larger: a function that is
-/// steep everywhere takes longer.
+/// Largest number of added points for each one of the survey. Larger: a function that is steep
+/// everywhere takes longer.
 const MOST: usize = 4;
 
 /// A point on the smaller side of a step.
 pub(super) struct StepPoint {
     pub(super) position: Vec3,
-    /// Radius that is asked for there.
+    /// Radius requested there.
     pub(super) asked: f32,
-    /// The point of the survey on its side.
+    /// The point of the survey on the same side.
     pub(super) sample: usize,
 }
 
-/// Finds points on the smaller side of steps of a function between points of the survey that are
-/// within `reach` of each other, at which it `asked` for these radii. `ask` writes the radii at
-/// places between them, which lie off the surface by a few thousandths of a cell.
+/// Finds points on the smaller side of steps of a function. A step lies between points of the
+/// survey within `reach` of each other; `asked` are the radii requested there. `ask` writes the
+/// radii at places between them, which lie off the surface by a few thousandths of a cell.
 pub(super) fn step_points(
     places: &[Vec3],
     asked: &[f32],
@@ -61,7 +61,7 @@ pub(super) fn step_points(
         }
         ask(&middle, &mut radius);
         for (k, (&position, &asked)) in middle.iter().zip(&radius).enumerate() {
-            // The half in which the ratio is larger.
+            // Continues in the half with the larger ratio.
             if asked * asked <= low[k].asked * high[k].1 {
                 (low[k].position, low[k].asked) = (position, asked.max(f32::MIN_POSITIVE));
             } else {
@@ -72,7 +72,7 @@ pub(super) fn step_points(
     low
 }
 
-/// Points that were added, to be found by place.
+/// Points that were added, for search by place.
 #[derive(Clone, Default)]
 pub(super) struct Steps {
     grid: CellGrid,
@@ -86,7 +86,7 @@ impl Debug for Steps {
 }
 
 impl Steps {
-    /// The points with these numbers, each of which counts within `reach`.
+    /// The points with these numbers, each of which has an effect within `reach`.
     pub(super) fn new(points: impl Iterator<Item = (u32, Vec3)>, reach: f32) -> Self {
         let mut grid = CellGrid::new(reach);
         for (number, p) in points {
@@ -95,7 +95,7 @@ impl Steps {
         Self { grid, reach }
     }
 
-    /// Calls `lower` with the number and the distance of each point that counts at `p`.
+    /// Calls `lower` with the number and the distance of each point within reach of `p`.
     pub(super) fn near(&self, p: Vec3, mut lower: impl FnMut(usize, f32)) {
         if !p.is_finite() {
             return;

@@ -4,7 +4,7 @@
 /** What a command is answered: the fields of the value, or the error. */
 export type Answer<T, E> = ({ ok: true } & T) | { ok: false; error: E };
 
-/** The bodies of a mesh that a file holds. */
+/** Which bodies of a mesh a file holds. */
 export type Bodies = "all" | "without_chips" | "largest";
 
 /** A body of a mesh: a closed component with the walls of its hollows, or an open component. */
@@ -15,9 +15,9 @@ export type Body = {
   min: [number, number, number],
   /** Upper corner of the box around it. */
   max: [number, number, number],
-  /** Volume that it encloses, without that of its hollows; none if an edge of it is open. */
+  /** Volume that it encloses, without its hollows; none if it has an open edge. */
   volume: number | null,
-  /** Whether it is a loose chip: it has less than a twentieth of the area of the largest body. */
+  /** Whether it is a loose chip: its area is less than a twentieth of the largest body's. */
   is_chip: boolean,
 };
 
@@ -31,7 +31,7 @@ export type Bounds = {
 
 /** A value of a setting that is a choice. */
 export type Choice = {
-  /** Value, as it stands in JSON. */
+  /** Value, as written in JSON. */
   value: string,
   /** Name for a person. */
   label: string,
@@ -112,11 +112,11 @@ export type Description = {
 
 /** Excess of the expected particles of a run over the limit. */
 export type Excess = {
-  /** Particles to expect. */
+  /** Expected number of particles. */
   expected: number,
   /** Largest number of particles that a run may have. */
   limit: number,
-  /** Factor by which all radii have to be multiplied to stay within the limit. */
+  /** Factor on all radii that keeps the run within the limit. */
   factor: number,
 };
 
@@ -157,11 +157,11 @@ export type Fault = {
   start: number,
   /** End of the mistake in the formula, in UTF-16 code units. */
   end: number,
-  /** Text that would mend the span, if there is a good guess. */
+  /** Text that would correct the span, if there is a good guess. */
   suggestion: string | null,
   /** Texts for the span, each with another meaning, where the formula has several readings. */
   choices: Array<string>,
-  /** The formula with every mistake of this kind mended, if there are several. */
+  /** The formula with every mistake of this kind corrected, if there are several. */
   mended: Mended | null,
   /** The unknown name, which could become a slider. */
   name: string | null,
@@ -188,18 +188,17 @@ export type FieldAnswer = {
   parameters: Array<Parameter>,
   /** Parameters that were not declared but found in the formula. */
   auto: Array<string>,
-  /** Clip box, whose faces close the solid where they are to; before [`Session::fit`] or a start
-  * it may be that of the formula before. */
+  /** Clip box; its faces close the solid if that is chosen. Before [`Session::fit`] or a start it
+  * may still be the previous formula's box. */
   bounds: Bounds,
-  /** Whether the surface, closed by no box, is bounded, if the box was fitted to it. */
+  /** Whether the surface, before a box closes it, is bounded, if the box was fitted to it. */
   reach: Reach | null,
-  /** Period of the surface along each axis: 0 if it does not change along it, none if it is not
-  * known to be periodic. */
+  /** Period of the surface along each axis: 0 if it does not change along it, none if no period
+  * is known. */
   periods: [number | null, number | null, number | null],
   /** The formula as MathML; none if there is no formula. */
   mathml: MathNode | null,
-  /** What has become of the surface that was to pass through the pins of the request; none
-  * without pins. */
+  /** Whether the surface passes through the pins of the request, and how; none without pins. */
   grip: Grip | null,
 };
 
@@ -207,15 +206,15 @@ export type FieldAnswer = {
 export type FieldRequest = {
   /** Identifier of a gallery surface to start from; without one, the present field is changed. */
   surface: string | null,
-  /** Text of the formula, in the place of the surface's. */
+  /** Text of the formula, which replaces the surface's own. */
   formula: string | null,
   /** Values of parameters by name. */
   parameters: { [key in string]: number },
   /** Parameters that the formula's unknown names become. */
   declare: Array<Parameter>,
-  /** Clip box. Without one it is that of the surface, or fitted (see [`Session::fit`]). */
+  /** Clip box. Without one the surface's own is used, or one is fitted (see [`Session::fit`]). */
   bounds: Bounds | null,
-  /** Points that the surface is to pass through: the parameters change for it
+  /** Points that the surface should pass through; this changes parameters
   * ([`Formula::pass_through`]). */
   pins: Array<[number, number, number]>,
   /** Pulls on the surface of a model from points, one after the other. */
@@ -260,25 +259,26 @@ export type Figures = {
   rho: number,
   /** First percentile of the nearest-neighbour distance. */
   nearest_percentile_1: number,
-  /** Pairs of points nearer than 0.75: over `ideal_spacing`, as `nearest_min`, or of natural
-  * neighbours over the sum of their wanted radii, as `overlap_min`, where those are known. A
-  * duplicate is a pair with the point that it equals. None where there are no distances. */
+  /** Pairs of points closer than 0.75: over `ideal_spacing`, as `nearest_min`, or, if wanted
+  * radii are known, of natural neighbours over the sum of theirs, as `overlap_min`. A duplicate
+  * is a pair with the point that it equals. None if there are no distances. */
   crowded: number | null,
-  /** Radius of the largest hole over `ideal_spacing`/√3, that of the perfect lattice: 1 is ideal. */
+  /** Radius of the largest hole over `ideal_spacing`/√3, the radius in the perfect lattice: 1 is
+  * ideal. */
   cover: number,
   /** Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius
-  * there, which is the mean of the wanted radii of the points around the hole. One factor
-  * scales all wanted radii so that their cells have the surface's area. 1 is ideal. With equal
-  * radii this is `cover`. */
+  * there, the mean of the wanted radii of the points around the hole. One factor scales all
+  * wanted radii so that their cells have the surface's area. 1 is ideal. With equal radii this
+  * is `cover`. */
   cover_local: number,
-  /** Mean squared distance from the surface to the nearest point over that of the perfect
+  /** Mean squared distance from the surface to the nearest point, over that in the perfect
   * lattice: 1 is ideal. */
   quantization_error: number,
-  /** Share of the surface that no disc of a point around it covers, where the discs are known:
-  * 1 - π/(2√3) = 0.093 in a lattice whose discs touch. */
+  /** Share of the surface that no disc of a point around it covers, if the discs are known: 1 -
+  * π/(2√3) = 0.093 in a lattice whose discs touch. */
   uncovered: number,
-  /** Holes wider than 1.4, as `cover`, or as `cover_local` where wanted radii are known: empty
-  * discs of which none has its middle in a wider one. None where `cover` is undefined. */
+  /** Holes wider than 1.4, as `cover` or, if wanted radii are known, as `cover_local`: empty
+  * discs whose middle lies in no wider one. None if `cover` is undefined. */
   wide_holes: number | null,
   /** Fraction of the points with exactly six natural neighbours. */
   six_neighbours: number,
@@ -303,8 +303,7 @@ export type Figures = {
   /** Fraction of the triangles (away from the border) that belong to the natural-neighbour stars
   * of all three corners. */
   agree: number,
-  /** Euler number of the kept triangles: those on which at least two of their three corners
-  * agree. */
+  /** Euler number of the kept triangles, on which at least two of their three corners agree. */
   euler: number,
   /** Number of components of the surface, by natural neighbours: components of the kept
   * triangles, and groups of points far from all of them. */
@@ -323,28 +322,28 @@ export type Figures = {
   angles_above_90: number,
 };
 
-/** The record of a file, from which the same particles can be made again. Files carry it as JSON
+/** The record in a file, from which the same particles can be made again. Files store it as JSON
 * ([`export::RecordText`]). */
 export type FileRecord = {
   /** Version of the program. */
   version: string,
   /** Digest of the particles, 16 hexadecimal digits. */
   digest: string,
-  /** Link to the page in this state, where the page has made the file. */
+  /** Link to the page in this state, if the page made the file. */
   link: string | null,
   /** Gallery surface whose formula it is. */
   surface: string | null,
-  /** Model from points, in place of a formula. */
+  /** Model from points, instead of a formula. */
   model: string | null,
   /** Pulls on the surface of the model. */
   pulls: Array<Pull>,
-  /** Text of the formula; empty for a model by itself. */
+  /** Text of the formula; empty for a model alone. */
   formula: string,
   /** Values of its parameters. */
   parameters: { [key in string]: number },
   /** Box of the run. */
   bounds: Bounds,
-  /** Box whose faces close the solid, where they do. */
+  /** Box whose faces close the solid, if they do. */
   faces: Bounds | null,
   /** Settings of the solid that is made of the surface before it is sampled. */
   solid: Record<string, number | string>,
@@ -383,7 +382,7 @@ export type FunctionInfo = {
   help: string,
 };
 
-/** The mesh of a file, as it is. */
+/** The mesh of a file, without repairs. */
 export type GivenMesh = {
   /** Area of all faces, in the units of the file. */
   area: number,
@@ -398,27 +397,27 @@ export type GivenTopology = {
   components: number,
   /** Euler number: vertices − edges + faces. */
   euler: number,
-  /** Number of border loops, where the mesh is open. */
+  /** Number of border loops, if the mesh is open. */
   borders: number,
 };
 
-/** What has become of a surface that is to pass through points. */
+/** The result of making a surface pass through points. */
 export type Grip = {
-  /** Whether the surface passes through all points. Otherwise it has come as near as the ranges
-  * of the parameters allow. */
+  /** Whether the surface passes through all points. If not, it is as near as the ranges of the
+  * parameters allow. */
   holds: boolean,
-  /** For each point, one of the surface that is nearest to it, found down the gradient; the point
-  * itself if none is found. */
+  /** For each point, a nearby point of the surface, found down the gradient; the point itself if
+  * none is found. */
   places: Array<[number, number, number]>,
   /** The parameters that have changed, with their values. */
   changed: { [key in string]: number },
-  /** Names of the parameters that all but do not move the surface at the points. */
+  /** Names of the parameters that hardly move the surface at the points. */
   idle: Array<string>,
 };
 
 /** Histogram of the nearest-neighbour distances over the ideal ones: the ideal spacing, or twice
-* the particle's wanted radius where one is given. Bins are equal, and values outside fall into
-* the outermost. */
+* the particle's wanted radius if given. Bins are equal, and values outside are counted in the
+* outermost. */
 export type Histogram = {
   /** Lower end of the first bin. */
   min: number,
@@ -434,12 +433,12 @@ export type Hole = {
   position: [number, number, number],
   /** Distance to the nearest particle, in the field's units. */
   radius: number,
-  /** Radius over that of the perfect lattice or, where there are wanted radii, of the lattice
-  * with those around it. */
+  /** Radius over that in the perfect lattice or, if radii are wanted, in the lattice of those
+  * around it. */
   ratio: number,
 };
 
-/** What is known of an image before its surface is chosen. */
+/** Facts about an image, before its surface is chosen. */
 export type ImageFacts = {
   /** Voxels along each axis. */
   size: [number, number, number],
@@ -456,11 +455,11 @@ export type ImageFacts = {
   /** Its labels with their numbers of voxels, the background 0 included, if its values look like
   * labels: up to 256 whole numbers. */
   labels: Array<LabelFacts>,
-  /** What the reader has decided, in sentences. */
+  /** Decisions of the reader, in sentences. */
   notes: Array<string>,
 };
 
-/** The image whose surface is sampled, and what was chosen of it. */
+/** The image whose surface is sampled, and the choices for it. */
 export type ImageInfo = {
   /** Name of the file or the array. */
   name: string,
@@ -468,33 +467,33 @@ export type ImageInfo = {
   size: [number, number, number],
   /** Smallest and largest voxel. */
   range: [number, number],
-  /** The label whose boundary is sampled, in place of an iso value. */
+  /** The label whose boundary is sampled instead of an iso value. */
   label: number | null,
-  /** The value on the surface; of a label, that of the distance from it. */
+  /** The value on the surface; for a label, the value of the distance from it. */
   iso: number,
   /** Width of the Gaussian in voxels, 0 for none. */
   smooth: number,
-  /** Whether the width was chosen for the image, and not by the user. */
+  /** Whether the width was chosen automatically, not by the user. */
   is_smooth_chosen: boolean,
   /** Standard deviation of the noise, in the values of the voxels. */
   noise: number,
   /** Whether darker voxels are inside. */
   is_dark_inside: boolean,
-  /** What was decided, in sentences. */
+  /** Decisions that were made, in sentences. */
   notes: Array<string>,
 };
 
-/** What the header of a file promises. */
+/** What the header of a file announces. */
 export type ImagePromise = {
-  /** Voxels along each axis; none if only the whole file tells. */
+  /** Voxels along each axis; none if that takes the whole file. */
   size: [number, number, number] | null,
-  /** Type of the voxels, such as `int16`; empty if only the whole file tells. */
+  /** Type of the voxels, such as `int16`; empty if that takes the whole file. */
   voxel_type: string,
-  /** Bytes of memory that reading and filtering take; 0 if only the whole file tells. */
+  /** Bytes of memory for reading and filtering; 0 if that takes the whole file. */
   memory: number,
 };
 
-/** The sign of f inside of the closed parts of a surface. */
+/** The sign of f inside the closed parts of a surface. */
 export type Inside = "f < 0" | "f > 0" | "f < 0, f > 0";
 
 /** A label of an image. */
@@ -953,9 +952,9 @@ export type Measured = "nothing" | "particles" | "front_too";
 
 /** Figures of quality of a run. */
 export type Measures = {
-  /** Quality of the present particles; none if there are none, or where they were not measured. */
+  /** Quality of the present particles; none without particles, or if they were not measured. */
   quality: Figures | null,
-  /** Quality of the particles after the front, before the relaxation; none where nothing was
+  /** Quality of the particles after the front, before the relaxation; none if nothing was
   * relaxed, or the front was not measured. */
   quality_before: Figures | null,
   /** Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of
@@ -965,7 +964,7 @@ export type Measures = {
   places: Places,
 };
 
-/** A formula in which every mistake of a kind is corrected. */
+/** A formula with every mistake of one kind corrected. */
 export type Mended = {
   /** The whole formula. */
   text: string,
@@ -979,12 +978,11 @@ export type MeshAnswer = {
   triangles: number,
   /** Connected components, in the order of their first particles. */
   components: Array<MeshComponent>,
-  /** Number of border loops where no manifold could be had, other than those where the surface
-  * ends. */
+  /** Number of border loops where no manifold was possible, not counting ends of the surface. */
   unfilled: number,
   /** Number of particles in no triangle. */
   left_out: number,
-  /** [Volume](Triangulation::volume) that the mesh encloses; none where it is open. */
+  /** [Volume](Triangulation::volume) that the mesh encloses; none if it is open. */
   volume: number | null,
   /** Sign of f inside of the closed parts; none if there is no closed part. All face outward in
   * files. */
@@ -992,12 +990,12 @@ export type MeshAnswer = {
   /** [Smallest angle](Triangulation::smallest_angle) of any triangle, in degrees; none without
   * triangles. */
   smallest_angle: number | null,
-  /** Border loops: rows of particles in order. Those where no manifold could be had come first,
+  /** Border loops: rows of particles in order. Those where no manifold was possible come first,
   * then the longest. */
   loops: Array<Array<number>>,
   /** The bodies, the largest first. */
   bodies: Array<Body>,
-  /** The triangles of those that are loose chips, in ascending order. */
+  /** The triangles of the bodies that are loose chips, in ascending order. */
   chips: Array<number>,
 };
 
@@ -1026,7 +1024,7 @@ export type MeshComponent = {
   euler: number,
   /** Number of edges with one triangle. */
   open_edges: number,
-  /** Place of its body among those of the mesh. */
+  /** Index of its body among the bodies of the mesh. */
   body: number,
 };
 
@@ -1040,27 +1038,27 @@ export type MeshDistances = {
   largest: number,
 };
 
-/** The triangle mesh that is sampled anew, and what was made of it. */
+/** The triangle mesh that is sampled, and what was made of it. */
 export type MeshInfo = {
   /** Name of the file or the array. */
   name: string,
-  /** Number of vertices, as it was mended. */
+  /** Number of vertices after the repairs. */
   vertices: number,
-  /** Number of faces, as it was mended. */
+  /** Number of faces after the repairs. */
   faces: number,
-  /** Number of pieces that are not joined by edges of two faces. */
+  /** Number of pieces that are not connected by edges of two faces. */
   pieces: number,
-  /** Number of edges with one face, those of holes. */
+  /** Number of edges of holes, which have one face. */
   border_edges: number,
   /** Number of edges with more than two faces. */
   fan_edges: number,
-  /** What was mended, in words. */
+  /** The repairs, in words. */
   mended: Array<string>,
-  /** What the reader has left out, in sentences. */
+  /** What the reader left out, in sentences. */
   notes: Array<string>,
-  /** The smooth patches, if it was taken for a part with sharp edges. */
+  /** The smooth patches, if it counts as a part with sharp edges. */
   part: MeshPart | null,
-  /** The grid, if it was taken for a scan. */
+  /** The grid, if it counts as a scan. */
   scan: MeshScan | null,
 };
 
@@ -1117,16 +1115,16 @@ export type ModelInfo = {
   * their distance from the surface to first order (G. Taubin, "Estimation of Planar Curves,
   * Surfaces, and Nonplanar Space Curves Defined by Implicit Equations", 1991). */
   residual_mean: number,
-  /** Residual that 95 % of them do not exceed, as a share of that diagonal. */
+  /** Residual that 95 % of the points do not exceed, as a share of that diagonal. */
   residual_95: number,
   /** Maximum residual, as a share of that diagonal. */
   residual_max: number,
-  /** Position of the point with that residual. */
+  /** Position of the point with the maximum residual. */
   farthest: [number, number, number],
   /** The mesh of the file, if it has faces. */
   mesh: GivenMesh | null,
   /** Share of the area of the fitted surface in its box that lies beyond the border of the
-  * points; 0 where there is no border. */
+  * points; 0 without a border. */
   beyond_share: number,
   /** Origin of the normals. */
   normals: NormalSource,
@@ -1142,7 +1140,7 @@ export type NormalSource = "given" | "from_mesh" | "estimated";
 export type Pair = {
   /** Indices of the particles, the smaller one first. */
   particles: [number, number],
-  /** Distance over the ideal spacing or, where there are wanted radii, over their sum. */
+  /** Distance over the ideal spacing or, if radii are wanted, over their sum. */
   ratio: number,
 };
 
@@ -1224,7 +1222,7 @@ export type Progress = {
   * derivative by differences ([`FnField`](crate::FnField)), and for the box, the set-up and the
   * proof, which are not counted. */
   evaluations: number,
-  /** Estimated share of the work done. It does not go back before more is asked for. */
+  /** Estimated share of the work done. It never decreases until more work is requested. */
   fraction: number,
   /** Set once the run has ended. */
   stop_reason: StopReason | null,
@@ -1233,7 +1231,7 @@ export type Progress = {
   message: string | null,
   /** Repulsion radius. */
   radius: number,
-  /** Whether particles that were there before this step have moved or gone. */
+  /** Whether particles that existed before this step have moved or been removed. */
   moved: boolean,
 };
 
@@ -1241,10 +1239,10 @@ export type Progress = {
 export type Pull = {
   /** The place that is pulled, on the surface as the pulls before have left it. */
   at: [number, number, number],
-  /** The vector by which it is pulled. */
+  /** The vector of the pull. */
   by: [number, number, number],
-  /** Distance from where the place comes to, from which on nothing moves. It is at least twice
-  * the length of `by`. */
+  /** Distance from the pulled place's destination beyond which nothing moves. It is at least
+  * twice the length of `by`. */
   reach: number,
 };
 
@@ -1256,21 +1254,21 @@ export type Reach = "bounded" | "endless" | "nowhere" | "unknown";
 export type Report = {
   /** Number of particles. */
   count: number,
-  /** Volume that the mesh encloses to which [`Run::join`] has joined the particles; none where it
-  * is open, or they were not joined. */
+  /** Volume enclosed by the mesh to which [`Run::join`] has joined the particles; none if it is
+  * open, or the particles were not joined. */
   volume: number | null,
   /** Sign of f inside of the closed parts of the surface, by that mesh if the particles were
-  * joined, else by the triangles of natural neighbours; none where no part is closed, or
-  * nothing was measured. */
+  * joined, else by the triangles of natural neighbours; none if no part is closed, or nothing
+  * was measured. */
   inside: Inside | null,
-  /** Smallest angle of the triangles of that mesh in degrees, those at its border among them;
-  * none where the particles were not joined. */
+  /** Smallest angle of the triangles of that mesh in degrees, including its border; none if the
+  * particles were not joined. */
   smallest_angle: number | null,
-  /** Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none where no
-  * faces are the same. */
+  /** Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none if no
+  * opposite faces agree. */
   pairs: number | null,
-  /** Particles with a child that fell outside of the box; of those that have followed a moving
-  * surface, with place for one there. */
+  /** Particles with a child that fell outside of the box; for particles that have followed a
+  * moving surface, with room for a child there. */
   border: number,
   /** Why particles lie at the border of the box. */
   cut: Cut | null,
@@ -1280,8 +1278,8 @@ export type Report = {
   warnings: Array<Warning>,
   /** Digest of the particles, 16 hexadecimal digits. */
   digest: string,
-  /** Repulsion radius of the run; with adaptive sampling the one at which as many particles of
-  * equal radius would cover the surface. */
+  /** Repulsion radius of the run; with adaptive sampling, the radius at which as many particles
+  * of equal size would cover the surface. */
   radius: number,
   /** Repulsion radius of the smallest particle; 0 without particles. */
   radius_min: number,
@@ -1291,7 +1289,7 @@ export type Report = {
   levels: number,
   /** Particles per generation level. */
   level_counts: Array<number>,
-  /** Fronts started: each from a seed of its own, or from creases that hang together. */
+  /** Fronts started: each from a seed of its own, or from connected creases. */
   components_seeded: number,
   /** Particles placed in gaps between fronts. */
   gaps_filled: number,
@@ -1302,36 +1300,36 @@ export type Report = {
   evaluations: number,
   /** Field evaluations of the front per particle. */
   evaluations_per_particle: number,
-  /** Times that a coarse front was refined; none where it was not, or the front stands. */
+  /** Number of refinements of a coarse front; none if it was not refined, or the front was kept. */
   refined_levels: number | null,
-  /** Energy per particle before the first relaxation step and after each; none where nothing was
+  /** Energy per particle before the first relaxation step and after each; none if nothing was
   * relaxed. */
   energy: Array<number> | null,
-  /** Number of components at this radius: those of the graph of natural neighbours of the
-  * particles. 0, and null in JSON, without particles or where they were not measured. */
+  /** Number of components at this radius, in the graph of natural neighbours of the particles. 0,
+  * and null in JSON, without particles or if they were not measured. */
   components: number | null,
-  /** Whether it is proven that there is a witness on every component of the surface, and of each
-  * witness that it is on the component of a particle or named in `sampled`. */
+  /** Whether it is proven that every component of the surface has a witness, and that every
+  * witness is on the component of a particle or named in `sampled`. */
   search: Search,
   /** The witnessed components that hold particles, and those that do not. */
   sampled: Sampled,
-  /** Cells of the box in which the proof could not decide, and witnesses of which it could not;
-  * none where no proof was attempted. */
+  /** Cells of the box and witnesses that the proof left undecided; none if no proof was
+  * attempted. */
   undecided_cells: number | null,
-  /** Places where f has no gradient on the surface, a curve of them counted as one; none where
-  * they were not looked for. */
+  /** Places where f has no gradient on the surface, a curve of them counted as one; none if they
+  * were not searched for. */
   singular_points: number | null,
   /** Curves of particles along which the surface has an edge, from corner to corner or closed;
-  * none where it has no edges. */
+  * none if it has no edges. */
   creases: number | null,
-  /** Particles at which creases meet or end; none where the surface has no edges. */
+  /** Particles at which creases meet or end; none if the surface has no edges. */
   corners: number | null,
-  /** Curves of particles along which patches of the surface meet without an edge; none where they
-  * meet nowhere so. */
+  /** Curves of particles along which patches of the surface meet without an edge; none if there
+  * are none. */
   seams: number | null,
-  /** Quality of the present particles; none if there are none, or where they were not measured. */
+  /** Quality of the present particles; none without particles, or if they were not measured. */
   quality: Figures | null,
-  /** Quality of the particles after the front, before the relaxation; none where nothing was
+  /** Quality of the particles after the front, before the relaxation; none if nothing was
   * relaxed, or the front was not measured. */
   quality_before: Figures | null,
   /** Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of
@@ -1347,8 +1345,8 @@ export type ReportRow = {
   key: string,
   /** Path of the upper end, if the row is a range that begins at `key`. */
   to: string | null,
-  /** Path of the figure that replaces this one where the report has it: a figure that is relative
-  * to the lattice of one size does not apply to particles of many sizes. */
+  /** Path of the figure that replaces this one if the report has it: a figure that is relative to
+  * the lattice of one size does not apply to particles of many sizes. */
   unless: string | null,
   /** Name for a person. */
   label: string,
@@ -1360,7 +1358,7 @@ export type ReportRow = {
   digits: number,
   /** The ideal value, in words. */
   ideal: string,
-  /** Direction in which the figure gets better. */
+  /** Whether lower or higher is better. */
   better: string | null,
   /** Definition and meaning. */
   help: string,
@@ -1371,17 +1369,16 @@ export type ReportRow = {
 /** The witnessed components that hold particles, and those that do not. */
 export type Sampled = {
   /** Every witnessed component that reaches farther than this from its witness holds particles; 0
-  * if all do. None where this is not proven. */
+  * if all do. None if this is not proven. */
   above: number | null,
-  /** Number of witnessed components without a particle; none where there was no search for
-  * witnesses. A component counts twice if two of its witnesses could not be proven to be
-  * connected. */
+  /** Number of witnessed components without a particle; none without a search for witnesses. A
+  * component counts twice if two of its witnesses could not be proven to be connected. */
   missing: number | null,
   /** A witness of each component without a particle: at most 256. */
   without: Array<Unsampled>,
 };
 
-/** Method by which the first points of the connected components were found. */
+/** How the first points of the connected components were found. */
 export type Search = "proven" | "searched";
 
 /** A setting of a run. */
@@ -1410,7 +1407,8 @@ export type Setting = {
   unit: string,
   /** Values of a choice. */
   choices: Array<Choice>,
-  /** The setting has an effect, and is shown, while all of these hold; always if there is none. */
+  /** The setting has an effect, and is shown, while all of these hold; always if the list is
+  * empty. */
   when: Array<Condition>,
 };
 
@@ -1441,14 +1439,14 @@ export type SolvedModel = {
   bounds: Bounds,
 };
 
-/** A spacing by a formula, as it is written: see [`Spacing`]. A record has it beside the settings. */
+/** A spacing by a formula, as text: see [`Spacing`]. A record stores it next to the settings. */
 export type SpacingText = {
   /** Distance between neighbours, in x, y, z and the parameters of the formula whose surface is
   * sampled, such as `0.02 + 0.1 hypot(x, y)`. */
   formula: string,
-  /** Smallest distance, which is taken where the formula is below it. */
+  /** Smallest distance, used wherever the formula is below it. */
   smallest?: number,
-  /** Largest distance, which is taken where the formula is above it. */
+  /** Largest distance, used wherever the formula is above it. */
   largest?: number,
 };
 
@@ -1456,7 +1454,7 @@ export type SpacingText = {
 export type Start = {
   /** Repulsion radius of the run, in the units of the field's coordinates. */
   radius: number,
-  /** Number of particles to expect. */
+  /** Expected number of particles. */
   predicted_count: number,
   /** Estimated area of the surface in the box. */
   area: number,
@@ -1504,7 +1502,7 @@ export type Unsampled = {
   position: [number, number, number],
   /** Largest distance from the witness at which a point of the component was found. */
   reach: number,
-  /** Whether the component was explored no further than that, so that it may be larger. */
+  /** Whether the exploration stopped there, so that the component may be larger. */
   goes_on: boolean,
 };
 
@@ -1529,7 +1527,7 @@ export type VerticesChoice = {
 
 /** A warning, as reports in JSON have it. */
 export type Warning = {
-  /** A name by which a program tells warnings apart. */
+  /** A name by which a program identifies the warning. */
   code: string,
   /** The severity says what the warning means for the result. */
   severity: Severity,

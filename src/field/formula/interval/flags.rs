@@ -5,7 +5,7 @@
 pub(super) const DEFINED: u8 = 1;
 /// The values depend continuously on the point.
 pub(super) const CONTINUOUS: u8 = 2;
-/// No value is 0, even if the bounds have both signs, as those of a reciprocal on both sides of its
+/// No value is 0, even if the bounds have both signs, as for a reciprocal on both sides of its
 /// pole.
 pub(super) const NONZERO: u8 = 4;
 /// The operation is undefined on the whole box.

@@ -3,9 +3,9 @@
 //! The bounds hold at every point of a box. Every operation rounds outward (R. E. Moore, "Interval
 //! Analysis", 1966): by at least one unit in the last place where IEEE arithmetic rounds correctly,
 //! by several where the value comes from a mathematical library with an error of up to two. The
-//! bounds of the gradient are those of the derivative expressions. At a kink (abs, min, max) they
-//! contain every slope between the one-sided ones (F. H. Clarke's generalised gradient, 1975), so
-//! that the mean value theorem holds there too.
+//! gradient is bounded through its derivative expressions. At a kink (abs, min, max) they contain
+//! every slope between the one-sided ones (F. H. Clarke's generalised gradient, 1975), so that the
+//! mean value theorem holds there too.
 
 mod flags;
 mod range;
@@ -21,8 +21,8 @@ pub(super) use range::Range;
 pub(super) use rows::Row;
 use std::sync::Arc;
 
-/// Number of boxes whose bounds are computed together. Most calls have eight boxes or fewer. One
-/// alone takes longer, and so do more than four together.
+/// Number of boxes whose bounds are computed together. Most calls have eight boxes or fewer. Both
+/// fewer and more at once take longer.
 const BOXES: usize = 4;
 
 /// A graph compiled for boxes.
@@ -37,14 +37,13 @@ pub(super) struct BoxProgram {
     outputs: Vec<Id>,
 }
 
-/// Memory of one [`BoxProgram`], with the bounds of each node over the boxes at hand. It begins
-/// empty.
+/// Memory of one [`BoxProgram`]: the bounds of each node over the current boxes; empty at first.
 #[derive(Debug, Default)]
 pub(super) struct BoxRows(Vec<Row<BOXES>>);
 
 impl BoxProgram {
-    /// Compiles the nodes `outputs` of `graph`. Bounds may be asked for once
-    /// [`BoxProgram::set_parameters`] is called.
+    /// Compiles the nodes `outputs` of `graph`. [`BoxProgram::set_parameters`] has to be called
+    /// before bounds are computed.
     pub(super) fn compile(graph: &Graph, outputs: &[Id]) -> Self {
         let (graph, outputs) = graph.rewritten(outputs, Graph::intern);
         Self { uniforms: vec![Row::ZERO; graph.len()], graph: Arc::new(graph), outputs }
@@ -175,8 +174,8 @@ fn row_of<'a, const N: usize>(
     }
 }
 
-/// Bounds of `nodes` over a box: `rows` gets those of each at its index. The operands of each have
-/// to be among them.
+/// Bounds of `nodes` over a box, written to `rows` at the index of each. The operands of each must
+/// be among the nodes.
 pub(super) fn bounds(
     graph: &Graph,
     nodes: &[Id],
@@ -187,7 +186,7 @@ pub(super) fn bounds(
     bounds_with(graph, nodes, parameters, bounds, |_| None, rows);
 }
 
-/// [`bounds`], with other nodes in the place of those for which `instead_of` names one.
+/// [`bounds`], with each node replaced for which `instead_of` names another.
 pub(super) fn bounds_with(
     graph: &Graph,
     nodes: &[Id],
@@ -206,7 +205,7 @@ pub(super) fn bounds_with(
     }
 }
 
-/// Bounds of a derivative. Nothing is known of one that is defined nowhere in the box.
+/// Bounds of a derivative; unlimited if it is defined nowhere in the box.
 fn slope(range: Range) -> Interval {
     if range.is_empty() { Interval::EVERYTHING } else { range.bounds }
 }
@@ -227,7 +226,7 @@ fn enclosure([f, x, y, z, whole]: [Range; 5]) -> Enclosure {
     }
 }
 
-/// A factor of the field, whose zeros are among those of the field, compiled for boxes.
+/// A factor of the field, compiled for boxes. Its zeros are zeros of the field.
 #[derive(Clone, Debug)]
 pub(super) struct FactorProgram {
     /// The factor and its gradient, with the whole field as result 4.
@@ -238,7 +237,7 @@ pub(super) struct FactorProgram {
 }
 
 impl FactorProgram {
-    /// Recomputes the bounds of what depends on the parameters alone.
+    /// Recomputes the bounds that depend on the parameters alone.
     pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
         self.first.set_parameters(parameters);
         if let Some(program) = &mut self.second {
@@ -247,13 +246,13 @@ impl FactorProgram {
     }
 }
 
-/// Maximum number of factors. A product of more is taken as one function: each program holds the
-/// whole product too, for its domain, so that all of them grow with the square of the number.
+/// Maximum number of factors; a product of more is one function. Each program holds the whole
+/// product too, for its domain, so that their total size grows with the square of the number.
 const MAX_FACTORS: usize = 16;
 
 /// Programs for the [factors](Graph::factors) of a function with this gradient, or for the function
 /// alone. A factor is simpler than the product, and it has a gradient where two factors vanish
-/// together. The zeros of the function are among those of the field, which is node `whole`.
+/// together. Zeros of the function must be zeros of the field, node `whole`.
 pub(super) fn factors(graph: &mut Graph, function: Id, gradient: [Id; 3], whole: Id) -> Vec<FactorProgram> {
     let mut factors = graph.factors(function);
     if factors.is_empty() || factors.len() > MAX_FACTORS {

@@ -16,8 +16,8 @@ pub(in crate::field::formula) struct Range {
 /// the last place.
 const LIBRARY_ERROR: f64 = 8.0 * f64::EPSILON;
 
-/// Largest argument of tangent whose position relative to the poles is trusted. Nothing is known of
-/// larger ones. Its rounding there may be a millionth of the way between two poles.
+/// Largest argument of the tangent whose position between the poles is trusted: its rounding may be
+/// a millionth of their distance. Nothing is known of larger ones.
 const LARGEST_TANGENT: f64 = 1e9;
 
 /// The empty range.
@@ -74,7 +74,7 @@ impl Range {
         Self { bounds: Interval::new(lo, hi), flags }
     }
 
-    /// The range whose ends IEEE arithmetic rounded to those of `bounds`.
+    /// The range whose ends IEEE arithmetic rounded to `bounds`.
     fn rounded(bounds: Interval, flags: u8) -> Self {
         Self { bounds: Interval::new(down(bounds.lo), up(bounds.hi)), flags }
     }
@@ -363,7 +363,7 @@ impl Range {
         if a.bounds.lo > b.bounds.hi {
             return only(v);
         }
-        // Where one of the values is none, the choice is none, too.
+        // Where the value taken is undefined, so is the choice.
         let either = match (u.is_empty(), v.is_empty()) {
             (true, _) => Self { flags: v.flags & !DEFINED, ..v },
             (_, true) => Self { flags: u.flags & !DEFINED, ..u },

@@ -1,9 +1,9 @@
 //! Clips a coarse mesh that reaches beyond the box.
 //!
-//! Every edge that crosses a plane of the box is split where the surface, the plane and, for an
-//! edge of the border, the plane on which it runs meet. Faces of the mesh with a vertex beyond the
-//! box are then dropped. Since no edge crosses any more, what is left is a manifold with every
-//! border vertex on the box. Its short edges, which the cuts have made, are collapsed.
+//! Every edge that crosses a plane of the box is split where the surface and the plane meet, and,
+//! for an edge of the border, also the plane along which it runs. Faces of the mesh with a vertex
+//! beyond the box are then dropped. Since no edge crosses any more, the rest is a manifold with
+//! every border vertex on the box. The short edges made by the cuts are collapsed.
 
 use super::super::net::{Ground, Net};
 use super::super::refusal::Refusal;
@@ -13,23 +13,23 @@ use crate::math::{Bounds, NONE};
 use crate::mesh::half_edge::{HalfEdges, next, previous};
 use glam::Vec3;
 
-/// Spacings by which the coarse front grows beyond the box: what is near its ragged edge is cut
-/// away. With less than one spacing more surfaces are refused.
+/// Spacings by which the coarse front grows beyond the box: its ragged edge is cut away. With less
+/// than one spacing more surfaces are refused.
 const BEYOND: f64 = 3.0;
 /// Twice the area of a triangle that is flat for certain, as a share of the spacing squared. With 0
 /// some surfaces are refined fewer times.
 const FLAT: f32 = 0.05;
-/// Where the front cannot grow beyond the box it ends before it, by no more than this share of the
-/// spacing. Smaller: fewer fields that end at the box are refined.
+/// A front that cannot grow beyond the box ends at most this share of the spacing before it.
+/// Smaller: fewer fields that end at the box are refined.
 const OPEN_END: f32 = 1.3;
 
-/// The box to which a coarse front grows whose particles have this radius.
+/// The box in which a coarse front of particles with this radius grows.
 pub(crate) fn grown(bounds: &Bounds, radius: f64) -> Bounds {
     let margin = BEYOND * 2.0 * radius;
     Bounds { min: bounds.min.map(|x| x - margin), max: bounds.max.map(|x| x + margin) }
 }
 
-/// Cuts away what lies beyond the box.
+/// Cuts away the part beyond the box.
 ///
 /// # Errors
 ///
@@ -104,19 +104,19 @@ fn cut(net: &mut Net, ground: &mut Ground, spacing: f32, plane: usize) -> Result
 
 /// Target of the particle that splits an edge.
 struct EdgeSplit {
-    /// Position near the target.
+    /// Estimate of the target's position.
     near: Vec3,
-    /// Planes of the box on which the target lies.
+    /// Planes of the box that contain the target.
     planes: Planes,
-    /// Largest distance of the target from that position.
+    /// Largest distance of the target from the estimate.
     reach: f32,
 }
 
 /// Splits an edge by a particle on planes of the box.
 fn split(net: &mut Net, ground: &mut Ground, h: u32, crossing: EdgeSplit) -> Result<(), Refusal> {
     let EdgeSplit { near, planes, reach } = crossing;
-    // The box may be left along the plane: what is beyond its other planes is cut later, and need
-    // not lie on the surface.
+    // The point may leave the box along the plane: the part beyond other planes is cut later, and
+    // need not lie on the surface.
     let place = net.walls.pinned(near, planes);
     let clear = (net.walls.lo - place).max(place - net.walls.hi).max_element();
     let site = match super::slide(ground, planes, place, reach) {
@@ -178,8 +178,8 @@ fn close_open_ends(net: &mut Net, ground: &mut Ground, spacing: f32, first: u32)
     Ok(())
 }
 
-/// Collapses the short edges at the border, and flips edges to those of Delaunay. Every round but
-/// the last takes a particle away.
+/// Collapses the short edges at the border, and makes edges Delaunay by flips. Every round but the
+/// last removes a particle.
 fn tidy(net: &mut Net, spacing: f32) {
     loop {
         let has_changed = net.thin(spacing);
@@ -190,7 +190,7 @@ fn tidy(net: &mut Net, spacing: f32) {
     }
 }
 
-/// Collapses an edge, where that is allowed and makes no flat triangle; whether it did.
+/// Collapses an edge if that is allowed and makes no flat triangle; returns whether it did.
 pub(super) fn collapse(net: &mut Net, h: u32, spacing: f32) -> bool {
     if !net.can_merge(h) {
         return false;

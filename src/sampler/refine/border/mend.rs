@@ -1,4 +1,4 @@
-//! Surgery along the border: edges of it are collapsed and split as particles inside are.
+//! Surgery along the border: its edges are collapsed and split like edges inside.
 
 use super::super::net::Net;
 use super::super::surgery::Operation;
@@ -11,8 +11,8 @@ const SHORT: f32 = 0.85;
 const LONG: f32 = 1.18;
 
 impl Net {
-    /// The operations that may mend a border vertex, in the order in which they are to be tried: it
-    /// has too few or too many triangles, or an edge of the border at it is short or long.
+    /// The operations that may mend a border vertex, in the order to try them: it has too few or
+    /// too many triangles, or an edge of the border at it is short or long.
     pub(in super::super) fn operations_at_border(&self, spacing: f32, v: u32) -> [Option<Operation>; 2] {
         let planes = self.walls.planes(v);
         if planes.is_crease() {

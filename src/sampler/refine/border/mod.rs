@@ -1,8 +1,8 @@
 //! The border of a refined surface: the curves along which the planes of the box cut it.
 //!
-//! Every vertex knows the planes of the box on which it lies. An inner particle lies on none and
+//! Every vertex stores the planes of the box on which it lies. An inner particle lies on none and
 //! moves on the surface; one on a plane slides along the curve in which the plane cuts the surface;
-//! one on two planes is a corner, and stays.
+//! one on two planes is a corner, and is fixed.
 
 mod clip;
 mod mend;
@@ -56,7 +56,7 @@ fn slide(ground: &mut Ground, planes: Planes, start: Vec3, reach: f32) -> Option
 
 impl Net {
     /// Whether three particles lie on one plane, or along one crease: on the border they are on one
-    /// curve, and their triangle is no part of the surface.
+    /// curve, and their triangle is not part of the surface.
     #[inline]
     pub(super) fn is_along_border(&self, corners: [u32; 3]) -> bool {
         let [a, b, c] = corners.map(|v| self.walls.planes(v));
@@ -64,8 +64,8 @@ impl Net {
         !common.is_inner() && (!common.is_crease() || self.is_flat(corners))
     }
 
-    /// Whether a triangle has an angle of 126° or more, as three particles that follow each other
-    /// along a crease have.
+    /// Whether a triangle has an angle of 126° or more, like three successive particles on a
+    /// crease.
     fn is_flat(&self, corners: [u32; 3]) -> bool {
         let [a, b, c] = corners.map(|v| self.position[v as usize]);
         let longest_sq = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
@@ -88,8 +88,8 @@ impl Net {
         [previous(last), first]
     }
 
-    /// Vector from a border vertex half-way to the middle between its neighbours along the border.
-    /// It shortens the longest edges of the border.
+    /// Vector from a border vertex halfway to the middle between its neighbours along the border.
+    /// Moving by it shortens the longest edges of the border.
     pub(super) fn way_along_border(&self, v: u32) -> Vec3 {
         let [before, after] = self.border_edges(v);
         let [a, b] = [self.mesh.origin(before), self.mesh.target(after)].map(|v| self.position[v as usize]);
@@ -106,15 +106,15 @@ impl Net {
         fates
     }
 
-    /// The planes on which both particles lie: those of the box, or of a crease. Two ends of
-    /// creases on one face of the box lie on that face.
+    /// The planes common to both particles: planes of the box, or of a crease. Two ends of creases
+    /// on one face of the box share that face.
     pub(super) fn common_planes(&self, a: u32, b: u32) -> Planes {
         let common = self.walls.planes(a).common(self.walls.planes(b));
         if common.of_box().is_inner() { common } else { common.of_box() }
     }
 
-    /// The planes of the particle on the middle of an edge: those on which the edge runs along the
-    /// border.
+    /// The planes of a particle in the middle of an edge: those along which the edge runs, if it is
+    /// on the border.
     pub(super) fn planes_between(&self, a: u32, b: u32) -> Planes {
         let common = self.common_planes(a, b);
         if common.is_inner() {
@@ -129,12 +129,12 @@ impl Net {
         is_border(a, b) || is_border(b, a)
     }
 
-    /// Brings particles onto the surface by one step of Newton's method, as [`land`](Self::land)
-    /// does, and those on the border that it cannot bring there by several.
+    /// Moves particles onto the surface by one step of Newton's method, like [`land`](Self::land);
+    /// border particles for which one is not enough take several.
     ///
     /// # Errors
     ///
-    /// If a particle could not be brought to the surface.
+    /// If a particle does not reach the surface.
     pub(super) fn land_all(
         &mut self,
         ground: &mut Ground,
@@ -150,8 +150,8 @@ impl Net {
         }
     }
 
-    /// Brings a border particle back by several steps of Newton's method. Returns whether it could
-    /// be done.
+    /// Moves a border particle back onto the surface by several steps of Newton's method. Returns
+    /// whether it got there.
     fn rescue(&mut self, ground: &mut Ground, spacing: f32, v: u32, may_leave: bool) -> bool {
         let (p, planes) = (self.position[v as usize], self.walls.planes(v));
         if planes.is_inner() {
@@ -173,8 +173,7 @@ impl Net {
         self.walls.is_near() && self.mesh.edges().any(|h| self.mesh.twin(h) == NONE)
     }
 
-    /// Length of the border at the box along some faces, in units of the spacing that is wanted
-    /// where it is.
+    /// Length of the border at the box along some faces, in units of the local wanted spacing.
     pub(super) fn border_of(&self, faces: Range<u32>) -> f64 {
         if !self.walls.is_near() {
             return 0.0;

@@ -1,13 +1,13 @@
 //! Acute corners: where two planes of the box cut the surface at a small angle, the particles along
-//! both curves come near each other. One of each pair that crowds is taken out.
+//! both curves come near each other. One of each crowded pair is removed.
 
 use super::super::net::Net;
 use crate::math::{key, sort_by_key};
 
-/// Two particles of which one lies on the border are crowded if they are nearer than this share of
-/// the spacing. Without one of the two an edge of the border is no longer than 1.6 spacings, and
-/// the hole beside it no larger than one inside may be. Half of it would leave an edge that a plane
-/// of the box cuts in two.
+/// A particle on the border and another one crowd each other if they are nearer than this share of
+/// the spacing. With one of them removed, an edge of the border is at most 1.6 spacings long, and
+/// the hole next to it no larger than holes inside may be. With half of it, a plane of the box
+/// could still cut an edge in two.
 const CROWDED: f32 = 0.6;
 
 impl Net {
@@ -18,10 +18,10 @@ impl Net {
             && self.length(h) < CROWDED * spacing * self.size_between(a, b)
     }
 
-    /// Takes a particle out at each of the edges that is
-    /// [short at the border](Self::is_short_at_border), the shortest first: an inner one, else the
-    /// one that has another neighbour nearer. From an acute corner on this leaves particles on one
-    /// curve and the other in turn. None moves. Returns whether one was taken out.
+    /// Removes a particle at each edge that is [short at the border](Self::is_short_at_border), the
+    /// shortest first: an inner particle, else the one whose other neighbours are nearer. From an
+    /// acute corner on, this leaves particles on both curves alternately. None moves. Returns
+    /// whether one was removed.
     pub(in super::super) fn thin(&mut self, spacing: f32) -> bool {
         let mut short: Vec<u32> =
             self.mesh.edges().filter(|&h| self.is_short_at_border(h, spacing)).collect();
@@ -38,8 +38,8 @@ impl Net {
         has_changed
     }
 
-    /// Distance of a particle on the border from the nearest of its neighbours but `other`, and 0
-    /// for one inside.
+    /// Distance of a particle on the border from its nearest neighbour except `other`; 0 for one
+    /// inside.
     fn room(&self, v: u32, other: u32) -> f32 {
         if !self.mesh.is_border(v) {
             return 0.0;
@@ -49,8 +49,8 @@ impl Net {
         others.map(|w| self.position[w as usize].distance(p)).fold(f32::INFINITY, f32::min)
     }
 
-    /// Merges a particle into the nearest of its neighbours for which that is allowed; whether it
-    /// did.
+    /// Merges a particle into the nearest neighbour for which that is allowed; returns whether
+    /// there was one.
     fn take_out(&mut self, v: u32, spacing: f32) -> bool {
         if self.walls.planes(v).is_corner() {
             return false;
