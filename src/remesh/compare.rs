@@ -7,9 +7,9 @@ use crate::slices;
 use glam::DVec3;
 use serde::Serialize;
 
-/// Points on each mesh from which distances are measured, beside its vertices.
+/// Points within the faces of each mesh from which distances are measured, besides its vertices.
 const POINTS: f64 = 50_000.0;
-/// Points of a slice of work.
+/// Points in a slice of work.
 const AT_ONCE: usize = 32;
 
 /// Distances of points from a surface, in the units of the mesh.
@@ -17,11 +17,11 @@ const AT_ONCE: usize = 32;
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[non_exhaustive]
 pub struct MeshDistances {
-    /// Their mean.
+    /// Mean distance.
     pub mean: f64,
-    /// The distance that 99 % of them do not exceed.
+    /// 99th percentile.
     pub most: f64,
-    /// The largest.
+    /// Largest distance.
     pub largest: f64,
 }
 
@@ -36,18 +36,18 @@ pub struct MeshChange {
     pub to_new: MeshDistances,
     /// Distances of points of the new mesh from the old one.
     pub to_old: MeshDistances,
-    /// Volume of the old and of the new mesh; that of an open one depends on the origin.
+    /// Volume of the old and the new mesh; for an open mesh it depends on the origin.
     pub volume: [f64; 2],
-    /// Area of the old and of the new mesh.
+    /// Area of the old and the new mesh.
     pub area: [f64; 2],
-    /// Largest distance of the sharp edges of the old mesh from the new one; none without such
+    /// Largest distance from the sharp edges of the old mesh to the new mesh; none without sharp
     /// edges.
     pub edges: Option<f64>,
 }
 
 impl MeshField {
-    /// How far a mesh of this field is from the one that it was made of, by its vertices, and its
-    /// faces of three indices each: those of [`buffers`](crate::Sample::buffers), for example.
+    /// Compares a mesh of this field, such as [`buffers`](crate::Sample::buffers), with the mesh
+    /// that the field was made from.
     ///
     /// # Panics
     ///
@@ -77,7 +77,7 @@ impl MeshField {
     }
 }
 
-/// The vertices of the faces and points within these, by their shares of the area.
+/// The vertices of the faces, and points within the faces in proportion to their areas.
 fn points_on(mesh: &TriangleMesh) -> Vec<DVec3> {
     /// Steps of the two coordinates of evenly spread points: 1/p and 1/p² with p³ = p + 1 (M.
     /// Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).

@@ -5,12 +5,12 @@ use crate::math::Bounds;
 use crate::slices;
 use glam::DVec3;
 
-/// Faces of a slice of work.
+/// Faces in a slice of work.
 const AT_ONCE: usize = 32;
 
 impl MeshSolid {
-    /// A point in which a side of one face passes through another face that has no corner in common
-    /// with it; none if no two faces intersect so.
+    /// A point where a side of one face pierces another face; none if no two faces intersect. Faces
+    /// that share a corner are not compared.
     pub(super) fn intersection(&self) -> Option<DVec3> {
         let (mesh, tree) = (&*self.mesh, &*self.tree);
         let of_face = |face: usize| {
@@ -32,7 +32,7 @@ impl MeshSolid {
     }
 }
 
-/// The point in which a segment passes through the inside of a triangle.
+/// The point where a segment passes through the inside of a triangle.
 fn crossing(a: DVec3, b: DVec3, [p, q, r]: &[DVec3; 3]) -> Option<DVec3> {
     /// Share of the sizes that counts as touching.
     const TOUCHING: f64 = 1e-6;

@@ -1,4 +1,4 @@
-//! The edges of a mesh, and the faces at each.
+//! The edges of a mesh, and the faces that meet at each.
 
 use crate::math::sort_by_key;
 
@@ -9,7 +9,7 @@ pub(super) struct Side {
     pub(super) side: u32,
 }
 
-/// The sides of all faces, sorted so that those of one edge lie together.
+/// The sides of all faces, sorted so that the sides of one edge are adjacent.
 pub(super) struct Edges {
     sides: Vec<Side>,
     /// Where each edge begins in `sides`, and the end.
@@ -20,7 +20,7 @@ pub(super) struct Edges {
     of_face: Vec<[u32; 3]>,
 }
 
-/// The ends of a side in the order of its face.
+/// The ends of a side, in the order in which its face lists them.
 pub(super) fn ends_of(face: &[u32; 3], side: u32) -> [u32; 2] {
     [face[side as usize], face[(side as usize + 1) % 3]]
 }
@@ -67,7 +67,7 @@ impl Edges {
         self.of_face[face as usize]
     }
 
-    /// The number of edges for which this many sides hold.
+    /// The number of edges whose number of sides satisfies `is_meant`.
     pub(super) fn count(&self, is_meant: impl Fn(usize) -> bool) -> usize {
         (0..self.len()).filter(|&edge| is_meant(self.sides(edge).len())).count()
     }

@@ -1,4 +1,4 @@
-//! Triangle meshes: vertices, faces, and what they add up to.
+//! Triangle meshes: vertices, faces, area and volume.
 
 use super::{MAX_TRIANGLES, MeshError};
 use crate::math::Bounds;
@@ -12,7 +12,7 @@ use glam::DVec3;
 /// use marching_particles::{MeshEdges, Settings, TriangleMesh, sample};
 /// use marching_particles::glam::dvec3;
 ///
-/// // A tetrahedron, whose corners and edges stay.
+/// A tetrahedron, whose corners and edges are kept.
 /// let corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]];
 /// let corners = corners.map(|[x, y, z]| dvec3(x.into(), y.into(), z.into()));
 /// let faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
@@ -30,7 +30,7 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
-    /// The mesh with these vertices, in any unit of length, and faces of three indices of vertices
+    /// The mesh with these vertices, in any unit of length, and these faces: three vertex indices
     /// each, counter-clockwise seen from outside.
     ///
     /// # Errors
@@ -50,7 +50,7 @@ impl TriangleMesh {
                 return Err(MeshError::Index { face, index, count });
             }
         }
-        // Areas and volumes of larger ones overflow.
+        // Areas and volumes of larger numbers overflow.
         let is_usable = |p: &DVec3| p.is_finite() && p.abs().max_element() < 1e30;
         if let Some(vertex) = vertices.iter().position(|p| !is_usable(p)) {
             return Err(MeshError::NotFinite { vertex });
@@ -58,13 +58,13 @@ impl TriangleMesh {
         Ok(Self { vertices, faces, notes: Vec::new() })
     }
 
-    /// The mesh of a file: STL, OBJ, PLY, OFF or GLB, as the content says. Polygons are divided
-    /// into triangles from their first corner.
+    /// Reads a mesh from an STL, OBJ, PLY, OFF or GLB file; the content decides which. Polygons are
+    /// divided into triangles from their first corner.
     ///
     /// # Errors
     ///
-    /// [`MeshError::File`] if the file cannot be read, [`MeshError::NoFaces`] if it holds points
-    /// alone, and the errors of [`TriangleMesh::new`].
+    /// [`MeshError::File`] if the file cannot be read, [`MeshError::NoFaces`] if it holds only
+    /// points, and the errors of [`TriangleMesh::new`].
     pub fn read(name: &str, bytes: Vec<u8>) -> Result<Self, MeshError> {
         let reader = Reader::of_mesh(name, bytes)?;
         let FileMesh { position, corners, faces, warnings, .. } = slices::complete(reader.read(|_| ()))?;
@@ -83,13 +83,13 @@ impl TriangleMesh {
         &self.vertices
     }
 
-    /// The faces, by the indices of their corners.
+    /// The faces, as indices of their corners.
     #[must_use]
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces
     }
 
-    /// What the reader has left out, in sentences for the user.
+    /// What the reader left out of the file, in sentences for the user.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
@@ -101,8 +101,8 @@ impl TriangleMesh {
         self.area_vectors().map(|vector| vector.length()).sum()
     }
 
-    /// The volume that the faces enclose, negative if they turn inward. It depends on the origin if
-    /// the mesh is open.
+    /// The volume that the faces enclose, negative if they face inward. For an open mesh it depends
+    /// on the origin.
     #[must_use]
     pub fn volume(&self) -> f64 {
         volume(&self.vertices, self.faces.iter())
@@ -122,7 +122,7 @@ impl TriangleMesh {
         self.faces.iter().map(|face| self.corners(face)).collect()
     }
 
-    /// Half the cross product of two sides of each face: its area along its normal.
+    /// Half the cross product of two sides of each face: its area times its normal.
     pub(super) fn area_vectors(&self) -> impl Iterator<Item = DVec3> {
         self.faces.iter().map(|face| {
             let [a, b, c] = self.corners(face);
@@ -136,8 +136,8 @@ impl TriangleMesh {
     }
 }
 
-/// The volume that faces enclose. It is summed about a vertex of theirs, so that no digit is lost
-/// far from the origin.
+/// The volume that faces enclose. It is summed about one of their vertices, so that no digits are
+/// lost far from the origin.
 pub(super) fn volume<'a>(vertices: &[DVec3], mut faces: impl Iterator<Item = &'a [u32; 3]>) -> f64 {
     let Some(first) = faces.next() else { return 0.0 };
     let origin = vertices[first[0] as usize];

@@ -1,13 +1,13 @@
-//! Triangle meshes as fields: a surface of its own is sampled anew, with its edges.
+//! Triangle meshes as fields, to sample the surface of a mesh again with its edges.
 //!
-//! A [`TriangleMesh`] is [mended](TriangleMesh::solid) to a [`MeshSolid`], and that is made to a
-//! [`MeshField`] by one of two ways:
+//! A [`TriangleMesh`] is [repaired](TriangleMesh::solid) to a [`MeshSolid`], which becomes a
+//! [`MeshField`] in one of two ways:
 //!
-//! * *Parts with edges*. The faces are parted into patches along edges whose faces meet at an
-//!   angle (`patches`). Each patch has a smooth function (`sheet`), and f is the greatest of them
-//!   at convex edges and the least at concave ones (`parts`, `rule`).
-//! * *Scans and smooth shapes*. The distance from the mesh on a grid becomes an image, whose
-//!   surface is that of its spline (`scan`).
+//! * *Parts with edges*. The faces are divided into patches along edges whose faces meet at an
+//!   angle (`patches`). Each patch has a smooth function (`sheet`); f is their maximum at convex
+//!   edges and their minimum at concave ones (`parts`, `rule`).
+//! * *Scans and smooth shapes*. The signed distance from the mesh, computed on a grid, becomes an
+//!   image, and a spline through its voxels is f (`scan`).
 
 mod compare;
 mod cross;
@@ -35,15 +35,15 @@ use patches::Patches;
 use scan::{Chosen, ScanField};
 use std::sync::Arc;
 
-/// Most triangles of a mesh. With these its trees take some gigabytes.
+/// Most triangles of a mesh. The search trees of so many take some gigabytes.
 pub const MAX_TRIANGLES: usize = 10_000_000;
-/// Angle between faces from which on an edge stays sharp, in degrees, where none is given. Arcs are
-/// divided into steps of up to some 25°.
+/// Default angle between faces, in degrees, above which an edge stays sharp. CAD programs divide
+/// arcs into steps of up to about 25°.
 pub const DEFAULT_EDGE_ANGLE: f64 = 30.0;
-/// Angles that can be asked for, in degrees.
+/// Angles that a caller may set, in degrees.
 pub const EDGE_ANGLES: RangeInclusive<f64> = 1.0..=180.0;
 
-/// Why a mesh makes no field. The message says what is wrong, where, and what to do.
+/// Why a mesh cannot become a field. The message says what is wrong, where, and what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
@@ -72,7 +72,7 @@ pub enum MeshError {
         /// Number of vertices.
         count: usize,
     },
-    /// A vertex is not finite, or beyond ±1e30.
+    /// A vertex is not finite or is beyond ±1e30.
     #[error("vertex {vertex}, counted from 0, is not finite or beyond ±1e30; give it a place")]
     NotFinite {
         /// Index of the vertex.
@@ -97,7 +97,7 @@ pub enum MeshError {
         /// Number of edges with one face.
         borders: usize,
     },
-    /// Edges are to be kept of a mesh that is not closed.
+    /// Edges are to be kept, but the mesh is not closed.
     #[error(
         "edges are kept of closed meshes, and this one has {} edges with one face and {} with more than \
          two; close it first, or have it rounded (--mesh-edges none, `MeshEdges::Rounded`)",
@@ -109,17 +109,17 @@ pub enum MeshError {
         /// Number of edges with more than two faces.
         fans: usize,
     },
-    /// Edges are to be kept of a mesh whose faces intersect.
+    /// Edges are to be kept, but faces of the mesh intersect.
     #[error(
         "faces intersect near ({}, {}, {}), so that edges cannot be kept; unite the parts first, or have \
          the mesh rounded (--mesh-edges none, `MeshEdges::Rounded`)",
         significant(place.x), significant(place.y), significant(place.z)
     )]
     Intersects {
-        /// A point in which they do.
+        /// A point where two faces intersect.
         place: DVec3,
     },
-    /// Edges are to be kept, and a Gaussian to round them.
+    /// The caller asks both to keep edges and to blur them.
     #[error("a Gaussian is for scans: give its width or an angle of edges, and not both")]
     Both,
     /// The angle of edges is out of its range.
@@ -128,7 +128,7 @@ pub enum MeshError {
         /// The angle in degrees.
         angle: f64,
     },
-    /// All of the mesh is narrower than a cell of the grid.
+    /// The whole mesh is narrower than a cell of the grid.
     #[error(
         "all of the mesh is narrower than {}, a cell of the grid that a scan is put on; keep its edges \
          (--mesh-edges 30, `MeshEdges::Angle`)",
@@ -149,17 +149,17 @@ pub enum MeshError {
 /// Which edges of a mesh stay sharp.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum MeshEdges {
-    /// Those whose faces meet at 30° or more, if the mesh is closed, its faces do not intersect,
-    /// and such edges form curves; none of a scan or a smooth shape.
+    /// Edges whose faces meet at 30° or more, if the mesh is closed, its faces do not intersect,
+    /// and such edges form curves. A scan or a smooth shape keeps no edges.
     #[default]
     Auto,
-    /// Those whose faces meet at this angle or more, in degrees.
+    /// Edges whose faces meet at this angle or more, in degrees.
     Angle(f64),
-    /// None: the mesh is taken for a scan.
+    /// No edges: the mesh is treated as a scan.
     Rounded,
 }
 
-/// What was made of a mesh.
+/// How a mesh became a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MeshKind {
@@ -169,12 +169,12 @@ pub enum MeshKind {
         patches: usize,
         /// Edges of the mesh at which two patches meet.
         edges: usize,
-        /// Vertices at which three or more of these meet.
+        /// Vertices where three or more of these edges meet.
         corners: usize,
         /// Sharp edges that fade out within a patch, and are rounded.
         faded: usize,
     },
-    /// The distance on a grid.
+    /// The signed distance on a grid.
     Scan {
         /// Voxels along each axis.
         size: [usize; 3],
@@ -185,10 +185,10 @@ pub enum MeshKind {
     },
 }
 
-/// The field of a mesh, from [`MeshSolid::field`]: a distance near its surface, negative inside. It
-/// can be [put together](crate::difference) with any other field, and [offset](crate::offset).
+/// The field of a mesh, from [`MeshSolid::field`]: near the surface it is the signed distance. It
+/// can be [combined](crate::difference) with other fields, and [offset](crate::offset).
 ///
-/// Nothing bounds it, so no number of components is proven. Copies share it.
+/// Without bounds over boxes the number of components is not proven. Copies share its data.
 #[derive(Clone, Debug)]
 pub struct MeshField {
     solid: MeshSolid,
@@ -203,15 +203,15 @@ enum Function {
 }
 
 impl MeshSolid {
-    /// The field of the mesh. `smooth` is the width of a Gaussian over a scan, in cells of its
-    /// grid, 0 to 10: a mesh is taken for a scan if it is given. By default it is from 0.7 to 3, by
-    /// the noise of the vertices, and 1.5 or more where there are sharp edges.
+    /// Makes the field of the mesh. `smooth` is the width of a Gaussian in cells of a grid, 0 to
+    /// 10; giving it treats the mesh as a scan. The default is 0.7 to 3 cells, depending on the
+    /// noise of the vertices, and at least 1.5 where there are sharp edges.
     ///
     /// # Errors
     ///
-    /// [`MeshError::Angle`] and [`MeshError::Width`] for a number out of its range,
-    /// [`MeshError::Open`] if edges are to be kept of a mesh that is not closed, and
-    /// [`MeshError::Narrow`] if all of a scan is narrower than a cell.
+    /// [`MeshError::Angle`] and [`MeshError::Width`] if a number is out of range,
+    /// [`MeshError::Open`] if edges are to be kept but the mesh is not closed, and
+    /// [`MeshError::Narrow`] if a whole scan is narrower than a cell.
     pub fn field(&self, edges: MeshEdges, smooth: Option<f64>) -> Result<MeshField, MeshError> {
         if let Some(width) = smooth.filter(|width| !(0.0..=10.0).contains(width)) {
             return Err(MeshError::Width { width });
@@ -261,19 +261,19 @@ impl MeshSolid {
 }
 
 impl MeshField {
-    /// The mesh that it was made of, as it was mended.
+    /// The repaired mesh from which the field was made.
     #[must_use]
     pub fn solid(&self) -> &MeshSolid {
         &self.solid
     }
 
-    /// What was made of it.
+    /// How the mesh became this field.
     #[must_use]
     pub fn kind(&self) -> MeshKind {
         self.kind
     }
 
-    /// Points along the sharp edges, counted from the origin of the mesh.
+    /// Points along the sharp edges, relative to the origin of the mesh.
     fn edge_points(&self) -> Vec<DVec3> {
         /// Points on each edge of the mesh.
         const EACH: u32 = 8;

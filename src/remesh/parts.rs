@@ -1,5 +1,5 @@
-//! The field of a mesh with edges: one smooth function for each patch, and at an edge the greater
-//! or the lesser one of two.
+//! The field of a mesh with edges: each patch has a smooth function, and at an edge f is the larger
+//! or the smaller of two.
 
 use super::MeshSolid;
 use super::patches::Patches;
@@ -14,13 +14,13 @@ use glam::{DVec3, Vec3};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Largest distance of the vertices of a plane from it, over the diagonal: the digits of a file in
-/// single precision.
+/// Largest distance of a plane's vertices from the plane, divided by the diagonal: the precision of
+/// a file with single-precision numbers.
 const FLAT: f64 = 1e-6;
 
-/// What the evaluators of a mesh share.
+/// Data that all evaluators of a mesh share.
 struct Shared {
-    /// The place from which everything here is counted.
+    /// All coordinates here are relative to this point.
     origin: DVec3,
     tree: Arc<Tree>,
     patches: Patches,
@@ -29,7 +29,7 @@ struct Shared {
     segments: Vec<[DVec3; 2]>,
     creases: Tree,
     bounds: Bounds,
-    /// Largest height of the smooth surface over the faces.
+    /// Largest height of the smooth surface above the faces.
     bulge: f64,
 }
 
@@ -48,8 +48,8 @@ impl Debug for PartsField {
 }
 
 impl Shared {
-    /// The patch whose function gives f at `p`. The nearest point of the mesh is `q`, on `patch`,
-    /// which gives f unless a crease or a corner near `q` has a rule.
+    /// The patch whose function gives f at `p`: `patch`, which holds the nearest point `q` of the
+    /// mesh, unless a crease or a corner near `q` chooses another.
     fn taken(&self, q: DVec3, patch: u32, p: DVec3) -> u32 {
         let Patches { creases, corners, near, .. } = &self.patches;
         let is_own = |k: u32| creases[k as usize].patches.contains(&patch);
@@ -134,8 +134,8 @@ impl PartsField {
         !self.shared.patches.creases.is_empty()
     }
 
-    /// f and its derivatives, or those of a patch, at a place that is counted from the origin of
-    /// the mesh.
+    /// f and its derivatives, or those of one patch's function, at a point relative to the origin
+    /// of the mesh.
     fn slope(&self, label: Option<u32>, p: DVec3) -> Slope {
         if !p.is_finite() {
             return Slope { value: f64::NAN, gradient: DVec3::NAN, hessian: Sym3::splat(f64::NAN) };
@@ -150,14 +150,14 @@ impl PartsField {
         }
     }
 
-    /// How far the surface may be from the faces.
+    /// How far the surface may lie from the faces.
     fn room(&self) -> f64 {
         self.shared.bulge + 2.0 * self.shift.abs()
     }
 
     fn seams(&self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
         let origin = self.shared.origin;
-        // The edges of an offset are not those of the mesh.
+        // The edges of an offset surface are not those of the mesh.
         if self.shift != 0.0 {
             let write = |points: &[DVec3], labels: &mut [u32]| {
                 labels.iter_mut().zip(points).for_each(|(label, &p)| *label = self.shared.label(p - origin));
@@ -221,17 +221,17 @@ impl Piecewise for PartsField {
     }
 }
 
-/// The evaluator of f, or of the function of a patch.
+/// The evaluator of f, or of one patch's function.
 struct PartsEvaluator<'a> {
     field: &'a PartsField,
     frame: Frame,
     label: Option<u32>,
-    /// The evaluator of a patch, once one has been asked for.
+    /// The evaluator of one patch, made on first use.
     piece: Option<Box<Self>>,
 }
 
 impl PartsEvaluator<'_> {
-    /// A place of the frame, counted from the origin of the mesh.
+    /// A point of the frame, relative to the origin of the mesh.
     fn place(&self, p: DVec3) -> DVec3 {
         p + (self.frame.origin - self.field.shared.origin)
     }

@@ -7,14 +7,14 @@ use super::{MeshSolid, TriangleMesh};
 use crate::math::NONE;
 use glam::DVec3;
 
-/// Distance from an edge within which both of its patches may give f, over the diagonal. The smooth
-/// patches meet beside the edge, by the height of an arc over its chord; they go on for twice this
-/// distance.
+/// Distance from an edge within which either of its patches may give f, divided by the diagonal.
+/// The smooth surfaces meet beside the edge of the mesh, by up to the height of an arc over its
+/// chord; each extends twice this distance beyond the edge.
 const NEAR: f64 = 0.06;
-/// Distance from a corner within which all of its patches may give f, as a share of that of the
-/// next corner.
+/// Distance from a corner within which any of its patches may give f, as a share of the distance to
+/// the next corner.
 const NEAR_CORNER: f64 = 0.45;
-/// Largest angle between faces of one plane, which rounding and repairs bend by less.
+/// Largest angle between faces of one plane, in radians: rounding and repairs turn faces by less.
 const BENT: f64 = 0.02;
 
 /// An edge of the mesh at which two patches meet.
@@ -29,7 +29,7 @@ pub(super) struct Crease {
 #[derive(Clone, Debug)]
 pub(super) struct Corner {
     pub(super) vertex: u32,
-    /// The distance within which all of its patches may give f.
+    /// Within this distance any of its patches may give f.
     pub(super) near: f64,
     pub(super) rule: Rule,
 }
@@ -39,27 +39,27 @@ pub(super) struct Corner {
 pub(super) struct Patches {
     /// The patch of each face.
     pub(super) of_face: Vec<u32>,
-    /// Whether each face lies in a plane, beside whose width the curved faces next to it are
-    /// narrow: it is no facet of a curve.
+    /// Whether each face is a real plane, much wider than the curved faces next to it, and no facet
+    /// of a curve.
     pub(super) is_flat: Vec<bool>,
     pub(super) count: usize,
     pub(super) creases: Vec<Crease>,
     pub(super) corners: Vec<Corner>,
-    /// Sharp edges with the same patch on both sides: ends of edges that fade out, which are
+    /// Sharp edges with the same patch on both sides. They end curves that fade out, and are
     /// rounded.
     pub(super) faded: usize,
     /// All sharp edges.
     pub(super) sharp: usize,
-    /// The vertices at which two creases meet and no more, those first at which they turn by more
-    /// than 45° or one is convex and the other one concave.
+    /// Among the vertices where exactly two creases meet, how many are turns: the creases bend by
+    /// more than 45° there, or one is convex and the other concave. Then the number of all of them.
     pub(super) turns: [usize; 2],
-    /// The distance from a crease within which both of its patches may give f.
+    /// Within this distance of a crease either of its patches may give f.
     pub(super) near: f64,
 }
 
 impl Patches {
-    /// The patches between edges whose faces meet at `angle` or more, in radians. The mesh is
-    /// closed.
+    /// Divides a closed mesh into patches along edges whose faces meet at `angle` or more, in
+    /// radians.
     pub(super) fn new(solid: &MeshSolid, angle: f64) -> Self {
         let (mesh, edges) = (&*solid.mesh, &*solid.edges);
         let normals: Vec<DVec3> = mesh.area_vectors().map(DVec3::normalize_or_zero).collect();
@@ -96,15 +96,15 @@ impl Patches {
         Self { corners: self.find_corners(solid, &normals), ..self }
     }
 
-    /// Whether these are the patches of a part with edges: nearly all sharp edges part two patches,
-    /// the patches are few, and curves of sharp edges hardly bend. Those of a noisy scan begin and
-    /// end anywhere, zigzag, and are convex here and concave there.
+    /// Whether the mesh is a part with edges: nearly all sharp edges separate two patches, there
+    /// are few patches, and curves of sharp edges hardly bend. The sharp edges of a noisy scan
+    /// begin and end anywhere, zigzag, and alternate between convex and concave.
     pub(super) fn are_of_part(&self) -> bool {
         /// Largest share of the sharp edges that fade out.
         const FADED: f64 = 0.1;
         /// Most patches.
         const MOST: usize = 2_000;
-        /// Largest share of the vertices between two sharp edges at which a curve turns.
+        /// Largest share of turns among the vertices between two sharp edges.
         const TURNS: f64 = 0.25;
         let [turns, all] = self.turns;
         self.sharp > 0
@@ -130,15 +130,15 @@ impl Patches {
         turns
     }
 
-    /// Finds the corners, the vertices at which three or more creases meet, and for each the minima
-    /// and maxima of its patches that give f. A corner without such a rule is left out: the nearest
+    /// Finds the corners, where three or more creases meet, and for each the minima and maxima of
+    /// its patches' functions that give f. A corner without such a rule is left out; the nearest
     /// crease decides there.
     fn find_corners(&self, solid: &MeshSolid, normals: &[DVec3]) -> Vec<Corner> {
         let (mesh, edges) = (&*solid.mesh, &*solid.edges);
         let mut at_vertex: Vec<(u32, u32)> =
             (0..).zip(&self.creases).flat_map(|(k, crease)| crease.ends.map(|end| (end, k))).collect();
         at_vertex.sort_unstable();
-        // A face at each vertex, from which one can walk round it.
+        // One face at each vertex, from which a walk around the vertex begins.
         let mut face_at = vec![NONE; mesh.vertices().len()];
         for (face, corners) in (0..).zip(mesh.faces()) {
             corners.iter().for_each(|&corner| face_at[corner as usize] = face);
@@ -171,7 +171,7 @@ impl Patches {
                 }
             }
             if around.len() > 1 && around[0].0 == around[around.len() - 1].0 {
-                // The walk began within this patch.
+                // The walk began in the middle of this patch.
                 let (_, normal, _) = around.remove(around.len() - 1);
                 around[0].1 += normal;
             }
@@ -194,8 +194,8 @@ impl Patches {
     }
 }
 
-/// Makes edges sharp that join the end of one curve of sharp edges to another one: where two curved
-/// surfaces cross, the angle between them may pass through zero.
+/// Makes edges sharp that connect the end of one curve of sharp edges to another curve: along the
+/// intersection of two curved surfaces the angle between them may pass through zero.
 fn bridge(mesh: &TriangleMesh, edges: &Edges, is_sharp: &mut [bool]) {
     /// Most edges between two ends.
     const STEPS: usize = 12;
@@ -243,7 +243,7 @@ fn bridge(mesh: &TriangleMesh, edges: &Edges, is_sharp: &mut [bool]) {
     }
 }
 
-/// The number of edges with two faces that meet at the usual angle of sharp ones or more.
+/// The number of edges with two faces that meet at the default angle or more.
 pub(super) fn sharp_count(solid: &MeshSolid) -> usize {
     let normals: Vec<DVec3> = solid.mesh.area_vectors().map(DVec3::normalize_or_zero).collect();
     let is_sharp = sharp_edges(&solid.edges, &normals, super::DEFAULT_EDGE_ANGLE.to_radians());
@@ -251,7 +251,7 @@ pub(super) fn sharp_count(solid: &MeshSolid) -> usize {
     (0..is_sharp.len()).filter(|&edge| is_sharp[edge] && has_two(edge)).count()
 }
 
-/// Which edges have faces that meet at `angle` or more.
+/// Whether the faces at each edge meet at `angle` or more.
 fn sharp_edges(edges: &Edges, normals: &[DVec3], angle: f64) -> Vec<bool> {
     let least = libm::cos(angle) + 1e-9;
     (0..edges.len())
@@ -262,7 +262,7 @@ fn sharp_edges(edges: &Edges, normals: &[DVec3], angle: f64) -> Vec<bool> {
         .collect()
 }
 
-/// The planes that the faces of a mesh lie in, and the edges at which these meet.
+/// The planes in which the faces of a mesh lie, and the edges where planes meet.
 struct Planes {
     of_face: Vec<u32>,
     count: usize,
@@ -283,7 +283,7 @@ impl Planes {
             while let Some(face) = open.pop() {
                 for side in edges.of_face(face).iter().flat_map(|&edge| edges.sides(edge as usize)) {
                     let other = side.face as usize;
-                    // Compared with the first face: a fine curve is no plane.
+                    // Compared with the first face, so that small turns of a curve do not add up.
                     let turn = normals[start].cross(normals[other]).length();
                     if of_face[other] == NONE && turn < BENT && normals[start].dot(normals[other]) > 0.0 {
                         of_face[other] = count;
@@ -300,7 +300,7 @@ impl Planes {
         Self { is_bent: is_bent.collect(), count: count as usize, of_face }
     }
 
-    /// The planes on both sides of an edge at which they meet, if it is not sharp.
+    /// The two planes that meet at an edge, if the edge is not sharp.
     fn meeting(&self, edges: &Edges, is_sharp: &[bool], edge: usize) -> Option<[u32; 2]> {
         match edges.sides(edge) {
             [a, b] if self.is_bent[edge] && !is_sharp[edge] => {
@@ -310,8 +310,8 @@ impl Planes {
         }
     }
 
-    /// Makes those edges sharp in which two planes meet that bend nowhere else: they are no part of
-    /// a curved patch, however small their angle.
+    /// Makes an edge sharp if its two planes meet no other planes at such edges: however small
+    /// their angle, they are not facets of a curved patch.
     fn add_lone_bends(&self, edges: &Edges, is_sharp: &mut [bool]) {
         let pairs = (0..edges.len()).filter_map(|edge| self.meeting(edges, is_sharp, edge));
         let mut beside: Vec<[u32; 2]> = pairs.flat_map(|[p, q]| [[p, q], [q, p]]).collect();
@@ -329,10 +329,10 @@ impl Planes {
         lone.into_iter().for_each(|edge| is_sharp[edge] = true);
     }
 
-    /// Which faces are flat, by the widths of the planes: twice the area over the length of the
-    /// edges at which they bend, the distance of these edges of a facet.
+    /// Which faces are flat, by the widths of their planes: twice the area divided by the length of
+    /// the edges where the plane bends. For a facet it is the distance between these edges.
     fn are_flat(&self, solid: &MeshSolid, is_sharp: &[bool]) -> Vec<bool> {
-        /// How much wider a plane is than a facet beside it. Facets of one curve differ by less.
+        /// How many times wider a plane is than facets next to it; facets of one curve differ less.
         const WIDER: f64 = 3.0;
         let (mesh, edges) = (&*solid.mesh, &*solid.edges);
         let mut size = vec![[0.0, 0.0]; self.count];
@@ -355,7 +355,7 @@ impl Planes {
     }
 }
 
-/// The part of each face, where parts end at the edges that are a limit.
+/// The connected part of each face, where parts end at the edges in `is_limit`.
 fn flood(count: usize, edges: &Edges, is_limit: &[bool]) -> Vec<u32> {
     let mut part = vec![NONE; count];
     let mut parts = 0;
@@ -381,7 +381,7 @@ fn flood(count: usize, edges: &Edges, is_limit: &[bool]) -> Vec<u32> {
     part
 }
 
-/// The ends of the two sides of a face at one of its corners: behind and ahead of it.
+/// The two other corners of a face: the one after `vertex`, then the one before it.
 fn sides_at(face: [u32; 3], vertex: u32) -> [u32; 2] {
     let k = face.iter().position(|&corner| corner == vertex).unwrap_or(0);
     [face[(k + 1) % 3], face[(k + 2) % 3]]
@@ -390,7 +390,7 @@ fn sides_at(face: [u32; 3], vertex: u32) -> [u32; 2] {
 /// The faces around a vertex in counter-clockwise order, each with the edge to the next one; none
 /// if they do not close to one ring.
 fn ring(faces: &[[u32; 3]], edges: &Edges, vertex: u32, first: u32) -> Option<Vec<(u32, u32)>> {
-    /// More faces at a vertex are hardly a corner.
+    /// A vertex with more faces is unlikely to be a corner.
     const MOST: usize = 4096;
     let mut ring = Vec::new();
     let mut face = first;

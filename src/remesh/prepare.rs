@@ -1,4 +1,4 @@
-//! What is mended in a mesh before it becomes a field.
+//! Repairs of a mesh before it becomes a field.
 
 use super::edges::{Edges, ends_of};
 use super::mesh::volume;
@@ -8,30 +8,30 @@ use crate::math::{Bounds, IndexTable, counted, hash};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Distance, as a share of the diagonal, up to which vertices are one and a face has no width: some
-/// units of the last digit of numbers in single precision.
+/// Distance, as a share of the diagonal, below which vertices are merged and a face has no width: a
+/// few units in the last place of single precision.
 const SAME: f64 = 2e-7;
-/// Rounds in which vertices on the sides of faces divide them; each divides one side of a face.
+/// Most rounds that divide faces at vertices on their sides; a round divides one side of each.
 const ROUNDS: usize = 6;
 
-/// What was mended in a mesh, in the order in which it was done.
+/// What was repaired in a mesh, in the order of the repairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MeshRepairs {
-    /// Vertices that were merged with another one at the same place.
+    /// Vertices that were merged with another one at the same point.
     pub merged: usize,
-    /// Faces without an area, which were dropped.
+    /// Faces that were dropped because they have no area.
     pub degenerate: usize,
-    /// Faces with the corners of another one, which were dropped.
+    /// Faces that were dropped because another face has the same corners.
     pub doubled: usize,
     /// Faces that were divided at a vertex on one of their sides.
     pub divided: usize,
-    /// Faces that were turned.
+    /// Faces whose orientation was reversed.
     pub turned: usize,
 }
 
 impl MeshRepairs {
-    /// What was mended, as a list in words; empty if nothing was.
+    /// The repairs as a list in words; empty if there were none.
     #[must_use]
     pub fn words(&self) -> Vec<String> {
         let Self { merged, degenerate, doubled, divided, turned } = *self;
@@ -47,11 +47,11 @@ impl MeshRepairs {
     }
 }
 
-/// A mesh that was mended, with what tells inside from outside.
+/// A repaired mesh, with the search structures that tell inside from outside.
 #[derive(Clone)]
 pub struct MeshSolid {
     pub(super) mesh: Arc<TriangleMesh>,
-    /// The place from which the vertices are counted.
+    /// The vertices are relative to this point.
     pub(super) origin: DVec3,
     pub(super) edges: Arc<Edges>,
     pub(super) tree: Arc<Tree>,
@@ -68,17 +68,17 @@ impl core::fmt::Debug for MeshSolid {
 }
 
 impl TriangleMesh {
-    /// The solid that the mesh encloses. Vertices at the same place are merged, faces without an
-    /// area and doubled ones dropped, faces divided at vertices on their sides, and turned so that
-    /// neighbours agree. A piece that then encloses a negative volume is turned, with the pieces in
-    /// it: one that is turned against the piece around it stays a hollow.
+    /// The solid that the mesh encloses. Vertices at the same point are merged, faces without area
+    /// and duplicates are dropped, and faces are divided at vertices on their sides and oriented
+    /// alike. A piece of negative volume is reversed with the pieces inside it; so a piece oriented
+    /// against the one around it remains a cavity.
     ///
     /// # Errors
     ///
-    /// [`MeshError::NoArea`] if no face is left, [`MeshError::Sheet`] if it encloses nothing, and
-    /// [`MeshError::Far`] if it is more than 1,000 of its diagonals from the origin.
+    /// [`MeshError::NoArea`] if no face is left, [`MeshError::Sheet`] if the mesh encloses nothing,
+    /// and [`MeshError::Far`] if it lies more than 1,000 of its diagonals from the origin.
     pub fn solid(&self) -> Result<MeshSolid, MeshError> {
-        /// Diagonals from the origin up to which boxes are sampled.
+        /// Largest distance of a box from the origin that is sampled, in diagonals.
         const FAR: f64 = 1000.0;
         let mut repairs = MeshRepairs::default();
         let bounds = self.bounds();
@@ -107,7 +107,7 @@ impl TriangleMesh {
         let edges = Edges::new(&faces);
         let pieces = orient(&vertices, &mut faces, &edges, &mut repairs.turned);
         let (borders, fans) = (edges.count(|sides| sides == 1), edges.count(|sides| sides > 2));
-        // The sides of a face that was turned have other numbers.
+        // Reversing a face renumbers its sides.
         let edges = Edges::new(&faces);
         let mesh = TriangleMesh::of_parts(vertices, faces);
         let tree = Tree::new(&mesh.all_corners());
@@ -127,26 +127,26 @@ impl TriangleMesh {
 }
 
 impl MeshSolid {
-    /// The mended mesh, whose vertices are counted from [`MeshSolid::origin`].
+    /// The repaired mesh, whose vertices are relative to [`MeshSolid::origin`].
     #[must_use]
     pub fn mesh(&self) -> &TriangleMesh {
         &self.mesh
     }
 
-    /// The place from which the vertices of [`MeshSolid::mesh`] are counted: zero, unless the mesh
-    /// is far from it for its size.
+    /// The point to which the vertices of [`MeshSolid::mesh`] are relative: zero, unless the mesh
+    /// is far from zero for its size.
     #[must_use]
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
 
-    /// The counts of faces and vertices that were mended.
+    /// The numbers of repaired faces and vertices.
     #[must_use]
     pub fn repairs(&self) -> MeshRepairs {
         self.repairs
     }
 
-    /// Number of edges with one face: those of holes.
+    /// Number of edges with one face, which border holes.
     #[must_use]
     pub fn border_edges(&self) -> usize {
         self.borders
@@ -158,7 +158,7 @@ impl MeshSolid {
         self.fans
     }
 
-    /// Number of pieces whose faces hang together by edges of two faces.
+    /// Number of pieces, each connected through edges with two faces.
     #[must_use]
     pub fn pieces(&self) -> usize {
         self.pieces
@@ -170,18 +170,18 @@ impl MeshSolid {
         self.borders == 0 && self.fans == 0
     }
 
-    /// Whether both are copies of one.
+    /// Whether both are copies of the same mesh.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.mesh, &other.mesh)
     }
 
-    /// Refuses a mesh that encloses nothing: a sheet, however it is bent. The sum of its area
-    /// vectors, which is zero for a closed mesh, is that of the openings.
+    /// Refuses a mesh that encloses nothing: a sheet, however it is bent. The area vectors of a
+    /// closed mesh add up to zero; otherwise their sum is the area vector of the openings.
     fn check(&self) -> Result<(), MeshError> {
-        /// Largest opening of a solid, as a share of the area of its mesh. Larger: half a sphere,
-        /// whose opening has half of its area, counts as a solid with a hole.
+        /// Largest area of the openings of a solid, as a share of the mesh's area. Half a sphere,
+        /// whose opening has half its area, must not count as a solid.
         const OPEN: f64 = 0.4;
-        /// Least volume, as a share of that of the ball with the same area.
+        /// Least volume, as a share of the volume of a ball with the same area.
         const THIN: f64 = 1e-6;
         let area = self.mesh.area();
         let open: DVec3 = self.mesh.area_vectors().sum();
@@ -193,8 +193,8 @@ impl MeshSolid {
     }
 }
 
-/// The vertices of the faces, of which those within a distance are one, the number of those that
-/// were merged, and the faces.
+/// Merges vertices closer than `width`. Returns the vertices in use, how many were merged, and the
+/// faces.
 fn merged(mesh: &TriangleMesh, width: f64) -> (Vec<DVec3>, (usize, Vec<[u32; 3]>)) {
     let (mut table, mut kept) = (IndexTable::default(), Vec::<DVec3>::new());
     let cell = 4.0 * width.max(f64::MIN_POSITIVE);
@@ -211,7 +211,7 @@ fn merged(mesh: &TriangleMesh, width: f64) -> (Vec<DVec3>, (usize, Vec<[u32; 3]>
                 let found = ways.iter().find_map(|&way| table.find(hash_at(p + way), is_same));
                 found.unwrap_or_else(|| {
                     let fresh = kept.len();
-                    // Only a failure to allocate gives none.
+                    // `None` only if memory could not be allocated.
                     let index = table.find_or_add(hash_at(p), fresh, |_| false).unwrap_or(0);
                     kept.push(p);
                     index
@@ -224,13 +224,13 @@ fn merged(mesh: &TriangleMesh, width: f64) -> (Vec<DVec3>, (usize, Vec<[u32; 3]>
     (kept, (merged, faces))
 }
 
-/// The faces that have an area, each once.
+/// The faces that have an area, without duplicates.
 fn kept(vertices: &[DVec3], faces: Vec<[u32; 3]>, width: f64, repairs: &mut MeshRepairs) -> Vec<[u32; 3]> {
     let (mut table, mut sorted, mut kept) = (IndexTable::default(), Vec::<[u32; 3]>::new(), Vec::new());
     for face in faces {
         let [a, b, c] = face.map(|corner| vertices[corner as usize]);
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-        // Written so that NaN fails.
+        // Written so that NaN counts as no width.
         let has_width = (b - a).cross(c - a).length() > width * longest;
         if face[0] == face[1] || face[1] == face[2] || face[2] == face[0] || !has_width {
             repairs.degenerate += 1;
@@ -250,8 +250,8 @@ fn kept(vertices: &[DVec3], faces: Vec<[u32; 3]>, width: f64, repairs: &mut Mesh
     kept
 }
 
-/// Divides faces at the vertices of borders that lie on one of their sides, where that side is a
-/// border, too. Returns the number of faces that were divided.
+/// Divides a face with a border side at the border vertices that lie on that side. Returns the
+/// number of divided faces.
 fn divide(vertices: &[DVec3], faces: &mut Vec<[u32; 3]>, edges: &Edges, width: f64) -> usize {
     let borders: Vec<usize> = (0..edges.len()).filter(|&edge| edges.sides(edge).len() == 1).collect();
     let place = |vertex: u32| vertices[vertex as usize];
@@ -302,7 +302,7 @@ fn divide(vertices: &[DVec3], faces: &mut Vec<[u32; 3]>, edges: &Edges, width: f
     divided
 }
 
-/// A part of the faces that hang together by edges of two faces.
+/// Faces that are connected through edges with two faces.
 struct Piece {
     faces: Vec<u32>,
     /// The faces, turned so that neighbours agree.
@@ -311,8 +311,8 @@ struct Piece {
     volume: f64,
 }
 
-/// Turns faces so that neighbours agree, and pieces so that they enclose a positive volume. Returns
-/// the number of pieces.
+/// Orients faces consistently, and pieces so that they enclose a positive volume. Returns the
+/// number of pieces.
 fn orient(vertices: &[DVec3], faces: &mut [[u32; 3]], edges: &Edges, turned: &mut usize) -> usize {
     let mut pieces: Vec<Piece> = Vec::new();
     let mut is_turned = vec![false; faces.len()];
@@ -344,7 +344,7 @@ fn orient(vertices: &[DVec3], faces: &mut [[u32; 3]], edges: &Edges, turned: &mu
         pieces.push(Piece { faces: own, corners, bounds, volume });
     }
     for k in 0..pieces.len() {
-        // A piece within others goes with the largest of them.
+        // A piece inside others is reversed with the largest of them.
         let around = (0..pieces.len()).filter(|&other| is_within(vertices, &pieces[k], &pieces[other]));
         let outermost =
             around.fold(k, |a, b| if pieces[b].volume.abs() > pieces[a].volume.abs() { b } else { a });

@@ -1,15 +1,15 @@
-//! How the patches around a corner make f: as minima and maxima of minima and maxima.
+//! How the patches around a corner give f: nested minima and maxima of their functions.
 
 use glam::DVec3;
 
-/// Most patches around a corner with both convex and concave edges whose rules are tried.
+/// Most patches around a corner with both convex and concave edges for which all rules are tried.
 const MOST: usize = 5;
-/// Directions in which a rule is compared with the mesh.
+/// Number of directions in which a rule is compared with the mesh.
 const DIRECTIONS: u32 = 200;
-/// Least share of them in which they agree. Faces of curved patches are not their tangent planes.
+/// Least share of directions that must agree. Faces of curved patches leave their tangent planes.
 const AGREED: f64 = 0.9;
 
-/// A function of the functions of patches.
+/// Which of the patches' functions gives f.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Rule {
     Patch(u32),
@@ -18,7 +18,7 @@ pub(super) enum Rule {
 }
 
 impl Rule {
-    /// The rule that takes the greatest of these, at a convex edge, or the least.
+    /// The maximum of these at a convex edge, the minimum at a concave one.
     pub(super) fn of(is_convex: bool, parts: Vec<Self>) -> Self {
         if is_convex { Self::Greatest(parts) } else { Self::Least(parts) }
     }
@@ -33,7 +33,7 @@ impl Rule {
         let mut best = (u32::MAX, f64::NAN);
         for part in parts {
             let own = part.taken(value);
-            // Written so that the first one is taken.
+            // The first comparison is always true.
             if best.0 == u32::MAX || sign * own.1 > sign * best.1 {
                 best = own;
             }
@@ -41,10 +41,10 @@ impl Rule {
         best
     }
 
-    /// The rule of the patches around a corner: each with its normal there and whether the edge to
-    /// the next one is convex. With edges of both kinds, neighbours are joined one after the other
-    /// in every order, and the first rule is taken that agrees best with the mesh: `is_inside` says
-    /// whether a direction from the corner leads into it.
+    /// The rule for the patches around a corner. Each comes with its normal there and whether the
+    /// edge to the next patch is convex. If the edges are of both kinds, neighbours are joined in
+    /// every order, and the first of the rules that agree best with the mesh is taken: `is_inside`
+    /// tells whether a direction from the corner leads into the solid.
     pub(super) fn around(patches: &[(u32, DVec3, bool)], is_inside: impl Fn(DVec3) -> bool) -> Option<Self> {
         let nodes: Vec<(Self, bool)> =
             patches.iter().map(|&(patch, _, is_convex)| (Self::Patch(patch), is_convex)).collect();
@@ -74,7 +74,7 @@ impl Rule {
     }
 }
 
-/// Calls `each` with the rules of nodes in a ring, whose neighbours are joined in every order.
+/// Calls `each` with the rule of every order in which neighbours in a ring of nodes can be joined.
 fn all_orders(nodes: Vec<(Rule, bool)>, each: &mut dyn FnMut(Rule)) {
     if nodes.len() == 1 {
         nodes.into_iter().for_each(|(rule, _)| each(rule));
@@ -90,7 +90,7 @@ fn all_orders(nodes: Vec<(Rule, bool)>, each: &mut dyn FnMut(Rule)) {
     }
 }
 
-/// Directions all round, evenly spread: a Fibonacci lattice.
+/// Evenly spread directions: a Fibonacci lattice.
 fn directions() -> impl Iterator<Item = DVec3> {
     (0..DIRECTIONS).map(|k| {
         let z = 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(DIRECTIONS);

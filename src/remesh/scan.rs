@@ -1,8 +1,8 @@
-//! The field of a scan or a smooth shape: its signed distance on a grid, blurred a little, as the
-//! spline of an image.
+//! The field of a scan or a smooth shape: a spline through the slightly blurred signed distance on
+//! a grid.
 //!
-//! Inside is where the winding number is above a half. Where faces are missing it changes slowly,
-//! and so does the factor 1 − 2w of the distance: its zeros close the hole smoothly.
+//! A point is inside if its winding number w is above one half. Near a hole in the mesh w changes
+//! slowly, and so does the factor 1 − 2w of the distance: its zeros close the hole smoothly.
 
 use super::edges::Edges;
 use super::{MeshError, MeshSolid, TriangleMesh};
@@ -12,25 +12,25 @@ use crate::math::{Bounds, Sym3, median};
 use crate::slices;
 use glam::{DVec3, Vec3};
 
-/// Cells of the grid over the length of the edges of the mesh. Wider ones lose details; narrower
-/// ones show the facets.
+/// Width of a cell divided by the length of the mesh's edges. Larger cells lose details; smaller
+/// ones reproduce the facets.
 const CELL: f64 = 0.8;
-/// Fewest cells along the longest side.
+/// Fewest cells along the longest side of the mesh.
 const FEWEST: f64 = 96.0;
-/// Most cells of the grid: some seconds, and 100 MB.
+/// Most cells of the grid. These take some seconds, and 100 MB.
 const MOST: f64 = 4e6;
-/// Room around the mesh, in cells: for the Gaussian and for a surface that bulges.
+/// Margin around the mesh, in cells, for the Gaussian and for a surface that bulges.
 const ROOM: f64 = 6.0;
-/// Widths of the Gaussian in cells. The least one levels the edges between faces of a smooth mesh,
-/// the second one rounds sharp edges far enough for particles; wider ones lose what is small.
+/// Widths of the Gaussian in cells. The smallest smooths the edges between faces of a smooth mesh,
+/// the second rounds sharp edges enough for particles; larger ones remove small parts.
 const WIDTHS: [f64; 3] = [0.7, 1.5, 3.0];
-/// Share of sharp edges from which on a mesh is not smooth.
+/// A mesh with a larger share of sharp edges is not smooth.
 const SHARP_SHARE: f64 = 1e-3;
-/// Slope of the noise that is left, as the tangent of an angle.
+/// Slope that the remaining noise gives the surface, as the tangent of an angle.
 const LEFT: f64 = 0.1;
-/// Voxels along the sides of blocks, which are searched together.
+/// Voxels along each side of a block, whose voxels are searched together.
 const SIDE: usize = 4;
-/// Blocks of a slice of work.
+/// Blocks in a slice of work.
 const AT_ONCE: usize = 4;
 
 /// The field of a mesh as an image.
@@ -41,7 +41,7 @@ pub(super) struct ScanField {
     domain: Bounds,
 }
 
-/// What was chosen for a grid.
+/// The chosen grid and the width of the Gaussian in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Chosen {
     pub(super) size: [usize; 3],
@@ -62,7 +62,7 @@ impl Grid {
     fn new(mesh: &TriangleMesh) -> Self {
         let bounds = mesh.bounds();
         let size = bounds.size();
-        // √3/4 of its square is the area of an even triangle.
+        // An equilateral triangle has √3/4 of its edge's square as area.
         let edge = libm::sqrt(4.0 * mesh.area() / (crate::math::SQRT_3 * mesh.faces().len() as f64));
         let longest = size.max_element();
         let least = libm::cbrt(size.max(DVec3::splat(longest / FEWEST)).element_product() / MOST);
@@ -94,8 +94,8 @@ impl Grid {
 }
 
 impl ScanField {
-    /// The field, with a Gaussian of this width in cells, or one that is chosen by the noise of the
-    /// vertices and the number of `sharp` edges.
+    /// The field, with a Gaussian of `width` cells; without it the noise of the vertices and the
+    /// number of `sharp` edges decide.
     pub(super) fn new(
         solid: &MeshSolid,
         sharp: usize,
@@ -104,9 +104,9 @@ impl ScanField {
         let grid = Grid::new(&solid.mesh);
         let width = width.unwrap_or_else(|| {
             let noise = noise(&solid.mesh, &solid.edges);
-            // The noise of independent vertices falls with the square root of the area that the
-            // Gaussian takes the mean of, and its slope with the width once more. The filter adds a
-            // second Gaussian and lets more noise through, for which the width is 1.5 times that.
+            // A Gaussian lowers the noise of independent vertices by the square root of the area
+            // that it averages, and the slope of that noise by its width once more. The filter's
+            // second Gaussian lets more noise through, so the width is 1.5 times that.
             let wanted = libm::sqrt(noise / grid.cell / (LEFT * libm::sqrt(4.0 * core::f64::consts::PI)));
             let is_smooth = (sharp as f64) < SHARP_SHARE * solid.edges.len() as f64;
             (1.5 * wanted).clamp(if is_smooth { WIDTHS[0] } else { WIDTHS[1] }, WIDTHS[2])
@@ -125,7 +125,7 @@ impl ScanField {
         Ok((field, Chosen { size: grid.size, cell: grid.cell, width }))
     }
 
-    /// f and ∇f beyond the image: those at its border, and the distance from there.
+    /// f and ∇f outside the image: those at its border, plus the distance to it.
     #[cold]
     fn beyond(&self, p: DVec3) -> (f64, DVec3) {
         let q = p.clamp(self.domain.lo(), self.domain.hi());
@@ -174,8 +174,8 @@ impl Field for ScanField {
     }
 }
 
-/// The evaluator of the image without its bounds, which say nothing about the mesh, and with values
-/// beyond it.
+/// The evaluator of the image, with values outside it, too, and without the image's bounds, which
+/// do not hold for the mesh.
 struct ScanEvaluator<'a> {
     field: &'a ScanField,
     image: Box<dyn Evaluator + 'a>,
@@ -245,7 +245,7 @@ async fn distances(solid: &MeshSolid, grid: &Grid) -> Vec<f32> {
     let corners = solid.mesh.all_corners();
     let count = grid.block_count();
     let numbers = |range: core::ops::Range<usize>| range.map(|number| grid.block(number)).collect::<Vec<_>>();
-    // The nearest triangle of each block, and how far it and its surroundings are inside.
+    // Of each block: the nearest triangle, its distance, and the winding number at the middle.
     let of_block = |block: [usize; 3]| {
         let middle = grid.middle(block);
         let found = tree.nearest(middle);
@@ -267,12 +267,12 @@ async fn distances(solid: &MeshSolid, grid: &Grid) -> Vec<f32> {
         let near: Vec<(u32, f64, f64)> = near.collect();
         let is_near = away <= half + cell;
         // Far from the mesh the winding number changes slowly. In the opening of a hole it passes
-        // through a half.
+        // through one half.
         let is_like = |own: &(u32, f64, f64)| (0.5 - own.2).abs() > 0.3 && (own.2 > 0.5) == (winding > 0.5);
         let is_sure = !is_near && (is_closed || near.iter().all(is_like));
         let mut out = [0.0_f32; SIDE * SIDE * SIDE];
-        // The winding number of the last voxel, and how far it is from the mesh: first of the
-        // middle.
+        // The winding number at the last voxel and its distance from the mesh; the first "last
+        // voxel" is the middle.
         let (mut last, mut step) = ((winding, away), half);
         for at in 0..out.len() {
             let steps = snake(at);
@@ -285,7 +285,7 @@ async fn distances(solid: &MeshSolid, grid: &Grid) -> Vec<f32> {
                 near.iter().map(|own| to(own).distance_squared(p)).reduce(f64::min)
             };
             let distance = libm::sqrt(distance_sq.unwrap_or(most * most));
-            // Where no face of a closed mesh lies between this voxel and the last one, it is on the
+            // No face of a closed mesh lies between this voxel and the last one, so both are on the
             // same side.
             let is_same = is_sure || is_closed && last.1 > step;
             let winding = if is_same { last.0 } else { tree.winding(p) };
@@ -318,8 +318,8 @@ async fn distances(solid: &MeshSolid, grid: &Grid) -> Vec<f32> {
     values
 }
 
-/// Filters values by twice a Gaussian less the Gaussian of that. It moves no surface by its
-/// curvature, as one Gaussian does, but only by how that changes.
+/// Blurs values by twice a Gaussian minus that Gaussian applied twice. A single Gaussian moves a
+/// surface in proportion to its curvature; this one only where the curvature changes.
 fn smooth(grid: &Grid, values: &mut [f32], width: f64) {
     blur(grid.size, values, [width; 3]);
     let mut twice = values.to_vec();
@@ -327,14 +327,14 @@ fn smooth(grid: &Grid, values: &mut [f32], width: f64) {
     values.iter_mut().zip(twice).for_each(|(once, twice)| *once = 2.0 * *once - twice);
 }
 
-/// The voxels of a block in an order in which each lies beside the last one.
+/// The voxels of a block in an order in which consecutive ones are neighbours.
 fn snake(at: usize) -> [usize; 3] {
     let turned = |k: usize, is_turned: bool| if is_turned { SIDE - 1 - k } else { k };
     let [i, j, k] = [at % SIDE, at / SIDE % SIDE, at / SIDE / SIDE];
     [turned(i, at / SIDE % 2 == 1), turned(j, k % 2 == 1), k]
 }
 
-/// A block and those beside it.
+/// A block and its up to six neighbours.
 fn neighbours(block: [usize; 3], count: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
     let ways = [[0, 0, 0], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
     ways.into_iter().filter_map(move |way: [isize; 3]| {
@@ -343,16 +343,16 @@ fn neighbours(block: [usize; 3], count: [usize; 3]) -> impl Iterator<Item = [usi
     })
 }
 
-/// The standard deviation of independent noise of the vertices along the normals: by how much the
-/// height of a vertex over the mean of its neighbours differs from the heights of these, which on a
-/// smooth surface are nearly equal.
+/// The standard deviation of independent noise of the vertices along the normals. A vertex's height
+/// above the mean of its neighbours is compared with theirs; on a smooth surface these heights are
+/// nearly equal.
 fn noise(mesh: &TriangleMesh, edges: &Edges) -> f64 {
-    /// Fewest vertices of a scan: those of a part are no noise.
+    /// Fewest vertices of a scan. A mesh with fewer is a part, whose corners are not noise.
     const FEWEST: usize = 1_000;
-    /// The median of the size of a normal variable.
+    /// The median of the absolute value of a standard normal variable.
     const MEDIAN: f64 = 0.674_489_750_196_081_7;
-    /// Standard deviation of the measure over that of the noise, with six neighbours: the weights
-    /// of a vertex, its six neighbours and the twelve beyond are 1.17, −0.39 or so, and 0.05.
+    /// Standard deviation of this measure divided by that of the noise, for six neighbours: a
+    /// vertex has the weight 1.17, its six neighbours about −0.39, and the twelve beyond them 0.05.
     const GAIN: f64 = 1.5;
     let count = mesh.vertices().len();
     if count < FEWEST {

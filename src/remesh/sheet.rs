@@ -1,14 +1,14 @@
-//! The smooth function of a patch of faces: its zeros are a smooth surface through all vertices of
-//! the patch, and go on beyond its border.
+//! The smooth function of a patch of faces: its zero set is a smooth surface through all vertices
+//! of the patch that extends beyond its border.
 //!
 //! Each face has a quadratic function that vanishes at its three corners and bends as the normals
-//! there turn. The function of the patch is the mean of those near a place, with weights
-//! exp(−(d/τ)²), where d is the distance from a face: as its square has a continuous gradient, so
-//! has the mean. Faces that are farther than the nearest one by a few τ count nothing, however far
-//! the place is from all of them.
+//! there turn. The function of the patch is the weighted mean of those of the faces nearby. The
+//! weights are exp(−(d/τ)²), where d is the distance from a face; d² has a continuous gradient, so
+//! the mean has one, too. Faces farther than the nearest one by a few τ do not count, however far
+//! the point is from all of them.
 //!
-//! Beyond the border of a patch lies a *skirt* of further triangles along the tangents there, so
-//! that the function is never asked far from a face.
+//! A *skirt* of further triangles continues each patch along its tangents, so that the function is
+//! never evaluated far from a face.
 
 use super::TriangleMesh;
 use super::edges::{Edges, ends_of};
@@ -16,19 +16,19 @@ use super::tree::Tree;
 use crate::math::{Sym3, median};
 use glam::{DMat2, DVec2, DVec3};
 
-/// The width τ of the weights over the median height of curved faces. Smaller ones leave facets,
-/// larger ones take more faces for each value.
+/// The width τ of the weights divided by the median height of curved faces. Smaller values leave
+/// facets visible, larger ones need more faces for each evaluation.
 const WIDTH: f64 = 0.25;
 /// Cosine of the largest angle between a face and the normal at its corner. Where faces turn
-/// further, as around the tip of a cone, there is no normal.
+/// further, as around the tip of a cone, no normal exists.
 const TIP: f64 = 0.88;
-/// Largest (d² − d₀²)/τ² of a face that counts, with the nearest one at d₀: weights below 1e-10 are
-/// lost in the rounding of single precision many times over.
+/// Largest (d² − d₀²)/τ² of a face that counts, where d₀ is the distance of the nearest one: a
+/// weight below 1e-10 is far smaller than the rounding of single precision.
 const REACH: f64 = 23.0;
-/// Length of the skirt over the diagonal of the mesh: two diameters of the particles of a coarse
+/// Length of the skirt divided by the diagonal of the mesh: two particle diameters of a coarse
 /// sampling.
 const SKIRT: f64 = 0.125;
-/// Cosine of the largest angle between two borders at a vertex whose skirts share one side.
+/// Cosine of the largest angle between two border sides at a vertex whose skirts share a side.
 const ROUND: f64 = 0.7;
 
 /// The function of a patch.
@@ -39,7 +39,7 @@ pub(super) enum Sheet {
     Curved { quadrics: Vec<Quadric>, tree: Tree, width_sq: f64, bulge: f64 },
 }
 
-/// b + a·x + xᵀHx/2 with x = p − c.
+/// The function b + a·x + xᵀHx/2 with x = p − c.
 pub(super) struct Quadric {
     middle: DVec3,
     value: f64,
@@ -47,7 +47,7 @@ pub(super) struct Quadric {
     bend: Sym3<f64>,
 }
 
-/// Value, gradient and, for the shape of the surface, the mean Hessian of the quadratic functions.
+/// Value, gradient and the mean Hessian of the quadratic functions, for the surface's curvature.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slope {
     pub(super) value: f64,
@@ -55,12 +55,12 @@ pub(super) struct Slope {
     pub(super) hessian: Sym3<f64>,
 }
 
-/// A triangle with the normals at its corners.
+/// A triangle and the normals at its corners.
 type Element = ([DVec3; 3], [DVec3; 3]);
 
 impl Sheet {
-    /// The function of these faces of a mesh with this diagonal. `is_inner` says of an edge whether
-    /// the patch goes on beyond it, `is_flat` which faces are no facets of a curve; `flat` is the
+    /// The function of these faces of a mesh with this diagonal. `is_inner` tells whether the patch
+    /// continues beyond an edge, and `is_flat` which faces are not facets of a curve; `flat` is the
     /// largest distance of a vertex from a plane.
     pub(super) fn new(
         mesh: &TriangleMesh,
@@ -102,7 +102,7 @@ impl Sheet {
         Self::Curved { quadrics, tree: Tree::new(&corners), width_sq: width * width, bulge }
     }
 
-    /// The height of the surface over the middle of a face, at most.
+    /// Largest height of the surface above the middle of a face.
     pub(super) fn bulge(&self) -> f64 {
         match self {
             Self::Plane { .. } => 0.0,
@@ -110,7 +110,7 @@ impl Sheet {
         }
     }
 
-    /// f, ∇f and the shape of the surface at a place.
+    /// f, ∇f and the mean Hessian at a point.
     pub(super) fn at(&self, p: DVec3) -> Slope {
         match self {
             Self::Plane { normal, point } => {
@@ -125,7 +125,7 @@ impl Sheet {
                     let weight = libm::exp((nearest - found.distance_sq) / width_sq);
                     let own = &quadrics[found.triangle as usize];
                     let Slope { value: f, gradient: g, hessian: h } = own.at(p);
-                    // The gradient of the weight over the weight.
+                    // The gradient of the weight, divided by the weight.
                     let s = (found.point - p) * (2.0 / width_sq);
                     sum += weight;
                     value += weight * f;
@@ -152,12 +152,12 @@ fn sum_of(a: &Sym3<f64>, b: &Sym3<f64>, weight: f64) -> Sym3<f64> {
     }
 }
 
-/// The plane of faces that lie in one.
+/// The plane of the faces, if they lie in one.
 fn plane_of(corners: &[[DVec3; 3]], area: DVec3, flat: f64) -> Option<Sheet> {
     let normal = area.try_normalize()?;
     let all = corners.as_flattened();
     let point = corners[0][0];
-    // The mean height is that of the plane.
+    // Through the mean height of all corners.
     let mean = all.iter().map(|p| normal.dot(*p - point)).sum::<f64>() / all.len() as f64;
     let is_near = |p: &DVec3| (normal.dot(*p - point) - mean).abs() <= flat;
     let is_along = |[a, b, c]: &[DVec3; 3]| (*b - *a).cross(*c - *a).dot(normal) > 0.0;
@@ -165,9 +165,9 @@ fn plane_of(corners: &[[DVec3; 3]], area: DVec3, flat: f64) -> Option<Sheet> {
     is_plane.then_some(Sheet::Plane { normal, point: point + mean * normal })
 }
 
-/// The normals of a patch at its vertices: means of those of the faces there, with the weights that
-/// are exact for spheres, and for cylinders, too (N. Max, "Weights for Computing Vertex Normals
-/// from Facet Normals", 1999). Where a plane goes over into a curve, they are those of the plane.
+/// The normals of a patch at its vertices: means of the face normals there, with weights that are
+/// exact for spheres and also for cylinders (N. Max, "Weights for Computing Vertex Normals from
+/// Facet Normals", 1999). Where a plane turns into a curve, the normal is that of the plane.
 struct Normals {
     vertices: Vec<u32>,
     normals: Vec<DVec3>,
@@ -181,7 +181,7 @@ impl Normals {
         vertices.dedup();
         let count = vertices.len();
         let mut known = Self { normals: Vec::new(), vertices };
-        // Those of flat faces, and of all.
+        // Sums over the flat faces, and over all faces.
         let mut sums = vec![[DVec3::ZERO; 2]; count];
         for (face, corners) in faces.iter().zip(corners) {
             for (k, vertex) in of_face(face).into_iter().enumerate() {
@@ -206,15 +206,15 @@ impl Normals {
     }
 }
 
-/// The side of a face on the border of a patch.
+/// The side of a face that lies on the border of a patch.
 struct Rim {
     ends: [u32; 2],
-    /// The unit vectors along the surface away from the patch, at both ends.
+    /// At both ends, the unit vector along the surface away from the patch.
     away: [DVec3; 2],
 }
 
-/// The triangles of the skirt of a patch, no longer than `length`. They end in the middle between
-/// two parts of the border.
+/// The triangles of the skirt of a patch, no longer than `length`. Between two nearby parts of the
+/// border a skirt ends halfway.
 fn skirt(
     mesh: &TriangleMesh,
     edges: &Edges,
@@ -235,7 +235,7 @@ fn skirt(
             rims.push(Rim { ends, away });
         }
     }
-    // For each vertex the rims that end and begin there.
+    // For each vertex the border sides that begin or end there.
     let mut at_vertex: Vec<(u32, bool, usize)> = Vec::new();
     for (k, rim) in rims.iter().enumerate() {
         at_vertex.extend([(rim.ends[0], true, k), (rim.ends[1], false, k)]);
@@ -258,12 +258,12 @@ fn skirt(
                 (outer[before][1], outer[after][0]) = (Some(end(mean)), Some(end(mean)));
                 continue;
             }
-            // A corner of the patch: between both skirts lies a part of the tangent plane.
+            // At a corner of the patch a part of the tangent plane fills the space between skirts.
             let fan = [end(u), end(mean), end(v)];
             (outer[before][1], outer[after][0]) = (Some(fan[0]), Some(fan[2]));
             elements.extend(fan.array_windows().map(|&[a, b]| ([p, a, b], [normal; 3])));
         }
-        // Where parts of the patch touch in a vertex, what is left over has no neighbour.
+        // Parts of the patch may touch at a vertex only; a side left over there has no neighbour.
         for &(_, begins, k) in own {
             let side = usize::from(!begins);
             outer[k][side].get_or_insert(p + 0.5 * length * rims[k].away[side]);
@@ -275,7 +275,7 @@ fn skirt(
         elements.push(([b, a, c], [n, m, m]));
         elements.push(([b, c, d], [n, m, n]));
     }
-    // A sliver has no direction to bend in.
+    // A sliver gives no direction in which to bend.
     let has_area = |([a, b, c], _): &Element| {
         let longest = a.distance(*b).max(b.distance(*c)).max(c.distance(*a));
         (*b - *a).cross(*c - *a).length() > 1e-6 * longest * longest
@@ -288,7 +288,7 @@ fn skirt(
 /// border there and holds no other vertex of it (J. Ma et al., "3D Medial Axis Point Approximation
 /// Using Nearest Neighbors and the Normal Field", 2012).
 fn free_length(p: DVec3, way: DVec3, length: f64, border: &Tree, own: u32) -> f64 {
-    /// Rounds after which the ball is small enough; most take two or three.
+    /// Rounds after which the ball is small enough.
     const ROUNDS: u32 = 12;
     let mut radius = length;
     for _ in 0..ROUNDS {
@@ -305,8 +305,8 @@ fn free_length(p: DVec3, way: DVec3, length: f64, border: &Tree, own: u32) -> f6
 }
 
 impl Quadric {
-    /// The function of a triangle. Its Hessian is that of the least squares to the normals, damped
-    /// in directions in which the triangle is much narrower than the weights are wide.
+    /// The function of a triangle. Its Hessian fits the normals by least squares, damped in
+    /// directions in which the triangle is much narrower than the weights are wide.
     fn new((corners, normals): &Element, width: f64) -> Self {
         const DAMPING: f64 = 0.02;
         let middle = corners.iter().sum::<DVec3>() / 3.0;
@@ -326,7 +326,7 @@ impl Quadric {
         let damped = |share: f64| spread + DMat2::from_diagonal(DVec2::splat(share * width * width));
         let bend = turn * damped(DAMPING).inverse();
         let bend = 0.5 * (bend + bend.transpose());
-        // The values at the corners are zero: on the mean, and by a slope.
+        // The values at the corners must vanish: the constant cancels their mean.
         let half = x.map(|x| 0.5 * x.dot(bend * x));
         let value = -half.iter().sum::<f64>() / 3.0;
         let lacking = x.iter().zip(half).map(|(x, half)| *x * -(half + value)).sum::<DVec2>();

@@ -1,33 +1,33 @@
-//! A tree of boxes over triangles: the nearest one, those in a box, and the winding number.
+//! A tree of boxes over triangles: finds the nearest one, those in a box, and the winding number.
 
 use crate::math::{Bounds, key_of, sort_by_key};
 use glam::DVec3;
 
-/// Triangles in a leaf. Fewer take more memory, more are tested in vain.
+/// Triangles in a leaf. Fewer take more memory; more are tested in vain.
 const LEAF: usize = 6;
-/// A node that is farther than this many of its radii counts as one dipole in the winding number,
+/// A node farther away than this many of its radii counts as a single dipole in the winding number,
 /// which is then off by some hundredths (G. Barill et al., "Fast Winding Numbers for Soups and
-/// Clouds", 2018, take 2).
+/// Clouds", 2018, use 2).
 const FAR: f64 = 2.0;
 
-/// The point of a triangle that is nearest to a place.
+/// The point of a triangle that is nearest to a given point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
     /// The squared distance.
     pub(super) distance_sq: f64,
-    /// The triangle, as the tree was given it.
+    /// Index of the triangle in the list given to the tree.
     pub(super) triangle: u32,
     pub(super) point: DVec3,
 }
 
 struct Node {
     bounds: Bounds,
-    /// The triangles of a leaf, of which others have none.
+    /// The triangles of a leaf; `count` is 0 for other nodes.
     first: u32,
     count: u32,
     /// The second child; the first one is the next node.
     right: u32,
-    /// The dipole: mean place, sum of the area vectors, and largest distance of a corner.
+    /// The dipole: mean position, sum of the area vectors, and largest distance of a corner.
     centre: DVec3,
     area: DVec3,
     radius: f64,
@@ -40,17 +40,17 @@ pub(super) struct Tree {
     corners: Vec<[DVec3; 3]>,
 }
 
-/// A part of the triangles that is to become a node.
+/// Triangles that are still to become a node.
 struct Open {
     first: usize,
     count: usize,
-    /// The node whose second child it is.
+    /// The node of which this becomes the second child.
     parent: Option<usize>,
 }
 
 impl Tree {
-    /// The tree of these triangles, which are known by their place in the list. Segments are
-    /// triangles, too, with two equal corners.
+    /// The tree of these triangles, which are identified by their index. A triangle with two equal
+    /// corners stands for a segment.
     pub(super) fn new(corners: &[[DVec3; 3]]) -> Self {
         let mut tree =
             Self { nodes: Vec::new(), number: (0..corners.len() as u32).collect(), corners: Vec::new() };
@@ -78,8 +78,8 @@ impl Tree {
         tree
     }
 
-    /// The nearest point of those triangles for which `is_meant` holds, no farther than the root of
-    /// `most`.
+    /// The nearest point of the triangles for which `is_meant` holds, if its squared distance is at
+    /// most `most`.
     pub(super) fn nearest_of(
         &self,
         p: DVec3,
@@ -118,7 +118,7 @@ impl Tree {
                 if children[0].1 < children[1].1 {
                     children.swap(0, 1);
                 }
-                // The nearer one is done first.
+                // The nearer child is visited first.
                 stack[top..top + 2].copy_from_slice(&children);
                 top += 2;
             }
@@ -126,14 +126,14 @@ impl Tree {
         best
     }
 
-    /// The nearest point of all triangles, of which there is one at least.
+    /// The nearest point of all triangles; there is at least one.
     pub(super) fn nearest(&self, p: DVec3) -> Nearest {
         let far = Nearest { distance_sq: f64::INFINITY, triangle: 0, point: DVec3::NAN };
         self.nearest_of(p, f64::INFINITY, |_| true).unwrap_or(far)
     }
 
-    /// Calls `each` with the triangles no farther than the root of `most`, and their nearest
-    /// points.
+    /// Calls `each` for every triangle whose squared distance is at most `most`, with its nearest
+    /// point.
     pub(super) fn within(&self, p: DVec3, most: f64, mut each: impl FnMut(Nearest)) {
         self.descend(
             |bounds| distance_sq(bounds, p) <= most,
@@ -147,7 +147,7 @@ impl Tree {
         );
     }
 
-    /// Calls `each` with the triangles whose boxes meet this one.
+    /// Calls `each` with every triangle whose box meets this one.
     pub(super) fn in_box(&self, bounds: &Bounds, mut each: impl FnMut(u32)) {
         self.descend(
             |own| !own.is_apart_from(bounds),
@@ -179,9 +179,9 @@ impl Tree {
         }
     }
 
-    /// The generalised winding number: 1 inside a closed surface whose faces turn outward, 0
-    /// outside, and between them where faces are missing (A. Jacobson et al., "Robust
-    /// Inside-Outside Segmentation Using Generalized Winding Numbers", 2013).
+    /// The generalised winding number: 1 inside a closed surface whose faces are oriented outward,
+    /// 0 outside, and between them near missing faces (A. Jacobson et al., "Robust Inside-Outside
+    /// Segmentation Using Generalized Winding Numbers", 2013).
     pub(super) fn winding(&self, p: DVec3) -> f64 {
         let mut sum = 0.0;
         let mut stack = [0_u32; 64];
@@ -225,7 +225,7 @@ fn node(own: &[u32], first: usize, corners: &[[DVec3; 3]]) -> Node {
     Node { bounds, first: first as u32, count: own.len() as u32, right: 0, centre, area, radius }
 }
 
-/// The squared distance of a box.
+/// The squared distance from `p` to a box.
 fn distance_sq(bounds: &Bounds, p: DVec3) -> f64 {
     (bounds.lo() - p).max(p - bounds.hi()).max(DVec3::ZERO).length_squared()
 }
