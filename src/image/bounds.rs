@@ -1,8 +1,8 @@
 //! Bounds of the spline and its derivatives over boxes of indices.
 //!
-//! Over up to 27 cells they are those of the Bézier points of the part of each cell that is in
-//! the box, exact for single points. Over more cells they are hulls of the coefficients and their
-//! differences, and over many blocks bounds that are kept for each.
+//! Over up to 27 cells they are the hull of the Bézier points of each cell's part in the box, exact
+//! for single points. Over more cells they are the hull of the coefficients and their differences,
+//! and over many blocks the bounds that are stored for each.
 
 use super::bricks::{Brick, Bricks, ORDERS, SIDE, WIDE, for_each_cell, interval};
 use super::kernel::bezier_weights;
@@ -12,36 +12,36 @@ use core::ops::Range;
 /// Bounds of the derivatives of [`ORDERS`], over indices.
 pub(super) type Derivatives = [Interval; 10];
 
-/// Cells that are bounded by Bézier points at most: a voxel of an image that is turned in space
-/// lies in a box of up to three along each axis.
+/// Most cells that are bounded by Bézier points. A voxel of an image that is rotated in space lies
+/// in a box of up to three cells along each axis.
 const FEW: usize = 27;
-/// Blocks along each axis whose bounds are joined at most; over more of them slopes are those of
-/// the whole image.
+/// Most blocks along each axis whose bounds are joined. Over more blocks the derivatives are
+/// bounded by those of the whole image.
 const BLOCKS: usize = 4;
-/// Tolerance, in cells, within which a box counts as part of one cell: a face that was rounded
-/// outward does not make it a box of two. The polynomials of two cells differ beyond their face by
-/// the cube of the distance only.
+/// Tolerance, in cells, within which a box counts as part of one cell, although a face was rounded
+/// outward. Beyond their common face the polynomials of two cells differ only by the cube of the
+/// distance.
 const BESIDE: f64 = 1e-9;
-/// Roundings of the sums of 64 products, and of second derivatives [`BESIDE`] a cell, as a share of
-/// the largest coefficient.
+/// Rounding errors of the sums of 64 products, and of second derivatives [`BESIDE`] a cell, as a
+/// share of the largest coefficient.
 const ROUNDING: f64 = 1e-13;
 const ROUNDING_OF_SECOND: f64 = 2e-8;
 
-/// Bounds over a box, and whether all of it lies where the spline is defined.
+/// Bounds over a box, and whether the spline is defined in all of it.
 pub(super) struct Found {
     pub(super) derivatives: Derivatives,
     pub(super) is_inside: bool,
 }
 
 impl Bricks {
-    /// Bounds of the derivatives of the [`ORDERS`] in `wanted` over a box of indices of voxels;
-    /// none where the spline is not defined. The other ones are empty.
+    /// Bounds of the derivatives of the [`ORDERS`] in `wanted` over a box of voxel indices; none
+    /// where the spline is not defined. The other derivatives are empty.
     pub(super) fn enclose(&self, indices: &Bounds, wanted: Range<usize>) -> Option<Found> {
         let (mut first, mut last) = ([0; 3], [0; 3]);
         let (mut from, mut to) = ([0.0; 3], [0.0; 3]);
         let mut is_inside = true;
         for axis in 0..3 {
-            // Voxel 0 is at the end of cell 0.
+            // Voxel 0 lies at the end of cell 0.
             let (lo, hi) = (indices.min[axis] + 1.0, indices.max[axis] + 1.0);
             let end = self.cells[axis] as f64;
             if !(hi >= 0.0 && lo <= end) {
@@ -70,7 +70,7 @@ impl Bricks {
         Some(Found { derivatives, is_inside })
     }
 
-    /// Joins bounds over a part of a cell to `found`.
+    /// Extends `found` by the bounds over a part of a cell.
     fn in_cell(&self, cell: [usize; 3], part: [[f64; 2]; 3], wanted: &Range<usize>, found: &mut Derivatives) {
         let block = cell.map(|c| c / SIDE);
         match self.brick(block) {
@@ -82,7 +82,7 @@ impl Bricks {
         }
     }
 
-    /// Joins bounds over many cells to `found`.
+    /// Extends `found` by the bounds over many cells.
     fn over_cells(
         &self,
         first: [usize; 3],
@@ -120,7 +120,7 @@ fn hull(a: Interval, b: Interval) -> Interval {
     Interval::new(a.lo.min(b.lo), a.hi.max(b.hi))
 }
 
-/// Joins the hull of the Bézier points over a part of a cell of a brick to `found`, axis by axis.
+/// Extends `found` by the hull of the Bézier points over a part of a cell, axis by axis.
 fn bezier(
     brick: Brick,
     cell: [usize; 3],

@@ -1,8 +1,8 @@
 //! The coefficients of the spline in bricks near the surface, and bounds of its values everywhere.
 //!
 //! The cells between voxels are grouped in *blocks* of 8³. A block is near the surface if the hull
-//! of the coefficients of its cells holds the iso value, and only such a block keeps them, as a
-//! *brick* of 11³ numbers. Elsewhere the spline has one sign.
+//! of its cells' coefficients contains the iso value. Only then its coefficients are stored, as a
+//! *brick* of 11³ numbers. In other blocks f does not change sign.
 
 use super::Image;
 use super::filter::{BEFORE, BEYOND, Planes};
@@ -10,8 +10,8 @@ use crate::math::{Bounds, Interval};
 use glam::DVec3;
 use std::collections::VecDeque;
 
-/// Cells along each side of a block. Larger ones keep more coefficients away from the surface, and
-/// smaller ones more of them twice.
+/// Cells along each side of a block. Larger blocks store more coefficients far from the surface;
+/// smaller ones store more of them twice.
 pub(super) const SIDE: usize = 8;
 /// Coefficients along each side of a brick.
 pub(super) const WIDE: usize = SIDE + 3;
@@ -19,8 +19,8 @@ pub(super) const WIDE: usize = SIDE + 3;
 const VOLUME: usize = WIDE * WIDE * WIDE;
 /// The slot of a block that is far from the surface.
 const FAR: u32 = u32::MAX;
-/// Share of the image's range by which truncated and rounded coefficients may put a voxel on the
-/// other side of the iso value.
+/// Error of truncated and rounded coefficients, as a share of the image's range. By so much a voxel
+/// may appear on the wrong side of the iso value.
 const SLACK: f32 = 1e-5;
 
 /// The smallest and the largest of some numbers.
@@ -51,14 +51,14 @@ pub(super) const ORDERS: [[usize; 3]; 10] = [
     [0, 0, 2],
 ];
 
-/// Bounds of the value in blocks, each of which holds eight of the level before.
+/// Bounds of the value in blocks; each block holds eight of the level before.
 struct Level {
     count: [usize; 3],
     values: Vec<Range>,
 }
 
 /// The spline of f over the cells of an image. Cell (0, 0, 0) lies before the first voxel of each
-/// axis, and there is one more cell than voxels along it.
+/// axis, so there is one more cell than voxels along each.
 pub(super) struct Bricks {
     /// Cells along each axis.
     pub(super) cells: [usize; 3],
@@ -71,21 +71,21 @@ pub(super) struct Bricks {
     near: Vec<u32>,
     /// Bounds of the derivatives of all orders in each brick.
     derivatives: Vec<[Range; 10]>,
-    /// Bounds of the value, of all blocks and of ever larger groups of them.
+    /// Bounds of the value in all blocks, then in ever larger groups of them.
     levels: Vec<Level>,
-    /// Bounds of all derivatives everywhere.
+    /// Bounds of all derivatives over the whole image.
     pub(super) everywhere: [Range; 10],
-    /// The first and the last cell along each axis in which the surface may be; none without a
+    /// The first and the last cell along each axis that the surface may enter; none without a
     /// surface.
     pub(super) surface: Option<[[usize; 3]; 2]>,
 }
 
-/// A brick: 11³ coefficients, those along the first axis next to each other.
+/// A brick: 11³ coefficients, the first axis fastest.
 #[derive(Clone, Copy)]
 pub(super) struct Brick<'a>(pub(super) &'a [f32]);
 
 impl Brick<'_> {
-    /// The difference of these orders of the coefficients, forward from (i, j, k).
+    /// The forward difference of these orders of the coefficients at (i, j, k).
     #[inline]
     pub(super) fn difference(&self, at: [usize; 3], orders: [usize; 3]) -> f32 {
         let start = at[0] + WIDE * (at[1] + WIDE * at[2]);
@@ -107,8 +107,8 @@ impl Brick<'_> {
         }
     }
 
-    /// Bounds of a derivative over the cells from `first` to `last`: the hull of the differences of
-    /// the coefficients, rounded outward.
+    /// Bounds of a derivative over the cells from `first` to `last`: the hull of the coefficients'
+    /// differences, rounded outward.
     pub(super) fn hull(&self, first: [usize; 3], last: [usize; 3], orders: [usize; 3]) -> Range {
         let along = |axis: usize| first[axis]..=last[axis] + 3 - orders[axis];
         let mut hull = NOTHING;
@@ -121,7 +121,7 @@ impl Brick<'_> {
         if orders == [0, 0, 0] {
             return hull;
         }
-        // Each of two subtractions rounds to the nearest number.
+        // Each of the two subtractions rounds once.
         let rounding = 4.0 * f32::EPSILON * range(self.0.iter().map(|c| c.abs()))[1];
         [hull[0] - rounding, hull[1] + rounding]
     }
@@ -162,7 +162,7 @@ pub(super) fn for_each_cell(first: [usize; 3], last: [usize; 3], mut visit: impl
 }
 
 impl Bricks {
-    /// The spline of iso − value, or of value − iso where it `is_inverted`.
+    /// The spline of iso − value; if `is_inverted`, of value − iso.
     pub(super) fn new(image: &Image, iso: f64, is_inverted: bool) -> Self {
         let cells = image.size.map(|n| n + 1);
         let count = cells.map(|n| n.div_ceil(SIDE));
@@ -198,7 +198,7 @@ impl Bricks {
                 for x in 0..count[0] {
                     let (height, width) = (WIDE.min(sizes[1] - SIDE * y), WIDE.min(sizes[0] - SIDE * x));
                     let mut hull = NOTHING;
-                    // What is beyond the image is a copy of the border, which bounds nothing more.
+                    // Copies of the border pad the brick; they do not change its bounds.
                     for k in 0..WIDE {
                         let plane = &window[k.min(depth - 1)];
                         for j in 0..WIDE {
@@ -251,7 +251,7 @@ impl Bricks {
         }
     }
 
-    /// Builds the pyramid of values over those of the blocks.
+    /// Builds the pyramid of bounds from those of the blocks.
     fn add_levels(&mut self, values: Vec<Range>) {
         self.levels.push(Level { count: self.count, values });
         loop {
@@ -307,7 +307,7 @@ impl Bricks {
         self.near.len()
     }
 
-    /// The place of one of these blocks.
+    /// The indices of such a block.
     pub(super) fn near_block(&self, number: usize) -> [usize; 3] {
         let (at, [x, y, _]) = (self.near[number] as usize, self.count);
         [at % x, at / x % y, at / x / y]
@@ -322,11 +322,11 @@ impl Bricks {
             + levels
     }
 
-    /// The box of the indices of the voxels between which the surface may be, and whether it
-    /// reaches the border of the image, at the lower and upper end of each axis.
+    /// The box, in voxel indices, in which the surface may lie, and whether it reaches the border
+    /// of the image at the lower and upper end of each axis.
     pub(super) fn surface_box(&self) -> Option<(Bounds, [[bool; 2]; 3])> {
         let [lo, hi] = self.surface?;
-        // Cell c lies between the voxels c − 1 and c.
+        // Cell c lies between voxels c − 1 and c.
         let cut = [0, 1, 2].map(|a| [lo[a] == 0, hi[a] == self.cells[a] - 1]);
         let last = |a: usize| (self.cells[a] - 2) as f64;
         let end = |a: usize, x: usize| (x as f64).clamp(0.0, last(a));
@@ -336,8 +336,8 @@ impl Bricks {
     }
 }
 
-/// Bounds of the derivatives of all orders where the coefficients are in a range: differences of
-/// them are no larger than its width.
+/// Bounds of the derivatives of all orders where the coefficients are in a range: their differences
+/// cannot exceed its width.
 fn far_derivatives([lo, hi]: Range) -> [Range; 10] {
     let width = (hi - lo) * (1.0 + f32::EPSILON);
     ORDERS.map(|orders| match orders.iter().sum::<usize>() {
@@ -352,6 +352,5 @@ pub(super) fn interval([lo, hi]: Range) -> Interval {
     Interval::new(lo.into(), hi.into())
 }
 
-/// The offset of the coefficients of a cell: that of its first one in the rows of [`Planes`] is the
-/// number of the cell.
+/// The coefficients of cell c begin at index c of a row of [`Planes`].
 const _: () = assert!(BEFORE == 2, "cell 0 takes the coefficients −2 to 1");

@@ -1,22 +1,22 @@
-//! Which surface of an image is sampled, as every door asks for it.
+//! The choice of a surface in an image, the same for all interfaces.
 
 use super::{DEFAULT_LABEL_WIDTH, Image, ImageError, ImageField};
 
-/// A surface of an image: that at an iso value, or that of a label.
+/// A surface of an image: at an iso value, or around a label.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImageChoice {
-    /// The value on the surface; none for [Otsu's](Image::otsu). A label has none.
+    /// The value on the surface; [Otsu's](Image::otsu) if absent. Not used with a label.
     pub iso: Option<f64>,
-    /// The label whose voxels are inside, in place of an iso value.
+    /// The label whose voxels are inside, instead of an iso value.
     pub label: Option<f64>,
-    /// Width of the Gaussian in voxels, 0 for none. Without one it is the
-    /// [width against noise](Image::width_against_noise) or [`DEFAULT_LABEL_WIDTH`].
+    /// Width of the Gaussian in voxels, 0 for no Gaussian. The default is the [width against
+    /// noise](Image::width_against_noise), or [`DEFAULT_LABEL_WIDTH`].
     pub smooth: Option<f64>,
     /// Whether the darker voxels are inside.
     pub is_dark_inside: bool,
 }
 
-/// The surface that a choice has given.
+/// The surface that a choice leads to.
 #[derive(Clone, Debug)]
 pub struct ImageSurface {
     image: Image,
@@ -57,7 +57,7 @@ impl ImageSurface {
         self.smooth
     }
 
-    /// What the reader and the filter have to say, in sentences for the user.
+    /// Notes of the reader and the filter, in sentences for the user.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         self.filtered.notes()
@@ -65,13 +65,13 @@ impl ImageSurface {
 }
 
 impl Image {
-    /// The surface of a choice. One that was made of the same image `before` lends what it has
-    /// filtered; the surface does not depend on it.
+    /// The surface of a choice. If the surface `before` has the same image, label and width, its
+    /// filtered image is reused; the result is the same.
     ///
     /// # Errors
     ///
-    /// If the iso value is outside the image, there is no such label or nothing is left of it, or
-    /// the width is out of its range.
+    /// If the iso value is outside the image, the label does not exist or the Gaussian leaves
+    /// nothing of it, or the width is out of range.
     pub fn surface(
         &self,
         choice: &ImageChoice,
@@ -98,7 +98,7 @@ impl Image {
         Ok(ImageSurface { image: self.clone(), choice: *choice, filtered, smooth, field })
     }
 
-    /// Whether the other image is a copy of this one, which shares its voxels.
+    /// Whether the other image is a copy of this one that shares its voxels.
     fn is_same(&self, other: &Self) -> bool {
         self.voxels.are_shared_with(&other.voxels) && self.placement == other.placement
     }

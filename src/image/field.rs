@@ -9,24 +9,24 @@ use core::fmt::{self, Debug, Formatter};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
-/// Room around a surface that the border of its image cuts, at the ends at which it does not, in
-/// voxels: a cell that holds the surface is not wider.
+/// Margin, in voxels, at the ends where the border of the image does not cut the surface, if it
+/// cuts it elsewhere: a cell that holds the surface is not wider.
 const ROOM: f64 = 1.0;
 
 /// The surface on which an image has its iso value.
 ///
-/// f is iso − v, where v is the natural cubic spline through all voxels: a function with a
-/// continuous second derivative that has the value of each voxel at its centre (M. Unser, "Splines:
-/// A Perfect Fit for Signal and Image Processing", IEEE Signal Processing Magazine 16, 1999). So
-/// bright voxels are inside, f < 0, or dark ones if it is [inverted](ImageField::inverted).
+/// f is iso − v, where v is the natural cubic spline through all voxels: it has a continuous second
+/// derivative and takes the value of each voxel at its centre (M. Unser, "Splines: A Perfect Fit
+/// for Signal and Image Processing", IEEE Signal Processing Magazine 16, 1999). So bright voxels
+/// are inside, f < 0; if it is [inverted](ImageField::inverted), dark ones.
 ///
 /// Near the surface f, ∇f and ∇∇f are those of the spline. In blocks of 8³ voxels that the surface
-/// does not enter, f is interpolated linearly between voxels; there it has the same sign. f is
-/// defined up to one voxel beyond the outermost centres, so that a surface that the border of the
-/// image cuts ends there with a clean rim.
+/// does not enter, f is interpolated linearly between voxels, which gives it the same sign. f is
+/// defined up to one voxel beyond the outermost centres, so that a surface cut by the border of the
+/// image ends there with a clean rim.
 ///
-/// A point takes some 100 ns, with its gradient. The coefficients near the surface take about 5 kB
-/// for each block that it enters, beside the voxels, which the image and all of its fields share.
+/// An evaluation with gradient takes about 100 ns. The coefficients take about 5 kB for each block
+/// that the surface enters; the voxels are shared by the image and all of its fields.
 #[derive(Clone)]
 pub struct ImageField {
     image: Image,
@@ -55,7 +55,7 @@ impl ImageField {
         Ok(Self { image: image.clone(), iso, is_inverted, bricks })
     }
 
-    /// The same surface with the other side inside: that of the darker voxels.
+    /// The same surface with the darker voxels inside instead.
     #[must_use]
     pub fn inverted(self) -> Self {
         let is_inverted = !self.is_inverted;
@@ -81,7 +81,7 @@ impl ImageField {
         self.is_inverted
     }
 
-    /// Bytes of memory that the field takes beside the voxels of its image.
+    /// Bytes of memory that the field takes, without the voxels of its image.
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.bricks.bytes()
@@ -91,11 +91,11 @@ impl ImageField {
         &self.image.placement
     }
 
-    /// The cell at a point, and the place in it from 0 to 1 along each axis; none where f is not
-    /// defined.
+    /// The cell that contains a point, and the point's position in it from 0 to 1 along each axis;
+    /// none where f is not defined.
     #[inline]
     fn locate(&self, p: DVec3) -> Option<([usize; 3], [f64; 3])> {
-        // Voxel 0 is at the end of cell 0.
+        // Voxel 0 lies at the end of cell 0.
         let at = (self.placement().index(p) + 1.0).to_array();
         let (mut cell, mut t) = ([0; 3], [0.0; 3]);
         for axis in 0..3 {
@@ -109,8 +109,8 @@ impl ImageField {
         Some((cell, t))
     }
 
-    /// The derivatives at a point, up to those of `ORDER`: the value, the gradient and the Hessian
-    /// over indices, in the order of [`ORDERS`](super::bricks::ORDERS); NaN where f is not defined.
+    /// The derivatives at a point up to order `ORDER`: value, gradient and Hessian over indices, in
+    /// the order of [`ORDERS`](super::bricks::ORDERS); NaN where f is not defined.
     #[inline]
     fn derivatives<T: Number, const ORDER: usize>(&self, p: DVec3, of: impl Fn(f64) -> T) -> [T; 10] {
         match self.locate(p) {
@@ -147,7 +147,7 @@ impl ImageField {
         out
     }
 
-    /// The jet at a point, from the derivatives over indices.
+    /// The value, gradient and Hessian in space, from the derivatives over indices.
     fn jet_of<T: Copy + Into<f64>>(&self, d: &[T; 10]) -> Jet {
         let [v, x, y, z, xx, xy, xz, yy, yz, zz] = d.map(Into::into);
         Jet {
@@ -157,8 +157,8 @@ impl ImageField {
         }
     }
 
-    /// The box in which the surface lies, with the room that it needs, and whether the border of
-    /// the image cuts it.
+    /// The box in which the surface lies, with its margin, and whether the border of the image cuts
+    /// the surface.
     fn within(&self) -> Option<Within> {
         let (mut indices, cut) = self.bricks.surface_box()?;
         let is_cut = cut.as_flattened().contains(&true);
@@ -173,20 +173,20 @@ impl ImageField {
     }
 }
 
-/// For each of four coefficients its weights in the value, the slope and the second derivative.
+/// For each of four coefficients, its weights in the value, the slope and the second derivative.
 #[inline(always)]
 fn columns<T: Number>(weights: &[[T; 4]; 3]) -> impl Iterator<Item = [T; 3]> {
     (0..4).map(|k| weights.map(|row| row[k]))
 }
 
-/// The derivatives up to those of `ORDER` of a spline at a point of a cell, over indices.
+/// The derivatives of a spline up to order `ORDER` at a point of a cell, over indices.
 #[inline(always)]
 fn spline<T: Number, const ORDER: usize>(brick: Brick, cell: [usize; 3], t: [T; 3]) -> [T; 10] {
     let zero = T::from(0.0);
     let [x, y, z] = t.map(weights);
     let first = cell[0] + WIDE * (cell[1] + WIDE * cell[2]);
     let window = &brick.0[first..first + 3 * WIDE * (WIDE + 1) + 4];
-    // Sums along the second and third axis, with four coefficients of the first one side by side.
+    // Sums along the third and second axis, for four coefficients of the first axis at a time.
     let add = |sum: &mut [T; 4], row: &[T; 4], weight: T| {
         for (sum, c) in sum.iter_mut().zip(row) {
             *sum = *sum + *c * weight;
@@ -262,7 +262,7 @@ impl Field for ImageField {
     }
 }
 
-/// An image at work.
+/// The evaluator of an image.
 struct ImageEvaluator<'a> {
     field: &'a ImageField,
     frame: Frame,
@@ -343,7 +343,7 @@ impl ImageEvaluator<'_> {
 }
 
 impl Bounded for ImageEvaluator<'_> {
-    /// A box takes as long as one of a formula with so many operations.
+    /// Bounds over a box take as long as for a formula with this many operations.
     fn operations(&self) -> usize {
         2 * BATCH
     }
@@ -400,12 +400,12 @@ impl Bounded for ImageEvaluator<'_> {
                 return;
             }
             let cut = own.overlap(within);
-            // A cell that only touches the box has a neighbour that holds what they share.
+            // A cell that only touches the box has a neighbour that contains the shared part.
             if (0..3).any(|a| within.min[a] < within.max[a] && cut.min[a] >= cut.max[a]) {
                 return;
             }
             let known = self.enclosure(&cut);
-            // Where f ends, the highest point of the surface may lie on its border.
+            // Where f ends, the highest point of the surface may lie on the border.
             let may_be_highest = !known.defined || sides.iter().all(|&side| known.gradient[side].holds(0.0));
             if known.may_vanish && may_be_highest {
                 out.push(cut);

@@ -1,31 +1,30 @@
 //! The coefficients of the spline through the voxels, plane by plane.
 //!
 //! A cubic B-spline with coefficients c has the values (c[i−1] + 4 c[i] + c[i+1]) / 6 at whole
-//! numbers. The inverse of that is a filter of both directions, c[i] = √3 Σ z^|k| s[i+k] with z =
-//! √3 − 2 (Unser 1999, box 2), which is used along each axis in turn. It is cut off where its
-//! weights are below the rounding of single precision. So a coefficient depends on the voxels
-//! around it alone, and has the same bits whichever part of an image is computed, and in which
-//! order.
+//! numbers. The inverse is a two-sided filter, c[i] = √3 Σ z^|k| s[i+k] with z = √3 − 2 (Unser
+//! 1999, box 2), applied along each axis in turn. It is cut off where its weights fall below the
+//! rounding of single precision. So a coefficient depends only on the voxels around it, and has the
+//! same bits whichever part of an image is computed, in whichever order.
 //!
-//! Beyond its ends a row of voxels goes on as its reflection at the point of the last one, s[−i] =
-//! 2 s[0] − s[i]. It makes the spline a *natural* one, without a second derivative at the ends. The
+//! Beyond its ends a row of voxels continues as its reflection at the last point, s[−i] = 2 s[0] −
+//! s[i]. This makes the spline a *natural* one, whose second derivative vanishes at the ends. The
 //! usual reflection s[−i] = s[i] would make the slope vanish there, and tilt the normals of a
 //! surface that the border cuts.
 
 use super::Image;
 use std::collections::VecDeque;
 
-/// Weights of the filter on each side. The first one that is left out is 6 · 10⁻⁸ of the middle
-/// one, the rounding of single precision.
+/// Weights of the filter on each side. The next weight would be 6 · 10⁻⁸ of the middle one, the
+/// rounding of single precision.
 pub(super) const REACH: usize = 12;
 
 /// Coefficients that are computed before the first voxel of a row: one for the first cell, and one
 /// for the cell beyond the border.
 pub(super) const BEFORE: usize = 2;
-/// Coefficients of a row beyond the number of its voxels.
+/// By how many a row has more coefficients than voxels.
 pub(super) const BEYOND: usize = 2 * BEFORE;
 
-/// The weights √3 z^k for k = 0..=REACH, scaled so that a constant stays what it is.
+/// The weights √3 z^k for k = 0..=REACH, scaled so that the filter keeps a constant.
 fn weights() -> [f32; REACH + 1] {
     let z = libm::sqrt(3.0) - 2.0;
     let mut weights = [1.0; REACH + 1];
@@ -36,12 +35,12 @@ fn weights() -> [f32; REACH + 1] {
     weights.map(|weight| (weight / sum) as f32)
 }
 
-/// Filters a row, or many side by side: `of(k)` are the values k steps further along the axis.
+/// Filters a row, or several at once: `of(k)` returns the values k steps further along the axis.
 fn filter<'a>(weights: &[f32; REACH + 1], of: impl Fn(isize) -> &'a [f32], out: &mut [f32]) {
     for (out, middle) in out.iter_mut().zip(of(0)) {
         *out = weights[0] * middle;
     }
-    // The smallest weights last, in the same order everywhere.
+    // The smallest weights are added last, always in the same order.
     for (k, weight) in (0..).zip(weights).skip(1) {
         for ((out, behind), ahead) in out.iter_mut().zip(of(-k)).zip(of(k)) {
             *out += weight * (behind + ahead);
@@ -49,8 +48,8 @@ fn filter<'a>(weights: &[f32; REACH + 1], of: impl Fn(isize) -> &'a [f32], out: 
     }
 }
 
-/// A value of a row that goes on beyond its ends: `sign` times that of `at`, plus `first` times the
-/// first one and `last` times the last one.
+/// A value beyond the end of a row: `sign` times the value at `at`, plus `first` times the first
+/// value and `last` times the last one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Reflected {
     at: usize,
@@ -59,7 +58,7 @@ struct Reflected {
     last: f32,
 }
 
-/// The value at `i` of a row of `n` ≥ 2 values, by those of the row.
+/// How the value at `i` follows from those of a row of `n` ≥ 2 values.
 fn reflected(mut i: isize, n: usize) -> Reflected {
     let end = n as isize - 1;
     let (mut sign, mut first, mut last) = (1.0, 0.0, 0.0);
@@ -75,7 +74,7 @@ fn reflected(mut i: isize, n: usize) -> Reflected {
 }
 
 impl Reflected {
-    /// The value, or many side by side.
+    /// Writes the value, or those of several rows at once.
     fn write<'a>(self, row: impl Fn(usize) -> &'a [f32], end: usize, out: &mut [f32]) {
         let (at, first, last) = (row(self.at), row(0), row(end));
         for (k, out) in out.iter_mut().enumerate() {
@@ -91,13 +90,13 @@ pub(super) struct Planes<'a> {
     /// Coefficients along the first and second axis.
     width: usize,
     height: usize,
-    /// Planes that are filtered along the first two axes, from `first` on: those that the filter
-    /// along the third axis still needs.
+    /// Planes that are filtered along the first two axes, from index `first` on. The filter along
+    /// the third axis still needs them.
     window: VecDeque<Vec<f32>>,
     first: isize,
-    /// The same of the first and of the last plane of the image.
+    /// The first and the last plane of the image, filtered in the same way.
     ends: Option<[Vec<f32>; 2]>,
-    /// The coefficient of the next plane, from −[`BEFORE`] on.
+    /// Index of the next plane of coefficients, from −[`BEFORE`] on.
     next: isize,
 }
 
@@ -116,8 +115,8 @@ impl<'a> Planes<'a> {
         }
     }
 
-    /// The next plane of coefficients, counted from the middle of the image's range: rows of
-    /// `size[0]` + [`BEYOND`] of them. There are `size[2]` + [`BEYOND`] planes.
+    /// The next plane of coefficients, relative to the middle of the image's range: rows of
+    /// `size[0]` + [`BEYOND`] values. There are `size[2]` + [`BEYOND`] planes.
     pub(super) fn next_plane(&mut self) -> Vec<f32> {
         let reach = REACH as isize;
         while self.first < self.next - reach {
@@ -135,7 +134,7 @@ impl<'a> Planes<'a> {
         out
     }
 
-    /// A plane that is filtered along the first two axes, also one beyond the image.
+    /// A plane that is filtered along the first two axes; `k` may lie beyond the image.
     fn plane_at(&mut self, k: isize) -> Vec<f32> {
         let depth = self.image.size[2];
         if (0..depth as isize).contains(&k) {
@@ -169,7 +168,7 @@ impl<'a> Planes<'a> {
         let [width, height, _] = self.image.size;
         let room = BEFORE + REACH;
         let zero = self.image.middle();
-        // Rows that are filtered along the first axis, with those beyond the image.
+        // Rows that are filtered along the first axis, including rows beyond the image.
         let mut rows = vec![0.0; self.width * (height + 2 * room)];
         let mut line = vec![0.0; width + 2 * room];
         for j in 0..height {
@@ -191,8 +190,8 @@ impl<'a> Planes<'a> {
     }
 }
 
-/// Writes the values beyond the ends of `n` rows of `width` values, before and behind which there
-/// is room for [`BEFORE`] + [`REACH`] rows.
+/// Writes the values beyond the ends of `n` rows of `width` values. There is room for [`BEFORE`] +
+/// [`REACH`] rows at each end.
 fn extend(rows: &mut [f32], width: usize, n: usize) {
     let room = (BEFORE + REACH) as isize;
     let (before, rest) = rows.split_at_mut(room as usize * width);

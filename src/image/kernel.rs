@@ -1,4 +1,4 @@
-//! The cubic B-spline on one cell: its weights and those of its Bézier points.
+//! The weights of the cubic B-spline on one cell, and those of its Bézier points.
 //!
 //! On the cell between voxels m and m + 1 the spline is Σ wⱼ(t) c[m−1+j] over j = 0..4, with t from
 //! 0 to 1 (M. Unser, "Splines: A Perfect Fit for Signal and Image Processing", IEEE Signal
@@ -6,7 +6,7 @@
 
 use core::ops::{Add, Mul, Sub};
 
-/// The numbers that the spline is evaluated with.
+/// The number types in which the spline is evaluated.
 pub(super) trait Number:
     Copy + From<f32> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
 {
@@ -22,8 +22,7 @@ impl Number for f64 {
     const SIXTH: Self = 1.0 / 6.0;
 }
 
-/// The weights of the four coefficients at `t`: of the value, of the slope and of the second
-/// derivative.
+/// The weights of the four coefficients at `t`, for the value, the slope and the second derivative.
 #[inline(always)]
 pub(super) fn weights<T: Number>(t: T) -> [[T; 4]; 3] {
     let n = |x: f32| T::from(x);
@@ -43,8 +42,8 @@ pub(super) fn weights<T: Number>(t: T) -> [[T; 4]; 3] {
 
 /// For each order of derivative, the weights of the Bézier points of the spline over `from..to` in
 /// the cell: 4 points for the value, 3 for the slope and 2 for the second derivative. The spline
-/// lies in their hull there. They are the values of its polar form (L. Ramshaw, "Blossoms Are Polar
-/// Forms", Computer Aided Geometric Design 6, 1989).
+/// there lies in the hull of these points. They are values of its polar form (L. Ramshaw, "Blossoms
+/// Are Polar Forms", Computer Aided Geometric Design 6, 1989).
 pub(super) fn bezier_weights(from: f64, to: f64) -> [[[f64; 4]; 4]; 3] {
     let value = |u: f64, v: f64, w: f64| {
         let (e1, e2, e3) = (u + v + w, u * v + u * w + v * w, u * v * w);

@@ -1,16 +1,16 @@
-//! Labels: whole numbers that say to which organ, grain or phase a voxel belongs.
+//! Labels: whole numbers that assign each voxel to an organ, grain or phase.
 
 use super::smooth::{blur, deviations};
 use super::voxels::Voxels;
 use super::{Image, ImageError};
 use std::collections::BTreeMap;
 
-/// Width of the Gaussian over the distances from a label, in voxels. With less, the steps of the
-/// voxels show in the normals; with more, corners are rounded more.
+/// Width of the Gaussian over the distances from a label, in voxels. Smaller: the steps between
+/// voxels show in the normals. Larger: corners are rounded more.
 pub const DEFAULT_LABEL_WIDTH: f64 = 1.0;
-/// Labels of an image at most. More values are grey values.
+/// Most labels of an image. With more different values they are grey values.
 const MOST_LABELS: usize = 4096;
-/// Share of a label's voxels that the Gaussian may leave outside of its surface without a note.
+/// Share of a label's voxels that the Gaussian may move outside the surface without a note.
 const LOST: f64 = 0.05;
 
 /// A label of an image.
@@ -23,8 +23,8 @@ pub struct Label {
 }
 
 impl Image {
-    /// The labels of an image whose voxels are whole numbers, in order, the background 0 included;
-    /// empty if they are no whole numbers or there are more than 4096 different ones.
+    /// The labels of an image in order, including the background 0; empty if its voxels are not
+    /// whole numbers or there are more than 4096 different ones.
     #[must_use]
     pub fn labels(&self) -> Vec<Label> {
         let mut counts: BTreeMap<i64, u64> = BTreeMap::new();
@@ -43,22 +43,20 @@ impl Image {
     }
 
     /// The image of the signed distance from the boundary of a label, positive inside, blurred by a
-    /// Gaussian of `width` voxels, [`DEFAULT_LABEL_WIDTH`] for a start: its surface is that
-    /// [at](Image::at)
-    /// 0. The distance is that to the nearest voxel on the other side, less half a voxel (P.
-    /// Felzenszwalb & D. Huttenlocher, "Distance Transforms of Sampled Functions", Theory of
-    /// Computing 8, 2012).
+    /// Gaussian of `width` voxels ([`DEFAULT_LABEL_WIDTH`] is a good start). Its surface is
+    /// [at](Image::at) 0. The distance is measured to the nearest voxel on the other side, minus
+    /// half a voxel (P. Felzenszwalb & D. Huttenlocher, "Distance Transforms of Sampled Functions",
+    /// Theory of Computing 8, 2012).
     ///
-    /// The boundary of a label is known to half a voxel, and the surface keeps within that of
-    /// smooth bodies. The Gaussian levels the steps between voxels: with a width of 1, normals turn
-    /// by some 4° from them, with 1.5 by 2°, without it by 26°. It rounds corners by about its
-    /// width, and a part that is thinner than two widths is lost, which a [note](Image::notes)
-    /// says.
+    /// The boundary of a label is known to half a voxel, and for smooth bodies the surface stays
+    /// within that. The Gaussian smooths the steps between voxels: they turn normals by about 4°
+    /// with a width of 1, 2° with 1.5, and 26° without it. It rounds corners by about its width and
+    /// removes parts thinner than two widths, which a [note](Image::notes) reports.
     ///
     /// # Errors
     ///
-    /// [`ImageError::NoLabel`] if no voxel, or every one, has the label, [`ImageError::Thin`] if
-    /// nothing of it is left, and [`ImageError::Width`] if the width is not between 0 and 100.
+    /// [`ImageError::NoLabel`] if no voxel or every voxel has the label, [`ImageError::Thin`] if
+    /// the Gaussian removes it, [`ImageError::Width`] if the width is not in 0 to 100.
     pub fn label(&self, value: f64, width: f64) -> Result<Self, ImageError> {
         if !(0.0..=100.0).contains(&width) {
             return Err(ImageError::Width { width });
@@ -96,7 +94,7 @@ impl Image {
     }
 }
 
-/// The squared distances from each voxel to the nearest one of a set, which has a voxel.
+/// The squared distances from each voxel to the nearest voxel of a set that is not empty.
 fn squared_distances(size: [usize; 3], spacing: [f64; 3], is_in: impl Fn(usize) -> bool) -> Vec<f32> {
     let count: usize = size.iter().product();
     let mut squares: Vec<f32> = (0..count).map(|at| if is_in(at) { 0.0 } else { f32::INFINITY }).collect();
@@ -115,10 +113,10 @@ fn squared_distances(size: [usize; 3], spacing: [f64; 3], is_in: impl Fn(usize) 
     squares
 }
 
-/// The lower envelope of the parabolas over the places of a line.
+/// The lower envelope of the parabolas at the points of a line.
 struct Envelope {
     spacing: f64,
-    /// The places whose parabolas are in the envelope, and from where on.
+    /// The points whose parabolas form the envelope, and where each part begins.
     places: Vec<(usize, f64)>,
 }
 
@@ -127,14 +125,14 @@ impl Envelope {
         Self { spacing, places: Vec::with_capacity(n) }
     }
 
-    /// Calls `store` with the least of `line[k]` + (x − x_k)² at each place x.
+    /// Calls `store` with the minimum of `line[k]` + (x − x_k)² at each point x.
     fn lower(&mut self, line: &[f64], mut store: impl FnMut(usize, f64)) {
         self.places.clear();
         let x = |k: usize| self.spacing * k as f64;
         for (k, &height) in line.iter().enumerate().filter(|(_, height)| height.is_finite()) {
             let from = loop {
                 let Some(&(last, from)) = self.places.last() else { break f64::NEG_INFINITY };
-                // Where the parabolas of both places meet.
+                // Where the two parabolas intersect.
                 let rise = height - line[last];
                 let meet = 0.5 * (x(k) + x(last)) + 0.5 * rise / (x(k) - x(last));
                 if meet > from {

@@ -1,8 +1,8 @@
 //! Three-dimensional images as fields: CT and MR volumes, cubes of densities, arrays.
 //!
-//! An [`Image`] is a grid of voxels with a place in space. An [`ImageField`] is the surface in it
-//! on which the grey value has one value, the *iso value*: the zero set of a cubic spline through
-//! all voxels. A file becomes an image by [`Image::read`], a program's array by [`Image::new`].
+//! An [`Image`] is a grid of voxels with a placement in space. An [`ImageField`] is the surface in
+//! it at one grey value, the *iso value*: the zero set of iso value minus a cubic spline through
+//! all voxels. [`Image::read`] reads a file, [`Image::new`] takes a program's array.
 
 mod bounds;
 mod bricks;
@@ -31,7 +31,7 @@ use otsu::Histogram;
 use std::sync::Arc;
 use voxels::{Layout, Voxels};
 
-/// Why an image makes no field. The message says what is wrong, where, and what to do.
+/// Why an image cannot become a field. The message says what is wrong, where, and what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImageError {
@@ -45,7 +45,7 @@ pub enum ImageError {
         /// Voxels along each axis.
         size: [usize; 3],
     },
-    /// The numbers of voxels along the axes and the number of values disagree.
+    /// The number of values is not the product of the numbers of voxels along the axes.
     #[error(
         "an image of {} × {} × {} voxels takes {wanted} values, and {found} were given; check the order and \
          the length of its axes",
@@ -95,17 +95,17 @@ pub enum ImageError {
         /// The width in voxels.
         width: f64,
     },
-    /// No voxel has the label, or all have.
+    /// No voxel, or every voxel, has the label.
     #[error("{}", no_label(*value, *count, known))]
     NoLabel {
         /// The label.
         value: f64,
         /// Number of voxels that have it.
         count: usize,
-        /// The labels of the image; empty if its voxels are no labels.
+        /// The labels of the image; empty if its voxels are not labels.
         known: Vec<f64>,
     },
-    /// Nothing is left of a label after the Gaussian.
+    /// The Gaussian leaves nothing of a label.
     #[error(
         "nothing is left of the label {value}, whose parts are thinner than the Gaussian of {width} voxels; use a smaller width"
     )]
@@ -129,7 +129,7 @@ pub enum ImageError {
 
 /// Why a label has no surface.
 fn no_label(value: f64, count: usize, known: &[f64]) -> String {
-    /// Labels that a message lists.
+    /// Most labels that a message lists.
     const LISTED: usize = 20;
     if count > 0 {
         return format!("all voxels have the label {value}, so it has no boundary in the image");
@@ -144,17 +144,16 @@ fn no_label(value: f64, count: usize, known: &[f64]) -> String {
     format!("no voxel has the label {value}; those of the image are {}{more}", listed.join(", "))
 }
 
-/// A grid of voxels with a place in space.
+/// A grid of voxels with a placement in space.
 ///
-/// The voxels stay what they are in the file or the array, in their own type and byte order; copies
-/// of an image and its fields share them. Voxel (i, j, k) lies at the point to which
-/// [`Placement`] maps these indices, the centre of the voxel. The image fills the box of the
-/// centres.
+/// The voxels keep the type and byte order of the file or array; copies of an image and its fields
+/// share them. [`Placement`] maps the indices (i, j, k) of a voxel to its centre. The image fills
+/// the box of the centres.
 ///
 /// ```
 /// use marching_particles::{Image, Settings, sample};
 ///
-/// // A ball of radius 10 voxels, bright in the dark, as an array in which x changes fastest.
+/// A bright ball of radius 10 voxels in the dark, as an array in which x changes fastest.
 /// let distance = |i: usize| {
 ///     let offset = |k: usize| (k % 32) as f32 - 15.5;
 ///     (offset(i).powi(2) + offset(i / 32).powi(2) + offset(i / 1024).powi(2)).sqrt()
@@ -187,9 +186,9 @@ impl Debug for Image {
 }
 
 impl Image {
-    /// The image with these voxels, of which the index along the first axis changes fastest: voxel
-    /// (i, j, k) is `voxels[i + size[0] * (j + size[1] * k)]`. Voxels are one unit apart, and voxel
-    /// (0, 0, 0) is at the origin.
+    /// The image with these voxels; the index along the first axis changes fastest: voxel (i, j, k)
+    /// is `voxels[i + size[0] * (j + size[1] * k)]`. Voxels are one unit apart, and voxel (0, 0, 0)
+    /// is at the origin.
     ///
     /// # Errors
     ///
@@ -199,11 +198,11 @@ impl Image {
         Self::of(size, Voxels::new(voxels.as_ref()))
     }
 
-    /// [`Image::new`] from the bytes of numbers of a type in the byte order of the machine.
+    /// [`Image::new`] from the bytes of numbers, in the byte order of the machine.
     ///
     /// # Errors
     ///
-    /// Those of [`Image::new`].
+    /// As for [`Image::new`].
     pub fn from_bytes(
         size: [usize; 3],
         voxel_type: VoxelType,
@@ -237,12 +236,11 @@ impl Image {
         Ok(Self { size, voxels, placement: Placement::default(), range, notes: Arc::default() })
     }
 
-    /// The image with `spacing` between neighbouring voxels along each axis, and its origin and
-    /// directions as they are.
+    /// Sets the distances between neighbouring voxels along each axis; origin and directions stay.
     ///
     /// # Errors
     ///
-    /// [`ImageError::Singular`] if one is not positive.
+    /// [`ImageError::Singular`] if a distance is not positive.
     pub fn with_spacing(self, spacing: [f64; 3]) -> Result<Self, ImageError> {
         let [x, y, z] = self.placement.directions();
         let axes = [x * spacing[0], y * spacing[1], z * spacing[2]];
@@ -253,7 +251,7 @@ impl Image {
         self.placed(Placement::new(DMat3::from_cols(axes[0], axes[1], axes[2]), origin)?)
     }
 
-    /// The image with voxel (0, 0, 0) at this point.
+    /// Moves voxel (0, 0, 0) to this point.
     ///
     /// # Errors
     ///
@@ -263,8 +261,8 @@ impl Image {
         self.placed(placement)
     }
 
-    /// The image in the place to which an affine map brings the indices of its voxels. Row r is
-    /// coordinate r: x = `rows[0]` · (i, j, k, 1), as in the affine matrix of a NIfTI file.
+    /// Places the image by an affine map of its voxel indices: coordinate r is `rows[r]` · (i, j,
+    /// k, 1), as in the affine matrix of a NIfTI file.
     ///
     /// # Errors
     ///
@@ -277,8 +275,8 @@ impl Image {
         Ok(Self { placement, ..self })
     }
 
-    /// The surface on which the image has the value `iso`: brighter voxels are inside. See
-    /// [`ImageField::inverted`].
+    /// The surface on which the image has the value `iso`, with brighter voxels inside. For the
+    /// opposite see [`ImageField::inverted`].
     ///
     /// # Errors
     ///
@@ -293,7 +291,7 @@ impl Image {
         self.size
     }
 
-    /// The map from indices of voxels to points.
+    /// The map from voxel indices to points.
     #[must_use]
     pub fn placement(&self) -> Placement {
         self.placement
@@ -311,15 +309,15 @@ impl Image {
         self.voxels.voxel_type()
     }
 
-    /// What a reader has decided where the file leaves a choice, in sentences for the user.
+    /// What a reader decided where the file leaves a choice, in sentences for the user.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// The iso value that separates dark from bright voxels best: the one with the largest variance
-    /// between the two classes, on a histogram of 256 bins (N. Otsu, "A Threshold Selection Method
-    /// from Gray-Level Histograms", IEEE Transactions on Systems, Man, and Cybernetics 9, 1979).
+    /// The iso value that best separates dark from bright voxels: the variance between the two
+    /// classes is largest, on a histogram of 256 bins (N. Otsu, "A Threshold Selection Method from
+    /// Gray-Level Histograms", IEEE Transactions on Systems, Man, and Cybernetics 9, 1979).
     #[must_use]
     pub fn otsu(&self) -> f64 {
         Histogram::of(self).otsu()
@@ -338,13 +336,12 @@ impl Image {
         self.voxels.bytes()
     }
 
-    /// The number halfway between the smallest and the largest voxel, from which the filters count
-    /// values.
+    /// The middle of the range of the voxels. Filters work on values relative to it.
     fn middle(&self) -> f64 {
         0.5 * self.range[0] + 0.5 * self.range[1]
     }
 
-    /// Writes the values, counted from `zero`, of the voxels (0, j, k), (1, j, k), …
+    /// Writes the values of the voxels (0, j, k), (1, j, k), …, relative to `zero`.
     fn row(&self, j: usize, k: usize, zero: f64, out: &mut [f32]) {
         self.voxels.write(self.size[0] * (j + self.size[1] * k), zero, out);
     }

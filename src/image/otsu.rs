@@ -1,12 +1,12 @@
-//! The histogram of an image, and the threshold of Otsu in it.
+//! The histogram of an image, and Otsu's threshold in it.
 
 use super::Image;
 
 /// Bins of a histogram: Otsu's threshold is one of their edges.
 const BINS: usize = 256;
 
-/// The histogram of an image counts the voxels whose values lie in each of [`BINS`] bins of equal
-/// width, from the smallest value to the largest.
+/// The numbers of voxels whose values lie in each of [`BINS`] bins of equal width, from the
+/// smallest value to the largest.
 pub(super) struct Histogram {
     counts: Vec<u64>,
     /// The smallest value.
@@ -30,14 +30,13 @@ impl Histogram {
     }
 
     /// The edge between two bins for which the variance between the classes, w₀ w₁ (μ₁ − μ₀)², is
-    /// largest (Otsu's equation 14). Where many are as good, as between two peaks, it is the one in
-    /// their middle.
+    /// largest (Otsu's equation 14). If several edges tie, as between two peaks, the middle one.
     pub(super) fn otsu(&self) -> f64 {
         let [first, last] = self.best();
         self.min + self.width * (0.5 * (first + last) as f64 + 1.0)
     }
 
-    /// The first and the last of the bins behind which the classes part best.
+    /// The first and the last of the bins after which a threshold separates the classes best.
     fn best(&self) -> [usize; 2] {
         let total: u64 = self.counts.iter().sum();
         let all: u64 = (0..).zip(&self.counts).map(|(bin, count)| bin * count).sum();

@@ -1,18 +1,18 @@
-//! The affine map from the indices of voxels to points.
+//! The affine map from voxel indices to points.
 
 use super::ImageError;
 use crate::math::{Bounds, Interval, Sym3};
 use glam::{DMat3, DVec3};
 
-/// Volume of the cell of three neighbours, as a share of the product of their distances, below
-/// which they are said to lie in a plane. A shear by a thousand voxels is still above it.
+/// Volume of the cell spanned by three neighbours, as a share of the product of their distances.
+/// Below this the axes count as coplanar; a shear by a thousand voxels is still above.
 const FLATTEST: f64 = 1e-6;
 
-/// Roundings of the sums of three products below, with room.
+/// Rounding error of the sums of three products below, with a margin.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// An affine map of the indices (i, j, k) of voxels to points, with its inverse. Flips, rotations
-/// and shears are kept.
+/// An affine map of voxel indices (i, j, k) to points, with its inverse. It may contain
+/// reflections, rotations and shears.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     matrix: DMat3,
@@ -21,24 +21,22 @@ pub struct Placement {
 }
 
 impl Default for Placement {
-    /// Indices as coordinates.
+    /// Indices are coordinates.
     fn default() -> Self {
         Self { matrix: DMat3::IDENTITY, inverse: DMat3::IDENTITY, origin: DVec3::ZERO }
     }
 }
 
 impl Placement {
-    /// The map with these columns, the steps from voxel to voxel, and with voxel (0, 0, 0) at
-    /// `origin`.
+    /// The map with these columns, the steps from voxel to voxel, and voxel (0, 0, 0) at `origin`.
     ///
     /// # Errors
     ///
-    /// [`ImageError::Singular`] if the steps are not finite or lie in a plane.
+    /// [`ImageError::Singular`] if the steps are not finite or are coplanar.
     pub fn new(matrix: DMat3, origin: DVec3) -> Result<Self, ImageError> {
         let axes = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
         let lengths = axes.map(DVec3::length);
-        // Divided by one length after the other, since their product may leave the range of
-        // numbers.
+        // Divided by each length separately, since their product may overflow or underflow.
         let [x, y, z] = core::array::from_fn(|k: usize| axes[k] / lengths[k]);
         let share = x.cross(y).dot(z).abs();
         let inverse = matrix.inverse();
@@ -46,11 +44,11 @@ impl Placement {
         if is_usable { Ok(Self { matrix, inverse, origin }) } else { Err(ImageError::Singular { axes }) }
     }
 
-    /// The map whose row r gives coordinate r of a point from (i, j, k, 1).
+    /// The map with these rows: row r times (i, j, k, 1) is coordinate r of a point.
     ///
     /// # Errors
     ///
-    /// Those of [`Placement::new`].
+    /// As for [`Placement::new`].
     pub fn from_rows(rows: [[f64; 4]; 3]) -> Result<Self, ImageError> {
         let column = |c: usize| DVec3::new(rows[0][c], rows[1][c], rows[2][c]);
         Self::new(DMat3::from_cols(column(0), column(1), column(2)), column(3))
@@ -80,13 +78,13 @@ impl Placement {
         [0, 1, 2].map(|axis| self.matrix.col(axis) / self.matrix.col(axis).length())
     }
 
-    /// Whether every axis of the image is one of space, in whatever order and direction.
+    /// Whether every axis of the image is parallel to an axis of space, in any order and direction.
     #[must_use]
     pub fn is_aligned(&self) -> bool {
         (0..3).all(|axis| self.matrix.col(axis).to_array().iter().filter(|x| **x != 0.0).count() == 1)
     }
 
-    /// The point at these indices.
+    /// The point with these indices.
     #[must_use]
     pub fn point(&self, index: DVec3) -> DVec3 {
         self.matrix * index + self.origin
@@ -98,7 +96,7 @@ impl Placement {
         self.inverse * (p - self.origin)
     }
 
-    /// The box of the points whose indices are in a box.
+    /// The box around the points whose indices are in a box.
     #[must_use]
     pub fn points(&self, indices: &Bounds) -> Bounds {
         let corners = indices.corners().map(|corner| self.point(corner));
@@ -120,13 +118,12 @@ impl Placement {
         Bounds { min, max }
     }
 
-    /// The gradient over points of a function with this gradient over indices: `inverse`ᵀ g.
+    /// The gradient in space of a function with gradient g over indices: `inverse`ᵀ g.
     pub(super) fn gradient(&self, g: DVec3) -> DVec3 {
         DVec3::new(self.inverse.x_axis.dot(g), self.inverse.y_axis.dot(g), self.inverse.z_axis.dot(g))
     }
 
-    /// The Hessian over points of a function with this Hessian over indices:
-    /// `inverse`ᵀ H `inverse`.
+    /// The Hessian in space of a function with Hessian H over indices: `inverse`ᵀ H `inverse`.
     pub(super) fn hessian(&self, h: &Sym3<f64>) -> Sym3<f64> {
         let columns = [self.inverse.x_axis, self.inverse.y_axis, self.inverse.z_axis];
         let turned = columns.map(|column| h.apply(column));

@@ -1,33 +1,32 @@
-//! Gaussians against noise, and the noise of an image.
+//! Gaussians against noise, and estimates of the noise of an image.
 
 use super::voxels::Voxels;
 use super::{Image, ImageError};
 use crate::math::median;
 
-/// Weights of a Gaussian end where they are below e^−8, a three-thousandth of the middle one.
+/// The weights of a Gaussian end below e^−8, a three-thousandth of the middle one.
 const REACH: f64 = 4.0;
-/// Voxels along each axis at which the noise is measured at most; their median hardly changes with
-/// more.
+/// Most voxels along each axis at which the noise is measured; the median hardly changes with more.
 const SAMPLED: usize = 32;
-/// How far noise may move the surface, in voxels: its standard deviation over the slope of the
-/// values there. Of an edge that a scanner has blurred by 0.8 voxels it is a hundredth of the
-/// contrast. More leaves specks and dents, less rounds what is small.
+/// Distance, in voxels, by which noise may still move the surface: its standard deviation divided
+/// by the slope of the values. At an edge that a scanner has blurred by 0.8 voxels it is one
+/// hundredth of the contrast. More leaves specks and dents; less rounds small details.
 const LEFT: f64 = 0.02;
-/// Widths of the Gaussian against noise, in voxels: narrower ones hardly lower it, and wider ones
-/// remove what is a few voxels wide.
+/// Range of the Gaussian's width against noise, in voxels. Narrower ones hardly lower noise, and
+/// wider ones remove what is a few voxels wide.
 const WIDTHS: [f64; 2] = [0.7, 2.0];
-/// Widest Gaussian against the rounding of voxels alone, in voxels, as over the distances from a
-/// label: in a mask of 0 and 1 nothing is left that a wider one could find.
+/// Largest width against the rounding of voxels alone, in voxels, as for labels: a mask of 0 and 1
+/// holds no details that a wider Gaussian could reveal.
 const WIDEST_AGAINST_ROUNDING: f64 = 1.0;
-/// A width is a multiple of a tenth of a voxel, so that it seldom changes with the iso value.
+/// Widths are multiples of a tenth of a voxel, so that they seldom change with the iso value.
 const WIDTHS_IN_A_VOXEL: f64 = 10.0;
-/// Standard deviation of what is rounded to a whole number, 1/√12.
+/// Standard deviation of the error of rounding to whole numbers, 1/√12.
 const ROUNDING: f64 = 0.288_675_134_594_812_9;
-/// Voxels along each axis at which the slope is measured at most, if the surface passes there.
+/// Most voxels along each axis at which the slope is measured; those near the surface count.
 const SCANNED: usize = 64;
 
-/// The standard deviations along the axes, in voxels, of a Gaussian that is `width` voxels of the
-/// coarser in-plane axis wide in space. The slices of a scan lie across the axis with the largest
+/// The standard deviations of a Gaussian along the axes, in voxels. Its length in space is `width`
+/// voxels of the coarser in-plane axis; the slices of a scan lie across the axis with the largest
 /// spacing.
 pub(super) fn deviations(image: &Image, width: f64) -> [f64; 3] {
     let mut sorted = image.placement.spacing();
@@ -36,7 +35,7 @@ pub(super) fn deviations(image: &Image, width: f64) -> [f64; 3] {
     spacing.map(|own| width * sorted[1] / own)
 }
 
-/// The weights of a Gaussian at 0, 1, 2, …; they add up to 1 with those of the other side.
+/// The weights of a Gaussian at 0, 1, 2, …; with those at −1, −2, … they add up to 1.
 fn gaussian(deviation: f64) -> Vec<f32> {
     let reach = libm::ceil(REACH * deviation) as usize;
     let weight = |k: usize| {
@@ -47,8 +46,8 @@ fn gaussian(deviation: f64) -> Vec<f32> {
     weights.iter().map(|weight| (weight / sum) as f32).collect()
 }
 
-/// Filters voxels by a Gaussian along each axis in turn. Beyond the border they are those of the
-/// border.
+/// Blurs voxels by a Gaussian along each axis in turn. Voxels beyond the border have the value of
+/// the border.
 pub(crate) fn blur(size: [usize; 3], voxels: &mut [f32], deviations: [f64; 3]) {
     let strides = [1, size[0], size[0] * size[1]];
     for axis in 0..3 {
@@ -57,7 +56,7 @@ pub(crate) fn blur(size: [usize; 3], voxels: &mut [f32], deviations: [f64; 3]) {
             continue;
         }
         let (n, stride) = (size[axis], strides[axis]);
-        // Lines along the axis that lie side by side are filtered together.
+        // Adjacent lines along the axis are filtered together.
         let mut lines = vec![0.0; n * stride];
         for voxels in voxels.chunks_mut(n * stride) {
             lines.copy_from_slice(voxels);
@@ -78,15 +77,15 @@ pub(crate) fn blur(size: [usize; 3], voxels: &mut [f32], deviations: [f64; 3]) {
 }
 
 impl Image {
-    /// The image blurred by a Gaussian, whose standard deviation is `width` voxels of the coarser
-    /// of the two axes with the smaller spacings, the same length along all axes. It lowers noise,
-    /// and moves a surface of mean curvature H by about H times the square of that length towards
-    /// the inside of its bends. The voxels become numbers in single precision.
+    /// The image blurred by a Gaussian. Its standard deviation is the same length along all axes:
+    /// `width` voxels of the coarser of the two axes with the smaller spacings. It lowers noise,
+    /// and moves a surface of mean curvature H by about H times the square of that length, towards
+    /// its concave side. The voxels become single precision.
     ///
     /// # Errors
     ///
-    /// [`ImageError::Width`] if the width is not between 0 and 100, [`ImageError::Constant`] if all
-    /// voxels become the same.
+    /// [`ImageError::Width`] if the width is not in 0 to 100, [`ImageError::Constant`] if all
+    /// voxels become equal.
     pub fn smoothed(&self, width: f64) -> Result<Self, ImageError> {
         if !(0.0..=100.0).contains(&width) {
             return Err(ImageError::Width { width });
@@ -95,23 +94,23 @@ impl Image {
         let mut voxels = vec![0.0; self.voxels.len()];
         self.voxels.write(0, zero, &mut voxels);
         blur(self.size, &mut voxels, deviations(self, width));
-        // The numbers of the file again.
+        // Relative to zero again, as in the file.
         voxels.iter_mut().for_each(|value| *value = (f64::from(*value) + zero) as f32);
         let image = Self::of(self.size, Voxels::new(&voxels))?;
         Ok(Self { placement: self.placement, notes: self.notes.clone(), ..image })
     }
 
-    /// The standard deviation of the noise in the values of the voxels. It is measured by the
-    /// differences of second order along all three axes at once, which vanish on everything that is
-    /// smooth along one of them, as the median of their sizes at up to 32³ places (after J.
-    /// Immerkær, "Fast Noise Variance Estimation", Computer Vision and Image Understanding 64,
-    /// 1996, who takes the mean in two dimensions). Noise must be independent from voxel to voxel;
-    /// that of a scan that was resampled is underestimated.
+    /// The standard deviation of the noise in the voxel values. It is estimated from second
+    /// differences along all three axes at once, which vanish for anything smooth along one of
+    /// them: the median of their sizes at up to 32³ voxels (after J. Immerkær, "Fast Noise Variance
+    /// Estimation", Computer Vision and Image Understanding 64, 1996, who takes the mean in two
+    /// dimensions). It assumes noise that is independent between voxels; in a resampled scan it is
+    /// underestimated.
     #[must_use]
     pub fn noise(&self) -> f64 {
-        /// √(1² + 2² + 1²)³, by which the differences are larger than the noise.
+        /// √(1² + 2² + 1²)³, by which the noise is amplified in these differences.
         const GAIN: f64 = 14.696_938_456_699_069;
-        /// The median of the size of a normal variable.
+        /// The median of the absolute value of a standard normal variable.
         const MEDIAN: f64 = 0.674_489_750_196_081_7;
         if self.size.iter().any(|&n| n < 3) {
             return 0.0;
@@ -136,13 +135,12 @@ impl Image {
         median(sizes).unwrap_or(0.0) / (MEDIAN * GAIN)
     }
 
-    /// The width of the Gaussian, for [`Image::smoothed`], with which noise moves the surface at
-    /// the value `iso` by a fiftieth of a voxel, to first order: from 0.7 to 2 voxels in steps of a
-    /// tenth, or 0 where it moves it by less as it is. The [noise](Image::noise) is compared with
-    /// the slope of the values at the surface. To whole numbers belongs, too, that they are
-    /// rounded, by 0.29 of the step between two values on average: where the slope is shallow, the
-    /// surface of the spline through them is rough, however little noise there is. Against rounding
-    /// alone the width is at most 1.
+    /// The width of the Gaussian for [`Image::smoothed`] with which noise moves the surface at the
+    /// value `iso` by a fiftieth of a voxel, to first order: 0.7 to 2 voxels in steps of a tenth,
+    /// or 0 if the noise moves it less without a Gaussian. The [noise](Image::noise) is compared
+    /// with the slope of the values at the surface. Rounding to whole numbers counts as noise, too,
+    /// with a standard deviation of 0.29 steps: where the slope is shallow, it makes the surface
+    /// rough. Against rounding alone the width is at most 1.
     ///
     /// A Gaussian of σ voxels lowers independent noise by the factor (4πσ²)^(3/4).
     #[must_use]
@@ -151,7 +149,7 @@ impl Image {
         let rounding = ROUNDING * self.voxels.step();
         let slope = self.slope(iso, noise.max(rounding));
         let width_for = |deviation: f64, widest: f64| {
-            // Without a slope there is no surface; then it does not matter.
+            // Without a slope there is no surface, and any width will do.
             let excess = deviation / (LEFT * slope);
             if excess.is_nan() || excess <= 1.0 {
                 return 0.0;
@@ -159,19 +157,19 @@ impl Image {
             let width = libm::cbrt(excess * excess) / libm::sqrt(4.0 * core::f64::consts::PI);
             (libm::ceil(width * WIDTHS_IN_A_VOXEL) / WIDTHS_IN_A_VOXEL).clamp(WIDTHS[0], widest)
         };
-        // What is rounded is measured as noise, too, but for where many voxels are the same.
+        // The measured noise includes rounding, except where many voxels are equal.
         let beside = libm::sqrt((noise * noise - rounding * rounding).max(0.0));
         let against_noise = width_for(beside, WIDTHS[1]);
         against_noise.max(width_for(noise.max(rounding), WIDEST_AGAINST_ROUNDING))
     }
 
-    /// The median size of the gradient at places where the values pass `iso` between two
-    /// neighbours, for the coarser of the two smaller spacings, without what noise of this standard
-    /// deviation adds to it; infinite if there is no such place.
+    /// The median size of the gradient where the values cross `iso` between two neighbours, per
+    /// voxel of the coarser of the two smaller spacings, less the contribution of noise with this
+    /// standard deviation; infinite if there is no such point.
     fn slope(&self, iso: f64, noise: f64) -> f64 {
         let mut squares = self.squared_slopes(iso, self.size.map(|n| n.div_ceil(SCANNED)));
         if squares.is_empty() {
-            // What is small may lie between the voxels of the grid.
+            // Small parts may lie between the measured voxels.
             squares = self.squared_slopes(iso, [1; 3]);
         }
         let Some(median) = median(squares) else { return f64::INFINITY };
@@ -180,7 +178,7 @@ impl Image {
         libm::sqrt((median - inflated * noise * noise).max(0.0))
     }
 
-    /// The squares of the gradients at voxels with these steps between them.
+    /// The squared gradients at voxels that are these steps apart.
     fn squared_slopes(&self, iso: f64, steps: [usize; 3]) -> Vec<f64> {
         let [width, height, depth] = self.size;
         let zero = self.middle();
@@ -210,8 +208,8 @@ impl Image {
         squares
     }
 
-    /// The square of the gradient halfway between a voxel and the next one along an axis: the
-    /// difference of the two along it, and the means of central differences along the others.
+    /// The squared gradient halfway between a voxel and the next one along an axis: the difference
+    /// of the two along it, and the means of central differences along the others.
     fn squared_slope(&self, first: usize, axis: usize, scale: [f64; 3]) -> f64 {
         let strides = [1, self.size[0], self.size[0] * self.size[1]];
         let second = first + strides[axis];

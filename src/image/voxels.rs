@@ -1,42 +1,42 @@
-//! The voxels of an image, as they are in its file: in their own type and byte order.
+//! The voxels of an image, in the type and byte order of their file.
 
 use bytemuck::NoUninit;
 use core::fmt::{self, Display, Formatter};
 use std::sync::Arc;
 
-/// Type of the voxels of a file or an array.
+/// The type of voxels in a file or an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VoxelType {
-    /// Whole numbers of 8 bits without a sign.
+    /// Unsigned integers of 8 bits.
     U8,
-    /// Whole numbers of 8 bits.
+    /// Signed integers of 8 bits.
     I8,
-    /// Whole numbers of 16 bits without a sign.
+    /// Unsigned integers of 16 bits.
     U16,
-    /// Whole numbers of 16 bits.
+    /// Signed integers of 16 bits.
     I16,
-    /// Whole numbers of 32 bits without a sign.
+    /// Unsigned integers of 32 bits.
     U32,
-    /// Whole numbers of 32 bits.
+    /// Signed integers of 32 bits.
     I32,
-    /// Whole numbers of 64 bits without a sign.
+    /// Unsigned integers of 64 bits.
     U64,
-    /// Whole numbers of 64 bits.
+    /// Signed integers of 64 bits.
     I64,
-    /// Numbers in single precision.
+    /// Floating-point numbers in single precision.
     F32,
-    /// Numbers in double precision.
+    /// Floating-point numbers in double precision.
     F64,
 }
 
-/// Largest size of a value: coefficients in single precision are at most some ten times as large.
+/// Largest allowed value. Spline coefficients, up to ten times as large, must fit single precision.
 const LARGEST: f64 = 1e30;
 
 /// Voxels that are read at once.
 const AT_ONCE: usize = 256;
 
 impl VoxelType {
-    /// All of them.
+    /// All types.
     pub const ALL: [Self; 10] = [
         Self::U8,
         Self::I8,
@@ -50,7 +50,7 @@ impl VoxelType {
         Self::F64,
     ];
 
-    /// The type of this name, as NumPy has it: `int16`.
+    /// The type with this NumPy name, such as `int16`.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|known| known.to_string() == name)
@@ -91,7 +91,7 @@ impl Display for VoxelType {
     }
 }
 
-/// A number that voxels of a program's array can be.
+/// A number type that a program's voxel array can have.
 pub trait Voxel: NoUninit {
     /// Its type.
     const TYPE: VoxelType;
@@ -107,15 +107,15 @@ macro_rules! voxel {
 
 voxel!(u8 => U8, i8 => I8, u16 => U16, i16 => I16, u32 => U32, i32 => I32, u64 => U64, i64 => I64, f32 => F32, f64 => F64);
 
-/// How the bytes of a file stand for voxels.
+/// How the bytes of a file encode voxels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Layout {
     pub(super) voxel_type: VoxelType,
-    /// Whether the first byte of a number is its largest.
+    /// Whether the most significant byte of a number comes first.
     pub(super) is_big_endian: bool,
     /// Offset of the first voxel in bytes.
     pub(super) first: usize,
-    /// Numbers from a voxel to the next: more than one where each voxel has several.
+    /// Numbers from one voxel to the next; above 1 if each voxel has several.
     pub(super) step: usize,
     /// A value is `slope` times the number of the file, plus `intercept`.
     pub(super) slope: f64,
@@ -123,13 +123,13 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// One number after the other from the first byte on.
+    /// Consecutive numbers from the first byte on.
     pub(super) fn plain(voxel_type: VoxelType, is_big_endian: bool) -> Self {
         Self { voxel_type, is_big_endian, first: 0, step: 1, slope: 1.0, intercept: 0.0 }
     }
 }
 
-/// Voxels in a row, which copies share.
+/// A sequence of voxels, which copies share.
 #[derive(Clone)]
 pub(super) struct Voxels {
     data: Arc<Vec<u8>>,
@@ -161,12 +161,12 @@ impl Voxels {
         self.data.len()
     }
 
-    /// Whether these are the same bytes in the same place of the memory.
+    /// Whether both are the same bytes in memory, read in the same way.
     pub(super) fn are_shared_with(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.data, &other.data) && self.layout == other.layout
     }
 
-    /// Distance between two values that voxels of whole numbers can have; 0 for others.
+    /// Distance between consecutive values of integer voxels; 0 for floating-point voxels.
     pub(super) fn step(&self) -> f64 {
         if self.layout.voxel_type.is_whole() { self.layout.slope.abs() } else { 0.0 }
     }
@@ -175,7 +175,7 @@ impl Voxels {
         self.layout.voxel_type
     }
 
-    /// Writes the values of the voxels from `first` on. It alone knows the types.
+    /// Writes the values of the voxels from `first` on. Only this function handles the types.
     #[allow(trivial_numeric_casts, reason = "one of the types is already double precision")]
     fn read(&self, first: usize, out: &mut [f64]) {
         let Layout { voxel_type, is_big_endian, step, slope, intercept, .. } = self.layout;
@@ -220,7 +220,7 @@ impl Voxels {
         }
     }
 
-    /// Writes the values of the voxels from `first` on, counted from `zero`.
+    /// Writes the values of the voxels from `first` on, relative to `zero`.
     pub(super) fn write(&self, first: usize, zero: f64, out: &mut [f32]) {
         self.each(first, out.len(), |k, value| out[k] = (value - zero) as f32);
     }
@@ -237,8 +237,8 @@ impl Voxels {
         self.each(0, self.len, |_, value| take(value));
     }
 
-    /// Smallest and largest value. If some are not finite, or so large that single precision
-    /// overflows, their number and the first of them.
+    /// Smallest and largest value. If some values are not finite or too large for single precision,
+    /// their number and the index of the first.
     pub(super) fn range(&self) -> Result<[f64; 2], (usize, usize)> {
         let (mut min, mut max) = (f64::INFINITY, f64::NEG_INFINITY);
         let (mut count, mut first) = (0, 0);

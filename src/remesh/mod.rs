@@ -37,7 +37,7 @@ use std::sync::Arc;
 
 /// Most triangles of a mesh. The search trees of so many take some gigabytes.
 pub const MAX_TRIANGLES: usize = 10_000_000;
-/// Default angle between faces, in degrees, above which an edge stays sharp. CAD programs divide
+/// Default angle between faces, in degrees, above which an edge stays sharp. Meshes usually divide
 /// arcs into steps of up to about 25°.
 pub const DEFAULT_EDGE_ANGLE: f64 = 30.0;
 /// Angles that a caller may set, in degrees.

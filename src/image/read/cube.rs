@@ -1,4 +1,4 @@
-//! Cube files of Gaussian: densities and orbitals of molecules on a grid, as text.
+//! Gaussian cube files: densities and orbitals of molecules on a grid, as text.
 
 use super::header::{first_of, lines, numbers, quoted, wrong};
 use super::zip::Unpacked;
@@ -7,13 +7,13 @@ use crate::image::{Image, Placement};
 use glam::{DMat3, DVec3};
 
 const FORMAT: ImageFormat = ImageFormat::Cube;
-/// Bytes of a header and of a value of text at most: a number in double precision has 24
+/// Most bytes of a header, and of a value in the text: a number in double precision has up to 24
 /// characters, and some programs add spaces.
 const HEADER: u64 = 1 << 20;
 const VALUE: u64 = 32;
 
-/// The third line has the number of atoms and the origin, the next three the voxels along an axis
-/// and the step between them.
+/// Line 3 has the number of atoms and the origin; lines 4 to 6 have the number of voxels along an
+/// axis and the step between them.
 struct Head {
     atoms: i64,
     origin: DVec3,
@@ -23,7 +23,7 @@ struct Head {
     values: usize,
 }
 
-/// The four numbers of a line, or five.
+/// The four or five numbers of a line.
 fn row(start: &[u8], number: usize) -> Option<Vec<f64>> {
     let (_, line, _) = lines(start).nth(number - 1)?;
     numbers(line).filter(|row| (4..=5).contains(&row.len()) && row[0].fract() == 0.0)
@@ -46,7 +46,7 @@ fn head(start: &[u8]) -> Result<Head, ImageReadError> {
     let vector = |row: &[f64]| DVec3::from_slice(&row[1..4]);
     let first = row(3)?;
     let rows = [row(4)?, row(5)?, row(6)?];
-    // A negative number of voxels says that lengths are in ångström.
+    // A negative number of voxels means that lengths are in ångström.
     let size = [0, 1, 2].map(|k| rows[k][0].abs() as usize);
     let values = first.get(4).map_or(1, |values| values.max(1.0) as usize);
     Ok(Head {
@@ -70,8 +70,8 @@ pub(super) fn read(mut file: Unpacked) -> Result<Image, ImageReadError> {
     }
     let count = count.unwrap_or(0);
     let text = file.all(HEADER.saturating_add(count.saturating_mul(VALUE * values.max(64) as u64)))?;
-    // Two comments, four rows and the atoms; a negative number of them says that a list of orbitals
-    // follows.
+    // The header has two comments, four rows and the atoms; a negative number of atoms means that a
+    // list of orbitals follows.
     let mut at = lines(&text)
         .nth(5 + atoms.unsigned_abs().min(1 << 20) as usize)
         .map_or(text.len(), |(.., behind)| behind);
@@ -114,7 +114,7 @@ pub(super) fn read(mut file: Unpacked) -> Result<Image, ImageReadError> {
     Ok(Image { placement, notes: notes.into(), ..image })
 }
 
-/// The words of a text, each with the place behind it.
+/// The words of a text, each with the position after it.
 fn words(text: &[u8]) -> impl Iterator<Item = (usize, &str)> {
     let mut at = 0;
     core::iter::from_fn(move || {

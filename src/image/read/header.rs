@@ -1,12 +1,12 @@
-//! What the readers of headers share: numbers in either byte order, and lines of text.
+//! Shared by the readers of headers: numbers in either byte order, and lines of text.
 
 use super::{ImageFormat, ImageReadError};
 use crate::image::voxels::VoxelType;
 
-/// Bytes of a file in which its header must end.
+/// Most bytes of a header.
 pub(super) const LONGEST: usize = 1 << 18;
 
-/// The error of an entry of a header.
+/// An error in an entry of a header.
 #[cold]
 pub(super) fn wrong(
     format: ImageFormat,
@@ -16,7 +16,7 @@ pub(super) fn wrong(
     ImageReadError::Header { format, entry: entry.into(), message: message.into() }
 }
 
-/// A part of a file as a message quotes it: shortened, and without control characters.
+/// A part of a file, shortened and without control characters, to be quoted in a message.
 pub(super) fn quoted(text: &str) -> String {
     /// Longer than the name of a type, shorter than a line.
     const SHOWN: usize = 40;
@@ -28,7 +28,7 @@ pub(super) fn quoted(text: &str) -> String {
     format!("`{shown}`")
 }
 
-/// Numbers at places in a binary header.
+/// Numbers at given offsets of a binary header.
 #[derive(Clone, Copy)]
 pub(super) struct Fields<'a> {
     pub(super) bytes: &'a [u8],
@@ -38,7 +38,7 @@ pub(super) struct Fields<'a> {
 macro_rules! field {
     ($($name:ident: $number:ty),*) => {
         $(
-            /// The number at a place; 0 behind the end.
+            /// The number at an offset; 0 beyond the end.
             pub(super) fn $name(self, at: usize) -> $number {
                 let bytes = self.bytes.get(at..at + size_of::<$number>());
                 let bytes = bytes.and_then(|bytes| bytes.try_into().ok()).unwrap_or_default();
@@ -52,8 +52,8 @@ impl Fields<'_> {
     field!(i16: i16, i32: i32, i64: i64, f32: f32, f64: f64);
 }
 
-/// The lines of a text header, without their ends, each with its number from 1, up to the first
-/// empty one or the end; with the place of the first byte behind each.
+/// The lines of a text header up to the first empty one, without line ends. Each comes with its
+/// number from 1 and the offset of the byte after it.
 pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, &str, usize)> {
     let mut at = 0;
     let mut number = 0;
@@ -63,17 +63,17 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, &str, usize)> 
         at += (end + 1).min(rest.len());
         number += 1;
         let line = rest[..end].strip_suffix(b"\r").unwrap_or(&rest[..end]);
-        // Behind the header there are bytes that are no text.
+        // After the header come bytes that are not text.
         Some((number, core::str::from_utf8(line).ok()?, at))
     })
 }
 
-/// The numbers of a text, which white space separates.
+/// The numbers of a text, separated by white space.
 pub(super) fn numbers(text: &str) -> Option<Vec<f64>> {
     text.split_whitespace().map(|word| word.parse().ok()).collect()
 }
 
-/// The type of a name that NRRD files and C use.
+/// The type that a name stands for in NRRD files and in C.
 pub(super) fn type_of_name(name: &str) -> Option<VoxelType> {
     Some(match name {
         "uchar" | "unsigned char" | "uint8" | "uint8_t" => VoxelType::U8,
@@ -98,7 +98,7 @@ pub(super) fn type_of_name(name: &str) -> Option<VoxelType> {
     })
 }
 
-/// A note on an image of which only the first of several volumes or values is read.
+/// The note that only the first of several volumes or values is read.
 pub(super) fn first_of(count: usize, what: &str) -> String {
     format!("The file has {count} {what}; the first is read.")
 }

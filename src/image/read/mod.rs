@@ -1,9 +1,9 @@
-//! Readers of files of images: NIfTI, NRRD, NumPy, MetaImage, Gaussian cube and TIFF files,
-//! detected by content, and of voxels without a header.
+//! Readers of image files (NIfTI, NRRD, NumPy, MetaImage, Gaussian cube and TIFF, detected by
+//! content) and of voxels without a header.
 //!
-//! A file is not trusted: the sizes that its header promises are compared with what follows before
-//! memory is allocated, and compressed data is unpacked up to the promised size alone. The voxels
-//! stay in the bytes of the file.
+//! A file is not trusted: the sizes in its header are compared with the data before memory is
+//! allocated, and compressed data is unpacked only up to the size in the header. The voxels keep
+//! the bytes of the file.
 
 mod cube;
 mod header;
@@ -21,20 +21,20 @@ use glam::{DMat3, DVec3};
 use header::{quoted, wrong};
 use zip::Unpacked;
 
-/// Largest size of the voxels of a file, in bytes: 1024³ voxels of 16 bits.
+/// Most bytes of the voxels of a file: 1024³ voxels of 16 bits.
 pub const MAX_IMAGE_BYTES: u64 = 1 << 31;
 
-/// Formats of files that are read.
+/// File formats that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ImageFormat {
-    /// NIfTI-1 and NIfTI-2, in one file or as a header with its data beside it.
+    /// NIfTI-1 and NIfTI-2, in one file or as a header with a separate data file.
     Nifti,
-    /// Nearly raw raster data, with its data in the file or beside it.
+    /// Nearly raw raster data, in one file or with a separate data file.
     Nrrd,
     /// An array of NumPy.
     Npy,
-    /// MetaImage of ITK, with its data in the file or beside it.
+    /// MetaImage of ITK, in one file or with a separate data file.
     MetaImage,
     /// Cube file of Gaussian.
     Cube,
@@ -65,12 +65,12 @@ pub enum ImageReadError {
     /// The file is empty.
     #[error("the file is empty; choose one that holds an image")]
     Empty,
-    /// The file has none of the known formats.
+    /// The file is in no known format.
     #[error(
         "this is {found}, and what is read is NIfTI, NRRD, NumPy, MetaImage, Gaussian cube and TIFF; {advice}"
     )]
     Unknown {
-        /// Name of the format that the content seems to have.
+        /// Name of the format that the content resembles.
         found: &'static str,
         /// Advice for the user.
         advice: &'static str,
@@ -95,7 +95,7 @@ pub enum ImageReadError {
         format: ImageFormat,
         /// Bytes that the header promises.
         needed: u64,
-        /// Bytes that are there.
+        /// Bytes that the file has.
         found: u64,
     },
     /// The voxels take more than [`MAX_IMAGE_BYTES`].
@@ -118,7 +118,7 @@ pub enum ImageReadError {
         /// The error in words.
         message: String,
     },
-    /// The voxels are in a file beside the header that is not there.
+    /// The voxels are in a separate file, which cannot be read.
     #[error(
         "the voxels of this {format} header are in the file {name} beside it, which cannot be read: {message}"
     )]
@@ -130,24 +130,24 @@ pub enum ImageReadError {
         /// Why it cannot be read.
         message: String,
     },
-    /// The voxels make no image.
+    /// The voxels do not form an image.
     #[error(transparent)]
     Image(#[from] ImageError),
 }
 
-/// Where a reader gets the file of a name beside the one that is read.
+/// Returns the file of a given name in the folder of the header.
 type Beside<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, String>;
 
-/// What the header of a file says.
+/// The contents of a header.
 struct Header {
     format: ImageFormat,
-    /// Voxels along the axes, the one that changes fastest first.
+    /// Voxels along the axes, the fastest-changing one first.
     size: [usize; 3],
-    /// The step from voxel to voxel along each of these axes, and the point of the first one.
+    /// The step from voxel to voxel along each of these axes, and the first voxel's position.
     axes: [DVec3; 3],
     origin: DVec3,
     layout: Layout,
-    /// Whether the voxels are compressed by themselves, as gzip or zlib.
+    /// Whether the voxels are compressed separately from the header, by gzip or zlib.
     is_packed: bool,
     source: Source,
     notes: Vec<String>,
@@ -155,26 +155,26 @@ struct Header {
 
 /// Where the voxels are.
 enum Source {
-    /// In the file itself, from a byte on.
+    /// In the file itself, from this byte on.
     Here(usize),
-    /// In a file beside it.
+    /// In another file with this name.
     Beside(String),
 }
 
 impl Image {
     /// Reads a file: NIfTI-1 or -2 (`.nii`, `.nii.gz`, or `.hdr` with `.img`), NRRD (`.nrrd`,
     /// `.nhdr`), NumPy (`.npy`), MetaImage (`.mha`, `.mhd`), Gaussian cube (`.cube`) or a stack of
-    /// TIFF pictures (`.tif`). The content decides, not the name. Of a file with several volumes or
-    /// values for each voxel the first is read, which a [note](Image::notes) says. Lengths are in
-    /// the unit of the file: millimetres in medical images, bohr in cubes.
+    /// TIFF pictures (`.tif`). The content decides, not the name. If a file has several volumes, or
+    /// several values per voxel, the first is read and a [note](Image::notes) says so. Lengths are
+    /// in the unit of the file: millimetres in medical images, bohr in cubes.
     ///
-    /// `name` is the name of the file without its folder. A header whose voxels are in another file
-    /// asks `beside` for it, by its name.
+    /// `name` is the name of the file without its folder. If the voxels are in another file,
+    /// `beside` is called with that file's name and returns its bytes.
     ///
     /// # Errors
     ///
-    /// If the file cannot be read or its voxels make no image: what is wrong, where, and what to
-    /// do.
+    /// If the file cannot be read, or its voxels do not form an image. The error says what is
+    /// wrong, where, and what to do.
     pub fn read(
         name: &str,
         bytes: Vec<u8>,
@@ -188,7 +188,7 @@ fn read(name: &str, bytes: Vec<u8>, beside: Beside) -> Result<Image, ImageReadEr
     if bytes.is_empty() {
         return Err(ImageReadError::Empty);
     }
-    // Of compressed files the header is unpacked first, which says how much is to follow.
+    // Of a compressed file, first only the header is unpacked; it says how much follows.
     let mut file = Unpacked::new(bytes);
     let start = file.start(header::LONGEST)?;
     match sniff(&start)? {
@@ -198,7 +198,7 @@ fn read(name: &str, bytes: Vec<u8>, beside: Beside) -> Result<Image, ImageReadEr
     }
 }
 
-/// The header of a file of a format that has one.
+/// The header of a file in a format with a separate header.
 fn header(format: ImageFormat, name: &str, start: &[u8]) -> Result<Header, ImageReadError> {
     match format {
         ImageFormat::Nifti => nifti::header(name, start),
@@ -211,26 +211,26 @@ fn header(format: ImageFormat, name: &str, start: &[u8]) -> Result<Header, Image
     }
 }
 
-/// How the bytes of a file without a header stand for voxels.
+/// How the bytes of a file without a header encode voxels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RawVoxels {
-    /// Voxels along each axis, the one that changes fastest first.
+    /// Voxels along each axis, the fastest-changing one first.
     pub size: [usize; 3],
     /// Their type.
     pub voxel_type: VoxelType,
-    /// Whether the first byte of a number is its largest.
+    /// Whether the most significant byte of a number comes first.
     pub is_big_endian: bool,
     /// Bytes before the first voxel.
     pub skip: u64,
 }
 
 impl Image {
-    /// Reads a file that has no header, or one that is not known: its voxels, one unit apart, from
-    /// a byte on. A file that is compressed by gzip is unpacked.
+    /// Reads a file that has no header, or an unknown one: its voxels, one unit apart, from byte
+    /// `skip` on. A file that is compressed by gzip is unpacked.
     ///
     /// # Errors
     ///
-    /// If the file is shorter than that, or its voxels make no image.
+    /// If the file is too short, or its voxels do not form an image.
     pub fn read_raw(bytes: Vec<u8>, raw: &RawVoxels) -> Result<Self, ImageReadError> {
         let RawVoxels { size, voxel_type, is_big_endian, skip } = *raw;
         let first = usize::try_from(skip).unwrap_or(usize::MAX);
@@ -248,7 +248,7 @@ impl Image {
     }
 }
 
-/// What the header of a file promises.
+/// What the header of a file says about its voxels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImageOutline {
     /// Voxels along each axis.
@@ -258,8 +258,8 @@ pub struct ImageOutline {
 }
 
 impl ImageOutline {
-    /// Bytes of memory that the voxels take while they are read and a Gaussian filters them: as
-    /// they are, and twice in single precision.
+    /// Bytes of memory that the voxels take while they are read and filtered: once as they are, and
+    /// twice in single precision.
     #[must_use]
     pub fn memory(&self) -> u64 {
         let voxel = self.voxel_type.bytes() as u64 + 2 * VoxelType::F32.bytes() as u64;
@@ -268,13 +268,13 @@ impl ImageOutline {
 }
 
 impl Image {
-    /// Returns the size and type of the voxels, as the header in the first bytes of a file states
-    /// them; a megabyte is enough. Returns nothing for a cube file or a TIFF stack, of which all is
-    /// needed.
+    /// Returns the size and type of the voxels from the header in the first bytes of a file; a
+    /// megabyte is enough. Returns nothing for a cube file or a TIFF stack, which must be read
+    /// completely.
     ///
     /// # Errors
     ///
-    /// If it is no file of an image, or its header is wrong.
+    /// If it is not an image file, or its header is wrong.
     pub fn outline(name: &str, start: &[u8]) -> Result<Option<ImageOutline>, ImageReadError> {
         if start.is_empty() {
             return Err(ImageReadError::Empty);
@@ -289,7 +289,7 @@ impl Image {
     }
 }
 
-/// The image of a header.
+/// Reads the voxels that a header describes.
 fn image(header: Header, file: Unpacked, beside: Beside) -> Result<Image, ImageReadError> {
     let Header { format, size, axes, origin, mut layout, is_packed, source, notes } = header;
     let voxel = (layout.voxel_type.bytes() as u64).saturating_mul(layout.step as u64);
@@ -308,7 +308,7 @@ fn image(header: Header, file: Unpacked, beside: Beside) -> Result<Image, ImageR
                 return Err(wrong(format, "name of the data file", message));
             }
             let bytes = beside(&name).map_err(|message| {
-                // A name from a file is shown, and may hold anything.
+                // The name comes from a file and is shown, so it is escaped.
                 let name = name.escape_debug().take(80).collect();
                 ImageReadError::Beside { format, name, message }
             })?;
@@ -331,7 +331,7 @@ fn image(header: Header, file: Unpacked, beside: Beside) -> Result<Image, ImageR
     Ok(Image { placement, notes: notes.into(), ..image })
 }
 
-/// First bytes of other formats, with their name and an advice for the user.
+/// First bytes of other formats, with the format's name and advice for the user.
 const KNOWN: [(&[u8], &str, &str); 6] = [
     (b"PK\x03\x04", "a ZIP archive (npz is such)", "unpack it first"),
     (b"\x89HDF", "an HDF5 file (MINC is such)", "convert it to NIfTI"),
@@ -341,7 +341,7 @@ const KNOWN: [(&[u8], &str, &str); 6] = [
     (b"BZh", "a bzip2 archive", "unpack it first"),
 ];
 
-/// The format of a file, by its first bytes.
+/// Detects the format of a file by its first bytes.
 fn sniff(start: &[u8]) -> Result<ImageFormat, ImageReadError> {
     if let Some(&(_, found, advice)) = KNOWN.iter().find(|(magic, ..)| start.starts_with(magic)) {
         return Err(ImageReadError::Unknown { found, advice });

@@ -7,11 +7,11 @@ use crate::image::voxels::{Layout, VoxelType};
 use glam::{DMat3, DQuat, DVec3};
 
 const FORMAT: ImageFormat = ImageFormat::Nifti;
-/// Sizes of the two headers, which are their first numbers.
+/// Sizes of the two headers. Each header begins with its size.
 const SIZE_1: i32 = 348;
 const SIZE_2: i32 = 540;
 
-/// The byte order of a header, if it is one.
+/// The byte order of a header; none if it is not one.
 fn is_big_endian(start: &[u8]) -> Option<bool> {
     [false, true].into_iter().find(|&is_big_endian| {
         let fields = Fields { bytes: start, is_big_endian };
@@ -30,9 +30,9 @@ pub(super) fn begins_with(start: &[u8]) -> bool {
     is_big_endian(start).is_some()
 }
 
-/// The entries of either version that matter here.
+/// The entries of either version that are used.
 struct Entries {
-    /// Number of axes, then the voxels along each.
+    /// Number of axes, then the number of voxels along each.
     dim: [i64; 8],
     datatype: i16,
     pixdim: [f64; 8],
@@ -41,7 +41,7 @@ struct Entries {
     intercept: f64,
     qform: i32,
     sform: i32,
-    /// b, c, d of the quaternion, and the offset.
+    /// Components b, c and d of the quaternion, then the offset.
     quaternion: [f64; 6],
     rows: [[f64; 4]; 3],
     is_single: bool,
@@ -86,7 +86,7 @@ fn entries(start: &[u8]) -> Entries {
     }
 }
 
-/// The type of a voxel and the numbers that each has.
+/// The type of a voxel and how many numbers each voxel has.
 fn voxel_type(datatype: i16) -> Result<(VoxelType, usize), ImageReadError> {
     Ok(match datatype {
         2 => (VoxelType::U8, 1),
@@ -157,7 +157,7 @@ pub(super) fn header(name: &str, start: &[u8]) -> Result<Header, ImageReadError>
     })
 }
 
-/// The file with the voxels of a header of its own.
+/// The name of the data file that belongs to a separate header.
 fn data_name(name: &str) -> String {
     for (header, data) in [(".hdr", ".img"), (".HDR", ".IMG"), (".hdr.gz", ".img.gz")] {
         if let Some(stem) = name.strip_suffix(header) {
@@ -167,8 +167,8 @@ fn data_name(name: &str) -> String {
     format!("{name}.img")
 }
 
-/// The steps from voxel to voxel and the point of the first one: by the affine matrix (method 3 of
-/// the standard), else by the quaternion (method 2), else by the spacings alone.
+/// The steps from voxel to voxel and the position of the first one: from the affine matrix (method
+/// 3 of the standard), else from the quaternion (method 2), else from the spacings alone.
 fn placement(entries: &Entries, notes: &mut Vec<String>) -> (DMat3, DVec3) {
     let spacing = DVec3::from_array(core::array::from_fn(|k| {
         let length = entries.pixdim[k + 1].abs();

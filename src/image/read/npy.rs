@@ -8,8 +8,8 @@ use glam::DVec3;
 const FORMAT: ImageFormat = ImageFormat::Npy;
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// An array a[i, j, k] becomes an image with voxel (i, j, k) at the point (i, j, k): as those that
-/// nibabel loads.
+/// An array a[i, j, k] becomes an image with voxel (i, j, k) at the point (i, j, k), the order in
+/// which nibabel loads images.
 pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
     let cut = || wrong(FORMAT, "length", "the file ends within its header; save it again");
     let version = *start.get(6).ok_or_else(cut)?;
@@ -38,7 +38,7 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
     let mut notes = Vec::new();
     let (size, step) = match shape[..] {
         [x, y, z] => ([x, y, z], 1),
-        // Whichever changes slowest: then the first volume comes first.
+        // The volumes are along the axis that changes slowest, so the first volume comes first.
         [x, y, z, n] if is_fortran => {
             notes.push(first_of(n, "volumes"));
             ([x, y, z], 1)
@@ -68,7 +68,7 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
     })
 }
 
-/// Returns the text behind `'name':` in the dictionary of the header; none if it has no such entry.
+/// Returns the text after `'name':` in the dictionary of the header; none without that entry.
 fn entry<'a>(text: &'a str, name: &str) -> Option<&'a str> {
     let (_, rest) =
         [format!("'{name}'"), format!("\"{name}\"")].iter().find_map(|key| text.split_once(key.as_str()))?;

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 const FORMAT: ImageFormat = ImageFormat::Nrrd;
 
-/// The entries that matter here, as text.
+/// The entries that are used, as text.
 #[derive(Default)]
 struct Entries<'a> {
     type_name: Option<&'a str>,
@@ -50,7 +50,7 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
             end = Some(behind);
             break;
         }
-        // Key and value pairs of the user have `:=`.
+        // Lines with `:=` are the user's own key-value pairs.
         if let Some((name, value)) = line.split_once(": ")
             && let Some(slot) = entries.slot(&name.to_ascii_lowercase())
         {
@@ -132,7 +132,7 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
     })
 }
 
-/// The steps from voxel to voxel and the point of the first one, in the space of the file.
+/// The steps from voxel to voxel and the position of the first one, in the space of the file.
 fn placement(
     entries: &Entries,
     directions: Option<&[Option<DVec3>]>,
@@ -161,7 +161,7 @@ fn placement(
     Ok((core::array::from_fn(|k| DVec3::AXES[k] * spacing(k)), origin))
 }
 
-/// The vectors of a text such as `none (1,0,0) (0,1,0) (0,0,2)`.
+/// Parses vectors such as `none (1,0,0) (0,1,0) (0,0,2)`.
 fn vectors(text: &str) -> Result<Vec<Option<DVec3>>, ImageReadError> {
     let wrong = || {
         wrong(

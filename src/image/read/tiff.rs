@@ -1,5 +1,5 @@
-//! Stacks of TIFF pictures (Adobe, "TIFF Revision 6.0", 1992, and its BigTIFF form): of the pages
-//! of a file one upon the other.
+//! Stacks of TIFF pictures (Adobe, "TIFF Revision 6.0", 1992, and its BigTIFF form): the pages of a
+//! file become the slices of an image.
 
 use super::header::{first_of, quoted, wrong};
 use super::zip::Unpacked;
@@ -9,12 +9,12 @@ use crate::image::{Image, Placement};
 use glam::{DMat3, DVec3};
 
 const FORMAT: ImageFormat = ImageFormat::Tiff;
-/// Pages of a file at most: a chain of them may be a circle.
+/// Most pages of a file: their chain may be circular.
 const MOST_PAGES: usize = 1 << 16;
-/// Values of an entry at most: a strip for each row of a page.
+/// Most values of an entry: a strip for each row of a page.
 const MOST_VALUES: usize = 1 << 20;
 
-/// Tags of the entries that count.
+/// Tags of the entries that are used.
 mod tag {
     pub(super) const WIDTH: u16 = 256;
     pub(super) const HEIGHT: u16 = 257;
@@ -33,7 +33,7 @@ mod tag {
     pub(super) const FORMAT: u16 = 339;
 }
 
-/// How the strips of a page are packed.
+/// How the strips of a page are compressed.
 #[derive(Clone, Copy, PartialEq)]
 enum Packing {
     Plain,
@@ -42,12 +42,12 @@ enum Packing {
     PackBits,
 }
 
-/// The bytes of a file, with what its first ones say of it.
+/// The bytes of a file, with its byte order and offset size from the first bytes.
 #[derive(Clone, Copy)]
 struct File<'a> {
     bytes: &'a [u8],
     is_big_endian: bool,
-    /// Whether places take eight bytes.
+    /// Whether offsets take eight bytes.
     is_long: bool,
 }
 
@@ -59,7 +59,7 @@ impl<'a> File<'a> {
         Ok((file, first.ok_or_else(cut_off)?))
     }
 
-    /// The whole number of so many bytes at a place.
+    /// The whole number of `size` bytes at an offset.
     fn number(self, at: u64, size: usize) -> Option<u64> {
         let at = usize::try_from(at).ok()?;
         let bytes = self.bytes.get(at..at.checked_add(size)?)?;
@@ -77,10 +77,10 @@ fn cut_off() -> ImageReadError {
 /// An entry of a page.
 struct Entry {
     tag: u16,
-    /// Bytes of a value.
+    /// Bytes per value.
     size: usize,
     count: usize,
-    /// Where the values are.
+    /// Offset of the values.
     at: u64,
 }
 
@@ -91,7 +91,7 @@ struct Page<'a> {
 }
 
 impl<'a> Page<'a> {
-    /// The page at a place, and the place of the next one, 0 behind the last.
+    /// Reads the page at an offset. Also returns the offset of the next page, 0 after the last.
     fn read(file: File<'a>, at: u64) -> Result<(Self, u64), ImageReadError> {
         let (count_size, entry_size, place) = if file.is_long { (8, 20, 8) } else { (2, 12, 4) };
         let count = file.number(at, count_size).ok_or_else(cut_off)?;
@@ -124,7 +124,7 @@ impl<'a> Page<'a> {
         self.entries.iter().find(|entry| entry.tag == tag)
     }
 
-    /// The values of an entry; nothing without it.
+    /// The values of an entry; empty without the entry.
     fn values(&self, tag: u16) -> Result<Vec<u64>, ImageReadError> {
         let Some(entry) = self.entry(tag) else { return Ok(Vec::new()) };
         let value = |k: usize| {
@@ -134,12 +134,12 @@ impl<'a> Page<'a> {
         (0..entry.count).map(|k| value(k).ok_or_else(cut_off)).collect()
     }
 
-    /// The first value of an entry, or what stands for it where it is not there.
+    /// The first value of an entry, or `usual` without the entry.
     fn value(&self, tag: u16, usual: u64) -> Result<u64, ImageReadError> {
         Ok(self.values(tag)?.first().copied().unwrap_or(usual))
     }
 
-    /// The value of a fraction of two whole numbers of four bytes.
+    /// A fraction that is stored as two whole numbers of four bytes.
     fn fraction(&self, tag: u16) -> Option<f64> {
         let at = self.entry(tag)?.at;
         let (over, under) = (self.file.number(at, 4)?, self.file.number(at.checked_add(4)?, 4)?);
@@ -152,18 +152,18 @@ impl<'a> Page<'a> {
     }
 }
 
-/// What the pages of an image have in common.
+/// What all pages of an image have in common.
 #[derive(Clone, Copy, PartialEq)]
 struct Form {
     width: usize,
     height: usize,
     voxel_type: VoxelType,
-    /// Values of a pixel that lie side by side.
+    /// Values of a pixel that are stored together.
     step: usize,
     /// Values of a pixel.
     samples: usize,
     packing: Packing,
-    /// Whether a value is written as its difference from the one before it in the row.
+    /// Whether each value is stored as its difference from the previous one in the row.
     is_difference: bool,
 }
 
@@ -242,7 +242,7 @@ impl Form {
         self.width * self.step * self.voxel_type.bytes()
     }
 
-    /// Bytes of a page, as far as they are kept.
+    /// Bytes of a page that are kept.
     fn bytes(&self) -> u64 {
         self.row() as u64 * self.height as u64
     }
@@ -281,7 +281,7 @@ fn append(page: &Page, form: &Form, out: &mut Vec<u8>) -> Result<(), ImageReadEr
     Ok(())
 }
 
-/// Adds to each value of a row the one before it of the same kind.
+/// Adds to each value of a row the previous value of the same channel.
 fn add_up(row: &mut [u8], form: &Form, is_big_endian: bool) {
     let size = form.voxel_type.bytes();
     for at in (form.step * size..row.len()).step_by(size) {
@@ -314,18 +314,18 @@ fn pack_bits(strip: &[u8], end: usize, out: &mut Vec<u8>) {
     }
 }
 
-/// Unpacks LZW up to `end` bytes (TIFF 6.0, section 13). A code that has not been made ends it.
+/// Unpacks LZW up to `end` bytes (TIFF 6.0, section 13). Stops at an undefined code.
 fn lzw(strip: &[u8], end: usize, out: &mut Vec<u8>) {
     const CLEAR: usize = 256;
     const END: usize = 257;
     /// Size of the LZW code table: codes have at most twelve bits.
     const MOST: usize = 4096;
-    // The texts of the codes from 258 on, by their places in what was unpacked.
+    // The strings of the codes from 258 on, as ranges of the output.
     let mut texts: Vec<(usize, usize)> = Vec::new();
     let mut before: Option<(usize, usize)> = None;
     let (mut bits, mut held, mut at) = (0_u32, 0_u32, 0);
     while out.len() < end {
-        // A code is one bit longer from the code before the first that needs it on.
+        // Codes grow by one bit just before the first one that needs it.
         let longest = (END + 1 + texts.len() + usize::from(before.is_some())).min(MOST - 1);
         let width = (usize::BITS - longest.leading_zeros()).max(9);
         while held < width {
@@ -349,7 +349,7 @@ fn lzw(strip: &[u8], end: usize, out: &mut Vec<u8>) {
         } else if let Some(&(from, length)) = texts.get(code - END - 1) {
             out.extend_from_within(from..from + length);
         } else if let (Some((from, length)), true) = (before, code == END + 1 + texts.len()) {
-            // The text that is made by this very code: that before it with its own first byte.
+            // The code that is just being defined: the previous string plus its own first byte.
             out.extend_from_within(from..from + length);
             out.push(out[from]);
         } else {
@@ -358,7 +358,7 @@ fn lzw(strip: &[u8], end: usize, out: &mut Vec<u8>) {
         if let Some((from, length)) = before
             && END + 1 + texts.len() < MOST
         {
-            // What follows it in the output is the first byte of the text of this code.
+            // The output continues with the first byte of this code's string.
             texts.push((from, length + 1));
         }
         before = Some((start, out.len() - start));
@@ -366,7 +366,7 @@ fn lzw(strip: &[u8], end: usize, out: &mut Vec<u8>) {
     out.truncate(end);
 }
 
-/// What ImageJ says of a stack, in lines of its description.
+/// What ImageJ writes about a stack, in lines of the description.
 struct Stack {
     channels: usize,
     frames: usize,

@@ -5,25 +5,25 @@ use flate2::bufread::{MultiGzDecoder, ZlibDecoder};
 use std::io::{Cursor, Read};
 
 const GZIP: &[u8] = b"\x1f\x8b";
-/// A byte of deflate stands for so many at most: 258 by two bits, P. Deutsch, RFC 1951, 1996.
+/// Most bytes that one byte of deflate expands to: 258 by two bits (P. Deutsch, RFC 1951, 1996).
 const MOST_FROM_A_BYTE: u64 = 1032;
 
-/// A file, of which what has been unpacked so far is kept.
+/// A file, whose unpacked start is kept.
 pub(super) struct Unpacked {
     bytes: Vec<u8>,
-    /// What follows them, in compressed form.
+    /// The remaining compressed bytes.
     rest: Option<Box<dyn Read>>,
-    /// The most bytes that the compressed ones can become.
+    /// Most bytes to which the compressed ones can expand.
     most: u64,
 }
 
 impl Unpacked {
-    /// A file that is compressed if it begins like a gzip file.
+    /// A file, which is unpacked if it begins like a gzip file.
     pub(super) fn new(bytes: Vec<u8>) -> Self {
         if bytes.starts_with(GZIP) { Self::packed(bytes) } else { Self { bytes, rest: None, most: 0 } }
     }
 
-    /// Data in the form of gzip, or of zlib.
+    /// Data compressed by gzip or zlib.
     pub(super) fn packed(bytes: Vec<u8>) -> Self {
         let is_gzip = bytes.starts_with(GZIP);
         let most = MOST_FROM_A_BYTE.saturating_mul(bytes.len() as u64);
@@ -33,11 +33,11 @@ impl Unpacked {
         Self { bytes: Vec::new(), rest: Some(rest), most }
     }
 
-    /// Unpacks until there are so many bytes, or all.
+    /// Unpacks until `count` bytes are available, or the end is reached.
     fn unpack(&mut self, count: u64) -> Result<(), ImageReadError> {
         let Some(rest) = &mut self.rest else { return Ok(()) };
         let wanted = count.saturating_sub(self.bytes.len() as u64);
-        // A vector that grows as it fills takes up to twice the memory.
+        // A vector that grows by doubling takes up to twice the memory.
         let _ = self.bytes.try_reserve_exact(wanted.min(self.most) as usize);
         let read = rest.take(wanted).read_to_end(&mut self.bytes);
         let damaged = |error: std::io::Error| ImageReadError::Damaged {
@@ -47,13 +47,13 @@ impl Unpacked {
         read.map(drop).map_err(damaged)
     }
 
-    /// The first bytes of the file, `count` or all that it has.
+    /// The first `count` bytes of the file, or all if it is shorter.
     pub(super) fn start(&mut self, count: usize) -> Result<Vec<u8>, ImageReadError> {
         self.unpack(count as u64)?;
         Ok(self.bytes[..count.min(self.bytes.len())].to_vec())
     }
 
-    /// All bytes; of compressed ones, at most about `limit`.
+    /// All bytes; if compressed, at most about `limit`.
     pub(super) fn all(mut self, limit: u64) -> Result<Vec<u8>, ImageReadError> {
         self.unpack(limit)?;
         Ok(self.bytes)
