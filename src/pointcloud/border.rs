@@ -1,8 +1,8 @@
-//! Finds where the surface of a function goes on beyond the points that it was fitted to.
+//! Finds where the surface of a function continues beyond the points that it was fitted to.
 //!
-//! A place of the surface is beyond the points if it is farther from all of them than a reach: some
-//! of their spacings there, and no less than the distance of the points from the centres of the
-//! function, between which it is free. Around such places lie the balls of the [`Border`].
+//! A point of the surface is beyond the given points if its distance from all of them exceeds a
+//! reach: a few times their spacing, but at least their distance from the function's centres,
+//! between which it is free. The balls of the [`Border`] surround such places.
 
 use crate::field::rbf::{Ball, Border, RbfField};
 use crate::field::{Field, Frame};
@@ -12,32 +12,30 @@ use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 use std::collections::BTreeMap;
 
-/// Reach, in spacings of the points. Of a thousand clouds of 20,000 random points one has a gap
-/// with a radius of 2.5 spacings. Larger: wider holes are bridged, and wider bays.
+/// Reach, in spacings of the points. Larger: wider holes are bridged, and so are wider bays.
 const REACH: f64 = 4.0;
-/// Neighbours by which the spacing is measured. A disc that reaches to the last of them has the
-/// area of as many squares, each one spacing wide.
+/// Number of neighbours from which the spacing is measured. The disc that reaches the last of them
+/// has the area of as many squares, each one spacing wide.
 const NEIGHBOURS: usize = 8;
-/// Radius of the largest balls, in reaches. Larger: a ball that belongs to one sheet comes near
-/// another one.
+/// Radius of the largest balls, in reaches. Larger: a ball on one sheet comes near another sheet.
 const LARGEST: f64 = 1.25;
-/// Distance of balls that reach the points, in reaches. Smaller: a smoother rim from more balls.
+/// Spacing of balls that reach the points, in reaches. Smaller: a smoother rim from more balls.
 const SPACING: f64 = 1.0 / 6.0;
-/// Distance of balls farther out, which only have to overlap, in reaches.
+/// Spacing of balls farther out, in reaches; they only have to overlap.
 const FAR_SPACING: f64 = 0.6;
-/// Room around the points in which balls are looked for, in the largest reaches: they lie from one
-/// reach on, and take a few rows.
+/// Margin around the points that is searched, in the largest reaches. Balls begin one reach away,
+/// and a few rows are enough.
 const ROOM: f64 = 1.5;
-/// Width of the smallest cells in which the surface is looked for, in the smallest reaches.
+/// Width of the smallest search cells, in the smallest reaches.
 const CELL: f64 = 0.25;
-/// A surface may pass through a cell up to this multiple of the distance from the middle to a
+/// A surface may pass through a cell up to this multiple of the distance from its middle to a
 /// corner.
 const SLACK: f64 = 1.5;
-/// Largest number of cells that are divided further: half a second of work.
+/// Most cells that are divided further: half a second of work.
 const MOST_CELLS: usize = 200_000;
-/// Steps by which the middle of a cell comes to the surface.
+/// Steps in which the middle of a cell is moved to the surface.
 const STEPS: usize = 5;
-/// Distance from the surface, in widths of a cell, within which a place is on it.
+/// A point counts as on the surface within this distance from it, in widths of a cell.
 const ON_SURFACE: f64 = 1e-3;
 
 /// Points, with a search for the nearest one.
@@ -45,7 +43,7 @@ struct Points<'a> {
     position: &'a [DVec3],
     tree: Tree,
     middle: DVec3,
-    /// At each point, the distance from all points at which a surface is beyond them.
+    /// At each point, the distance from all points beyond which a surface is cut.
     reach: Vec<f64>,
 }
 
@@ -72,7 +70,7 @@ impl<'a> Points<'a> {
         Self { position, tree, middle, reach }
     }
 
-    /// The distance of a place from the nearest point, and the reach there.
+    /// The distance from `p` to the nearest point, and the reach there.
     fn nearest(&self, p: DVec3) -> (f64, f64) {
         let (_, at) = self.tree.nearest((p - self.middle).as_vec3(), u32::MAX, f32::INFINITY);
         let index = self.tree.origin.get(at as usize).map_or(0, |&index| index as usize);
@@ -80,8 +78,8 @@ impl<'a> Points<'a> {
     }
 }
 
-/// The border of points, and the share of the surface in a box that lies beyond it; none if that is
-/// nothing. The surface is that of a function with these centres.
+/// The border of points, and the share of the surface in a box that lies beyond it; none if the
+/// share is 0. The surface belongs to a function with these centres.
 pub(super) async fn find(
     field: &RbfField,
     points: &[DVec3],
@@ -117,7 +115,7 @@ pub(super) async fn find(
     (share > 0.0).then_some((border, share))
 }
 
-/// Places on a surface in a box, about one in each cell of this width that it passes through.
+/// Points on a surface in a box, about one in each cell of this width that it passes through.
 async fn places(field: &RbfField, bounds: &Bounds, width: f64) -> Vec<DVec3> {
     let mut evaluator = field.evaluator(Frame::around(bounds.middle()));
     let mut cells = vec![bounds.relative_to(bounds.middle())];
@@ -164,8 +162,8 @@ async fn places(field: &RbfField, bounds: &Bounds, width: f64) -> Vec<DVec3> {
             let width = cell.size().max_element();
             let is_on = f64::from(value[k].abs()) <= ON_SURFACE * width * f64::from(gradient[k].length());
             let half = 0.5 * cell.size();
-            // One in each cell that the surface passes through: the shares of the area are those of
-            // places.
+            // One in each cell that the surface passes through, so that numbers of points are in
+            // proportion to areas.
             if is_on && (p.as_dvec3() - cell.middle()).abs().cmple(half).all() {
                 found.push(bounds.middle() + p.as_dvec3());
             }
@@ -175,9 +173,9 @@ async fn places(field: &RbfField, bounds: &Bounds, width: f64) -> Vec<DVec3> {
     found
 }
 
-/// The balls that are left where they are spread out, those that come nearest to the points first.
+/// Keeps balls that are spread out, beginning with those nearest to the points.
 async fn spread(mut balls: Vec<(Ball, f64)>) -> Vec<Ball> {
-    // Smaller ones in their reaches are nearer to the points.
+    // Balls with a smaller radius relative to their reach are nearer to the points.
     sort_by_key(&mut balls, |(ball, reach)| (ball.radius / reach).to_bits());
     let largest = balls.iter().map(|(_, reach)| FAR_SPACING * reach).fold(0.0, f64::max);
     let lo = Bounds::around(balls.iter().map(|(ball, _)| ball.centre)).lo();

@@ -3,16 +3,16 @@
 use crate::math::Sym3;
 use glam::DVec3;
 
-/// Maximum number of sweeps of Jacobi's method. It converges quadratically; for a 3×3 matrix five
-/// sweeps give every digit.
+/// Most sweeps of Jacobi's method. It converges quadratically; five sweeps give a 3×3 matrix all
+/// its digits.
 const SWEEPS: usize = 12;
 
 /// Eigenvalues in ascending order and their unit eigenvectors, by Jacobi rotations (Golub & Van
 /// Loan, "Matrix Computations", §8.5).
 ///
-/// The method is accurate for eigenvalues of any ratio and uses only +, −, ×, ÷ and √, so its
-/// results have the same bits everywhere. A matrix with an entry that is not finite gives
-/// eigenvalues that are not finite.
+/// The method is accurate for any ratio of eigenvalues and uses only +, −, ×, ÷ and √, so its
+/// results have the same bits everywhere. If an entry of the matrix is not finite, neither are the
+/// eigenvalues.
 pub(super) fn symmetric(m: &Sym3<f64>) -> ([f64; 3], [DVec3; 3]) {
     let mut a = [[m.xx, m.xy, m.xz], [m.xy, m.yy, m.yz], [m.xz, m.yz, m.zz]];
     let mut v = [DVec3::X, DVec3::Y, DVec3::Z];

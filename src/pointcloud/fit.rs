@@ -1,14 +1,14 @@
-//! A smooth function near points with normals: Hermite radial basis functions at centres, smoothed
-//! as the points tell.
+//! Fits a smooth function to points with normals: Hermite radial basis functions at centres, with
+//! as much smoothing as cross-validation chooses.
 //!
 //! The function is f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³ (I. Macêdo, J. P. Gois
-//! & L. Velho, "Hermite Radial Basis Functions Implicits", 2011). A few of the points are its N
-//! centres, and every point is in the cell of the nearest one. The conditions are that the means of
-//! f and of ∇f − n over each cell vanish: 4 N linear equations for the 4 N coefficients. Where
-//! every point is a centre, the function goes through all of them. In each equation the unknown of
-//! its own centre, αⱼ or −βⱼ, is added with the factor λ/nⱼ for a cell of nⱼ points, as in a
-//! smoothing spline (G. Wahba, "Spline Models for Observational Data", 1990, §1.3).
-//! Cross-validation chooses λ: the function of one half of the points is to be near the other half.
+//! & L. Velho, "Hermite Radial Basis Functions Implicits", 2011). N of the points are its centres,
+//! and every point is in the cell of the nearest centre. The means of f and of ∇f − n over each
+//! cell shall vanish: 4 N linear equations for the 4 N coefficients. If every point is a centre,
+//! the function interpolates them. For smoothing, each equation of a cell with nⱼ points has λ/nⱼ
+//! times the unknown of its own centre, αⱼ or −βⱼ, added, as in a smoothing spline (G. Wahba,
+//! "Spline Models for Observational Data", 1990, §1.3). Cross-validation chooses λ so that the
+//! function of one half of the points is near the other half.
 //!
 //! The system is set up in local coordinates, in which the centres fill a box of about one unit,
 //! and solved in double precision.
@@ -24,59 +24,56 @@ use glam::{BVec3, DVec3, Vec3};
 use nalgebra::{DMatrix, DMatrixViewMut, DVector};
 use std::sync::Arc;
 
-/// Minimum number of centres: fewer bound no volume.
+/// Fewest centres: fewer bound no volume.
 const MIN_CENTRES: usize = 4;
-/// Condition number from which a solution is refused: fewer than three digits are left in double
+/// Condition number above which a solution is refused: fewer than three digits remain in double
 /// precision.
 const MAX_CONDITION: f64 = 1e13;
-/// Condition number above which the user is warned: fewer than six digits are left, as many as
-/// single precision shows.
+/// Condition number above which the user is warned: fewer than six digits remain, about those of
+/// single precision.
 const WARN_CONDITION: f64 = 1e10;
 /// Margin around the points for the surface, which bulges between them, as a share of the diagonal
 /// of their box.
 const MARGIN: f64 = 0.06;
-/// Largest smoothing term λ that is tried: four times the largest that was chosen for noisy points.
+/// Largest smoothing term λ that is tried.
 const LARGEST_SMOOTHING: f64 = 4.0;
-/// Ratio of two terms that are tried one after the other. From one to the next the distance from
-/// the true surface hardly changes.
+/// Ratio of consecutive trial terms. Smaller: fewer trials, a coarser choice.
 const SMOOTHING_STEP: f64 = 0.25;
-/// Maximum number of terms that are tried: the last one is 10⁻⁵, below any that was chosen.
+/// Most terms that are tried; the last one is 10⁻⁵.
 const SMOOTHING_TRIALS: u32 = 10;
-/// Maximum number of centres with which the terms are tried. λ weighs points and not centres, so it
-/// holds for more centres too, whose systems take up to 64 times as long.
+/// Most centres with which the terms are tried. λ weighs points, not centres, so it is valid for
+/// more centres, too, whose systems take up to 64 times as long.
 const TRIAL_CENTRES: usize = 200;
 /// Fractions of the work at which the trials end, and at which the elimination begins and ends, for
-/// the display of progress. They are rounded means of clouds of 1,000 to 20,000 points with 100 to
-/// 800 centres.
+/// the display of progress.
 const TRIALS_END: f64 = 0.4;
 const ELIMINATION_SPAN: [f64; 2] = [0.5, 0.9];
 
-/// A field near points, with the box to sample in and a report.
+/// A field near points, with a box for sampling and a report.
 #[derive(Clone, Debug)]
 pub struct Fit {
     /// Centres and coefficients.
     #[doc(hidden)]
     pub data: Arc<RbfData>,
-    /// Box to sample in: that of all points, with a margin.
+    /// Box for sampling: the box of all points, with a margin.
     pub bounds: Bounds,
     /// Report for the user.
     pub info: ModelInfo,
 }
 
 impl Fit {
-    /// The field of the surface, which ends at the border of the points: see
-    /// [`RbfField::untrimmed`].
+    /// The field of the surface, cut at the border of the points. See [`RbfField::untrimmed`].
     ///
     /// # Panics
     ///
-    /// Never: what was solved is finite.
+    /// Never: solved coefficients are finite.
     #[must_use]
     pub fn field(&self) -> RbfField {
         let field = RbfField::new(self.data.clone());
         field.unwrap_or_else(|error| panic!("a solved system is a field: {error}")).trimmed()
     }
 
-    /// Looks for the border of the points, and says how much of the surface lies beyond it.
+    /// Finds the border of the points and reports how much of the surface lies beyond it.
     pub(super) async fn trim(&mut self, points: &[DVec3], centres: &[DVec3]) {
         let found = border::find(&self.field().untrimmed(), points, centres, &self.bounds).await;
         let Some((border, share)) = found else { return };
@@ -121,9 +118,9 @@ impl From<SingularMatrix> for FitError {
     }
 }
 
-/// Fits a function to the points of `cloud`, of which those with the indices `chosen` are the
-/// centres. The residual is taken at all points `given`. The fit's report has the name, credit and
-/// warnings of `info`. `tell` gets the fraction of the work done.
+/// Fits a function to the points of `cloud`. The indices `chosen` select its centres. Residuals are
+/// measured at all points `given`. The fit's report takes its name, credit and warnings from
+/// `info`. `tell` gets the fraction of the work done.
 ///
 /// # Errors
 ///
@@ -145,7 +142,7 @@ pub async fn approximate(
         return Err(FitError::TooFew { count: chosen.len() });
     }
     let frame = CentredFrame::of(cloud.only(chosen).position.into_iter());
-    // Positions are rounded to single precision, so that sampling finds exactly the same centres.
+    // Positions are rounded to single precision, so that sampling uses exactly the same centres.
     let local: Vec<DVec3> = cloud.position.iter().map(|&p| frame.local(p).as_vec3().as_dvec3()).collect();
     let centres: Vec<DVec3> = chosen.iter().map(|&i| local[i as usize]).collect();
     check_spread(&centres)?;
@@ -186,8 +183,8 @@ struct CellPoint {
     cell: u32,
 }
 
-/// The points, each in the cell of its nearest centre, and the mean of their squared distances from
-/// these. Ties go to the smaller index.
+/// Assigns each point to the cell of its nearest centre; ties go to the smaller index. Also returns
+/// the mean squared distance from the points to their centres.
 async fn in_cells(mut points: Vec<CellPoint>, centres: &[DVec3]) -> (Vec<CellPoint>, f64) {
     let nearest = |point: &CellPoint| {
         let (mut least, mut cell) = (f64::INFINITY, 0);
@@ -214,12 +211,12 @@ async fn in_cells(mut points: Vec<CellPoint>, centres: &[DVec3]) -> (Vec<CellPoi
     (points, sum / count)
 }
 
-/// The smoothing term with which the function of one half of the points is nearest to the other
+/// The smoothing term for which the function of one half of the points is nearest to the other
 /// half; 0 if nearly every point is a centre.
 ///
-/// The points of each cell go to the halves in turn. What is compared is the mean of f² and (d |∇f
-/// − n|)², where d is the distance of the points from their centres. Terms are tried from the
-/// largest one down, until the mean grows.
+/// The points of each cell go to the two halves alternately. The error is the mean of f² and (d |∇f
+/// − n|)², where d is the distance of the points from their centres. Terms are tried in descending
+/// order until the error grows.
 async fn smoothing(points: &[CellPoint], centres: &[DVec3], tell: impl Fn(f64)) -> Result<f64, FitError> {
     if 2 * (points.len() - centres.len()) < centres.len() {
         return Ok(0.0);
@@ -264,13 +261,13 @@ async fn error_at(field: &RbfField, points: &[CellPoint], distance_sq: f64) -> f
     parts.await.into_iter().flatten().sum()
 }
 
-/// The field with the unknowns `x`, which are α and −β of each centre in local coordinates.
+/// The field with the unknowns `x`: α and −β of each centre, in local coordinates.
 fn field_of(x: &DVector<f64>, centres: &[DVec3], frame: &CentredFrame) -> Result<RbfField, FitError> {
     let mut data = RbfData::default();
     let scale = frame.scale();
     for (i, &centre) in centres.iter().enumerate() {
-        // With g the function in local coordinates, f(x) = g(s (x − o))/s has the same gradients;
-        // its coefficients are α s² and β s.
+        // With g as the function in local coordinates, f(x) = g(s (x − o))/s has the same
+        // gradients; its coefficients are α s² and β s.
         data.centres.push(frame.world(centre).to_array());
         data.alpha.push(x[4 * i] * scale * scale);
         data.beta.push([1, 2, 3].map(|k| -x[4 * i + k] * scale));
@@ -310,19 +307,18 @@ fn reported(field: &RbfField, given: &[DVec3], mut residuals: Vec<f32>, mut info
     Fit { data: field.data().clone(), bounds, info }
 }
 
-/// The equations for the unknowns α and −β of each centre: the means of f and ∇f over the cell of
-/// every centre.
+/// The equations for α and −β of each centre: the means of f and ∇f over each centre's cell.
 #[derive(Clone)]
 struct System {
     matrix: DMatrix<f64>,
-    /// Means of the normals, in the rows of ∇f.
+    /// Means of the normals, on the right side of the equations of ∇f.
     right: DVector<f64>,
     /// Number of points in each cell.
     count: Vec<f64>,
 }
 
-/// The smoothing term λ of f. That of ∇f is larger by the square of the distance of the points from
-/// their centres: over that distance an error of the slope is one of the height.
+/// The smoothing term λ of f. For ∇f it is divided by the mean squared distance of the points from
+/// their centres, over which an error of the slope becomes one of the height.
 struct Smoothing {
     value: f64,
     /// Mean of the squared distances.
@@ -374,7 +370,7 @@ impl System {
         smoothing: Smoothing,
         tell: impl Fn(f64),
     ) -> Result<(DVector<f64>, f64), FitError> {
-        // A term of 0 is not added: the slope's may be 0/0.
+        // A term of 0 is not added, since the one of the slope may be 0/0.
         for (j, count) in self.count.iter().enumerate().filter(|_| smoothing.value > 0.0) {
             let of_value = smoothing.value / count;
             let of_slope = of_value / smoothing.distance_sq;
@@ -388,7 +384,7 @@ impl System {
     }
 }
 
-/// Writes the four columns of a centre. Each cell has `count` points.
+/// Writes the four columns of a centre. `count` is the number of points in each cell.
 fn add_columns(points: &[CellPoint], count: &[f64], centre: DVec3, columns: &mut DMatrixViewMut<'_, f64>) {
     for point in points {
         let (cell, d) = (point.cell as usize, point.position - centre);
@@ -411,8 +407,8 @@ fn add_columns(points: &[CellPoint], count: &[f64], centre: DVec3, columns: &mut
     }
 }
 
-/// Residuals |f|/|∇f| of the points, and the point with the largest one. There is none where ∇f
-/// vanishes.
+/// Residuals |f|/|∇f| of the points, and the point with the largest one. Points where ∇f vanishes
+/// have none.
 async fn residuals(field: &RbfField, points: &[DVec3], tell: impl Fn(f64)) -> (Vec<f32>, DVec3) {
     let new_scratch = || field.evaluator(Frame::default());
     let mut all: Vec<f32> = Vec::with_capacity(points.len());

@@ -1,4 +1,4 @@
-//! A job that takes a file or a built-in model to a field, in slices of bounded work.
+//! A job that turns a file or a built-in model into a field, in slices of bounded work.
 
 use super::fit::{Fit, FitError, approximate};
 use super::models;
@@ -17,8 +17,8 @@ use serde::Serialize;
 use std::rc::Rc;
 
 /// Distance from the origin, in diagonals of the points' box, beyond which the points are moved to
-/// the origin. Within it, single precision, in which the surface is sampled, resolves a millionth
-/// of the diagonal.
+/// the origin. Up to this distance the sampler's single precision resolves a millionth of the
+/// diagonal.
 const FAR: f64 = 10.0;
 
 /// Progress of a job.
@@ -66,8 +66,7 @@ fn names() -> String {
     names.join(", ")
 }
 
-/// A stage of a job in words, with its begin and length as shares of the whole time. Of a file of 2
-/// to 6 MB reading takes 7 % of it, normals 4 %, the surface 82 %, and all else together 4 %.
+/// The name of a stage, and when it begins and how long it takes as shares of the whole time.
 struct JobPart {
     label: &'static str,
     begins: f64,
@@ -81,7 +80,7 @@ const fn part(label: &'static str, begins: f64, length: f64) -> JobPart {
 const READING: JobPart = part("Reading the file", 0.0, 0.1);
 const FACING: JobPart = part("Finding normals from the faces", 0.1, 0.02);
 const MERGING: JobPart = part("Joining equal points", 0.12, 0.02);
-/// The number of grids that thinning takes is not known, so its fraction stands still.
+/// How many grids thinning takes is unknown, so its progress is not shown.
 const THINNING: JobPart = part("Thinning out", 0.14, 0.01);
 const ESTIMATING: JobPart = part("Estimating normals", 0.15, 0.04);
 const COMPARING: JobPart = part("Comparing normals", 0.15, 0.04);
@@ -100,8 +99,7 @@ impl JobStatus {
         Rc::new(Self { progress: Cell::new(first.at(0.0)), centres: OnceCell::new() })
     }
 
-    /// Begins a part of the job. Returns a function that takes the fraction of the part that is
-    /// done.
+    /// Begins a part of the job. Returns a function that takes the completed fraction of that part.
     fn begin(&self, part: &'static JobPart) -> impl Fn(f64) {
         self.progress.set(part.at(0.0));
         |share| self.progress.set(part.at(share))
@@ -115,7 +113,7 @@ impl JobPart {
     }
 }
 
-/// A file or a built-in model on its way to a field.
+/// The conversion of a file or a built-in model to a field.
 pub struct Job {
     state: JobState,
     status: Rc<JobStatus>,
@@ -128,8 +126,8 @@ enum JobState {
 }
 
 impl Job {
-    /// Job for a file. A function with as many `centres` (see [`CENTRES`]) is fitted to all of its
-    /// points; `name` is for reports.
+    /// Job for a file. A function with this number of `centres` (see [`CENTRES`]) is fitted to all
+    /// of its points; `name` appears in reports.
     ///
     /// # Errors
     ///
@@ -143,8 +141,8 @@ impl Job {
         Ok(Self { state: JobState::Working(work), status })
     }
 
-    /// Job for a built-in model. A function with as many `centres` (see [`CENTRES`]), or as many as
-    /// there are points, is fitted to them.
+    /// Job for a built-in model. A function with this number of `centres` (see [`CENTRES`]), or as
+    /// many as the model has points, is fitted to them.
     ///
     /// # Errors
     ///
@@ -168,8 +166,8 @@ impl Job {
 
     /// Does up to `budget` slices of the work and returns the progress.
     ///
-    /// A slice takes about a tenth of a millisecond natively, one of solving about a millisecond;
-    /// between two stages of a file with millions of points it may take some tens of milliseconds.
+    /// A slice takes about a tenth of a millisecond natively, or a millisecond while solving.
+    /// Between two stages of a file with millions of points it may take some tens of milliseconds.
     ///
     /// # Errors
     ///
@@ -186,7 +184,7 @@ impl Job {
         }
     }
 
-    /// Does all that is left of the work and returns the field.
+    /// Does all remaining work and returns the field.
     ///
     /// # Errors
     ///
@@ -252,7 +250,7 @@ async fn of_file(
     let mut given = cloud.position.clone();
     status.begin(&THINNING)(0.0);
     let mut cloud = thin(cloud).await?;
-    // The points of a mesh belong together by its faces, which tell their normals too.
+    // The faces of a mesh tell which points are connected, and their normals.
     if cloud.normal.is_empty() || !has_faces {
         let part = if cloud.normal.is_empty() { &ESTIMATING } else { &COMPARING };
         let Changes { outliers, warnings } = settle(&mut cloud, status.begin(part)).await;
@@ -262,7 +260,7 @@ async fn of_file(
     of_cloud(cloud, given, wanted, info, status).await
 }
 
-/// The work from points with normals to a field. The distances from the surface are measured at the
+/// The work from points with normals to a field. Distances from the surface are measured at the
 /// points `given`.
 async fn of_cloud(
     cloud: Cloud,
@@ -271,14 +269,14 @@ async fn of_cloud(
     info: ModelInfo,
     status: Rc<JobStatus>,
 ) -> Result<Fit, JobError> {
-    // Of points that all but coincide one is chosen, however few there are.
+    // Of nearly coincident points only one is chosen, however few points there are.
     let mut chosen = spread(&cloud.position, wanted, status.begin(&SPREADING)).await;
     if chosen.len() == cloud.len() {
         // The centres are all points, in the order of the file.
         chosen = (0..cloud.len() as u32).collect();
     }
     status.centres.get_or_init(|| cloud.only(&chosen).position);
-    // Those of a file are counted before equal ones are joined.
+    // The points of a file were counted before equal ones were merged.
     let points = info.points;
     let is_closed = info.mesh.and_then(|mesh| mesh.topology).is_some_and(|topology| topology.borders == 0);
     let is_scan = points > 0 && !is_closed;
@@ -291,8 +289,8 @@ async fn of_cloud(
     Ok(fit)
 }
 
-/// Moves points far from the origin, relative to their size, by round numbers to the origin, and
-/// warns of it.
+/// Moves points that are far from the origin for their size near it, by round numbers, and returns
+/// a warning.
 fn bring_near(points: &mut [DVec3]) -> Option<String> {
     let bounds = Bounds::around(points.iter().copied());
     let (middle, diagonal) = (bounds.middle(), bounds.diagonal());
@@ -310,7 +308,7 @@ fn bring_near(points: &mut [DVec3]) -> Option<String> {
     ))
 }
 
-/// Multiple nearest to `x` of the largest power of ten not above `unit`.
+/// Rounds `x` to a multiple of the largest power of ten that is not above `unit`.
 fn round_to(x: f64, unit: f64) -> f64 {
     let (mut power, mut inverse) = (1.0, 1.0);
     while power * 10.0 <= unit {
@@ -319,7 +317,7 @@ fn round_to(x: f64, unit: f64) -> f64 {
     while power / inverse > unit {
         inverse *= 10.0;
     }
-    // Division by integers gives the double nearest to the decimal. Adding 0 avoids a negative
+    // Division by an integer gives the double nearest to the decimal. Adding 0 avoids a negative
     // zero.
     (x / power * inverse).round() / inverse * power + 0.0
 }

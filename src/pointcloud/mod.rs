@@ -1,9 +1,9 @@
-//! Models from points: a function for a file of points or for a built-in model.
+//! Models from points: a function near the points of a file or of a built-in model.
 //!
-//! A file is read to a [`Cloud`] of points with normals. A few hundred of them, far from each
-//! other, become the centres of a radial basis function, which is fitted to all of them by a linear
-//! system. The result is an [`RbfData`](crate::field::rbf::RbfData), which is all that the
-//! sampler's core takes: the page solves in a module and a worker of their own.
+//! A file is read to a [`Cloud`] of points with normals. A few hundred of them, far apart, become
+//! the centres of a radial basis function, which a linear system fits to all points. The result is
+//! an [`RbfData`](crate::field::rbf::RbfData). The sampler's core needs nothing else, so the page
+//! can solve in a separate module and worker.
 
 mod border;
 mod eigen;
@@ -23,21 +23,22 @@ use fit::Fit;
 use glam::DVec3;
 use job::{Job, JobError};
 
-/// Fits a surface to the points of a file: PLY, OBJ, STL, OFF, GLB, PCD, or text with a point a
-/// line (XYZ, PTS, CSV), as the content says, and where that leaves it open the `name`. A function
-/// with as many `centres`, a number of [`CENTRES`](crate::CENTRES), is fitted to all of them: noise
-/// is smoothed as cross-validation tells. Normals come from the file, else from its faces, else
-/// they are estimated. Large faces are given more points, so that the surface follows them.
+/// Fits a surface to the points of a file: PLY, OBJ, STL, OFF, GLB, PCD, or text with one point per
+/// line (XYZ, PTS, CSV). The content decides; if it is ambiguous, the extension of `name`. A
+/// function with this number of `centres`, one of [`CENTRES`](crate::CENTRES), is fitted to all
+/// points; cross-validation decides how much noise is smoothed. Normals come from the file, else
+/// from its faces, else they are estimated. Large faces get more points, so that the surface
+/// follows them.
 ///
 /// # Errors
 ///
-/// If the file cannot be read or its points lead to no surface: what is wrong, where, and what to
-/// do.
+/// If the file cannot be read or its points give no surface. The error says what is wrong, where,
+/// and what to do.
 pub fn fit_points(name: &str, bytes: Vec<u8>, centres: u32) -> Result<Fit, JobError> {
     slices::in_pool(|| Job::file(name, bytes, centres)?.complete())
 }
 
-/// Fit of a built-in model, all of whose points are centres.
+/// Fit of a built-in model with all of its points as centres.
 ///
 /// # Panics
 ///
@@ -54,7 +55,7 @@ pub fn fit_model(model: &Model) -> Fit {
 pub struct Cloud {
     /// Positions.
     pub position: Vec<DVec3>,
-    /// Unit normals, one for each position, or none at all if they are still to be estimated.
+    /// Unit normals, one for each position; empty if they are still to be estimated.
     pub normal: Vec<DVec3>,
     /// Source of the normals.
     pub source: NormalSource,
@@ -73,7 +74,7 @@ impl Cloud {
         self.position.is_empty()
     }
 
-    /// Leaves out the points whose normals are zero.
+    /// Removes the points whose normals are zero.
     fn retain_with_normal(&mut self) {
         let mut stays = self.normal.iter().map(|normal| *normal != DVec3::ZERO);
         self.position.retain(|_| stays.next().unwrap_or(false));

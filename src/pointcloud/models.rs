@@ -1,9 +1,9 @@
 //! Built-in models of 200 points each, like those of the paper (§6).
 //!
-//! A file in `data` holds the smallest corner and the side of a cube as four little-endian floats.
-//! Five 16-bit integers follow for each point: its position in the cube, and its normal in the
+//! A file in `data` begins with the smallest corner and the side of a cube, as four little-endian
+//! floats. Then each point has five 16-bit integers: its position in the cube and its normal in
 //! octahedral encoding (Q. Meyer et al., "On Floating-Point Normal Vectors", 2010).
-//! `tests/it/models.rs` makes the files and states where the points come from.
+//! `tests/it/models.rs` makes the files and states the source of the points.
 
 use super::{Cloud, ModelInfo, NormalSource};
 use crate::field::model::Model;
@@ -16,7 +16,7 @@ const HEAD: usize = 4;
 /// Number of integers per point.
 const NUMBERS: usize = 5;
 
-/// Points of the built-in model with the identifier `id`.
+/// The points of the built-in model `id`.
 #[must_use]
 pub fn cloud(id: &str) -> Option<Cloud> {
     let (bytes, source): (&[u8], _) = match id {
@@ -48,7 +48,7 @@ fn decode(bytes: &[u8]) -> Cloud {
     cloud
 }
 
-/// Direction with an octahedral encoding on the square from −1 to 1.
+/// Decodes a direction from its octahedral encoding, a point in the square from −1 to 1.
 ///
 /// The upper half of the octahedron |x| + |y| + |z| = 1 is projected along z. The lower half is
 /// unfolded over its edges: the inner diamond of the square is exchanged with its four corners.

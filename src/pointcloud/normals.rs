@@ -1,18 +1,17 @@
-//! Normals, signs of normals and outliers, as the neighbours of each point tell them. A normal is
-//! estimated where none is given; one that is given may have the wrong sign.
+//! Uses each point's neighbours to estimate missing normals, correct the signs of given ones, and
+//! find outliers.
 //!
-//! The normal of a point is that of the plane through its neighbours, and its sign is propagated
-//! from point to point (H. Hoppe, T. DeRose, T. Duchamp, J. McDonald & W. Stuetzle, "Surface
-//! Reconstruction from Unorganized Points", SIGGRAPH 1992, §3.2 and 3.3).
+//! The normal of a point is perpendicular to the plane through its neighbours. Its sign is
+//! propagated from point to point (H. Hoppe, T. DeRose, T. Duchamp, J. McDonald & W. Stuetzle,
+//! "Surface Reconstruction from Unorganized Points", SIGGRAPH 1992, §3.2 and 3.3).
 //!
 //! # Differences from the paper
 //!
-//! * A normal that is propagated along an edge is reflected in the plane that bisects the edge, and
-//!   the weight of the edge is the difference of the two normals after that. Of 1,839 vertices of
-//!   the bunny 7 get a normal of the wrong sign; without the reflection 51 do.
-//! * The graph has an edge from every point to its nearest neighbours, without the edges of a
-//!   Euclidean minimum spanning tree. Each connected component of the graph is oriented by itself.
-//! * Outward is decided by the outermost points in six directions together, not by the highest
+//! * A normal that is propagated along an edge is first reflected in the plane that bisects the
+//!   edge; the weight of the edge is the difference of the two normals after that.
+//! * The graph connects every point to its nearest neighbours, without the edges of a Euclidean
+//!   minimum spanning tree. Each connected component is oriented separately.
+//! * The outermost points in six directions decide together which side is outside, not the highest
 //!   point alone.
 
 use super::thin::covariance;
@@ -24,41 +23,39 @@ use core::cmp::Reverse;
 use glam::DVec3;
 use std::collections::BinaryHeap;
 
-/// Number of neighbours that a plane is fitted to. Fewer follow the noise, more reach the far side
-/// of thin parts.
+/// Number of neighbours to which a plane is fitted. Fewer: planes follow the noise. More: they
+/// reach the other side of thin parts.
 const NEIGHBOURS: usize = 12;
 
-/// Number of times that the neighbours of a plane are doubled, where points are noisy: 192 of 5,000
-/// points whose noise has a deviation of 2 % of the size of a sphere or torus.
+/// How often the number of a plane's neighbours may be doubled where points are noisy.
 const WIDENINGS: u32 = 4;
 /// Number of planes whose flatness is compared.
 const COMPARED: usize = 500;
-/// Least kurtosis of the distances from planes that are thick by noise: that of a normal
-/// distribution is 3. In a cap of even curvature, where the distances are spread evenly, it is 1.8,
-/// and where points lie on two sheets beside the plane 1.
+/// Least kurtosis of the distances from planes that are thick because of noise. It is 3 for a
+/// normal distribution, 1.8 for a cap of constant curvature, where the distances are spread evenly,
+/// and 1 for points on two sheets, one on each side of the plane.
 const NOISE_KURTOSIS: f64 = 2.0;
 
 /// Cosine of 120°. Neighbours whose normals make a larger angle are on different sheets, or one has
-/// the wrong sign: the repulsion of particles tells sheets apart by the same angle.
+/// the wrong sign. The repulsion of particles uses the same angle.
 const OPPOSITE_COS: f64 = -0.5;
 
-/// A point is an outlier if the median distance of its neighbours is more than this times that of
-/// their own, and of all points. Points spread at random over spheres, tori and plates stay
-/// below 2.
+/// A point is an outlier if the median distance to its neighbours exceeds this many times the
+/// medians of its neighbours and of all points.
 const FAR: f64 = 5.0;
-/// A given normal is turned round if those of the neighbours disagree with it by more than this
-/// share of their weight: two thirds of them. Smaller: right normals of thin plates are turned;
+/// A given normal is reversed if the neighbours that disagree with it outweigh those that agree by
+/// more than this share of their total weight. Smaller: right normals of thin plates are reversed;
 /// larger: some wrong ones stay.
 const DISAGREEING: f64 = 0.3;
-/// Largest number of times that all given normals are compared with their neighbours: each time
-/// those beside turned ones are clearer. The limit is for clouds that never settle, since a point
-/// need not be a neighbour of its neighbours.
+/// Most rounds in which all given normals are compared with their neighbours; each reversal makes
+/// its surroundings clearer. The limit is for clouds that never settle, since a point need not be a
+/// neighbour of its neighbours.
 const MOST_ROUNDS: u32 = 16;
 
-/// Share of such pairs above which the user is warned. A choice.
+/// Share of neighbours with opposite normals above which the user is warned. A choice.
 const WARN_SHARE: f64 = 0.01;
 
-/// The changes that were made to a cloud of points, for the user.
+/// Changes to a cloud of points, for the user.
 #[derive(Clone, Debug, Default)]
 pub struct Changes {
     /// Points that were left out because they are far from all others.
@@ -67,9 +64,9 @@ pub struct Changes {
     pub warnings: Vec<String>,
 }
 
-/// Leaves the outliers of a cloud out, and estimates its normals, outward, or turns the given ones
-/// round that disagree with those of their neighbours. The points must be distinct and not in one
-/// plane. `tell` gets the fraction of the points that are done.
+/// Removes the outliers of a cloud. Then estimates its normals, outward, or reverses given ones
+/// that disagree with their neighbours. The points must be distinct and not coplanar. `tell` gets
+/// the completed fraction of the points.
 pub async fn settle(cloud: &mut Cloud, tell: impl Fn(f64)) -> Changes {
     let mut settled = Changes::default();
     let mut graph = NeighbourGraph::new(&cloud.position, tell).await;
@@ -93,8 +90,7 @@ pub async fn settle(cloud: &mut Cloud, tell: impl Fn(f64)) -> Changes {
     settled
 }
 
-/// Turns the given normals round that disagree with those of their neighbours, and returns warnings
-/// for the user.
+/// Reverses the given normals that disagree with their neighbours. Returns warnings for the user.
 async fn turn(cloud: &mut Cloud, mut graph: NeighbourGraph) -> Vec<String> {
     let mut warnings = Vec::new();
     graph.normal.clone_from(&cloud.normal);
@@ -118,8 +114,8 @@ async fn turn(cloud: &mut Cloud, mut graph: NeighbourGraph) -> Vec<String> {
     warnings
 }
 
-/// Takes the normals of the planes through the neighbours, outward, and returns warnings for the
-/// user.
+/// Takes the normals of the planes through the neighbours, pointing outward. Returns warnings for
+/// the user.
 fn estimate(cloud: &mut Cloud, mut graph: NeighbourGraph) -> Vec<String> {
     let components = graph.orient();
     let mut warnings = vec![
@@ -146,14 +142,14 @@ fn estimate(cloud: &mut Cloud, mut graph: NeighbourGraph) -> Vec<String> {
     warnings
 }
 
-/// Points with normals, each joined to its nearest neighbours.
+/// Points with normals, each connected to its nearest neighbours.
 #[derive(Debug)]
 struct NeighbourGraph {
     /// Points relative to the centre of their box, in units of its diagonal.
     local: Vec<DVec3>,
     /// Number of neighbours of each point.
     per_point: usize,
-    /// Nearest neighbours of each point in turn, without the point itself.
+    /// The nearest neighbours of each point in turn, without the point itself.
     neighbours: Vec<u32>,
     /// Normals of the planes through the neighbours.
     normal: Vec<DVec3>,
@@ -163,18 +159,18 @@ struct NeighbourGraph {
 struct Plane {
     mean: DVec3,
     normal: DVec3,
-    /// Ratio of the variance across the plane and the smaller one along it.
+    /// Variance across the plane divided by the smaller variance along it.
     variation: f64,
 }
 
 impl Plane {
-    /// The plane through point `i` and `count` neighbours, which are left in `nearest`.
+    /// The plane through point `i` and `count` neighbours, which are returned in `nearest`.
     fn around(local: &[DVec3], tree: &Tree, i: usize, count: usize, nearest: &mut Vec<u32>) -> Self {
         let p = local[i];
         let mut keys = Vec::new();
         tree.nearest_many(p.as_vec3(), count + 1, |_| true, &mut keys);
         nearest.clear();
-        // If points coincide in single precision, the point itself may be missing among its nearest
+        // If points coincide in single precision, the point itself may not be among its nearest
         // ones.
         let others = keys.iter().map(|&key| tree.origin[unkey(key).1 as usize]).filter(|&j| j as usize != i);
         nearest.extend(others.take(count));
@@ -186,10 +182,10 @@ impl Plane {
     }
 }
 
-/// Number of neighbours with which planes are flattest, against their width: noise makes narrow
-/// ones thick, curvature wide ones (M. Pauly, R. Keiser & M. Gross, "Multi-scale Feature Extraction
-/// on Point-Sampled Surfaces", 2003, §3). Without noise it is [`NEIGHBOURS`]. Planes between two
-/// sheets are not taken for noisy ones.
+/// The number of neighbours for which planes are flattest relative to their width: noise thickens
+/// narrow ones, curvature wide ones (M. Pauly, R. Keiser & M. Gross, "Multi-scale Feature
+/// Extraction on Point-Sampled Surfaces", 2003, §3). Without noise it is [`NEIGHBOURS`]. A plane
+/// between two sheets does not count as noisy.
 async fn flattest(local: &[DVec3], tree: &Tree) -> usize {
     let (mut best, mut least, mut nearest) = (0, f64::INFINITY, Vec::new());
     let step = local.len().div_ceil(COMPARED).max(1);
@@ -237,11 +233,11 @@ impl NeighbourGraph {
             }
             pause().await;
         }
-        // Where there is no noise, the points themselves are nearer to the surface than the planes.
+        // Without noise the points themselves are nearer to the surface than the planes are.
         Self { local: if wide > per_point { flat } else { local }, per_point, neighbours, normal }
     }
 
-    /// Whether each point is far from all others, for the distances between those.
+    /// Whether each point is far from all others, compared with the distances between those.
     fn outliers(&self) -> Vec<bool> {
         let of_neighbours = |i: usize, value: &dyn Fn(usize) -> f64| {
             let near = &self.neighbours[i * self.per_point..(i + 1) * self.per_point];
@@ -255,8 +251,8 @@ impl NeighbourGraph {
         all.map(is_far).collect()
     }
 
-    /// Turns the normals round with which those of the neighbours disagree, until there are none,
-    /// and returns their number.
+    /// Reverses normals that disagree with their neighbours until none is left. Returns their
+    /// number.
     async fn turn_minority(&mut self) -> usize {
         let mut is_turned = vec![false; self.local.len()];
         for _ in 0..MOST_ROUNDS {
@@ -284,7 +280,7 @@ impl NeighbourGraph {
         is_turned.iter().filter(|&&is_turned| is_turned).count()
     }
 
-    /// Pairs of each point and each of its neighbours.
+    /// Pairs of a point and one of its neighbours.
     fn pairs(&self) -> impl Iterator<Item = (usize, usize)> {
         let per_point = self.per_point.max(1);
         self.neighbours.iter().enumerate().map(move |(k, &j)| (k / per_point, j as usize))
@@ -293,8 +289,7 @@ impl NeighbourGraph {
     /// Orients the normals and returns the number of connected components of the graph.
     ///
     /// The sign is propagated along the minimum spanning tree with weights 1 − |agreement| (Prim's
-    /// algorithm), so that it follows the edges on which it is most certain. Each component is then
-    /// turned outward.
+    /// algorithm), so it follows the most certain edges. Each component is then turned outward.
     fn orient(&mut self) -> usize {
         let mut joined = vec![Vec::new(); self.local.len()];
         for (i, j) in self.pairs() {
@@ -311,8 +306,8 @@ impl NeighbourGraph {
             }
             components += 1;
             component.clear();
-            // The bits of weights, which are not negative, have the order of the weights. Ties go
-            // to the smaller index.
+            // Bits of weights sort like the weights, which are not negative. Ties go to the smaller
+            // index.
             queue.push(Reverse((0_u64, start, start)));
             while let Some(Reverse((_, i, from))) = queue.pop() {
                 if reached[i] {
@@ -339,19 +334,19 @@ impl NeighbourGraph {
         components
     }
 
-    /// Cosine of the angle between the normal of point `j` and that of point `i`, reflected in the
-    /// plane that bisects the two points.
+    /// Cosine of the angle between the normal of point `j` and that of point `i` after reflection
+    /// in the plane that bisects the two points.
     ///
-    /// On a circle the reflection gives the normal of `j` exactly, and on the far side of a thin
-    /// part it gives the opposite one, which is right there.
+    /// On a circle the reflection gives exactly the normal of `j`. On the other side of a thin part
+    /// it gives the opposite of the normal at `i`, as it should.
     fn agreement(&self, i: usize, j: usize) -> f64 {
         let along = (self.local[j] - self.local[i]).normalize_or_zero();
         let carried = self.normal[i] - 2.0 * self.normal[i].dot(along) * along;
         carried.dot(self.normal[j])
     }
 
-    /// Whether the normals of the outermost points of a component, in the six axis directions,
-    /// point inward on the whole.
+    /// Whether the normals at the outermost points of a component, in the six axis directions,
+    /// mostly point inward.
     fn points_inward(&self, component: &[usize]) -> bool {
         let mut sum = 0.0;
         for axis in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z] {

@@ -1,28 +1,28 @@
 //! Solver of a large system: blocked LU decomposition with partial pivoting, in slices.
 //!
 //! nalgebra factorises the panels and solves the triangular systems. The update of the columns to
-//! the right of a panel, which takes nearly all of the time, is written out here. Neither uses a
-//! fused multiply-add, so the solution has the same bits natively and in WebAssembly.
+//! the right of a panel takes nearly all of the time and is implemented here. Neither uses fused
+//! multiply-add, so the solution has the same bits natively and in WebAssembly.
 
 use crate::slices::{self, pause, ranges};
 use core::ops::Range;
 use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut, DVector};
 
-/// Columns per panel: enough to read a panel seldom, few enough to keep its rows in the cache. More
-/// make longer slices.
+/// Columns per panel: enough to read a panel seldom, few enough to keep its rows in the cache.
+/// Larger: longer slices.
 const PANEL: usize = 32;
-/// Rows updated together: 64 kB of a panel, which stay in a second-level cache for all the columns
-/// they update.
+/// Rows updated together: 64 kB of a panel, which stay in a second-level cache while all columns
+/// are updated.
 const ROWS: usize = 256;
-/// Maximum number of steps of Hager's estimator, which nearly always ends after two or three.
-/// LAPACK's DLACN2 has the same limit.
+/// Most steps of Hager's estimator, which nearly always ends after two or three. LAPACK's DLACN2
+/// has the same limit.
 const ESTIMATOR_STEPS: usize = 5;
 
 /// LU decomposition of a matrix.
 #[derive(Clone, Debug)]
 pub(super) struct Decomposition {
-    /// The factors L and U, once they are complete; before that they replace the eliminated part of
-    /// the matrix.
+    /// The factors L and U; until they are complete, they replace the eliminated part of the
+    /// matrix.
     matrix: DMatrix<f64>,
     /// Rows exchanged in each step.
     exchanges: Vec<(usize, usize)>,
@@ -30,18 +30,18 @@ pub(super) struct Decomposition {
     norm: f64,
 }
 
-/// Error of a matrix that is singular: a pivot is zero or not finite.
+/// A matrix is singular: a pivot is zero or not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct SingularMatrix;
 
 impl Decomposition {
-    /// Decomposes a matrix. A slice factorises a panel or updates [`PANEL`] columns by it; either
-    /// takes at most 32² multiplications per row. `tell` gets the fraction of the work done.
+    /// Decomposes a matrix. A slice factorises a panel, or updates [`PANEL`] columns by it, with at
+    /// most 32² multiplications per row. `tell` gets the fraction of the work done.
     pub(super) async fn new(matrix: DMatrix<f64>, tell: impl Fn(f64)) -> Result<Self, SingularMatrix> {
         let norm = matrix.column_iter().map(|column| column.lp_norm(1)).fold(0.0, f64::max);
         let n = matrix.nrows();
         let mut this = Self { matrix, exchanges: Vec::new(), norm };
-        // The work left is about the cube of the columns left.
+        // The remaining work is about the cube of the remaining columns.
         let left = |column: usize| (n.saturating_sub(column) as f64 / n as f64).powi(3);
         for range in ranges(n, PANEL) {
             tell(1.0 - left(range.start));
@@ -55,7 +55,7 @@ impl Decomposition {
         Ok(this)
     }
 
-    /// Factorises the panel and exchanges whole rows to bring the pivots to the diagonal.
+    /// Factorises the panel; exchanges whole rows to bring the pivots to the diagonal.
     fn factorise(&mut self, panel: Range<usize>) -> Result<(), SingularMatrix> {
         let end = panel.end;
         for k in panel {
@@ -91,9 +91,9 @@ impl Decomposition {
     /// of three (Hager 1984; Higham, "Accuracy and Stability of Numerical Algorithms", algorithm
     /// 15.1).
     ///
-    /// The method solves systems with the transposed matrix too. Those of a fit are symmetric, or
-    /// nearly so where cells have several points, and the matrix itself stands in: the estimate is
-    /// a lower one all the same.
+    /// The method also solves systems with the transposed matrix. The matrix of a fit is symmetric,
+    /// or nearly so where cells have several points, and is used instead: the estimate remains a
+    /// lower bound.
     pub(super) fn condition(&self) -> Result<f64, SingularMatrix> {
         let n = self.matrix.nrows();
         let mut x = DVector::from_element(n, 1.0 / n as f64);
@@ -114,8 +114,8 @@ impl Decomposition {
     }
 }
 
-/// Updates the columns `open`, of `n` rows each, by the panel of columns from `first` on: to L⁻¹ A
-/// in the rows of the panel, to A − L U below.
+/// Updates the columns `open`, of `n` rows each, by the panel that begins at column `first`: to L⁻¹
+/// A in the rows of the panel, and to A − L U below.
 fn update(panel: &[f64], first: usize, open: &mut [f64], n: usize) {
     let below = first + PANEL;
     let mut columns = DMatrixViewMut::from_slice(open, n, open.len() / n);

@@ -1,23 +1,23 @@
-//! Reduction of millions of points to a few hundred that are far from each other: merging, thinning
-//! on a grid, and farthest-point sampling.
+//! Reduces millions of points to a few hundred that are far apart: merging, thinning on a grid, and
+//! farthest-point sampling.
 
 use super::{Cloud, CloudError};
 use crate::math::{Bounds, IndexTable, Sym3, hash};
 use crate::slices::{MEDIUM, pause, ranges};
 use glam::DVec3;
 
-/// Maximum number of points that thinning keeps. Normals are estimated for these points, and the
-/// centres are chosen among them. The spacing of twenty thousand is about a hundredth of the
-/// model's size, a tenth of that of 200 centres.
+/// Most points that thinning keeps. Normals are estimated for these points, and the centres are
+/// chosen among them. The spacing of twenty thousand points is about a hundredth of the model's
+/// size, a tenth of the spacing of 200 centres.
 pub const KEPT: usize = 20_000;
 
-/// Minimum distance of two centres, as a share of the diagonal of the points' box. The system for a
-/// few hundred centres loses a digit each time that the distance between two of them is halved.
+/// Least distance of two centres, as a share of the diagonal of the points' box. The system for a
+/// few hundred centres loses a digit each time the least distance is halved.
 const MIN_DISTANCE_SHARE: f64 = 1e-4;
 
-/// Largest standard deviation across a line or plane, as a share of that along it, at which points
-/// count as lying in it. It is above the rounding of coordinates in single precision, 6·10⁻⁸ of the
-/// largest.
+/// Points count as collinear or coplanar if their standard deviation across the line or plane is at
+/// most this share of that along it. It is above the rounding of coordinates in single precision,
+/// 6·10⁻⁸ of the largest.
 const FLAT_SHARE: f64 = 1e-5;
 
 /// Index in `points` of the point equal to `p`, or `fresh` if there is none.
@@ -25,7 +25,7 @@ const FLAT_SHARE: f64 = 1e-5;
 /// In the latter case `p` must be stored at `fresh` before the next call. `points` must be the same
 /// column in every call. Returns `None` if there is not enough memory.
 fn index_of(table: &mut IndexTable, p: DVec3, fresh: usize, points: &[DVec3]) -> Option<u32> {
-    // Adding 0 maps −0 to +0, which it is equal to.
+    // Adding 0 maps −0 to +0, so that both have the same hash.
     table.find_or_add(hash(p.to_array().map(|c| (c + 0.0).to_bits())), fresh, |k| points[k] == p)
 }
 
@@ -42,8 +42,7 @@ pub(super) fn push<T>(column: &mut Vec<T>, item: T) -> Option<()> {
     Some(())
 }
 
-/// Index in `points` of the point equal to `p`, which is appended if there is none; see
-/// [`index_of`].
+/// Index in `points` of the point equal to `p`, which is appended if missing; see [`index_of`].
 pub(super) fn find_or_add(table: &mut IndexTable, p: DVec3, points: &mut Vec<DVec3>) -> Option<u32> {
     let index = index_of(table, p, points.len(), points)?;
     if index as usize == points.len() {
@@ -52,9 +51,9 @@ pub(super) fn find_or_add(table: &mut IndexTable, p: DVec3, points: &mut Vec<DVe
     Some(index)
 }
 
-/// Merges coincident points and adds their normals. A file has a point several times where faces
-/// with different attributes meet. Points whose normals cancel are left out. `tell` gets the
-/// fraction of the points that are done.
+/// Merges coincident points and adds their normals; a file repeats a point where faces with
+/// different attributes meet. Points whose normals cancel are removed. `tell` gets the completed
+/// fraction of the points.
 ///
 /// # Errors
 ///
@@ -92,27 +91,25 @@ pub async fn merge(mut cloud: Cloud, tell: impl Fn(f64)) -> Result<Cloud, CloudE
     Ok(cloud)
 }
 
-/// Ratio of the cell sizes of a grid and the previous one, if that was too coarse: a surface then
-/// meets four times as many cells.
+/// Factor for the cell size if a grid was too coarse: a surface then meets four times as many
+/// cells.
 const FINER: f64 = 0.5;
-/// Ratio of the cell sizes of a grid and the previous one, if that was too fine: a surface then
-/// meets 1.44 times fewer cells.
+/// Factor for the cell size if a grid was too fine: a surface then meets 1.44 times fewer cells.
 const COARSER: f64 = 1.2;
-/// Share of [`KEPT`] below which a finer grid is tried: a quarter and some room, since the finer
-/// one has four times as many cells.
+/// A finer grid is tried if fewer than this share of [`KEPT`] points are kept: a quarter plus a
+/// margin, since the finer grid has four times as many cells.
 const ENOUGH: f64 = 0.3;
-/// Maximum number of grids. After so many halvings, a cell is smaller than the resolution of single
-/// precision.
+/// Most grids. After so many halvings, a cell is smaller than the resolution of single precision.
 const MAX_PASSES: u32 = 24;
-/// Estimated number of cells that a surface meets, times the ratio of a cell's face to the squared
-/// diagonal of the box. It serves for the first guess of the cell size only.
+/// Estimated number of cells that a surface meets, times a cell's face area divided by the squared
+/// diagonal of the box. It is used only for the first guess of the cell size.
 ///
 /// It is the product of 1.5, the mean number of cells that a plane meets per face area, and 0.9, a
 /// typical ratio of the area of a surface to the squared diagonal of its box (1.05 for a sphere).
 const CELLS_PER_SQUARE: f64 = 1.35;
 
 /// Keeps at most [`KEPT`] points, in the order of the file: the first one in each cell of a grid.
-/// The grid is the finest one, up to a factor, that keeps no more.
+/// The grid is nearly the finest one that keeps no more than that.
 ///
 /// # Errors
 ///
@@ -143,8 +140,8 @@ pub async fn thin(cloud: Cloud) -> Result<Cloud, CloudError> {
     Ok(cloud.only(&best))
 }
 
-/// Indices of the first point in each cell of a grid of cubes with a corner at `lo`. It ends at
-/// more than [`KEPT`] of them.
+/// Indices of the first point in each cell of a grid of cubes with a corner at `lo`. Stops once it
+/// has more than [`KEPT`].
 async fn first_in_cells(points: &[DVec3], lo: DVec3, side: f64) -> Result<Vec<u32>, CloudError> {
     let (mut table, mut cells, mut first) = (IndexTable::default(), Vec::new(), Vec::new());
     for range in ranges(points.len(), MEDIUM) {
@@ -208,14 +205,14 @@ pub(super) fn covariance(points: impl Iterator<Item = DVec3>, mean: DVec3) -> Sy
 /// all those chosen before (T. F. Gonzalez, "Clustering to Minimize the Maximum Intercluster
 /// Distance", 1985).
 ///
-/// The largest distance of a point from the chosen ones is at most twice that of any other choice
-/// of as many. The first choice is the point farthest from the mean. Ties go to the smaller index.
-/// There are fewer than wanted where no other point is at a sufficient distance. `tell` gets the
-/// fraction of the points that are chosen.
+/// The first choice is the point farthest from the mean. The largest distance of a point from the
+/// chosen ones is at most twice that of the best choice of as many. Ties go to the smaller index.
+/// The result is shorter than wanted if no other point is far enough away. `tell` gets the fraction
+/// of the points that are chosen.
 pub async fn spread(points: &[DVec3], wanted: usize, tell: impl Fn(f64)) -> Vec<u32> {
     let bounds = Bounds::around(points.iter().copied());
     let lo = bounds.lo();
-    // The sum is relative to a corner, so that it keeps its digits far from the origin.
+    // The sum is relative to a corner, so that no digits are lost far from the origin.
     let mean = lo + points.iter().map(|p| *p - lo).sum::<DVec3>() / points.len() as f64;
     let min_distance_sq = MIN_DISTANCE_SHARE * MIN_DISTANCE_SHARE * bounds.size().length_squared();
     // Squared distance of each point from the nearest chosen one, or at first from the mean.

@@ -15,7 +15,7 @@ pub enum InputFormat {
     StlText,
     /// Stereolithography, binary.
     StlBinary,
-    /// Object file format of Geomview, as text.
+    /// Object file format of Geomview, text.
     Off,
     /// Point cloud data of the Point Cloud Library, as text, binary or compressed.
     Pcd,
@@ -40,7 +40,7 @@ impl fmt::Display for InputFormat {
 }
 
 impl InputFormat {
-    /// Extension of `name`, if it is that of another format.
+    /// The extension of `name`, if it belongs to another format.
     pub(super) fn contradicting_extension(self, name: &str) -> Option<&'static str> {
         let extension = extension(name);
         let known = ["ply", "obj", "stl", "off", "pcd", "glb", "xyz"]
@@ -55,8 +55,8 @@ fn extension(name: &str) -> String {
     name.rsplit_once('.').map(|(_, extension)| extension.to_ascii_lowercase()).unwrap_or_default()
 }
 
-/// Number of bytes that decide between text and binary data. Numbers in binary have a control
-/// character within a few bytes, so a page is far more than enough.
+/// Number of bytes that are checked to tell text from binary data. Binary numbers soon contain a
+/// control character, so this is more than enough.
 const LOOKED_AT: usize = 4096;
 
 /// Bytes of the header of a binary STL file, including the number of triangles.
@@ -67,7 +67,7 @@ pub(super) const STL_TRIANGLE: usize = 50;
 const CONVERT: &str = "open it in a mesh program such as MeshLab or Blender and export it as PLY";
 const CHOOSE: &str = "choose a file of points or of a mesh";
 
-/// First bytes of other formats, with their name and an advice for the user.
+/// First bytes of other formats, with the format's name and advice for the user.
 const KNOWN: [(&[u8], &str, &str); 16] = [
     (b"LASF", "a LAS point cloud", CONVERT),
     (b"ASTM-E57", "an E57 point cloud", CONVERT),
@@ -95,11 +95,11 @@ const KNOWN: [(&[u8], &str, &str); 16] = [
 const OBJ_WORDS: [&[u8]; 14] =
     [b"v", b"vn", b"vt", b"vp", b"f", b"o", b"g", b"s", b"l", b"p", b"mtllib", b"usemtl", b"usemap", b"mg"];
 
-/// Format of a file that is not empty. The file name counts only where the content is ambiguous.
+/// Format of a non-empty file. The file name counts only if the content is ambiguous.
 ///
 /// # Errors
 ///
-/// [`ReadError::Unknown`] with the name of the format, as far as it is known, and an advice.
+/// [`ReadError::Unknown`] with the name of the format, if it is known, and advice.
 pub(super) fn sniff(name: &str, bytes: &[u8]) -> Result<InputFormat, ReadError> {
     if bytes.strip_prefix(b"ply").is_some_and(|rest| rest.first().is_none_or(u8::is_ascii_whitespace)) {
         return Ok(InputFormat::Ply);
@@ -133,7 +133,7 @@ pub(super) fn sniff(name: &str, bytes: &[u8]) -> Result<InputFormat, ReadError> 
     of_text(name, bytes)
 }
 
-/// Size of the file that the header of a binary STL file implies.
+/// Size of the file according to the header of a binary STL file.
 pub(super) fn stl_size(bytes: &[u8]) -> Option<u64> {
     let count = bytes.get(STL_HEADER - 4..STL_HEADER)?;
     let count = u32::from_le_bytes(count.try_into().ok()?);
@@ -166,7 +166,7 @@ fn of_text(name: &str, bytes: &[u8]) -> Result<InputFormat, ReadError> {
     if line.starts_with(b"{") {
         return unknown("JSON (glTF is such)", "export glTF as one binary file, .glb");
     }
-    // If the first line may be faulty, the error of its reader helps more than "no known kind".
+    // If only the first line is wrong, its reader's error helps more than "unknown format".
     match extension(name).as_str() {
         "obj" => Ok(InputFormat::Obj),
         "stl" => Ok(InputFormat::StlText),

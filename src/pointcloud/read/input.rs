@@ -8,17 +8,17 @@ use glam::DVec3;
 /// overflow.
 const LARGEST: f64 = 1e30;
 
-/// Maximum number of characters of a word that a message quotes: the longest number in double
-/// precision has 24, as -2.2250738585072014e-308.
+/// Most characters of a word that a message quotes. The longest number in double precision has 24,
+/// such as -2.2250738585072014e-308.
 const SHOWN: usize = 24;
 
 /// Names of the components of a point and its normal, in headers and messages.
 pub(super) const COMPONENTS: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 
-/// Index in [`COMPONENTS`] of the component that a column of this name holds, by the names that
-/// programs give it.
+/// The component that a column with this name holds, as index in [`COMPONENTS`]. Knows the names
+/// that programs use.
 pub(super) fn component(name: &[u8]) -> Option<usize> {
-    /// The names in lower case, of x to nz each. ParaView's are the last ones.
+    /// The names in lower case, from x to nz. ParaView's are the last ones.
     const NAMES: [[&[u8]; 6]; 4] = [
         [b"x", b"y", b"z", b"nx", b"ny", b"nz"],
         [b"px", b"py", b"pz", b"normal_x", b"normal_y", b"normal_z"],
@@ -28,11 +28,11 @@ pub(super) fn component(name: &[u8]) -> Option<usize> {
     NAMES.iter().find_map(|names| names.iter().position(|known| known.eq_ignore_ascii_case(name)))
 }
 
-/// Place in a file that an error names.
+/// The place in a file that an error names.
 enum FilePlace {
     /// Number of the line, from 1.
     Line(u64),
-    /// A row of a binary file: its kind, its number among its kind, from 1, and its offset.
+    /// A row of a binary file: its kind, its number within its kind, from 1, and its offset.
     Row { element: String, row: u64, byte: u64 },
 }
 
@@ -41,7 +41,7 @@ pub(super) struct Input<'a> {
     bytes: &'a [u8],
     at: usize,
     place: FilePlace,
-    /// Number of rows that have ended.
+    /// Number of completed rows.
     rows: usize,
     tell: &'a dyn Fn(f64),
 }
@@ -54,7 +54,7 @@ impl<'a> Input<'a> {
         Self { bytes, at, place: FilePlace::Line(0), rows: 0, tell }
     }
 
-    /// Ends a row, which is a line or a record, and with every [`MEDIUM`] of them a slice of work.
+    /// Ends a row, which is a line or a record. Every [`MEDIUM`] rows end a slice of work.
     pub(super) async fn end_row(&mut self) {
         self.rows += 1;
         if self.rows.is_multiple_of(MEDIUM) {
@@ -73,8 +73,8 @@ impl<'a> Input<'a> {
         self.bytes.len() - self.at
     }
 
-    /// Consumes a line, which ends with a line feed, a carriage return or both, and returns it
-    /// without the end.
+    /// Consumes a line, which ends with a line feed, a carriage return or both. Returns it without
+    /// the end.
     pub(super) fn line(&mut self) -> Option<&'a [u8]> {
         let rest = &self.bytes[self.at..];
         if rest.is_empty() {
@@ -93,25 +93,25 @@ impl<'a> Input<'a> {
         Some(&rest[..length])
     }
 
-    /// Consumes lines up to and including one that is not blank, and returns it.
+    /// Consumes lines up to the first non-blank one, and returns that line.
     pub(super) fn line_with_text(&mut self) -> Option<&'a [u8]> {
         core::iter::from_fn(|| self.line()).find(|line| !line.trim_ascii().is_empty())
     }
 
-    /// Number of lines that are left and not blank.
+    /// Number of remaining non-blank lines.
     pub(super) fn lines_with_text(&self) -> u64 {
         let lines = self.bytes[self.at..].split(|byte| matches!(byte, b'\n' | b'\r'));
         lines.filter(|line| !line.trim_ascii().is_empty()).count() as u64
     }
 
-    /// Consumes `count` bytes. If fewer remain, there is none, and nothing is consumed.
+    /// Consumes `count` bytes. Returns none and consumes nothing if fewer remain.
     pub(super) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
         let bytes = self.bytes[self.at..].get(..count)?;
         self.at += count;
         Some(bytes)
     }
 
-    /// Says that the rows of a binary file that follow are of this kind.
+    /// Sets the kind of the rows that follow in a binary file.
     pub(super) fn begin_records(&mut self, element: &str) {
         self.place = FilePlace::Row { element: element.to_owned(), row: 0, byte: 0 };
     }
@@ -123,7 +123,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Error in the line consumed last or the row begun last.
+    /// An error in the line consumed last or the row begun last.
     #[cold]
     pub(super) fn error(&self, message: impl Into<String>) -> ReadError {
         let message = message.into();
@@ -135,7 +135,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// `value`, if it can be a coordinate; NaN if it is not finite. The error message calls the
+    /// `value`, if it can be a coordinate; NaN if it is not finite. Error messages call the
     /// coordinate `name`.
     pub(super) fn coordinate(&self, value: f64, name: &str) -> Result<f64, ReadError> {
         if value.is_finite() && value.abs() > LARGEST {
@@ -144,8 +144,8 @@ impl<'a> Input<'a> {
         Ok(if value.is_finite() { value } else { f64::NAN })
     }
 
-    /// Coordinate that a word spells; NaN if the word says that there is none. The error message
-    /// calls the coordinate `name`.
+    /// The coordinate that a word spells; NaN if the word stands for a missing value. Error
+    /// messages call the coordinate `name`.
     pub(super) fn coordinate_of(&self, word: &[u8], name: &str) -> Result<f64, ReadError> {
         if let Some(value) = coordinate_number(word) {
             return self.coordinate(value, name);
@@ -159,8 +159,7 @@ impl<'a> Input<'a> {
         }))
     }
 
-    /// Vector whose components are the next three of `words`. Error messages call them by these
-    /// names.
+    /// The vector whose components are the next three of `words`. Error messages call them `names`.
     pub(super) fn vector<'w>(
         &self,
         words: &mut impl Iterator<Item = &'w [u8]>,
@@ -180,7 +179,7 @@ pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
 }
 
-/// Word as a message quotes it: shortened, and without control characters.
+/// A word for a quote in a message: shortened, and without control characters.
 pub(super) fn quoted(word: &[u8]) -> String {
     let text = String::from_utf8_lossy(&word[..word.len().min(4 * SHOWN)]);
     let mut text: String = text.trim().chars().map(|c| if c.is_control() { '�' } else { c }).collect();
@@ -191,14 +190,14 @@ pub(super) fn quoted(word: &[u8]) -> String {
     text
 }
 
-/// Number that a word spells, or NaN if it is one of the words that stand where there is none.
+/// The number that a word spells; NaN if the word stands for a missing value.
 pub(super) fn coordinate_number(word: &[u8]) -> Option<f64> {
     const NONE: [&[u8]; 9] =
         [b"", b"na", b"n/a", b"null", b"none", b"nan(ind)", b"-nan(ind)", b"1.#qnan", b"-1.#ind"];
     number(word).or_else(|| NONE.iter().any(|none| none.eq_ignore_ascii_case(word)).then_some(f64::NAN))
 }
 
-/// Number that a word spells, including `nan` and `inf`.
+/// The number that a word spells, including `nan` and `inf`.
 pub(super) fn number(word: &[u8]) -> Option<f64> {
     core::str::from_utf8(word).ok()?.parse().ok()
 }

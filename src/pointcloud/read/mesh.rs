@@ -9,16 +9,16 @@ use crate::slices::{MEDIUM, pause};
 use crate::topology::Topology;
 use glam::DVec3;
 
-/// Points on the faces of a mesh of large ones: five for each centre. Fewer: the areas of coarse
-/// balls are farther off; more are no better.
+/// Number of points that a mesh of large faces gets on them: five for each centre. Fewer: the area
+/// of a coarsely meshed ball is less accurate; more do not help.
 const ON_FACES: f64 = 5.0 * DEFAULT_CENTRES as f64;
 
-/// Points and faces as they are in a file.
+/// Points and faces, as in the file.
 #[derive(Clone, Debug, Default)]
 pub struct FileMesh {
     /// Positions, all finite.
     pub position: Vec<DVec3>,
-    /// Normals as they are in the file, of any length: one for each position, or none at all.
+    /// Normals as in the file, of any length: one for each position, or none at all.
     pub normal: Vec<DVec3>,
     /// Indices of the corners of all faces, face by face.
     pub corners: Vec<u32>,
@@ -29,8 +29,7 @@ pub struct FileMesh {
 }
 
 impl FileMesh {
-    /// Appends a point with these components, the last three of which are its normal if it
-    /// `has_normal`.
+    /// Appends a point with these components. If it `has_normal`, the last three are its normal.
     pub(super) fn add_point(
         &mut self,
         [x, y, z, nx, ny, nz]: [f64; 6],
@@ -43,8 +42,8 @@ impl FileMesh {
         Ok(())
     }
 
-    /// Leaves out the points that have a coordinate which is not finite, and the faces at them, and
-    /// warns of it. A normal that is not finite is none.
+    /// Removes the points with a coordinate that is not finite, and their faces, and adds a
+    /// warning. A normal that is not finite counts as missing.
     pub(super) fn leave_out_undefined(&mut self) -> Result<(), ReadError> {
         self.normal.iter_mut().filter(|normal| !normal.is_finite()).for_each(|normal| *normal = DVec3::ZERO);
         let (total, before) = (self.position.len(), self.faces.len());
@@ -94,7 +93,7 @@ impl FileMesh {
         Ok(())
     }
 
-    /// Appends a face. One with fewer than three corners has no area and is dropped.
+    /// Appends a face. A face with fewer than three corners has no area and is skipped.
     pub(super) fn add_polygon(&mut self, corners: &[u32]) -> Result<(), ReadError> {
         if corners.len() < 3 {
             return Ok(());
@@ -109,9 +108,9 @@ impl FileMesh {
     /// The points with unit normals, and the warnings for the user. `tell` gets the fraction of the
     /// work done.
     ///
-    /// The normal of a point is the one in the file, or else the area-weighted mean of those of its
-    /// faces. If only some points have neither, these are left out; if none has any, all points are
-    /// kept and the cloud has no normals.
+    /// The normal of a point is the one in the file, else the area-weighted mean of its faces'
+    /// normals. Points without either are removed; but if no point has a normal, all are kept and
+    /// the cloud has no normals.
     ///
     /// # Errors
     ///
@@ -148,9 +147,9 @@ impl FileMesh {
         Ok((cloud, self.warnings))
     }
 
-    /// Points inside of faces, evenly by their share of the `total` area, with the normals of the
-    /// faces. A surface that the corners alone decide need not follow a large face. A face with
-    /// less than a thousandth of the area has none.
+    /// Points inside faces, in proportion to each face's share of the `total` area, with the
+    /// normals of the faces. A surface fitted to the corners alone may leave a large face. Faces
+    /// with less than a thousandth of the area get no points.
     pub async fn on_faces(&self, total: f64) -> Cloud {
         /// Steps of the two coordinates of evenly spread points: 1/p and 1/p² with p³ = p + 1 (M.
         /// Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
@@ -163,7 +162,7 @@ impl FileMesh {
             let area = self.area_vector(triangle);
             let [a, b, c] = triangle.map(|corner| self.position[corner]);
             let Some(mut normal) = area.try_normalize() else { continue };
-            // Normals in the file say which side is outside.
+            // Normals in the file decide which side is outside.
             let given: DVec3 = triangle.iter().filter_map(|&corner| self.normal.get(corner)).sum();
             if given.dot(normal) < 0.0 {
                 normal = -normal;
@@ -180,7 +179,7 @@ impl FileMesh {
         inside
     }
 
-    /// Area and connectivity of the faces; none if there is none.
+    /// Area and connectivity of the faces; none without faces.
     ///
     /// # Errors
     ///
@@ -195,7 +194,7 @@ impl FileMesh {
             area += 0.5 * self.area_vector(triangle).length();
             let mut corners = [0; 3];
             for (welded_corner, corner) in corners.iter_mut().zip(triangle) {
-                // A corner that comes again may differ in its last digits.
+                // Copies of a corner may differ in their last digits.
                 let p = self.position[corner].as_vec3().as_dvec3();
                 *welded_corner = find_or_add(&mut table, p, &mut welded).ok_or(ReadError::Memory)?;
             }
@@ -224,23 +223,22 @@ impl FileMesh {
             .map(move |&to| &self.corners[core::mem::replace(&mut from, to as usize)..to as usize])
     }
 
-    /// The triangles into which the faces are divided, by the indices of their corners.
+    /// The triangles into which the faces are divided, as indices of their corners.
     fn triangles(&self) -> impl Iterator<Item = [usize; 3]> {
         self.polygons().flat_map(|corners| {
             (2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]].map(|corner| corner as usize))
         })
     }
 
-    /// Twice the area of a triangle along its normal.
+    /// Twice the area of a triangle times its normal.
     fn area_vector(&self, triangle: [usize; 3]) -> DVec3 {
         let [a, b, c] = triangle.map(|corner| self.position[corner]);
         (b - a).cross(c - a)
     }
 
-    /// Twice the sum of the area vectors of the faces around each point; nothing where there are no
-    /// faces.
+    /// Twice the sum of the area vectors of the faces around each point; empty without faces.
     ///
-    /// A polygon need not be planar: each of its corners gets the area vector of the whole.
+    /// A polygon need not be planar: each corner gets the area vector of the whole polygon.
     async fn areas(&self, tell: impl Fn(f64)) -> Result<Vec<DVec3>, ReadError> {
         let mut area = Vec::new();
         if self.faces.is_empty() {

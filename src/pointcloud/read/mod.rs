@@ -1,9 +1,9 @@
-//! Reader of files of points and meshes: PLY, OBJ, STL, OFF, GLB, PCD, and text with a point a
+//! Reader of files of points and meshes: PLY, OBJ, STL, OFF, GLB, PCD, and text with one point per
 //! line, detected by content.
 //!
-//! A file is read in slices of work, and the caller can show progress. Its content is not trusted:
-//! the counts in a header are compared with the size of the file before memory is allocated, and an
-//! error states its location.
+//! A file is read in slices of work, so the caller can show progress. Its content is not trusted:
+//! the counts in a header are compared with the size of the file before memory is allocated, and
+//! errors name their place in the file.
 
 mod format;
 mod glb;
@@ -40,12 +40,12 @@ pub enum ReadError {
         /// Size of the file.
         bytes: u64,
     },
-    /// The file has none of the known formats.
+    /// The file is in no known format.
     #[error(
         "this is {found}, and what is read is PLY, OBJ, STL, OFF, GLB, PCD and text with a point a line (XYZ, PTS, CSV); {advice}"
     )]
     Unknown {
-        /// Name of the format that the content seems to have.
+        /// Name of the format that the content resembles.
         found: &'static str,
         /// Advice for the user.
         advice: &'static str,
@@ -80,7 +80,7 @@ pub enum ReadError {
         element: String,
         /// Number of the rows.
         count: u64,
-        /// Minimum number of bytes of all rows up to these.
+        /// Minimum number of bytes of all rows up to and including these.
         needed: u64,
         /// Number of bytes after the header.
         left: u64,
@@ -99,12 +99,12 @@ pub enum ReadError {
     /// The file has no points.
     #[error("there are no points in this {format} file; choose one that holds points")]
     NoPoints {
-        /// Format that the file was read as.
+        /// Format in which the file was read.
         format: InputFormat,
     },
 }
 
-/// Checks the size of a file, before its content is loaded.
+/// Checks the size of a file before it is loaded.
 ///
 /// # Errors
 ///
@@ -130,8 +130,8 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// Checks the size and detects the format. Only the extension of `name` is used, where the
-    /// content is ambiguous.
+    /// Checks the size and detects the format. The extension of `name` is used only if the content
+    /// is ambiguous.
     ///
     /// # Errors
     ///
@@ -152,11 +152,11 @@ impl Reader {
         Ok(Self { format, bytes, mesh })
     }
 
-    /// [`Reader::new`] for a mesh that is kept whole, of any size.
+    /// [`Reader::new`] for a mesh of any size that is kept whole.
     ///
     /// # Errors
     ///
-    /// Those of [`Reader::new`].
+    /// As for [`Reader::new`].
     #[cfg(feature = "images")]
     pub(crate) fn of_mesh(name: &str, bytes: Vec<u8>) -> Result<Self, ReadError> {
         if bytes.is_empty() {
@@ -171,13 +171,13 @@ impl Reader {
         self.format
     }
 
-    /// Reads the header and all rows, which are lines or records: the points and faces. Points with
-    /// a coordinate that is not finite are left out, with a warning that counts them. `tell` gets
-    /// the fraction of the file that is read.
+    /// Reads the header and all rows, that is points and faces. Points with a coordinate that is
+    /// not finite are left out, with a warning that counts them. `tell` gets the fraction of the
+    /// file that has been read.
     ///
     /// # Errors
     ///
-    /// An error with the number of the row that cannot be read, one of the header, or
+    /// An error with the number of the row that cannot be read, an error in the header, or
     /// [`ReadError::NoPoints`].
     pub async fn read(self, tell: impl Fn(f64)) -> Result<FileMesh, ReadError> {
         let Self { format, bytes, mut mesh } = self;

@@ -9,12 +9,12 @@ use std::borrow::Cow;
 
 /// Reads the statements of the file.
 pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(), ReadError> {
-    // The normals of the file, which faces name, and the corners of a face.
+    // The normals of the file, to which faces refer, and the corners of a face.
     let (mut normals, mut corners) = (Vec::new(), Vec::new());
     let mut has_faces = false;
     while let Some(line) = input.line() {
         let mut line = Cow::Borrowed(line);
-        // A backslash continues the statement on the next line, but no comment.
+        // A backslash continues a statement on the next line, but not a comment.
         while line.ends_with(b"\\") && !line.contains(&b'#') {
             let line = line.to_mut();
             line.pop();
@@ -50,14 +50,14 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
     if !mesh.normal.is_empty() {
         mesh.pad_normals()?;
     } else if !has_faces && normals.len() == mesh.position.len() {
-        // In a file without faces the normals belong to the points in order.
+        // Without faces the normals belong to the points in order.
         mesh.normal = normals;
     }
     Ok(())
 }
 
-/// Index from 0 of the `word`, which counts from 1, or backwards from −1, among `count` items
-/// called `what`.
+/// The index from 0 that `word` stands for. It counts from 1, or backwards from −1, among `count`
+/// items called `what`.
 fn index(word: &[u8], count: usize, what: &str, input: &Input) -> Result<u32, ReadError> {
     let written = core::str::from_utf8(word).ok().and_then(|word| word.parse::<i64>().ok());
     let Some(written) = written else {

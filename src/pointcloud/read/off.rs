@@ -1,13 +1,13 @@
-//! Reader of OFF files (Geomview, "OFF Files"): text with a point or a face a line.
+//! Reader of OFF files (Geomview, "OFF Files"): text with one point or one face per line.
 
 use super::ReadError;
 use super::input::{COMPONENTS, Input, quoted, words};
 use super::mesh::FileMesh;
 use glam::DVec3;
 
-/// The letters before `OFF`, if a word begins such a file: `ST`, `C` and `N` say that points have
-/// texture coordinates, colours and normals; `4` and `n` that they are not points in space. The
-/// first number may follow without a space.
+/// The letters before `OFF` in the first word of such a file. `ST`, `C` and `N` mean that points
+/// have texture coordinates, colours and normals; `4` and `n` that points are not
+/// three-dimensional. The first number may follow without a space.
 pub(super) fn prefix(word: &[u8]) -> Option<&[u8]> {
     let at = word.windows(3).position(|letters| letters == b"OFF")?;
     let (prefix, rest) = word.split_at(at);
@@ -15,7 +15,7 @@ pub(super) fn prefix(word: &[u8]) -> Option<&[u8]> {
     (is_known && rest[3..].iter().all(u8::is_ascii_digit)).then_some(prefix)
 }
 
-/// The next line that holds more than a comment, without its comment.
+/// The next line with more than a comment, without the comment.
 fn line<'a>(input: &mut Input<'a>) -> Option<&'a [u8]> {
     core::iter::from_fn(|| input.line())
         .map(|line| line.split(|&byte| byte == b'#').next().unwrap_or_default().trim_ascii())
@@ -42,8 +42,8 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
         );
     }
     let has_normals = prefix.contains(&b'N');
-    // What stands nearest to `OFF` comes first in a line: normals in CNOFF, colours of three or
-    // four numbers in NCOFF.
+    // The letter nearest to `OFF` is first in a line: normals in CNOFF, colours of three or four
+    // numbers in NCOFF.
     let colours_first =
         prefix.iter().rposition(|&letter| letter == b'C') > prefix.iter().rposition(|&letter| letter == b'N');
     let after = if prefix.starts_with(b"ST") { 2 } else { 0 };
@@ -79,7 +79,7 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
         let mut words = words(line);
         let count = count(words.next(), "corners", input)?;
         corners.clear();
-        // What follows the corners is the colour of the face.
+        // After the corners comes the colour of the face.
         for _ in 0..count {
             let Some(word) = words.next() else {
                 return Err(input.error(format!("this face has fewer corners than the {count} that it says")));
@@ -99,9 +99,9 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
     Ok(())
 }
 
-/// Compares the numbers in the header with the bytes that follow.
+/// Compares the counts in the header with the bytes that follow.
 fn check_claim(input: &Input, counts: [u64; 2]) -> Result<(), ReadError> {
-    // Three digits, or one, each with a character after it; the last line needs no end.
+    // Three digits, or one, each with a character after it; the last line needs no line end.
     let (left, mut needed) = (input.remaining() as u64, 0_u64);
     for (element, count, size) in [("point", counts[0], 6), ("face", counts[1], 2)] {
         needed = needed.saturating_add(count.saturating_mul(size));

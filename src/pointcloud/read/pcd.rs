@@ -6,7 +6,7 @@ use super::mesh::FileMesh;
 use super::ply_header::{Encoding, NumberKind, ScalarType};
 use super::{ReadError, push};
 
-/// How the points are written.
+/// Encoding of the points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Data {
     Text,
@@ -18,9 +18,9 @@ enum Data {
 #[derive(Clone, Copy, Debug)]
 struct PcdField {
     scalar: ScalarType,
-    /// Numbers in the field.
+    /// Number of values in the field.
     count: u64,
-    /// Component that it is, by its index in [`COMPONENTS`].
+    /// The component that the field holds, as index in [`COMPONENTS`].
     component: Option<usize>,
 }
 
@@ -44,10 +44,10 @@ const KEYS: [&[u8]; 10] = [
     b"DATA",
 ];
 
-/// Whether a file begins as such a file does: with a comment that says so, or with the first line
-/// of a header.
+/// Whether a file begins like a PCD file: with a comment that says so, or with the first line of a
+/// header.
 pub(super) fn begins_with(bytes: &[u8]) -> bool {
-    /// Comments that may come before the header are short.
+    /// Comments before the header are short.
     const LOOKED_AT: usize = 1024;
     let start = &bytes[..bytes.len().min(LOOKED_AT)];
     let mut lines = start.split(|&byte| matches!(byte, b'\n' | b'\r'));
@@ -64,7 +64,7 @@ struct Header {
 }
 
 impl Header {
-    /// Reads the lines up to that with the kind of the data.
+    /// Reads the lines up to and including `DATA`.
     fn read(input: &mut Input) -> Result<Self, ReadError> {
         let mut lines: [Vec<&[u8]>; KEYS.len()] = core::array::from_fn(|_| Vec::new());
         let [_, fields, sizes, types, counts, width, height, _, points, data] = loop {
@@ -145,16 +145,16 @@ impl Header {
         Ok(Self { fields: known, points, data })
     }
 
-    /// Bytes of a point; as text those of a digit and a separator for each number, at least.
+    /// Bytes of a point; as text, at least a digit and a separator for each number.
     fn point_bytes(&self) -> u64 {
         let of = |field: &PcdField| if self.data == Data::Text { 2 * field.count } else { field.bytes() };
         self.fields.iter().map(of).fold(0, u64::saturating_add)
     }
 
-    /// Compares the number of points with the bytes that are there for them.
+    /// Compares the number of points with the available bytes.
     fn check_claim(&self, left: u64) -> Result<(), ReadError> {
         let needed = self.points.saturating_mul(self.point_bytes());
-        // The last line of a text needs no end.
+        // The last line of a text needs no line end.
         if needed > left + u64::from(self.data == Data::Text) {
             return Err(ReadError::Claim { element: "point".to_owned(), count: self.points, needed, left });
         }
@@ -215,8 +215,8 @@ async fn read_text(input: &mut Input<'_>, header: &Header, mesh: &mut FileMesh) 
     Ok(())
 }
 
-/// Adds the point whose numbers `bytes` gives: those of a field before which a point has so many
-/// bytes.
+/// Adds a point. `bytes` returns the bytes of a field, given the number of bytes of a point before
+/// that field.
 fn add_point<'b>(
     input: &Input,
     header: &Header,
@@ -234,8 +234,7 @@ fn add_point<'b>(
     mesh.add_point(values, header.has_normals())
 }
 
-/// Reads points whose fields follow each other, all of the first one and so on, compressed
-/// together.
+/// Reads compressed points: all values of the first field, then all of the second, and so on.
 async fn read_compressed(
     input: &mut Input<'_>,
     header: &Header,
@@ -256,7 +255,7 @@ async fn read_compressed(
     input.begin_records("point");
     for k in 0..header.points {
         input.begin_record();
-        // Before a field there are all numbers of the fields before it.
+        // A field follows all values of the fields before it.
         add_point(input, header, mesh, &mut |before, field| {
             let at = before * header.points + k * field.bytes();
             &bytes[at as usize..][..field.scalar.size]
@@ -266,8 +265,8 @@ async fn read_compressed(
     Ok(())
 }
 
-/// Unpacks LZF, the format of M. Lehmann's LibLZF: runs of bytes as they are, and references to
-/// bytes before. None if it does not give as many bytes as it should.
+/// Unpacks LZF, the format of M. Lehmann's LibLZF: literal runs and references to earlier bytes.
+/// None if the result has the wrong size.
 async fn unpack(packed: &[u8], size: usize, input: &mut Input<'_>) -> Result<Option<Vec<u8>>, ReadError> {
     let mut out: Vec<u8> = Vec::new();
     let mut bytes = packed;
@@ -289,7 +288,7 @@ async fn unpack(packed: &[u8], size: usize, input: &mut Input<'_>) -> Result<Opt
             let (Some(more), Some(low)) = (more, next()) else { return Ok(None) };
             let back = ((control & 31) << 8) + low + 1;
             let Some(from) = out.len().checked_sub(back) else { return Ok(None) };
-            // The bytes may overlap those that they become.
+            // The source may overlap the bytes that are being written.
             for k in from..from + (control >> 5) + more + 2 {
                 let byte = out[k];
                 push(&mut out, byte)?;

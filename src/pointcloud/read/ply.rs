@@ -1,9 +1,9 @@
-//! Reader of PLY files, with any elements and properties in any order, as text or binary in either
+//! Reader of PLY files with any elements and properties in any order, as text or binary in either
 //! byte order.
 //!
-//! A row of a text is a line where there are as many lines as rows: a line that is too short is
-//! told then, and what is left of one that is too long is skipped. Otherwise lines mean nothing,
-//! and the numbers follow each other.
+//! If a text has as many lines as rows, each row is a line: a line that is too short is an error,
+//! and the rest of one that is too long is skipped. Otherwise line breaks mean nothing, and the
+//! numbers simply follow each other.
 
 use super::ReadError;
 use super::input::{COMPONENTS, Input, number, quoted};
@@ -57,19 +57,19 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
     Ok(())
 }
 
-/// A row that is read number by number: words of a line, or bytes.
+/// A row that is read number by number, from words of a line or from bytes.
 struct PlyRow<'r, 'a> {
     input: &'r mut Input<'a>,
     encoding: Encoding,
     element: &'r Element,
     /// Whether the row is a line.
     is_line: bool,
-    /// The words of the line that are left.
+    /// The rest of the line.
     line: &'a [u8],
 }
 
 impl<'r, 'a> PlyRow<'r, 'a> {
-    /// Begins a row with the words of a line that are `left`.
+    /// Begins a row. `left` holds the remaining words of the current line.
     fn begin(
         input: &'r mut Input<'a>,
         encoding: Encoding,
@@ -85,7 +85,7 @@ impl<'r, 'a> PlyRow<'r, 'a> {
         Ok(row)
     }
 
-    /// Goes on with the next line.
+    /// Continues with the next line.
     fn take_line(&mut self) -> Result<(), ReadError> {
         let Some(line) = self.input.line_with_text() else {
             return Err(self.input.error(format!(
@@ -97,7 +97,7 @@ impl<'r, 'a> PlyRow<'r, 'a> {
         Ok(())
     }
 
-    /// The next number as it is in the file: a word, or bytes.
+    /// The next number as in the file: a word, or bytes.
     fn next(&mut self, scalar: ScalarType) -> Result<&'a [u8], ReadError> {
         if self.encoding != Encoding::Text {
             let cut_off = "the file ends here; it is cut off, or its header is wrong: export it again";
@@ -117,7 +117,7 @@ impl<'r, 'a> PlyRow<'r, 'a> {
         Ok(word)
     }
 
-    /// Consumes a number that nobody asks for.
+    /// Consumes a number that is not used.
     fn skip(&mut self, scalar: ScalarType) -> Result<(), ReadError> {
         self.next(scalar).map(drop)
     }
@@ -131,7 +131,7 @@ impl<'r, 'a> PlyRow<'r, 'a> {
         }
     }
 
-    /// The next number, of which a message says that it is no `what` where it is none.
+    /// The next number; a word that is not a number is an error that names `what` was expected.
     fn number(&mut self, scalar: ScalarType, what: &str) -> Result<f64, ReadError> {
         let next = self.next(scalar)?;
         match self.encoding {
@@ -142,7 +142,7 @@ impl<'r, 'a> PlyRow<'r, 'a> {
         }
     }
 
-    /// Length of a list of such numbers.
+    /// Length of a list of numbers of type `scalar`.
     fn length(&mut self, length: ScalarType, scalar: ScalarType) -> Result<u64, ReadError> {
         let length = self.number(length, "length of a list")?;
         let left = self.input.remaining();

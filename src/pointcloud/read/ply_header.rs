@@ -24,7 +24,7 @@ pub(super) enum NumberKind {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ScalarType {
     pub(super) kind: NumberKind,
-    /// Size in bytes in a binary file.
+    /// Bytes of a value in a binary file.
     pub(super) size: usize,
 }
 
@@ -44,7 +44,7 @@ impl ScalarType {
         Some(Self { kind, size })
     }
 
-    /// The number that bytes of this size are, the least significant one first or last.
+    /// The number that bytes of this size encode, in either byte order.
     pub(super) fn decode(self, bytes: &[u8], encoding: Encoding) -> f64 {
         let mut word = [0; 8];
         word[..self.size].copy_from_slice(bytes);
@@ -69,9 +69,9 @@ impl ScalarType {
 pub(super) enum Role {
     /// The property is skipped.
     Unused,
-    /// Component of a vertex, by its index in [`COMPONENTS`].
+    /// A component of a vertex, as index in [`COMPONENTS`].
     Component(usize),
-    /// List of the corners of a face.
+    /// A list of the corners of a face.
     Corners,
 }
 
@@ -91,10 +91,10 @@ pub(super) struct Element {
     pub(super) properties: Vec<Property>,
 }
 
-/// Maximum number of lines of a header. Real headers have some dozens at most.
+/// Most lines of a header. Real headers have at most some dozens.
 const MAX_LINES: usize = 10_000;
 
-/// Words of a line that are looked at: one more than the longest statement has.
+/// Words of a line that are read: one more than the longest statement has.
 const MAX_WORDS: usize = 6;
 
 impl Element {
@@ -111,7 +111,7 @@ impl Element {
         components.all(|component| self.has(Role::Component(component)))
     }
 
-    /// Whether any of its properties is used.
+    /// Whether any property is used.
     pub(super) fn is_used(&self) -> bool {
         self.properties.iter().any(|property| property.role != Role::Unused)
     }
@@ -141,8 +141,8 @@ impl Element {
 ///
 /// # Errors
 ///
-/// If a line is wrong, if there are no vertices with x, y and z, or if the file is too small for
-/// the rows.
+/// If a line is wrong, there are no vertices with x, y and z, or the file is too small for the
+/// rows.
 pub(super) fn read(input: &mut Input) -> Result<(Encoding, Vec<Element>), ReadError> {
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
@@ -172,7 +172,7 @@ pub(super) fn read(input: &mut Input) -> Result<(Encoding, Vec<Element>), ReadEr
     Err(input.error(message))
 }
 
-/// Reads a line of the header, and returns what is wrong with it.
+/// Reads a line of the header. The error says what is wrong with it.
 fn statement(
     words: &[&[u8]],
     encoding: &mut Option<Encoding>,
@@ -222,7 +222,7 @@ fn add(elements: &mut [Element], length: Option<&[u8]>, scalar: &[u8], name: &[u
     let element = elements.last_mut().ok_or("a property stands before the first element")?;
     let mut role = element.role(name, length.is_some());
     if role != Role::Unused && element.has(role) {
-        // A component may stand there by two names.
+        // The element may have a component under two names.
         let is_usual = role == Role::Corners || COMPONENTS.iter().any(|usual| usual.as_bytes() == name);
         if is_usual {
             return Err(format!("the property `{}` is declared twice", quoted(name)));
@@ -233,7 +233,7 @@ fn add(elements: &mut [Element], length: Option<&[u8]>, scalar: &[u8], name: &[u
     Ok(())
 }
 
-/// Compares the number of rows that the header claims with the bytes that follow, before memory is
+/// Compares the number of rows in the header with the bytes that follow, before memory is
 /// allocated.
 fn check_claims(encoding: Encoding, elements: &[Element], input: &Input) -> Result<(), ReadError> {
     let left = input.remaining() as u64;

@@ -1,4 +1,4 @@
-//! Reader of STL files. Each triangle has corners of its own, of which equal ones are merged.
+//! Reader of STL files. Each triangle has its own corners, of which equal ones are merged.
 
 use super::ReadError;
 use super::format::{STL_HEADER, STL_TRIANGLE, stl_size};
@@ -11,7 +11,7 @@ use glam::DVec3;
 /// Reads the text format, `facet … outer loop … vertex x y z … endloop … endfacet`.
 ///
 /// The normals of the facets are ignored: many programs write zeros, and the order of the corners
-/// gives them.
+/// determines them.
 pub(super) async fn read_text(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(), ReadError> {
     let (mut table, mut corners) = (IndexTable::default(), Vec::new());
     while let Some(line) = input.line_with_text() {

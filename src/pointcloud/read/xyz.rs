@@ -1,5 +1,5 @@
-//! Reader of text with a point a line: XYZ files, with or without a normal and other columns, CSV
-//! files with a header, and PTS files, which begin with the number of their points.
+//! Reader of text with one point per line: XYZ files, with or without normals and other columns,
+//! CSV files with a header, and PTS files, which begin with the number of points.
 
 use super::input::{self, Input, component, coordinate_number, number, quoted};
 use super::mesh::FileMesh;
@@ -9,35 +9,34 @@ use core::ops::Range;
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// Lengths at which a vector may be a normal that was written with few digits, over that of the
-/// others: of unit normals with one digit after the point each component is off by 0.05 at most,
-/// and the length by 0.087.
+/// Range of a normal's length relative to the usual one, to allow for few digits: in a unit normal
+/// with one decimal each component is off by at most 0.05, and the length by 0.087.
 const ALIKE: Range<f64> = 0.9..1.1;
 
-/// Share of the rows with such a vector from which on three columns are normals: a normal is
-/// missing or zero here and there. Larger: fewer such gaps are tolerated. Smaller: columns of
-/// another meaning are more easily taken for normals.
+/// Share of rows with such a vector above which three columns count as normals; some normals may be
+/// missing or zero. Larger: fewer gaps are tolerated. Smaller: columns with another meaning are
+/// more easily mistaken for normals.
 const ALIKE_SHARE: f64 = 0.9;
 
-/// Number of points up to which no more is asked of normals than their length. More do not all face
-/// one octant, as colours do, which have no negative components, and not all one way.
+/// Up to this number of points only the length of normals is checked. More normals must not all lie
+/// in one octant, as colours do, which are never negative, and must not all be equal.
 const FEW: usize = 8;
 
-/// Columns among which normals are looked for: those of a point with intensity, a colour with
-/// opacity, and a normal.
+/// Columns that are searched for normals: those of a point with intensity, a colour with opacity,
+/// and a normal.
 const LOOKED_AT: usize = 11;
 
-/// Component of a point and its normal that each column of a file holds, if it holds one. Bytes,
-/// because a line may have as many columns as half a file has bytes.
+/// The component of a point or normal that each column holds, if any. Bytes, because a line may
+/// have half as many columns as a file has bytes.
 type XyzColumns = Vec<Option<u8>>;
 
-/// The name of a column, which its unit may follow, as in `X [m]`.
+/// The name of a column without its unit, as in `X [m]`.
 fn without_unit(word: &[u8]) -> &[u8] {
     let end = word.iter().position(|byte| matches!(byte, b'[' | b'(')).unwrap_or(word.len());
     word[..end].trim_ascii()
 }
 
-/// Columns by the words of a header; `None` if they do not name x, y and z.
+/// Columns according to a header; `None` if it does not name x, y and z.
 fn named(words: &[&[u8]]) -> Option<XyzColumns> {
     let found: [Option<usize>; 6] =
         core::array::from_fn(|k| words.iter().position(|word| component(without_unit(word)) == Some(k)));
@@ -56,7 +55,7 @@ pub(super) fn begins_with(line: &[u8]) -> bool {
     words.first().is_some_and(|word| number(&with_point(word)).is_some()) || named(&words).is_some()
 }
 
-/// A word between separators, with a decimal point in the place of a decimal comma.
+/// A word with a decimal point instead of a decimal comma.
 fn with_point(word: &[u8]) -> Cow<'_, [u8]> {
     let is_comma = |byte: &u8| *byte == b',';
     let has_digits = word.split(is_comma).all(|part| part.iter().any(u8::is_ascii_digit));
@@ -67,8 +66,8 @@ fn with_point(word: &[u8]) -> Cow<'_, [u8]> {
     Cow::Owned(points.collect())
 }
 
-/// The character that separates the columns of a line, if it is one of those between which a column
-/// may be empty.
+/// The character that separates the columns of a line, if it is one of those that allow empty
+/// columns.
 fn separator(line: &[u8]) -> Option<u8> {
     let mut words = Vec::new();
     [b';', b',', b'\t'].into_iter().find(|&separator| {
@@ -80,8 +79,8 @@ fn separator(line: &[u8]) -> Option<u8> {
     })
 }
 
-/// The words of a line: between separators, if the line has any, where a word in quotes may hold
-/// them; else between white space, commas and semicolons.
+/// The words of a line. If the line contains the separator, words are between separators, and a
+/// word in quotes may contain them; otherwise words are between white space, commas and semicolons.
 fn split<'a>(line: &'a [u8], separator: Option<u8>, words: &mut Vec<&'a [u8]>) {
     words.clear();
     if let Some(separator) = separator.filter(|separator| line.contains(separator)) {
@@ -101,11 +100,11 @@ fn split<'a>(line: &'a [u8], separator: Option<u8>, words: &mut Vec<&'a [u8]>) {
     }
 }
 
-/// Whether the commas of a line without separators may be decimal commas: at least three words are
+/// Whether commas in a line without separators may be decimal commas: at least three words are
 /// separated otherwise, and one has a comma between digits.
 fn has_decimal_commas(line: &[u8]) -> bool {
-    /// Number of words that are looked at. A point has three to six, with colours and other columns
-    /// some more.
+    /// Number of words that are checked. A point has three to six; colours and other columns add
+    /// some.
     const LOOKED_AT: usize = 16;
     let by_others: Vec<&[u8]> = line
         .split(|byte| byte.is_ascii_whitespace() || *byte == b';')
@@ -121,21 +120,21 @@ fn has_decimal_commas(line: &[u8]) -> bool {
         })
 }
 
-/// The text of a comment, if the line is one.
+/// The text of a comment, if the line is a comment.
 pub(super) fn comment(line: &[u8]) -> Option<&[u8]> {
     let text = [&b"#"[..], b"//", b"%"].into_iter().find_map(|mark| line.strip_prefix(mark))?;
     Some(text.trim_ascii())
 }
 
-/// The columns of the lines so far.
+/// What the lines so far tell about the columns.
 #[derive(Default)]
 struct Known {
     /// The component that each column holds; empty before the first point and the header.
     columns: XyzColumns,
     separator: Option<u8>,
-    /// Columns that a comment names, which may be a header.
+    /// Columns that a comment names; it may be a header.
     told: XyzColumns,
-    /// Number of points that the file says it has.
+    /// Number of points according to the file.
     promised: Option<u64>,
     /// Whether a coordinate has a decimal comma, and whether one has a decimal point.
     has_commas: bool,
@@ -143,13 +142,13 @@ struct Known {
 }
 
 impl Known {
-    /// Takes a line that may come before the points: a header, or their number. Returns whether it
-    /// is one.
+    /// Handles a line that may come before the points: a header, or their number. Returns whether
+    /// it is one.
     fn take_head(&mut self, words: &[&[u8]], input: &Input) -> Result<bool, ReadError> {
         let count = if let [word] = words { core::str::from_utf8(word).ok() } else { None };
         let count: Option<u64> = count.and_then(|word| word.parse().ok());
         if !self.columns.is_empty() {
-            // Several clouds may follow each other, each after its number.
+            // Several clouds may follow each other, each after its number of points.
             self.promised = self.promised.map(|promised| promised.saturating_add(count.unwrap_or(0)));
             return Ok(self.promised.is_some() && count.is_some());
         }
@@ -167,7 +166,7 @@ impl Known {
             self.columns = columns;
             return Ok(true);
         }
-        // A comment that names no more than what is usual may be a sentence.
+        // A comment that names only x, y and z may be a sentence.
         let is_usual = told.starts_with(&[Some(0), Some(1), Some(2)]) && !told.contains(&Some(5));
         if told.len() == words.len() && !is_usual {
             self.columns = told;
@@ -180,7 +179,7 @@ impl Known {
 pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(), ReadError> {
     let mut known = Known::default();
     let mut words: Vec<&[u8]> = Vec::new();
-    // The columns in which normals may be, of lines without a header.
+    // Columns of lines without a header, which may hold normals.
     let mut others = Others::default();
     while let Some(whole) = input.line() {
         input.end_row().await;
@@ -190,7 +189,7 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
             known.told = named(&words).unwrap_or(known.told);
             continue;
         }
-        // A comment, but for the way in which an old library spells what is no number: 1.#QNAN.
+        // Find a comment, but not in 1.#QNAN, an old library's NaN.
         let end = (0..line.len()).find(|&at| line[at] == b'#' && line[at - 1] != b'.');
         let line = line[..end.unwrap_or(line.len())].trim_ascii();
         if line.is_empty() {
@@ -204,7 +203,7 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
         }
         split(line, known.separator, &mut words);
         if known.separator == Some(b'\t') && words.len() < known.columns.len() {
-            // The columns at the ends of the line may be empty, too.
+            // The first and last columns of the line may be empty, too.
             let start = whole.len() - whole.trim_ascii_start().len();
             let end = end.map_or(whole.len(), |end| start + end);
             split(&whole[..end], known.separator, &mut words);
@@ -260,7 +259,7 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
     others.become_normals(mesh)
 }
 
-/// The columns after the third of lines without a header, row by row.
+/// The columns after the third, row by row, of lines without a header.
 #[derive(Default)]
 struct Others {
     /// Number of columns.
@@ -269,8 +268,8 @@ struct Others {
 }
 
 impl Others {
-    /// Takes three columns that are normals for those of the points: of one length, and not all of
-    /// them positive, as colours are.
+    /// Uses three columns as normals if their vectors have one length and, unlike colours, are not
+    /// all positive.
     fn become_normals(self, mesh: &mut FileMesh) -> Result<(), ReadError> {
         let rows = mesh.position.len();
         let Some(triples) = self.width.checked_sub(2).filter(|_| rows > 0) else { return Ok(()) };
@@ -289,7 +288,7 @@ impl Others {
                 && vectors(from).any(|vector| Some(vector) != first)
         };
         let are_unit = |&from: &usize| are_of(from, 1.0) && (rows <= FEW || varies(from));
-        // Of another length they face all round.
+        // Vectors of another length must face all directions.
         let are_alike = |&from: &usize| {
             let (low, high) = vectors(from)
                 .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), vector| {
