@@ -137,7 +137,7 @@ pub(crate) struct SweepArguments {
     pub(crate) quiet: bool,
 }
 
-/// A parameter and the range through which it goes.
+/// A parameter and the range that it sweeps.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Sweep {
     pub(crate) name: String,
@@ -453,7 +453,7 @@ pub(crate) struct SurfaceArguments {
 }
 
 impl SurfaceArguments {
-    /// Adds the values of those parameters that have none.
+    /// Adds values for those parameters that have none.
     fn add_parameters(&mut self, values: BTreeMap<String, f64>) {
         for (name, value) in values {
             if !self.parameters.iter().any(|(given, _)| *given == name) {
@@ -464,8 +464,8 @@ impl SurfaceArguments {
 }
 
 impl SampleArguments {
-    /// Orientation of the mesh in its files, and its size for one whose longest side is this long
-    /// in the coordinates.
+    /// Orientation and scale of the mesh in its files. `longest_side` is the length of its longest
+    /// side in the formula's coordinates.
     pub(crate) fn placement(&self, longest_side: f64) -> Placement {
         let (scale, unit) = match self.size {
             Some(size) if longest_side > 0.0 => (size.value / longest_side, Some(size.unit)),
@@ -475,14 +475,14 @@ impl SampleArguments {
         Placement { scale, unit, up: self.up.1 }
     }
 
-    /// The bodies of the mesh that its files hold.
+    /// The bodies of the mesh that are written to its files.
     pub(crate) fn bodies(&self) -> Bodies {
         if self.largest_part { Bodies::Largest } else { Bodies::All }
     }
 
-    /// Takes from the record of a file what is not given.
+    /// Fills in from a file's record what was not given on the command line.
     pub(crate) fn complete(&mut self, record: FileRecord) {
-        // Who asks for a radius wants one size.
+        // A given radius means particles of one size.
         if let (None, Some(text), false) = (&self.spacing, &record.spacing, self.sampling.has_radius()) {
             self.spacing = Some(SpacingOption::Formula(text.formula.clone()));
             (self.spacing_min, self.spacing_max) = (text.smallest, text.largest);
@@ -513,7 +513,7 @@ impl SampleArguments {
             surface.add_parameters(record.parameters);
             surface.closed |= record.solid.box_faces == BoxFaces::Closed;
             surface.periodic |= record.solid.box_cell == BoxCell::Periodic;
-            // A porosity asks for another thickness than that of the file.
+            // A porosity requires another thickness than the one in the file.
             let kept = record
                 .solid
                 .sheet()
@@ -525,7 +525,7 @@ impl SampleArguments {
     }
 }
 
-/// One of the names of a table, with its value.
+/// Parses a name of a table to its value.
 fn one_of<T: Copy + Send + Sync>(
     table: &'static [(&'static str, T)],
 ) -> impl TypedValueParser<Value = (&'static str, T)> {
@@ -542,7 +542,7 @@ fn file_formats() -> PossibleValuesParser {
     PossibleValuesParser::new(particles.chain(meshes))
 }
 
-/// One of the ways to write vertices, with what it does.
+/// Parses how vertices are written; the help explains each choice.
 fn vertices() -> impl TypedValueParser<Value = Vertices> {
     let words = VERTICES.iter().map(|choice| PossibleValue::new(choice.value.name()).help(choice.help));
     PossibleValuesParser::new(words).try_map(|given| {
@@ -570,7 +570,7 @@ fn beyond_points(text: &str) -> Result<BeyondPoints, String> {
 }
 
 impl SurfaceArguments {
-    /// The solid that is to be made of the surface.
+    /// The solid that the options ask for.
     pub(crate) fn solid(&self) -> SolidSettings {
         let is_fixed = self.bounds == Some(BoxChoice::Fixed);
         SolidSettings {
@@ -583,7 +583,7 @@ impl SurfaceArguments {
     }
 }
 
-/// Choice of the box that is sampled.
+/// The choice of the box to sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum BoxChoice {
     Fit,
@@ -608,14 +608,14 @@ pub(crate) struct Surfaces {
     pub(crate) json: bool,
 }
 
-/// A length that a sheet can have, or a formula.
+/// A thickness that a sheet can have: a length or a formula.
 fn thickness(text: &str) -> Result<Thickness, String> {
     let solid = SolidSettings { thickness: text.into(), ..SolidSettings::default() };
     solid.validate().map_err(|error| error.to_string())?;
     Ok(solid.thickness)
 }
 
-/// A length of a file.
+/// A length in a file, with its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Length {
     pub(crate) value: f64,
@@ -628,9 +628,9 @@ impl Length {
     }
 }
 
-/// A positive length with its unit, or in millimetres.
+/// A positive length with its unit, in millimetres by default.
 fn length(text: &str) -> Result<Length, String> {
-    // `mm` ends with the symbol of the metre, too, and comes first in the table.
+    // `mm` also ends with the symbol of the metre, so it comes first in the table.
     let found = Unit::ALL.iter().find_map(|&(symbol, unit)| Some((text.strip_suffix(symbol)?, unit)));
     let (digits, unit) = found.unwrap_or((text, Unit::Millimetre));
     match number(digits.trim()) {
@@ -639,7 +639,7 @@ fn length(text: &str) -> Result<Length, String> {
     }
 }
 
-/// A share between 0 and 1.
+/// A share between 0 and 1, exclusive.
 fn porosity(text: &str) -> Result<f64, String> {
     let share = match text.strip_suffix('%') {
         Some(percent) => number(percent)? / 100.0,
@@ -651,7 +651,7 @@ fn porosity(text: &str) -> Result<f64, String> {
     Err("a porosity is a share between 0 and 1, such as 70% or 0.7".to_owned())
 }
 
-/// A positive factor, with which every box stays within single precision.
+/// A positive factor that keeps every box within single precision.
 fn scale(text: &str) -> Result<f64, String> {
     match number(text)? {
         scale if (1e-12..=1e12).contains(&scale) => Ok(scale),

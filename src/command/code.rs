@@ -1,4 +1,4 @@
-//! `sample --print`: the program that makes the particles, in place of them.
+//! `sample --print`: prints a program that makes the particles, instead of making them.
 
 use crate::arguments::SampleArguments;
 use crate::failure::Failure;

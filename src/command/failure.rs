@@ -31,7 +31,7 @@ pub(crate) enum Failure {
     Unreadable { path: PathBuf, error: std::io::Error },
     /// A file could not be written.
     File { path: PathBuf, error: std::io::Error },
-    /// Standard output was closed by its reader, which is no error.
+    /// The reader of standard output closed it, which is not an error.
     Output,
 }
 
@@ -47,7 +47,7 @@ impl Failure {
 }
 
 impl From<SettingsError> for Failure {
-    /// By the names of the options.
+    /// The message names the options instead of the settings.
     fn from(error: SettingsError) -> Self {
         Self::Usage(refusal(&error))
     }
@@ -82,7 +82,7 @@ impl fmt::Display for Failure {
 /// Writes the message, the formula with carets under the span, and suggestions.
 fn formula(f: &mut fmt::Formatter<'_>, text: &str, fault: &Fault) -> fmt::Result {
     write!(f, "error: {}", fault.message)?;
-    // A formula of more than three lines of a terminal breaks, and the carets are not below it; an
+    // A formula of more than three terminal lines is wrapped, which would misplace the carets; an
     // error in --param has no span.
     const LONGEST: usize = 240;
     let has_span = fault.kind != FaultKind::Formula(FormulaErrorKind::BadParameter);
@@ -93,7 +93,7 @@ fn formula(f: &mut fmt::Formatter<'_>, text: &str, fault: &Fault) -> fmt::Result
             [fault.start, fault.end].map(|unit| String::from_utf16_lossy(&units[..unit as usize]));
         let first = before.rfind('\n').map_or(0, |at| at + 1);
         let last = text[before.len()..].find('\n').map_or(text.len(), |at| before.len() + at);
-        // Tabs would shift the carets, so each takes one column.
+        // Tabs would shift the carets, so each is shown as one column.
         let line: String = text[first..last].chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
         let column = before[first..].chars().count();
         let marked = end.len().min(last).saturating_sub(before.len());
@@ -123,7 +123,7 @@ fn formula(f: &mut fmt::Formatter<'_>, text: &str, fault: &Fault) -> fmt::Result
     Ok(())
 }
 
-/// Why settings are refused, by the name of the option and with shares as they are typed.
+/// Why settings are refused, with the option's name and shares in percent.
 fn refusal(error: &SettingsError) -> String {
     let (name, value, min, max) = match error {
         SettingsError::OutOfRange { name, value, min, max } => (name, value, min, max),
@@ -144,7 +144,7 @@ fn refusal(error: &SettingsError) -> String {
     format!("--{option} is {value}, but must lie between {min} and {max}")
 }
 
-/// A share as it is typed.
+/// A share in percent, as the user types it.
 pub(crate) fn percent(share: f64) -> String {
     format!("{}%", significant(100.0 * share))
 }

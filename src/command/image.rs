@@ -8,7 +8,7 @@ use marching_particles::{Image, ImageChoice, ImageField, ImageSurface, RawVoxels
 use serde::Serialize;
 use std::path::Path;
 
-/// The image and the surface in it, as the report names them.
+/// The image and its surface, for the report.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct ImageInfo {
     /// Name of the file.
@@ -22,22 +22,21 @@ pub(crate) struct ImageInfo {
     pub(crate) range: [f64; 2],
     /// The value on the surface.
     pub(crate) iso: f64,
-    /// Whether Otsu's method has chosen it.
+    /// Whether Otsu's method chose the value.
     pub(crate) is_otsu: bool,
     /// The label whose boundary is sampled.
     pub(crate) label: Option<f64>,
     /// Width of the Gaussian in voxels, 0 for none.
     pub(crate) smooth: f64,
-    /// Whether the width is that for the noise, as a share of the contrast, or the usual one of
-    /// labels.
+    /// Whether the width was chosen: from the noise, or for a label the default.
     pub(crate) is_smooth_chosen: bool,
     /// Standard deviation of the noise, in the values of the voxels.
     pub(crate) noise: f64,
     /// Whether darker voxels are inside.
     pub(crate) is_dark_inside: bool,
-    /// What the reader has decided.
+    /// Notes of the reader.
     pub(crate) notes: Vec<String>,
-    /// Bytes of the voxels, and of what the field takes beside them.
+    /// Bytes of the voxels, and further bytes of the field.
     pub(crate) bytes: [usize; 2],
 }
 
@@ -83,9 +82,9 @@ pub(crate) fn of_arguments(arguments: &SurfaceArguments) -> Result<Option<(Image
     Ok(Some((field.clone(), info)))
 }
 
-/// What the reader has decided, and what else the user should know.
+/// Notes of the reader and advice for the user.
 fn notes(image: &Image, surface: &ImageSurface, arguments: &SurfaceArguments) -> Vec<String> {
-    /// Different values of an image that look like labels.
+    /// With at most this many different values an image may consist of labels.
     const FEW: usize = 32;
     let mut notes = surface.notes().to_vec();
     if arguments.label.is_none() && arguments.iso.is_none() {
@@ -147,7 +146,7 @@ pub(crate) fn raw(text: &str) -> Result<RawVoxels, String> {
     Ok(raw)
 }
 
-/// The file of this name in the folder of another one. A header must not name files elsewhere.
+/// Reads a file by name from the folder of another one. A header must not name files elsewhere.
 fn read_beside(path: &Path, name: &str) -> Result<Vec<u8>, String> {
     if Path::new(name).components().count() != 1 || Path::new(name).file_name().is_none() {
         return Err("it is not in the same folder".to_owned());

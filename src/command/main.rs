@@ -46,9 +46,9 @@ fn main() -> ExitCode {
     }
 }
 
-/// Starts threads, this one and others, to share the work: so many, or one for each processor.
+/// Starts the threads that share the work, including this one: one per processor by default.
 fn start_threads(threads: Option<NonZeroUsize>) -> Result<(), Failure> {
-    // Another thread would have to be woken, and this one to wait, each time work is shared.
+    // Without this thread in the pool, it would wait and wake another one each time work is shared.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, NonZeroUsize::get));
     let started = pool.use_current_thread().build_global();
     started.map_err(|error| Failure::Usage(format!("cannot start threads: {error}")))
@@ -58,7 +58,7 @@ fn start_threads(threads: Option<NonZeroUsize>) -> Result<(), Failure> {
 fn completions(shell: Shell) -> Result<ExitCode, Failure> {
     let mut command = Arguments::command();
     let name = command.get_name().to_owned();
-    // It is made at once, since the generator panics when its reader goes.
+    // Generated into memory, since the generator panics if the reader of its output closes.
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut command, name, &mut script);
     io::Write::write_all(&mut io::stdout(), &script)?;

@@ -1,4 +1,4 @@
-//! The options that say how a surface is sampled: one for each entry of the table of settings.
+//! The options that say how a surface is sampled, one for each setting in the table.
 
 use crate::failure::{Failure, percent};
 use clap::builder::PossibleValuesParser;
@@ -15,24 +15,23 @@ use marching_particles::{FormulaErrorKind, Settings};
 use serde_json::{Map, Value as Json};
 use std::ops::RangeInclusive;
 
-/// The option that asks for sizes that follow the curvature, and the setting that it chooses a
-/// value of.
+/// The option for sizes that follow the curvature, and the setting whose value it chooses.
 const ADAPTIVE: &str = "adaptive";
 const UNIFORM: &str = "uniform";
 const SAMPLING: &str = "sampling";
 /// How the sizes follow the curvature.
 const LAW: &str = "radius_law";
-/// The option that asks for a number of particles, by which the measure of the size is chosen too.
+/// The option for a number of particles. It also chooses the size mode.
 const COUNT: &str = "count";
 const SIZE_MODE: &str = "size_mode";
-/// The option that asks for a radius.
+/// The option for a radius.
 const RADIUS: &str = "radius_share";
-/// The largest slope of the sizes, whatever they follow.
+/// The largest slope of the sizes, with or without a curvature.
 const GRADING: &str = "grading";
-/// The method, and the steps that only one of them takes.
+/// The method, and the number of steps that only the front takes.
 const METHOD: &str = "method";
 const RELAX_STEPS: &str = "relax_steps";
-/// The limit is raised with the wanted number.
+/// The limit, which is raised with the wanted number.
 const MAX_PARTICLES: &str = "max_particles";
 
 /// A length on the command line.
@@ -67,8 +66,8 @@ pub(crate) fn whole(text: &str, range: &RangeInclusive<u64>) -> Result<u64, Stri
     whole_up_to(text, range, *range.end())
 }
 
-/// A whole number from an argument. Up to `taken` it is left to what it is for to refuse one above
-/// the range.
+/// A whole number from an argument. Numbers above the range, up to `taken`, are accepted here;
+/// whoever uses them refuses them.
 fn whole_up_to(text: &str, range: &RangeInclusive<u64>, taken: u64) -> Result<u64, String> {
     let number = number(text)?;
     let (least, most) = (*range.start(), *range.end());
@@ -102,7 +101,7 @@ pub(crate) fn list(text: &str) -> Vec<&str> {
 /// A length from an argument.
 pub(crate) fn length(text: &str) -> Result<Length, String> {
     let length = match text.strip_suffix('%').map(str::trim) {
-        // A decimal is rounded once, so that every share can be given.
+        // The decimal is rounded only once, so that every share can be given.
         Some(percent) => match format!("{percent}e-2").parse() {
             Ok(share) => Length::Share(share),
             Err(_) => Length::Share(number(percent)? / 100.0),
@@ -115,8 +114,8 @@ pub(crate) fn length(text: &str) -> Result<Length, String> {
     }
 }
 
-/// Settings of a run as the options give them: lengths become shares of the box's diagonal only
-/// once there is a box.
+/// The sampling settings from the options. Lengths become shares of the box's diagonal once the box
+/// is known.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SamplingOptions {
     values: Map<String, Json>,
@@ -126,7 +125,7 @@ pub(crate) struct SamplingOptions {
 }
 
 impl SamplingOptions {
-    /// The settings in a box; what was not asked for has its default.
+    /// The settings for a box, with defaults for options that were not given.
     ///
     /// # Panics
     ///
@@ -138,7 +137,7 @@ impl SamplingOptions {
         }
         let mut settings: Settings =
             serde_json::from_value(values.into()).expect("clap has checked the values");
-        // Asking for a number of particles is asking for the room they take.
+        // A wanted number of particles raises the limit so that they have room.
         if self.values.contains_key(COUNT) && !self.values.contains_key(MAX_PARTICLES) {
             let room = (f64::from(settings.count) * COUNT_ROOM).ceil() as u32;
             settings.max_particles = settings.max_particles.max(room);
@@ -146,22 +145,22 @@ impl SamplingOptions {
         settings
     }
 
-    /// Whether a radius is asked for.
+    /// Whether a radius was given.
     pub(crate) fn has_radius(&self) -> bool {
         self.lengths.iter().any(|(given, _)| *given == RADIUS)
     }
 
-    /// Whether sizes that follow the curvature are asked for.
+    /// Whether sizes that follow the curvature were requested.
     pub(crate) fn is_adaptive(&self) -> bool {
         self.values.get(SAMPLING).is_some_and(|sampling| sampling == ADAPTIVE)
     }
 
-    /// Whether a number of particles is asked for.
+    /// Whether a number of particles was given.
     pub(crate) fn is_counted(&self) -> bool {
         self.values.contains_key(COUNT)
     }
 
-    /// Asks for particles of one size, as far apart as this.
+    /// Requests particles of one size with this spacing.
     pub(crate) fn space_evenly(&mut self, spacing: Length) {
         let radius = match spacing {
             Length::Share(share) => Length::Share(0.5 * share),
@@ -170,14 +169,14 @@ impl SamplingOptions {
         self.lengths.push((RADIUS, radius));
     }
 
-    /// Takes from settings what was not asked for.
+    /// Fills in from `settings` what was not given.
     pub(crate) fn complete(&mut self, settings: &Settings) {
-        // Who asks for a radius asks neither for a number of particles nor for many sizes.
+        // A given radius excludes a wanted number and varying sizes.
         if self.has_radius() {
             self.values.entry(SIZE_MODE).or_insert("radius".into());
             self.values.entry(SAMPLING).or_insert(UNIFORM.into());
         }
-        // There is room for what is asked for.
+        // Room for the wanted number.
         let is_counted = self.values.contains_key(COUNT);
         let Ok(Json::Object(known)) = serde_json::to_value(settings) else { return };
         for (name, value) in known {
@@ -188,8 +187,8 @@ impl SamplingOptions {
         }
     }
 
-    /// Checks that every setting that was given has an effect beside the others, and beside a
-    /// spacing by a formula where one `is_spaced`.
+    /// Checks that every given setting has an effect together with the others and, if `is_spaced`,
+    /// with a spacing by a formula.
     pub(crate) fn check(&self, is_spaced: bool) -> Result<(), Failure> {
         let given: Vec<&str> = self.given.iter().map(|setting| setting.name).collect();
         let values = self.settings(&Bounds::cube(1.0));
@@ -209,14 +208,14 @@ impl SamplingOptions {
         }
     }
 
-    /// Takes the refined method, unless the options say which method places the particles.
+    /// Chooses the refined method, unless an option chooses how particles are placed.
     pub(crate) fn prefer_refined(&mut self) {
         if ![METHOD, RELAX_STEPS].iter().any(|name| self.values.contains_key(*name)) {
             self.values.insert(METHOD.to_owned(), "refined".into());
         }
     }
 
-    /// [`SamplingOptions::settings`], in which a radius that was given as a length stays one.
+    /// [`SamplingOptions::settings`], except that a radius given as a length stays a length.
     pub(crate) fn settings_by_length(&self, bounds: &Bounds) -> Settings {
         let mut settings = self.settings(bounds);
         for (name, length) in &self.lengths {
@@ -227,7 +226,7 @@ impl SamplingOptions {
         settings
     }
 
-    /// Whether a length is given that is a share of the box in the settings.
+    /// Whether a given length becomes a share of the box in the settings.
     pub(crate) fn depends_on_box(&self) -> bool {
         self.lengths.iter().any(|(name, length)| *name != RADIUS && matches!(length, Length::Units(_)))
     }
@@ -286,8 +285,8 @@ impl FromArgMatches for SamplingOptions {
     }
 }
 
-/// Whether a setting has an option here. Those of the box are among the options of the surface,
-/// which say more.
+/// Whether a setting has an option here. The options of the surface include more detailed ones for
+/// the box.
 fn is_of_run(setting: &Setting) -> bool {
     setting.name != SIZE_MODE && setting.group != SettingGroup::Box
 }
@@ -314,8 +313,8 @@ fn option(setting: &Setting) -> Arg {
         }
         SettingKind::Integer => {
             let (min, max) = setting.accepted().into_inner();
-            // Counts that are too large are refused with what they are counts of, by the settings
-            // themselves.
+            // Counts that are too large are left to the settings, whose message says what they
+            // count.
             let largest = if max > f64::from(u32::MAX) { u64::MAX } else { u32::MAX.into() };
             let range = min as u64..=max as u64;
             arg.value_name("N").value_parser(move |text: &str| whole_up_to(text, &range, largest))

@@ -13,20 +13,20 @@ use std::collections::BTreeMap;
 /// Wall times of the phases in seconds.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(crate) struct Seconds {
-    /// Time to read points and to fit a field to them, or to read an image or a mesh.
+    /// Time to read points and fit a field to them, or to read an image or a mesh.
     pub(crate) points: f64,
     pub(crate) seeding: f64,
     pub(crate) generation: f64,
     pub(crate) refinement: f64,
     pub(crate) relaxation: f64,
     pub(crate) quality: f64,
-    /// Time to join the particles to triangles.
+    /// Time to triangulate.
     pub(crate) mesh: f64,
     pub(crate) writing: f64,
 }
 
 impl Seconds {
-    /// The time of all phases.
+    /// The total time of all phases.
     pub(crate) fn all(&self) -> f64 {
         let Self { points, seeding, generation, refinement, relaxation, quality, mesh, writing } = *self;
         points + seeding + generation + refinement + relaxation + quality + mesh + writing
@@ -40,10 +40,10 @@ pub(crate) struct Outcome {
     pub(crate) surface: Option<String>,
     /// Report of the fit, for a surface near points.
     pub(crate) model: Option<ModelInfo>,
-    /// The image, for a surface in one.
+    /// The image, if the surface is in one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) image: Option<ImageInfo>,
-    /// The mesh that was sampled anew.
+    /// The mesh that was sampled again.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) remesh: Option<RemeshInfo>,
     pub(crate) formula: String,
@@ -64,12 +64,11 @@ pub(crate) struct Outcome {
     pub(crate) seconds: Seconds,
     /// Peak resident memory of the process in 10⁶ bytes; null if the system does not report it.
     pub(crate) peak_mb: Option<f64>,
-    /// Peak resident memory at the end of the sampling, before quality is measured and files are
-    /// written.
+    /// Peak resident memory after sampling, before quality is measured and files are written.
     pub(crate) peak_sampling_mb: Option<f64>,
     /// Names of the files written, with replacement characters for invalid Unicode.
     pub(crate) files: Vec<String>,
-    /// Whether one of the files is of a format that is printed in.
+    /// Whether one of the files has a format used for 3D printing.
     #[serde(skip)]
     pub(crate) is_printed: bool,
 }
@@ -78,7 +77,7 @@ pub(crate) struct Outcome {
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Porosity {
     pub(crate) wanted: f64,
-    /// The porosity by the volume of the mesh; none if the mesh is open.
+    /// The porosity according to the volume of the mesh; none if the mesh is open.
     pub(crate) reached: Option<f64>,
 }
 
@@ -91,26 +90,26 @@ pub(crate) struct MeshCounts {
     pub(crate) euler: i64,
     /// Border loops where the surface ends.
     pub(crate) borders: usize,
-    /// Border loops where no manifold could be had.
+    /// Border loops of holes that the triangulation could not close as a manifold.
     pub(crate) holes: usize,
     /// Particles in no triangle.
     pub(crate) left_out: usize,
-    /// Volume that it encloses; none where it is open.
+    /// Enclosed volume; none if the mesh is open.
     pub(crate) volume: Option<f64>,
-    /// Sign of f inside of the closed parts, which face outward whatever it is.
+    /// Sign of f inside the closed parts, which face outward in any case.
     pub(crate) inside: Option<Inside>,
-    /// Smallest angle of any triangle in degrees, those at borders among them.
+    /// Smallest angle of all triangles in degrees, including those at borders.
     pub(crate) smallest_angle: Option<f64>,
-    /// Bodies that are no loose chips: closed components with the walls of their hollows, and open
-    /// ones.
+    /// Bodies that are not chips: closed components with the walls of their hollows, and open
+    /// components.
     pub(crate) parts: usize,
-    /// Bodies that are small beside the largest.
+    /// Bodies that are small compared with the largest.
     pub(crate) chips: usize,
-    /// Bodies that the files do not hold.
+    /// Bodies that are not written to the files.
     pub(crate) parts_left_out: usize,
     /// Sides of the box around the bodies in the files, in their unit.
     pub(crate) size: [f64; 3],
-    /// The unit of the files; none where the lengths are those of the formula.
+    /// The unit of the files; none if lengths are those of the formula.
     pub(crate) unit: Option<Unit>,
 }
 

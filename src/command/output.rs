@@ -6,11 +6,11 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
-/// The name of standard output among files, and of standard input.
+/// The file name that stands for standard output or input.
 pub(crate) const STANDARD: &str = "-";
 
-/// A file that is written beside its path and takes the place of what is there when it is complete.
-/// Until then what is there stays. Standard output has nothing beside it.
+/// A file that is written under another name in the same folder and replaces an existing file only
+/// when complete. Standard output is written directly.
 #[derive(Debug)]
 pub(crate) struct OutputFile {
     path: PathBuf,
@@ -21,8 +21,7 @@ impl OutputFile {
     ///
     /// # Errors
     ///
-    /// If a directory does not take files, a path is that of a directory, or two paths are of one
-    /// file.
+    /// If a directory is not writable, a path is a directory, or two paths are the same file.
     pub(crate) fn beside(paths: &[&PathBuf]) -> Result<Vec<Self>, Failure> {
         let mut outputs: Vec<Self> = Vec::new();
         for &path in paths {
@@ -46,8 +45,8 @@ impl OutputFile {
         if output.path.is_dir() {
             return Err(io::ErrorKind::IsADirectory.into());
         }
-        // Whether the directory takes files is known before a long run. The file itself is made
-        // after it: a run that is interrupted leaves nothing there.
+        // Shows before a long run whether the directory is writable. The file itself is created
+        // after the run, so that an interrupted run leaves nothing behind.
         output.file_beside()?;
         Ok(output)
     }
@@ -62,7 +61,7 @@ impl OutputFile {
         builder.tempfile_in(self.path.parent().unwrap_or(Path::new(".")))
     }
 
-    /// Writes the file and puts it in its place.
+    /// Writes the file and moves it to its path.
     pub(crate) fn write(self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
         if self.path == Path::new(STANDARD) {
             let mut out = BufWriter::new(io::stdout().lock());
@@ -78,15 +77,14 @@ impl OutputFile {
     }
 }
 
-/// The path of the record of a file that has no place for one in it: beside it, with .json after
-/// its name.
+/// The path of the record of a file that cannot contain it: the file's name with .json appended.
 pub(crate) fn record_path(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".json");
     name.into()
 }
 
-/// The path of the file itself, where `path` is a link or has steps back.
+/// The path of the file itself, with links and `..` resolved.
 fn resolved(path: &Path) -> io::Result<PathBuf> {
     match path.canonicalize() {
         Ok(path) => Ok(path),
@@ -98,7 +96,7 @@ fn resolved(path: &Path) -> io::Result<PathBuf> {
     }
 }
 
-/// Permissions of a new file, of which the system takes the user's mask away.
+/// Permissions of a new file, before the system applies the user's mask.
 #[cfg(unix)]
 fn new_file() -> fs::Permissions {
     use std::os::unix::fs::PermissionsExt as _;

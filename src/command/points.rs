@@ -1,4 +1,4 @@
-//! Fields from points: those of a file or of a built-in model.
+//! Fields from the points of a file or of a built-in model.
 
 use crate::failure::Failure;
 use crate::output::STANDARD;
@@ -23,7 +23,7 @@ pub(crate) fn of_file(path: &Path, centres: u32, bar: &ProgressBar) -> Result<Fi
     let unreadable = |error| Failure::Unreadable { path: path.to_owned(), error };
     let file = File::open(path).map_err(unreadable)?;
     let metadata = file.metadata().map_err(unreadable)?;
-    // The size of a regular file is checked first; of others, no more than the limit is read.
+    // The size of a regular file is checked first; from others at most the limit is read.
     if metadata.is_file() {
         check_size(metadata.len()).map_err(|error| wrong(error.into()))?;
     }
@@ -32,14 +32,14 @@ pub(crate) fn of_file(path: &Path, centres: u32, bar: &ProgressBar) -> Result<Fi
     solve(Job::file(&name, bytes, centres), bar).map_err(wrong)
 }
 
-/// Fits a field to the points that come by standard input, in a format that they tell themselves.
+/// Fits a field to the points from standard input, whose content tells the format.
 fn of_standard_input(centres: u32, bar: &ProgressBar) -> Result<Fit, Failure> {
     const NAME: &str = "standard input";
     let bytes = read(io::stdin()).map_err(|error| Failure::Unreadable { path: NAME.into(), error })?;
     solve(Job::file(NAME, bytes, centres), bar).map_err(|error| Failure::Usage(format!("{NAME}: {error}")))
 }
 
-/// All of a file, but no more than one byte above the limit.
+/// The content of a file, but at most one byte more than the limit.
 fn read(file: impl Read) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     file.take(u64::from(model::MAX_FILE_BYTES) + 1).read_to_end(&mut bytes)?;

@@ -1,5 +1,5 @@
-//! The option `--porosity`: the thickness of a sheet is found, its run is made, and where the mesh
-//! leaves another share of the box empty than is wanted, the thickness is corrected for it.
+//! The option `--porosity`: finds the thickness of a sheet and runs it; if the mesh leaves another
+//! share of the box empty than wanted, corrects the thickness.
 
 use crate::failure::Failure;
 use crate::outcome::Porosity;
@@ -7,28 +7,28 @@ use crate::surface::{fit, refused_solid};
 use marching_particles::session::{FieldRequest, Session, SolidSettings, Source};
 use marching_particles::{Bounds, Settings, Thickness};
 
-/// Largest difference from the wanted share that is not corrected.
+/// Largest difference from the wanted share that needs no correction.
 const CLOSE: f64 = 1e-3;
-/// Runs in which the share is corrected. The difference depends little on the thickness, so that
-/// one is enough but for coarse particles.
+/// Most corrections. The difference depends little on the thickness, so one correction is enough
+/// except for coarse particles.
 const CORRECTIONS: u32 = 2;
 
-/// A porosity on the way to what is wanted.
+/// The search for the thickness with the wanted porosity.
 pub(crate) struct Wish {
     wanted: f64,
-    /// The share at which the thickness is aimed: the mesh is another body than the sheet.
+    /// The share that the thickness is computed for: the mesh is another body than the sheet.
     aim: f64,
-    /// The solid; its thickness is a formula that is to be scaled, or none.
+    /// The solid. Its thickness is absent, or a formula to be scaled.
     solid: SolidSettings,
-    /// The box that closes it.
+    /// The box that closes the solid.
     bounds: Bounds,
     corrections: u32,
     reached: Option<f64>,
 }
 
 impl Wish {
-    /// Has the session close the surface by its box, and take the thickness for the wanted share.
-    /// The box is that of the surface without a sheet.
+    /// Closes the session's surface by its box and sets the thickness for the wanted share. The box
+    /// is fitted to the surface without the sheet.
     pub(crate) fn begin(
         session: &mut Session,
         solid: SolidSettings,
@@ -53,7 +53,7 @@ impl Wish {
         Ok(wish)
     }
 
-    /// Has the session take the thickness for the share at which it is aimed.
+    /// Sets the session's thickness for the share `aim`.
     fn take_thickness(&self, session: &mut Session) -> Result<(), Failure> {
         let Source::Formula(surface) = session.run.field() else { return Ok(()) };
         let shape = self.solid.made_of(surface.clone(), None);
@@ -64,8 +64,8 @@ impl Wish {
         session.choose(solid).map_err(|fault| refused_solid(&self.solid, fault))
     }
 
-    /// Takes the volume of the mesh, if it is closed. Returns whether another run is to be made,
-    /// for which the session then has the thickness.
+    /// Takes the volume of the mesh, if it is closed. Returns whether another run is needed; then
+    /// the session already has the new thickness.
     pub(crate) fn corrects(&mut self, session: &mut Session, volume: Option<f64>) -> Result<bool, Failure> {
         self.reached = volume.map(|volume| 1.0 - volume / self.bounds.size().element_product());
         let Some(reached) = self.reached else { return Ok(false) };
@@ -79,7 +79,7 @@ impl Wish {
         Ok(true)
     }
 
-    /// The wanted porosity, and that of the last mesh.
+    /// The wanted porosity, and the one of the last mesh.
     pub(crate) fn outcome(&self) -> Porosity {
         Porosity { wanted: self.wanted, reached: self.reached }
     }

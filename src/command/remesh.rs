@@ -1,4 +1,4 @@
-//! Fields from triangle meshes, and how far the new mesh is from the old one.
+//! Fields from triangle meshes, and the distance of the new mesh from the old one.
 
 use crate::arguments::SurfaceArguments;
 use crate::failure::Failure;
@@ -9,26 +9,26 @@ use serde::Serialize;
 use std::io::Read;
 use std::path::Path;
 
-/// The mesh that is sampled anew, as the report names it.
+/// The mesh that is sampled again, for the report.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct RemeshInfo {
     /// Name of the file.
     pub(crate) name: String,
-    /// Vertices and faces, as they were mended.
+    /// Vertices and faces after the repairs.
     pub(crate) vertices: usize,
     pub(crate) faces: usize,
-    /// Pieces that are not joined by edges of two faces.
+    /// Pieces, each connected through edges with two faces.
     pub(crate) pieces: usize,
     /// Edges with one face, and with more than two.
     pub(crate) border_edges: usize,
     pub(crate) fan_edges: usize,
-    /// What was mended, in words.
+    /// The repairs, in words.
     pub(crate) mended: Vec<String>,
-    /// What the field is made of, in words.
+    /// How the mesh became a field, in words.
     pub(crate) made: Vec<String>,
-    /// What the reader has left out.
+    /// What the reader left out.
     pub(crate) notes: Vec<String>,
-    /// What has become of the mesh; none without a new one.
+    /// The comparison with the new mesh; none without a new mesh.
     pub(crate) change: Option<MeshChange>,
 }
 
@@ -66,7 +66,7 @@ fn read(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// What the field is made of.
+/// How the mesh became a field, in words.
 fn made(field: &MeshField, edges: MeshEdges) -> Vec<String> {
     match field.kind() {
         MeshKind::Parts { patches, edges, corners, faded, .. } => {
@@ -96,7 +96,7 @@ fn made(field: &MeshField, edges: MeshEdges) -> Vec<String> {
 }
 
 impl RemeshInfo {
-    /// Measures how far the mesh of a sample is from the old one.
+    /// Compares the mesh of a sample with the old one.
     pub(crate) fn compare(&mut self, field: &MeshField, sample: &Sample) {
         let new = sample.buffers(Vertices::Joined);
         self.change = Some(field.compare(&new.positions, &new.triangles));
@@ -133,7 +133,7 @@ impl RemeshInfo {
         lines
     }
 
-    /// The lines on what has become of the mesh.
+    /// The lines of the report that compare both meshes.
     pub(crate) fn change_lines(&self) -> Vec<String> {
         let Some(change) = &self.change else { return Vec::new() };
         let share =

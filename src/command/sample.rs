@@ -25,13 +25,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Units of work between two readings of the clock. They take about 0.1 ms, which is the accuracy
-/// of the phases' times.
+/// Units of work between two readings of the clock: about 0.1 ms, the accuracy of the phases'
+/// times.
 const BUDGET: u32 = 256;
-/// Slices of joining between two updates of the progress bar: some 6 ms.
+/// Slices of triangulation between two updates of the progress bar: about 6 ms.
 const SLICES: u32 = 256;
 
-/// The record of what a file was made from: in it, or in the file beside it.
+/// Reads the record of how a file was made, from the file or from the .json file next to it.
 fn read_record(path: &Path, surface: &SurfaceArguments) -> Result<FileRecord, Failure> {
     let unreadable = |error| Failure::Unreadable { path: path.to_owned(), error };
     let bytes = std::fs::read(path).map_err(unreadable)?;
@@ -128,7 +128,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     };
     let bar = bar(arguments.quiet);
     let measured = arguments.report.measured();
-    // A mesh is compared with the one that it was made of.
+    // The new mesh is compared with the given one.
     let is_remeshed = matches!(origin, Origin::Mesh(_)) && arguments.surface.formula.is_none();
     let is_mesh = !mesh_formats.is_empty() || wish.is_some() || is_remeshed;
     let (settings, predicted_count, is_joined, peak_sampling_mb) = loop {
@@ -153,10 +153,10 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     };
     let reach = session.run.reach();
     let bounds = session.run.bounds();
-    // No record holds an image or a mesh.
+    // A record cannot hold an image or a mesh.
     let mut made = session.record(None);
     if let Some(made) = &mut made {
-        // The steps that were asked for, though an even surface takes fewer.
+        // The requested steps, although an even surface takes fewer.
         made.settings.relax_steps = settings.relax_steps;
         if matches!(origin, Origin::Points(_)) {
             made.surface.clone_from(&arguments.surface.surface);
@@ -266,7 +266,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The values of columns that are asked for, made of the parameters of the surface, too.
+/// The values of the requested columns; their formulas may use the surface's parameters.
 fn values<'a>(given: &'a [(String, String)], session: &Session) -> Result<Vec<(&'a str, Value)>, Failure> {
     let parameters = session.answer().parameters;
     let value = |(name, text): &'a (String, String)| match Value::of_formula(text, &parameters) {
@@ -280,7 +280,7 @@ fn values<'a>(given: &'a [(String, String)], session: &Session) -> Result<Vec<(&
     given.iter().map(value).collect()
 }
 
-/// Why there is no sample, by the names of the options.
+/// Why there is no sample, with the names of the options.
 fn refusal_of_run(error: &Error) -> String {
     let message = error.to_string();
     match error {
@@ -289,7 +289,7 @@ fn refusal_of_run(error: &Error) -> String {
     }
 }
 
-/// Warning about a run that meets the limit on particles.
+/// Warning about a run that reaches the limit of particles.
 fn over_limit(predicted_count: u64, settings: &Settings) -> String {
     let limit = settings.max_particles;
     if settings.size_mode == SizeMode::Count && settings.count > limit {
@@ -299,7 +299,7 @@ fn over_limit(predicted_count: u64, settings: &Settings) -> String {
              --max-particles {room}"
         );
     }
-    // The prediction may be a little too low.
+    // The prediction may be slightly too low.
     let count = predicted_count.max(u64::from(limit) + 1);
     format!(
         "about {count} particles of this radius would fit on the surface, more than the limit of {limit}; \
@@ -308,7 +308,7 @@ fn over_limit(predicted_count: u64, settings: &Settings) -> String {
     )
 }
 
-/// Refuses a way to write vertices that makes no difference in any of the files.
+/// Refuses a choice of vertices that changes none of the files.
 fn check_vertices(arguments: &SampleArguments) -> Result<(), Failure> {
     let choice = VERTICES.iter().find(|choice| choice.value == arguments.vertices);
     let known = choice.map_or(&[][..], |choice| choice.formats);
@@ -326,7 +326,7 @@ fn check_vertices(arguments: &SampleArguments) -> Result<(), Failure> {
     )))
 }
 
-/// Refuses what is for a mesh file where there is none.
+/// Refuses options for mesh files if there is no mesh file.
 fn check_placement(arguments: &SampleArguments) -> Result<(), Failure> {
     let usual = Placement::default();
     let Placement { scale, unit, up } = arguments.placement(0.0);
@@ -346,7 +346,7 @@ fn check_placement(arguments: &SampleArguments) -> Result<(), Failure> {
     }
 }
 
-/// Format of each file, which another `option` may know. It is checked before any work is done.
+/// The format of each file, checked before any work. An error suggests the other `option`.
 fn formats<T>(
     arguments: &SampleArguments,
     paths: &[PathBuf],
@@ -378,7 +378,7 @@ fn is_standard(path: &Path) -> bool {
     path == Path::new(STANDARD)
 }
 
-/// The extension that names the format of a file.
+/// The extension that determines the format of a file.
 fn extension<'a>(arguments: &'a SampleArguments, path: &'a Path) -> Cow<'a, str> {
     match &arguments.format {
         Some(format) if is_standard(path) => format.into(),
@@ -386,9 +386,9 @@ fn extension<'a>(arguments: &'a SampleArguments, path: &'a Path) -> Cow<'a, str>
     }
 }
 
-/// Steps a run to its end and adds the times of the phases to `seconds`.
+/// Runs to the end and adds the times of the phases to `seconds`.
 fn step_to_end(run: &mut Run<Source>, seconds: &mut Seconds, bar: &ProgressBar) {
-    /// Steps of [`BUDGET`] units between two updates of the progress bar: some 6 ms.
+    /// Steps of [`BUDGET`] units between two updates of the progress bar: about 6 ms.
     const UPDATE: u32 = 64;
     let mut phase = Phase::Seeding;
     let mut steps = 0_u32;
@@ -425,8 +425,8 @@ fn step_to_end(run: &mut Run<Source>, seconds: &mut Seconds, bar: &ProgressBar) 
     }
 }
 
-/// Joins the particles of a run, and adds the time to `seconds`. Returns the volume of the mesh, if
-/// it is closed.
+/// Triangulates the particles of a run and adds the time to `seconds`. Returns the volume of the
+/// mesh, if it is closed.
 fn join(run: &mut Run<Source>, seconds: &mut Seconds, bar: &ProgressBar) -> Option<f64> {
     bar.set_message("joining the particles");
     timed(&mut seconds.mesh, || {

@@ -6,7 +6,7 @@ use crate::options::{Length, length, number};
 use marching_particles::math::shortest_text;
 use marching_particles::session::{FaultKind, Session, SpacingText};
 
-/// A spacing on the command line.
+/// A spacing from the command line.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum SpacingOption {
     /// The same everywhere.
@@ -15,7 +15,7 @@ pub(crate) enum SpacingOption {
     Formula(String),
 }
 
-/// A spacing from an argument: a length, or a formula, whose mistakes the session finds.
+/// A spacing from an argument: a length, or a formula, which the session checks.
 pub(crate) fn spacing(text: &str) -> Result<SpacingOption, String> {
     if text.trim_end().ends_with('%') || number(text).is_ok() {
         return length(text).map(SpacingOption::Even);
@@ -32,8 +32,8 @@ pub(crate) fn units(text: &str) -> Result<f64, String> {
 }
 
 impl SampleArguments {
-    /// The spacing by a formula. One that is the same everywhere becomes a radius, unless sizes
-    /// follow the curvature, too.
+    /// The spacing formula. A constant spacing becomes a radius instead, unless sizes also follow
+    /// the curvature.
     pub(crate) fn spacing_text(&mut self) -> Result<Option<SpacingText>, Failure> {
         let (smallest, largest) = (self.spacing_min, self.spacing_max);
         let is_limited = smallest.or(largest).is_some();
@@ -66,12 +66,12 @@ impl SampleArguments {
     }
 }
 
-/// Has the session space the particles of its runs.
+/// Sets the spacing for the session's runs.
 pub(crate) fn space(session: &mut Session, text: Option<SpacingText>) -> Result<(), Failure> {
     let formula = text.as_ref().map_or_else(String::new, |text| text.formula.clone());
     session.space(text).map_err(|fault| match fault.kind {
         FaultKind::Spacing => Failure::Formula { text: formula, fault: Box::new(fault) },
-        // A limit that is out of its range begins its sentence.
+        // Such a message begins with the name of the limit that is out of range.
         _ => Failure::Usage(fault.message.replacen("spacing_m", "--spacing-m", 1)),
     })
 }

@@ -149,7 +149,7 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes the origin of a surface near points and the distances of the points from it.
+/// Writes the source of the points and their distances from the surface.
 fn points(out: &mut impl Write, title: &str, model: &ModelInfo) -> io::Result<()> {
     let credit = if model.credit.is_empty() { "" } else { ", " };
     writeln!(out, "{title}: {}{credit}{}", model.name, model.credit)?;
@@ -173,8 +173,8 @@ fn points(out: &mut impl Write, title: &str, model: &ModelInfo) -> io::Result<()
     )
 }
 
-/// Writes the table of quality figures, before and after relaxation. The group `Run` of the report
-/// is left out, because the lines above the table have it.
+/// Writes the table of quality figures, before and after relaxation, without the group `Run`, which
+/// the lines above already contain.
 fn table(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     let report = serde_json::to_value(&outcome.report).map_err(io::Error::other)?;
     let compared = !report["quality_before"].is_null();
@@ -210,14 +210,14 @@ fn figure(row: &ReportRow, value: Option<&Value>) -> String {
     let (value, unit) = match row.unit {
         "%" => (value * 100.0, " %"),
         "°" => (value, "°"),
-        // In the units of the formula, which may be of any size.
+        // In the units of the formula, so of any magnitude.
         "units²" | "units³" => return significant(value),
         _ => (value, ""),
     };
     format!("{value:.*}{unit}", usize::from(row.digits))
 }
 
-/// A mesh in a line.
+/// A mesh in one line.
 fn mesh_line(mesh: &MeshCounts) -> String {
     let borders = match mesh.borders + mesh.holes {
         0 if mesh.volume.is_some() => "closed".to_owned(),

@@ -55,7 +55,7 @@ fn fit_points(arguments: &SurfaceArguments, quiet: bool) -> Result<Option<Fit>, 
     Ok(fit)
 }
 
-/// What a surface is made from that is no formula.
+/// What a surface is made from.
 #[derive(Clone, Debug)]
 pub(crate) enum Origin {
     Formula,
@@ -65,7 +65,7 @@ pub(crate) enum Origin {
     Mesh(Box<(MeshField, RemeshInfo)>),
 }
 
-/// Has the session take the surface that the arguments name.
+/// Sets the session's surface to the one that the arguments name.
 pub(crate) fn choose(
     session: &mut Session,
     arguments: &SurfaceArguments,
@@ -111,7 +111,7 @@ pub(crate) fn choose(
         request.surface = Some(gallery::SURFACES[0].id.to_owned());
     }
     let named = request.surface.as_deref().and_then(gallery::find);
-    // In another formula the values of the surface's parameters stay what they are.
+    // A replaced formula keeps the values of the surface's parameters.
     let own = named.iter().flat_map(|surface| surface.parameters).map(|p| (p.name.to_string(), p.value));
     request.parameters = own.chain(arguments.parameters.iter().cloned()).collect();
     request.declare = arguments.parameters.iter().map(|(name, _)| Parameter::automatic(name)).collect();
@@ -124,7 +124,7 @@ pub(crate) fn choose(
         ));
     }
     check_parameters(arguments, &answer)?;
-    // Its thickness may have names of the formula.
+    // The thickness may use names of the formula.
     session.choose(solid.clone()).map_err(|fault| refused_solid(&solid, fault))?;
     Ok(Origin::Formula)
 }
@@ -153,7 +153,7 @@ fn check_parameters(arguments: &SurfaceArguments, answer: &FieldAnswer) -> Resul
     Ok(())
 }
 
-/// Finds the box of the next run: the settings in it.
+/// Finds the box of the next run. Returns the settings for it.
 pub(crate) fn fit(
     session: &mut Session,
     settings_in: &dyn Fn(&Bounds) -> Settings,
@@ -168,7 +168,7 @@ pub(crate) fn fit(
     Ok(settings_in(&session.run.bounds()))
 }
 
-/// Why no two faces of a box are the same, for a surface of these periods.
+/// Why no two faces of a box are equal, for a surface with these periods.
 fn not_periodic(periods: [Option<f64>; 3]) -> String {
     let known: Vec<String> = ["x", "y", "z"]
         .iter()

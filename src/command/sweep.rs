@@ -1,4 +1,4 @@
-//! Subcommand `sweep`: a surface that moves, as numbered files of the particles that follow it.
+//! Subcommand `sweep`: moves a surface and writes the particles that follow it to numbered files.
 
 use crate::arguments::{Sweep, SweepArguments};
 use crate::bar::bar;
@@ -11,9 +11,9 @@ use marching_particles::{Bounds, FollowError, Particles, StopReason, export};
 use std::io::Write;
 use std::process::ExitCode;
 
-/// Values of the parameter, spread over its range, at which a box is fitted. In between the surface
-/// may be larger: where its size grows and shrinks as a parabola, by (1/8)² of the growth, 1.6 %,
-/// at most, and a fitted box has 5 % of its size as room on every side.
+/// Number of parameter values, spread over the range, for which a box is fitted. In between, a size
+/// that grows and shrinks as a parabola is larger by at most (1/8)² of the growth, 1.6 %; a fitted
+/// box has a margin of 5 % on every side.
 const FITTED: u32 = 9;
 
 pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
@@ -32,7 +32,7 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
         return Err(Failure::Usage(message.to_owned()));
     }
     let mut session = Session::without_surface();
-    // The parameter has to be there.
+    // The swept parameter must exist.
     arguments.surface.parameters.retain(|(name, _)| *name != sweep.name);
     arguments.surface.parameters.push((sweep.name.clone(), sweep.from));
     choose(&mut session, &arguments.surface, arguments.quiet)?;
@@ -40,11 +40,11 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
         set_at(&mut session, &sweep, f64::from(k) / f64::from(FITTED - 1), None)?;
         fit(&mut session, &settings_in, k > 0)?;
         if session.answer().reach.is_none() {
-            // The box is given, or the surface's own.
+            // The box is given, or belongs to the surface.
             break;
         }
     }
-    // A solid is closed anew in every frame.
+    // A solid's box is fitted again in every frame.
     let bounds = Some(session.run.bounds()).filter(|_| !arguments.surface.closed);
     let bar = bar(arguments.quiet);
     bar.set_length(u64::from(frames) + 1);
@@ -78,7 +78,7 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
         return Err(Failure::Nothing("there is no surface in any frame".to_owned()));
     }
     let again = match anew.as_slice() {
-        // What this error says is for programs that use the library.
+        // This error's own message is for programs that use the library.
         [_, (frame, FollowError::NotCovered), ..] => {
             let why = "the frame before has too few particles, or was stopped";
             format!(", of {} runs; in frame {frame} the second begins: {why}", anew.len())
@@ -110,16 +110,16 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The numbers of particles in the frames so far, and of their identities.
+/// The numbers of particles, and of their identities, in the frames so far.
 #[derive(Default)]
 struct Counted {
     least: usize,
     most: usize,
-    /// Identities before those of the present run.
+    /// Number of identities before the current run.
     before: u32,
-    /// The identity after all so far.
+    /// The next unused identity.
     next: u32,
-    /// The frames in which runs begin, and why the particles before could not follow.
+    /// The frames in which runs begin, and why the earlier particles could not follow.
     anew: Vec<(u32, FollowError)>,
     /// Frames without particles.
     empty: u32,
@@ -128,19 +128,19 @@ struct Counted {
 }
 
 impl Counted {
-    /// Notes that another run begins: none of its particles was there before.
+    /// Records that another run begins, with particles that did not exist before.
     fn begin_anew(&mut self, frame: u32, error: FollowError) {
         self.before = self.next;
         self.anew.push((frame, error));
     }
 
-    /// Numbers the particles of a frame, so that no two of all runs have the same.
+    /// Numbers the particles of a frame so that identities are unique across all runs.
     fn number(&mut self, particles: &mut Particles) {
         if particles.identity.is_empty() {
             let mut numbers: Vec<u32> = Vec::with_capacity(particles.len());
             let mut next = 0;
             for row in 0..particles.len() {
-                // One on an edge has a row for each patch.
+                // A particle on an edge has a row for each patch.
                 let first = particles.first_row(row);
                 let number = if first == row { next } else { numbers[first] };
                 next = next.max(number + 1);
@@ -161,7 +161,7 @@ impl Counted {
     }
 }
 
-/// Has the session take the surface at a share of the way of the sweep.
+/// Sets the session's surface to a share of the sweep.
 fn set_at(session: &mut Session, sweep: &Sweep, share: f64, bounds: Option<Bounds>) -> Result<(), Failure> {
     let value = sweep.from + (sweep.to - sweep.from) * share;
     let parameters = [(sweep.name.clone(), value)].into();

@@ -1,5 +1,5 @@
-//! The option `--wall` beside `--size`: the thickness of a sheet as a share of the longest side of
-//! the mesh. That is known after a run, so a thickness that misses it is corrected.
+//! The option `--wall` with `--size`: the thickness of a sheet as a share of the mesh's longest
+//! side. The side is known only after a run, so the thickness may need a correction.
 
 use crate::arguments::{Length, SampleArguments};
 use crate::failure::Failure;
@@ -7,15 +7,15 @@ use crate::surface::{fit, refused_solid};
 use marching_particles::session::{Session, SolidSettings, Source};
 use marching_particles::{Bodies, Bounds, Run, Settings, Thickness, Unit};
 
-/// Largest relative difference from the wanted wall that is not corrected: printers do not resolve
-/// it.
+/// Largest relative difference from the wanted wall that needs no correction: printers do not
+/// resolve it.
 const CLOSE: f64 = 5e-3;
-/// Runs in which the thickness is corrected. A sheet grows by its thickness at most, so that each
-/// of them leaves the share of the wall of the difference.
+/// Most corrections. A sheet grows by at most its thickness, so each correction reduces the
+/// difference to the wall's share of the longest side.
 const CORRECTIONS: u32 = 2;
 
 impl SampleArguments {
-    /// The wanted wall: as a length of the formula, or as a share of the longest side.
+    /// The wanted wall, as a length of the formula or as a share of the longest side.
     pub(crate) fn wall_share(&self) -> Option<WallShare> {
         let wall = self.wall?;
         Some(match self.size {
@@ -28,14 +28,14 @@ impl SampleArguments {
     }
 }
 
-/// What a wall is given by.
+/// How a wall is specified.
 #[derive(Clone, Copy)]
 pub(crate) enum WallShare {
     Length(f64),
     OfSide(f64),
 }
 
-/// A wall on the way to what is wanted.
+/// The search for the thickness that gives the wanted wall.
 pub(crate) struct Wall {
     share: WallShare,
     solid: SolidSettings,
@@ -44,7 +44,7 @@ pub(crate) struct Wall {
 }
 
 impl Wall {
-    /// Has the session take the thickness for a mesh that is as long as the box.
+    /// Sets the session's thickness, assuming that the mesh is as long as the box.
     pub(crate) fn begin(
         session: &mut Session,
         solid: SolidSettings,
@@ -58,7 +58,7 @@ impl Wall {
         Ok(wall)
     }
 
-    /// Has the session take the thickness for a longest side.
+    /// Sets the session's thickness for a mesh with this longest side.
     fn take(&mut self, session: &mut Session, side: f64) -> Result<(), Failure> {
         self.thickness = self.wanted(side);
         let solid = SolidSettings { thickness: Thickness::Number(self.thickness), ..self.solid.clone() };
@@ -72,8 +72,8 @@ impl Wall {
         }
     }
 
-    /// Looks at the mesh of the run. Returns whether another run is to be made, for which the
-    /// session then has the thickness.
+    /// Checks the mesh of the run. Returns whether another run is needed; then the session already
+    /// has the new thickness.
     pub(crate) fn corrects(&mut self, session: &mut Session, kept: Bodies) -> Result<bool, Failure> {
         let Some(side) = longest_side(&session.run, kept).filter(|&side| side > 0.0) else {
             return Ok(false);
@@ -88,7 +88,7 @@ impl Wall {
     }
 }
 
-/// The longest side of the box around some bodies of the mesh of a run, once it is joined.
+/// The longest side of the box around the chosen bodies of a run's mesh, once it is triangulated.
 fn longest_side(run: &Run<Source>, kept: Bodies) -> Option<f64> {
     let bodies = run.mesh()?.bodies(run.particles());
     Some(kept.size(&bodies).max_element())
