@@ -1,7 +1,7 @@
 //! The course of a run: which chapter comes next, and the units of work in it.
 //!
-//! A chapter is what a snapshot is taken before: a generation level, the filling of gaps, a
-//! relaxation step, or an iteration of a particle system.
+//! Before each chapter a snapshot can be taken. A chapter is a generation level, the filling of
+//! gaps, a relaxation step, or an iteration of a particle system.
 
 use super::dynamics::{Dynamics, largest_move};
 use super::event::Event;
@@ -17,8 +17,8 @@ use serde::Serialize;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-/// Distance at which the size of f tells a zero from a pole, in radii: ten times the residual,
-/// where f beside a pole has a tenth of its size and f beside a zero ten times as much.
+/// Distance, in radii, at which |f| distinguishes a zero from a pole. It is ten times the residual:
+/// there |f| near a pole has shrunk to a tenth, and |f| near a zero has grown tenfold.
 const POLE_PROBE: f64 = 1e-3;
 
 /// Kind of a chapter.
@@ -54,64 +54,64 @@ pub enum ChapterKind {
     },
 }
 
-/// Input of a run, which never changes.
+/// The input of a run, which never changes.
 pub(super) struct Setup {
     pub(super) settings: LessonSettings,
-    /// Points of the surface at which fronts may begin, in the order in which they are tried.
+    /// Points of the surface where fronts may begin, in the order in which they are tried.
     pub(super) candidates: Vec<DVec3>,
     /// Diagonal of the box around the surface.
     pub(super) diameter: f64,
 }
 
-/// A child that is predicted and not projected yet.
+/// A child that has been predicted but not yet projected.
 #[derive(Clone, Debug)]
 pub(super) struct Predicted {
     pub(super) child: ChildSlot,
     pub(super) circle: Circle,
-    /// The particle that the child would be where it is predicted.
+    /// The child as a particle at its predicted position.
     pub(super) placed: Particle,
 }
 
-/// A run on its way through the chapters. A clone goes on to the same end.
+/// The state of a run. A clone continues to the same end.
 #[derive(Clone)]
 pub(super) struct Course {
     pub(super) setup: Rc<Setup>,
     pub(super) run: PaperRun<Log>,
-    /// The particles that are not done, in the order in which they came.
+    /// Particles that are not done, in the order of their creation.
     pub(super) waiting: VecDeque<u32>,
-    /// Relaxation steps or iterations done.
+    /// Number of completed relaxation steps or iterations.
     pub(super) steps: u32,
-    /// Pushes of one particle by another that were summed for a move so far.
+    /// Number of pushes of one particle by another that have been summed for moves.
     pub(super) interactions: u64,
     /// The next candidate for a seed.
     candidate: usize,
     /// Number of fronts so far.
     pub(super) fronts: u32,
-    /// Chapters of the present front so far.
+    /// Chapters of the current front so far.
     part: u32,
     /// Whether the gaps have been filled.
     is_filled: bool,
-    /// Consecutive iterations of rest.
+    /// Consecutive quiet iterations.
     pub(super) quiet: u32,
-    /// Generator that decides deaths and the directions of fissions.
+    /// Random numbers that decide deaths and the directions of fissions.
     pub(super) random: Pcg32,
-    /// The chapter under way.
+    /// The current chapter.
     kind: Option<ChapterKind>,
-    /// Units left in the chapter under way.
+    /// Units left in the current chapter.
     pub(super) left: u32,
-    /// Children of the level that are predicted and not projected, the next one first.
+    /// Children of the level that are predicted but not projected; the next one comes first.
     pub(super) predicted: VecDeque<Predicted>,
-    /// Force on each particle, and what comes of it, in the relaxation step or iteration under way.
+    /// The force on each particle and its results, in the current relaxation step or iteration.
     pub(super) dynamics: Vec<Dynamics>,
 }
 
 impl Course {
-    /// The beginning of a run.
+    /// A run before its first chapter.
     pub(super) fn new(setup: Setup, mut surface: ImplicitSurface) -> Self {
         surface.evaluations = 0;
         let settings = &setup.settings;
         let mut random = Pcg32::seed_from_u64(u64::from(settings.seed));
-        // The first number has chosen the seed.
+        // The first number was used to choose the seed.
         random.next_u64();
         let run = PaperRun::new(surface, settings.rules(), Log::new(settings));
         Self {
@@ -193,12 +193,12 @@ impl Course {
                 self.run.seen.push(Event::LevelBegins { level, waiting });
                 ChapterKind::Level { front, level }
             }
-            // There are no rings: a chapter takes as many particles as waited when it began.
+            // A stack has no rings: a chapter treats as many particles as waited at its start.
             QueueOrder::Stack => ChapterKind::Stack { front, part },
         }
     }
 
-    /// Does one unit of work of the chapter, and says whether that was its last.
+    /// Does one unit of work of the chapter. Returns whether it was the last.
     pub(super) fn work(&mut self) -> bool {
         match self.kind {
             None => {}
@@ -239,19 +239,19 @@ impl Course {
         }
     }
 
-    /// Energy per particle where the particles are now, and the number of pushes of one by another.
+    /// Energy per particle now, and the number of pushes of one particle by another.
     fn repulsion(&mut self) -> (f64, u64) {
         self.run.regroup();
         let (mut energy, mut count) = (0.0, 0);
         for push in (0..self.run.particles.len() as u32).flat_map(|i| self.run.pushes(i)) {
-            // Each pair is met twice.
+            // Each pair is visited twice.
             energy += 0.5 * push.energy;
             count += 1;
         }
         (energy / self.run.particles.len() as f64, count)
     }
 
-    /// Tells how a force has moved a particle to where it is now.
+    /// Records how a force has moved a particle to its current position.
     pub(super) fn tell_move(&mut self, i: usize, force: DVec3, moved: &Move) {
         let Particle { position, normal, radius, .. } = self.run.particles[i];
         let (particle, is_kept) = (i as u32, moved.is_kept);
@@ -313,13 +313,13 @@ impl Course {
         }
     }
 
-    /// Whether a particle of its sheet is so near to a seed that its front has come by.
+    /// Whether a particle of the same sheet is so near a seed that its front has been there.
     fn is_covered(&self, seed: &Particle) -> bool {
         let near = self.run.buckets.near(&self.run.particles, seed.p(), f64::from(UNCOVERED) * seed.radius);
         near.iter().any(|near| self.run.particles[near.particle as usize].n().dot(seed.n()) > 0.0)
     }
 
-    /// Whether f comes to zero at a seed, and not to a pole: |f| grows away from a zero.
+    /// Whether f has a zero at a seed rather than a pole: |f| grows away from a zero.
     fn is_zero(&mut self, seed: &Particle) -> bool {
         let step = POLE_PROBE * seed.radius;
         let [here, above, below] =

@@ -1,4 +1,4 @@
-//! Dynamics of a particle in a relaxation step, or in an iteration of a particle system.
+//! The dynamics of a particle in a relaxation step or an iteration of a particle system.
 
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ pub(super) struct Dynamics {
     pub(super) force: DVec3,
     /// Energy, a measure of compression: D_i of Witkin and Heckbert, or Σ (overlap / mean radius)².
     pub(super) energy: f64,
-    /// Σ |r_ij|² E_ij, which tells how D_i changes with σ_i.
+    /// Σ |r_ij|² E_ij, from which follows how D_i changes with σ_i.
     pub(super) moment: f64,
     /// Whether the particle is near equilibrium.
     pub(super) is_at_rest: bool,

@@ -1,6 +1,6 @@
-//! The events of a run: plain data, in the order in which they happen.
+//! The events of a run, as plain data in the order in which they happen.
 //!
-//! Events of a child name its `parent` and its `slot`, since the children of a level may be placed
+//! Events of a child name its `parent` and `slot`, because the children of a level may be placed
 //! together. Lengths are in the field's coordinates, angles in radians.
 
 use crate::paper::{Nearby, Particle};
@@ -11,7 +11,7 @@ use serde::Serialize;
 pub type Vector = [f64; 3];
 
 /// An event. [`Event::Seed`], [`Event::Added`], [`Event::Fate`], [`Event::Done`], [`Event::Moved`],
-/// [`Event::Divided`] and [`Event::Died`] change the particles; the others tell why.
+/// [`Event::Divided`] and [`Event::Died`] change the particles; the others explain why.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonEvent"))]
 #[serde(tag = "type", rename_all = "snake_case")]
@@ -23,7 +23,7 @@ pub enum Event {
         /// Columns of the particle.
         data: Particle,
     },
-    /// A generation level begins: these particles wait to be treated.
+    /// A generation level begins: these particles wait for their turn.
     LevelBegins {
         /// Number of the level.
         level: u32,
@@ -60,7 +60,7 @@ pub enum Event {
         /// Position at this angle.
         place: Vector,
     },
-    /// The field is evaluated on the way to the surface (§4.3).
+    /// The field is evaluated in the search for the surface (§4.3).
     Iterate {
         /// The particle that places the child.
         parent: u32,
@@ -77,7 +77,7 @@ pub enum Event {
         /// Length |∇f| of the gradient at the position.
         slope: f64,
     },
-    /// The child has come to the surface.
+    /// The child has reached the surface.
     Landed {
         /// The particle that places the child.
         parent: u32,
@@ -94,9 +94,9 @@ pub enum Event {
     Gathered {
         /// The particle.
         particle: u32,
-        /// Distance within which they are looked for.
+        /// Distance within which neighbours are searched.
         reach: f64,
-        /// The particles of any sheet that were found, by index.
+        /// The particles found, on any sheet.
         neighbours: Vec<Nearby>,
     },
     /// A child is compared with the nearest particle of its sheet ("if an existing particle
@@ -106,9 +106,9 @@ pub enum Event {
         parent: u32,
         /// Number of the slot.
         slot: u32,
-        /// Position at which the child was compared: the predicted one, or that of the landing.
+        /// Position at which the child was compared, predicted or on the surface.
         position: Vector,
-        /// The nearest particle; none if none is near, or if it is a child that still has to be
+        /// The nearest particle; none if none is near, or if the nearest is a child that is not yet
         /// projected.
         against: Option<u32>,
         /// Distance to the nearest; none if nothing is near.
@@ -118,7 +118,7 @@ pub enum Event {
         /// Whether the distance is within the match radius.
         corresponds: bool,
     },
-    /// The child met a particle out of step: the front meets itself or another one, and a seam
+    /// The child met a particle out of step: the front meets itself or another front, and a seam
     /// begins.
     FrontsMeet {
         /// The particle that places the child.
@@ -145,7 +145,7 @@ pub enum Event {
         slot: u32,
         /// The fate.
         fate: SlotFate,
-        /// The new particle, or the one that was there.
+        /// The new particle, or the existing one.
         particle: Option<u32>,
     },
     /// The particle is marked as done.
@@ -162,7 +162,7 @@ pub enum Event {
         parent: u32,
         /// The particle before the free space; none if the whole circle is free.
         before: Option<u32>,
-        /// The particle behind the free space, in the direction of growing angles.
+        /// The particle after the free space, in the direction of increasing angles.
         behind: Option<u32>,
         /// Directions of the particles `before` and `behind` in the frame.
         angles_rad: [f64; 2],
@@ -173,8 +173,8 @@ pub enum Event {
         parent: u32,
         /// Number of the slot.
         slot: u32,
-        /// The point I of Fig. 7c, on the circle of the child before it; none for the first child
-        /// of a seed.
+        /// The point I of Fig. 7c, on the circle of the previous child; none for the first child of
+        /// a seed.
         tangent: Option<Vector>,
         /// The point s, in the tangent plane.
         position: Vector,
@@ -188,7 +188,7 @@ pub enum Event {
         parent: u32,
         /// Number of the slot.
         slot: u32,
-        /// Place after the push.
+        /// Position after the push.
         position: Vector,
         /// Repulsion radius at `position`.
         radius: f64,
@@ -199,12 +199,12 @@ pub enum Event {
         parent: u32,
         /// Number of the slot.
         slot: u32,
-        /// Place after the push.
+        /// Position after the push.
         position: Vector,
         /// Repulsion radius at `position`.
         radius: f64,
-        /// Largest overlap with another particle, as a share of r_i + r_j; negative if there is
-        /// none.
+        /// Largest overlap with another particle, as a share of r_i + r_j; negative without an
+        /// overlap.
         overlap: f64,
     },
     /// The angle φ that an adaptive child takes on the circle is compared with the free angle τ
@@ -214,14 +214,14 @@ pub enum Event {
         parent: u32,
         /// Number of the slot.
         slot: u32,
-        /// Angle that the child's diameter takes.
+        /// Angle that the child's diameter occupies.
         phi_rad: f64,
         /// Angle that is free.
         tau_rad: f64,
         /// Whether there is room.
         fits: bool,
     },
-    /// A gap beside a particle is looked at: the widest empty circle through it and two neighbours.
+    /// A gap next to a particle is examined: the widest empty circle through it and two neighbours.
     Gap {
         /// The particle.
         particle: u32,
@@ -232,7 +232,7 @@ pub enum Event {
     StepBegins {
         /// Number of the step, from 1.
         step: u32,
-        /// Size of the step: the share of the force by which a particle moves.
+        /// Size of the step: the factor between the force and the particle's move.
         size: f64,
         /// Energy per particle before it.
         energy: f64,
@@ -241,19 +241,19 @@ pub enum Event {
     Moved {
         /// The particle.
         particle: u32,
-        /// Sum of the repulsion, in the tangent plane; the step size times it is the move.
+        /// Sum of the repulsion, in the tangent plane; the move is the step size times this.
         force: Vector,
-        /// Target of the move, in the tangent plane; in Witkin and Heckbert's system with the way
-        /// back to the surface.
+        /// Target of the move in the tangent plane; in Witkin and Heckbert's system it includes the
+        /// return to the surface.
         target: Vector,
-        /// The place on the surface.
+        /// Position on the surface.
         position: Vector,
         /// Unit normal at `position`.
         normal: Vector,
         /// Repulsion radius at `position`.
         radius: f64,
-        /// Whether the particle stayed where it was, because the move leads out of the box, off the
-        /// surface or around a fold.
+        /// Whether the particle stayed where it was, because the move would have left the box or
+        /// the surface, or gone around a fold.
         is_kept: bool,
     },
     /// A relaxation step is over.
@@ -274,9 +274,9 @@ pub enum Event {
         /// Mean energy of the particles, or mean sum of their squared overlaps.
         energy: f64,
     },
-    /// A particle divides in two.
+    /// A particle divides into two.
     Divided {
-        /// The particle, whose place one child takes.
+        /// The particle, which one child replaces.
         particle: u32,
         /// Index of the other child.
         child: u32,
@@ -285,7 +285,7 @@ pub enum Event {
         /// Energy of the particle.
         energy: f64,
     },
-    /// A particle dies. Those behind it move up by one.
+    /// A particle dies. Later ones move up by one.
     Died {
         /// The particle.
         particle: u32,
@@ -300,14 +300,14 @@ pub enum Event {
         particles: u32,
         /// Longest move, in radii.
         largest_move: f64,
-        /// Mean move, in radii: the system has settled once this is small and nothing divides or
+        /// Mean move, in radii. The system has settled once it stays small and nothing divides or
         /// dies for a while.
         mean_move: f64,
     },
 }
 
 impl Event {
-    /// Changes the particles as the event did: all that a replay needs.
+    /// Changes the particles as the event did; enough for a replay.
     ///
     /// # Panics
     ///

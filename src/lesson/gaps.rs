@@ -1,4 +1,4 @@
-//! Filling of the gaps that fronts leave where they meet. The paper leaves them to the relaxation
+//! Fills the gaps that fronts leave where they meet. The paper leaves them to the relaxation
 //! (§4.5).
 
 use super::course::Course;
@@ -8,27 +8,27 @@ use crate::paper::{ChildSlot, Circle};
 use crate::particles::SlotFate;
 use glam::{DVec2, DVec3};
 
-/// A gap is filled if its centre is at least this far from every particle, in 2r. The triangles of
-/// a lattice have 0.577. Smaller: more particles are added; larger: wider holes stay.
+/// A gap is filled if its centre is at least this far from every particle, in 2r. In the triangles
+/// of a lattice the distance is 0.577. Smaller: more particles are added; larger: wider holes stay.
 const NARROWEST: f64 = 0.8;
 
-/// A wider circle, in 2r, lies at the border of the surface.
+/// A wider circle, in 2r, touches the border of the surface.
 const WIDEST: f64 = 1.25;
 
-/// Neighbours within this many radii border a gap: those of the lattice's first ring, at 2, and at
-/// the ends of the narrowest circle's diameter, at 3.2.
+/// Neighbours within this many radii surround a gap: the lattice's first ring is at 2, and the
+/// narrowest circle's diameter ends at 3.2.
 const REACH: f64 = 3.4;
 
 impl Course {
-    /// Fills the widest gap beside a particle, if another one has room there.
+    /// Fills the widest gap next to a particle if a new particle has room there.
     pub(super) fn fill_beside(&mut self, beside: u32) {
         let run = &mut self.run;
         let own = run.particles[beside as usize];
         let (p, n, r) = (own.p(), own.n(), self.setup.settings.radius);
         let (u, w) = frame_of(own.normal);
         let (u, w): (DVec3, DVec3) = (u.into(), w.into());
-        // Neighbours keep their direction in the tangent plane and their distance in space. The
-        // unit is 2r.
+        // Neighbours keep their direction in the tangent plane and their distance in space. Lengths
+        // are in 2r.
         let plane: Vec<DVec2> = run
             .buckets
             .near(&run.particles, p, REACH * r)
@@ -61,7 +61,7 @@ impl Course {
         if !is_free || !run.surface.bounds.holds(position) || normal.dot(n) <= 0.0 {
             return;
         }
-        // It has neighbours all around and places no children.
+        // It is surrounded by neighbours and places no children.
         let placed = run.child(beside, (position, normal), r);
         let parent = run.enter(placed);
         run.seen.push(Event::Added { particle: parent, data: placed });
@@ -73,7 +73,7 @@ impl Course {
     }
 }
 
-/// Centre of the widest empty circle through the origin and two of the points, if it is a gap.
+/// Centre of the widest empty circle through the origin and two of the points, if that is a gap.
 fn widest_gap(points: &[DVec2]) -> Option<DVec2> {
     let mut widest = NARROWEST;
     let mut found = None;

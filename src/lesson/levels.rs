@@ -1,8 +1,8 @@
-//! Uniform sampling level by level, as the fast front does it: the children of a generation level
-//! are predicted and compared, then those that are free are projected together and compared again.
+//! Uniform sampling level by level, like the fast front: the children of a generation level are
+//! predicted and compared; then the free ones are projected together and compared again.
 //!
-//! A child's place depends on its parent alone, so the children of a level can be projected in any
-//! order. The fates are still decided in the order of the queue.
+//! A child's position depends only on its parent, so the children of a level can be projected in
+//! any order. Their fates are still decided in the order of the queue.
 
 use super::course::{Course, Predicted};
 use super::prediction::{predicted_angle, second_form};
@@ -10,17 +10,17 @@ use crate::paper::{ChildSlot, DIRECTIONS, Moment, Nearby, REACH, TangentFrame};
 use crate::particles::SlotFate;
 use glam::DVec3;
 
-/// Particles within this many radii tell the curvature around a parent: the six ideal neighbours
-/// are at 2, the next ring at 3.46.
+/// The curvature around a parent is fitted to particles within this many radii: the six ideal
+/// neighbours are at 2, the next ring at 3.46.
 const RING: f64 = 2.6;
 
-/// Weight of "equal curvature in all directions" in that fit. It decides where the neighbours
-/// determine no curvature, and hardly matters elsewhere.
+/// Weight of "equal curvature in all directions" in that fit. It matters only if the neighbours
+/// leave the curvature undetermined.
 const ISOTROPY: f64 = 0.005;
 
 impl Course {
-    /// First stage: predicts the children of a particle and compares them there. Those that are
-    /// free wait to be projected.
+    /// First stage: predicts the children of a particle and compares them at the predicted
+    /// positions. The free ones wait for their projection.
     pub(super) fn predict(&mut self, particle: u32) {
         let radius = self.setup.settings.radius;
         let neighbours = self.run.gather(particle, REACH * radius);
@@ -42,11 +42,11 @@ impl Course {
             let circle = frame.circle(slot, radius, theta_rad);
             self.run.tell(child, Moment::Proposed(&circle));
             let position = circle.point(theta_rad);
-            // The normal turns with the offset.
+            // The normal turns along the offset.
             let turn = frame.u * (form[0] * cos + form[1] * sin) + frame.w * (form[1] * cos + form[2] * sin);
             let normal = (frame.n + turn * (2.0 * radius * libm::cos(theta_rad))).normalize_or(frame.n);
             let placed = self.run.child(particle, (position, normal), radius);
-            // The children that are to be projected have the numbers behind those of the particles.
+            // Children that wait for their projection are numbered after the particles.
             let particles = self.run.particles.len() as u32;
             let predicted = (particles..).zip(self.predicted.iter().map(|child| child.placed));
             if let Some(other) =
@@ -62,7 +62,7 @@ impl Course {
         }
     }
 
-    /// Second stage: projects the next child and decides its fate where it lands.
+    /// Second stage: projects the next child and decides its fate at its final position.
     pub(super) fn settle_next(&mut self) {
         let Some(Predicted { child, circle, .. }) = self.predicted.pop_front() else { return };
         let landing = self.run.land(child, &circle);
@@ -70,7 +70,7 @@ impl Course {
         let placed = self.run.child(child.parent, place, self.setup.settings.radius);
         let reach = 2.0 * placed.radius * self.run.rules.match_tolerance;
         let neighbours = self.run.buckets.near(&self.run.particles, placed.p(), reach);
-        // There is room: the children that were predicted have been counted.
+        // There is room, since predicted children were counted.
         self.run.settle(child, placed, &neighbours);
     }
 
@@ -81,7 +81,7 @@ impl Course {
         for near in neighbours.iter().filter(|near| near.distance <= RING * radius) {
             let other = &self.run.particles[near.particle as usize];
             let (offset, turn) = (other.p() - frame.p, other.n() - frame.n);
-            // A normal that differs by more than 60° lies beyond a crease or on another sheet.
+            // A normal that differs by more than 60° is beyond a crease or on another sheet.
             if turn.length_squared() > 1.0 {
                 continue;
             }
@@ -90,7 +90,7 @@ impl Course {
             (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
             (xa, ya, xb, yb) = (xa + x * a, ya + y * a, xb + x * b, yb + y * b);
         }
-        // Normal equations of a x + b y, b x + c y, with the prior (a − c)² + b²; solved by
+        // Normal equations of a x + b y and b x + c y with the prior (a − c)² + b², solved by
         // Cramer's rule.
         let pull = ISOTROPY * (xx + yy);
         let matrix = [

@@ -1,4 +1,4 @@
-//! The log of the chapter under way, in which the moments of the paper's run are events, and the
+//! The log of the current chapter, which turns the moments of the paper's run into events, and the
 //! seams of the fronts.
 
 use super::event::Event;
@@ -7,16 +7,16 @@ use crate::paper::{ChildSlot, Moment, Observer, Particle, Trial};
 use crate::particles::SlotFate;
 use crate::sampler::Sampling;
 
-/// A child that meets a particle farther away than this share of 2r is out of step with it. Twice
-/// as far is the match radius, beyond which nothing is met.
+/// A child that meets a particle farther away than this share of 2r is out of step with it. The
+/// match radius, beyond which children meet nothing, is twice as far.
 const SEAM: f64 = 0.35;
 
-/// The events of the chapter under way, as the run tells them.
+/// The events of the current chapter, as the run reports them.
 #[derive(Clone, Debug)]
 pub(super) struct Log {
     pub(super) events: Vec<Event>,
-    /// A child that meets a particle farther away than this is on a seam of the fronts; adaptive
-    /// sampling knows no step to be out of.
+    /// A child that meets a particle farther away than this is on a seam between fronts. Infinite
+    /// in adaptive sampling, which has no lattice to be out of step with.
     seam: f64,
     /// Particles with a child on a seam, in the order in which they were treated.
     pub(super) seams: Vec<u32>,
@@ -69,7 +69,7 @@ impl Observer for Log {
             }
             Moment::Compared { position, nearest, limit, corresponds } => {
                 let (position, distance) = (position.to_array(), nearest.map(|near| near.distance));
-                // A child that still has to be projected is none of the particles.
+                // A child that is not yet projected is not a particle.
                 let against = nearest.map(|near| near.particle).filter(|&k| (k as usize) < particles.len());
                 Event::Compared { parent, slot, position, against, distance, limit, corresponds }
             }

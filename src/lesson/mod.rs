@@ -1,16 +1,16 @@
-//! The lesson's engine: runs of the paper's algorithms, and of those that it compares them with,
-//! with a log of every event.
+//! The lesson's engine: runs of the paper's algorithms, and of the two systems that the paper
+//! compares them with, with a log of every event.
 //!
-//! The engine drives the parts of [`paper`](crate::paper), and adds to them what seeds have to be
-//! and the order of treatment (`course`), the same front level by level (`levels`), the filling of
-//! the gaps that fronts leave (`gaps`), and the two particle systems of the paper's Table 1: the
-//! general scheme of §3 in `system`, what each makes of it in `witkin_heckbert` and `forces`.
-//! [`LessonSettings`] chooses among them.
+//! The engine drives the parts of [`paper`](crate::paper). It adds the choice of seeds and the
+//! order of treatment (`course`), the same front level by level (`levels`), the filling of gaps
+//! between fronts (`gaps`), and the two particle systems of the paper's Table 1: the general scheme
+//! of §3 in `system`, and the rules of each in `witkin_heckbert` and `forces`. [`LessonSettings`]
+//! chooses among them.
 //!
 //! A run is a list of [chapters](Chapter): generation levels, the filling of gaps, relaxation
-//! steps, iterations of a particle system. Before each chapter a snapshot is taken, or in long runs
-//! before some of them. The events of a chapter are not kept: they are made again from a snapshot,
-//! which gives the same events to the last bit. So [`Lesson::seek`] goes to any event, forwards or
+//! steps, iterations of a particle system. A snapshot is kept before each chapter, or in long runs
+//! before some. Events of earlier chapters are not kept: running a chapter again from its snapshot
+//! gives the same events to the last bit. So [`Lesson::seek`] can go to any event, forwards or
 //! backwards.
 //!
 //! ```
@@ -22,19 +22,19 @@
 //! let mut lesson = Lesson::new(Box::new(sphere.field()), &sphere.bounds, &settings)?;
 //! while !lesson.step(1_000).is_done {}
 //!
-//! // The first level treats the seed: all six children are new.
+//! The first level treats the seed: all six children are new.
 //! let first = lesson.chapters()[0].clone();
 //! assert_eq!(first.fates.added, 6);
 //! let events = lesson.events(first.first_event, first.events);
 //! assert!(matches!(events[0], Event::Seed { particle: 0, .. }));
-//! // Back to the moment before the first event.
+//! Back to the moment before the first event.
 //! lesson.seek(first.first_event);
 //! assert!(lesson.particles().is_empty());
 //! # Ok::<(), marching_particles::lesson::LessonError>(())
 //! ```
 //!
-//! Fronts begin at the seeds that are given, or where a grid of the box shows the surface and no
-//! particle covers it. Components smaller than a cell of the grid may stay without particles.
+//! Fronts begin at the given seeds, or at points that a grid in the box finds on the surface, if no
+//! particle covers them. Components smaller than a cell of the grid may be missed.
 
 mod course;
 mod dynamics;
@@ -70,7 +70,7 @@ use snapshots::Snapshots;
 use survey::{SurfacePatch, shuffled, survey};
 use system::QUIET;
 
-/// A part of a run, before which a snapshot is taken.
+/// A part of a run; a snapshot may be kept before it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonChapter"))]
 pub struct Chapter {
@@ -114,11 +114,11 @@ pub struct LessonProgress {
     pub particles: u32,
     /// Evaluations of the field so far.
     pub evaluations: u64,
-    /// Pushes of one particle by another that were summed for a move so far.
+    /// Pushes of one particle by another that were summed for moves so far.
     pub interactions: u64,
-    /// Relaxation steps, or iterations of a particle system, that are over.
+    /// Number of completed relaxation steps or iterations.
     pub steps: u32,
-    /// Whether a particle system has come to rest.
+    /// Whether a particle system has settled.
     pub is_settled: bool,
     /// Whether the limit on particles was reached.
     pub is_capped: bool,
@@ -126,7 +126,7 @@ pub struct LessonProgress {
     pub is_done: bool,
 }
 
-/// The events at which a particle was added, was treated and was done, by their numbers.
+/// The numbers of the events at which a particle was added, treated and done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonLife"))]
 pub struct Life {
@@ -138,7 +138,7 @@ pub struct Life {
     pub done: Option<u32>,
 }
 
-/// A chapter that is looked at.
+/// A chapter whose events are loaded.
 struct OpenChapter {
     /// Number of the chapter.
     chapter: usize,
@@ -148,29 +148,29 @@ struct OpenChapter {
     events: Vec<Event>,
 }
 
-/// A run of the paper's algorithms, or of one that it compares them with, and the place in it that
-/// is looked at.
+/// A run of the paper's algorithms, or of a system that it compares them with, and the moment of
+/// the run that is shown.
 pub struct Lesson {
-    /// The end of the run so far, with the events of the chapter under way.
+    /// The state at the end of the run so far, with the events of the current chapter.
     course: Course,
     chapters: Vec<Chapter>,
     snapshots: Snapshots,
     lives: Vec<Life>,
     is_done: bool,
-    /// The chapter that was looked at last.
+    /// The chapter that was loaded last.
     open: Option<OpenChapter>,
-    /// The particles at the moment that was sought.
+    /// The particles at the moment that was last sought.
     shown: Vec<Particle>,
 }
 
 impl Lesson {
-    /// Prepares a run on the surface of `field` in a box, at which it takes a first look: some
-    /// 36,000 evaluations.
+    /// Prepares a run on the surface of `field` in a box, whose first survey takes about 36,000
+    /// evaluations.
     ///
     /// # Errors
     ///
-    /// If a setting or the box is invalid, or if more particles are to be expected than
-    /// [`MAX_PARTICLES`] and [`LessonSettings::max_particles`].
+    /// If a setting or the box is invalid, or if about more particles are expected than
+    /// [`MAX_PARTICLES`] or [`LessonSettings::max_particles`] allow.
     pub fn new(
         field: Box<dyn Field>,
         bounds: &Bounds,
@@ -201,8 +201,8 @@ impl Lesson {
         })
     }
 
-    /// Goes on with the run by up to `budget` units of work: a particle that is treated, or moved.
-    /// How a run is divided into steps does not change it.
+    /// Continues the run by up to `budget` units of work; a unit treats or moves one particle. The
+    /// division into steps does not change the run.
     pub fn step(&mut self, budget: u32) -> LessonProgress {
         let mut left = budget;
         while left > 0 && !self.is_done {
@@ -249,15 +249,15 @@ impl Lesson {
         &self.chapters
     }
 
-    /// The events at which a particle was added, treated and done, as far as the run has come;
-    /// `None` if there is no particle of this number.
+    /// The events at which a particle was added, treated and done so far; `None` if there is no
+    /// particle with this number.
     #[must_use]
     pub fn life(&self, particle: u32) -> Option<Life> {
         self.lives.get(particle as usize).copied()
     }
 
-    /// Up to `count` events from number `first` on. Those of an earlier chapter are made again from
-    /// its snapshot.
+    /// Up to `count` events from number `first` on. Events of earlier chapters are computed again
+    /// from a snapshot.
     pub fn events(&mut self, first: u32, count: u32) -> Vec<Event> {
         let end = first.saturating_add(count).min(self.events_so_far());
         let mut found = Vec::new();
@@ -273,16 +273,16 @@ impl Lesson {
         found
     }
 
-    /// Goes to the moment before event number `event`, or to the end of the run so far, and returns
-    /// the number of events that have happened then.
+    /// Goes to the moment before event number `event`, or to the end of the run so far. Returns the
+    /// number of events before that moment.
     pub fn seek(&mut self, event: u32) -> u32 {
         let event = event.min(self.events_so_far());
         if event == self.events_so_far() {
-            // The end is at hand.
+            // The end is already available.
             self.shown.clone_from(&self.course.run.particles);
             return event;
         }
-        // The end of a chapter is looked at as its end, not as the beginning of the next one.
+        // The end of a chapter belongs to that chapter, not to the next one.
         let chapter = self.chapter_of(event.saturating_sub(1));
         let happened = event - self.chapters[chapter].first_event;
         let open = self.open(chapter);
@@ -294,7 +294,7 @@ impl Lesson {
         event
     }
 
-    /// The particles at the moment that was sought.
+    /// The particles at the moment that was last sought.
     #[must_use]
     pub fn particles(&self) -> &[Particle] {
         &self.shown
@@ -311,7 +311,7 @@ impl Lesson {
         self.snapshots.add(self.chapters.len(), &self.course);
         let kind = self.course.begin_chapter();
         let evaluations = self.course.run.surface.evaluations;
-        // The search for the next seed belongs to the chapter before it: where no seed is left, it
+        // The search for the next seed belongs to the previous chapter; without another seed, it
         // ends the placing.
         if let Some(last) = self.chapters.last_mut() {
             last.evaluations = evaluations;
@@ -336,7 +336,7 @@ impl Lesson {
         });
     }
 
-    /// Brings what is said of the last chapter up to date with its events.
+    /// Updates the figures of the last chapter from its events.
     fn close_chapter(&mut self, is_over: bool) {
         let after = self.course.run.particles.len();
         let log = &self.course.run.seen.events;
@@ -380,7 +380,7 @@ impl Lesson {
         self.chapters.partition_point(|chapter| chapter.first_event <= event).saturating_sub(1)
     }
 
-    /// Has the events of a chapter at hand. Those of a chapter that is over are made again.
+    /// Loads the events of a chapter. If it is over, they are computed again.
     fn open(&mut self, chapter: usize) -> &OpenChapter {
         let Chapter { events: count, is_over, .. } = self.chapters[chapter];
         let known = self.open.take();
@@ -401,7 +401,7 @@ impl Lesson {
     }
 }
 
-/// Refuses a run of more particles than are followed.
+/// Refuses a run with too many particles.
 fn check_count(
     patches: &[SurfacePatch],
     surface: &mut ImplicitSurface,
@@ -418,7 +418,7 @@ fn check_count(
     if expected <= limit {
         return Ok(());
     }
-    // A little more, since the area is an estimate and the number is shown rounded.
+    // Slightly more, since the area is an estimate and the number is shown rounded.
     let factor = 1.01 * (expected / limit).sqrt();
     Err(LessonError::TooMany { expected: expected as u32, limit: most, factor })
 }
@@ -438,7 +438,7 @@ pub fn digest(particles: &[Particle]) -> u64 {
     hash
 }
 
-/// Length of the diagonal of the box around some points; 0 if there is none.
+/// Length of the diagonal of the box around some points; 0 without points.
 fn extent(points: impl Iterator<Item = DVec3>) -> f64 {
     Bounds::around(points).size().max(DVec3::ZERO).length()
 }

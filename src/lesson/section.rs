@@ -1,5 +1,5 @@
-//! Answers about the field that no event holds and that a drawing needs: the curve in which a plane
-//! cuts the surface, and the iterates of Newton's method in space from a given point.
+//! Data about the field for drawings, which no event holds: the curve in which a plane cuts the
+//! surface, and the iterates of Newton's method in space from a given point.
 
 use super::Lesson;
 use super::event::Vector;
@@ -20,9 +20,9 @@ pub struct Iterate {
 }
 
 impl Lesson {
-    /// The curve f = 0 in the plane of a point and two perpendicular unit vectors, in the square of
-    /// half side `half` around the point: line segments as x₀, y₀, x₁, y₁, x along `right` and y
-    /// along `up`, from a grid of `cells`² cells, at least one.
+    /// The curve f = 0 in the plane through a point and two perpendicular unit vectors, within the
+    /// square of half side `half`: line segments x₀, y₀, x₁, y₁ with x along `right` and y along
+    /// `up`, from a grid of `cells`² cells, at least one.
     pub fn section(&self, centre: Vector, right: Vector, up: Vector, half: f64, cells: u32) -> Vec<[f64; 4]> {
         let cells = cells.max(1) as usize;
         let mut surface = self.course.run.surface.clone();
@@ -39,7 +39,7 @@ impl Lesson {
         for j in 0..cells {
             for i in 0..cells {
                 let [a, b, c, d] = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
-                // Two triangles, in each of which the curve is one segment at most.
+                // Two triangles, each with at most one segment of the curve.
                 for [p, q, r] in [[a, b, c], [a, c, d]] {
                     let crossings: Vec<[f64; 2]> =
                         [(p, q), (q, r), (r, p)].into_iter().filter_map(|(s, t)| crossing(s, t)).collect();
@@ -52,8 +52,8 @@ impl Lesson {
         segments
     }
 
-    /// The steps of Newton's method from a point, until it has come to the surface or left the
-    /// neighbourhood of `reach`.
+    /// The steps of Newton's method from a point, until it reaches the surface or leaves the
+    /// neighbourhood of radius `reach`.
     pub fn newton(&self, start: Vector, reach: f64) -> Vec<Iterate> {
         let rules = &self.course.run.rules;
         let residual = rules.residual * rules.sizes.largest();
@@ -65,13 +65,13 @@ impl Lesson {
                 slope: trial.slope,
             });
         };
-        // The last step says where the method has come to.
+        // The recorded steps already tell how the method ended.
         let _ = self.course.run.surface.clone().land_by_newton(start.into(), reach, residual, &mut note);
         steps
     }
 }
 
-/// The zero of f between two nodes, if f changes its sign.
+/// The zero of f between two nodes, if f changes sign.
 fn crossing((a, fa): ([f64; 2], f64), (b, fb): ([f64; 2], f64)) -> Option<[f64; 2]> {
     if !(fa.is_finite() && fb.is_finite()) || (fa <= 0.0) == (fb <= 0.0) {
         return None;

@@ -1,5 +1,5 @@
-//! Settings of a run of the lesson: the method, the rules of the paper, and choices that go beyond
-//! it.
+//! Settings of a run of the lesson: the method, the rules of the paper, and choices that the paper
+//! does not have.
 
 use super::prediction::predicted_angles;
 use crate::differential::Curvature;
@@ -10,15 +10,14 @@ use crate::sampler::{GapPolicy, LawKind, Sampling};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A run that is not asked for more follows no more particles than this: a log of more is not read
-/// event by event.
+/// Default limit of particles; nobody reads a log of more event by event.
 pub const MAX_PARTICLES: u32 = 20_000;
 
-/// No run may be asked for more particles than this, which take hundreds of megabytes with their
+/// Largest limit that can be set; so many particles take hundreds of megabytes with their
 /// snapshots.
 const MOST_PARTICLES: u32 = 1_000_000;
 
-/// A surface given by a formula, as the page knows it.
+/// A surface given by a formula, in the page's form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct LessonField {
@@ -26,23 +25,23 @@ pub struct LessonField {
     pub formula: String,
     /// Parameters with their values.
     pub parameters: Vec<Parameter>,
-    /// Box that is sampled.
+    /// Box to sample.
     pub bounds: Bounds,
 }
 
-/// Method that covers the surface.
+/// Method that places particles on the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonMethod"))]
 #[serde(rename_all = "snake_case")]
 pub enum LessonMethod {
-    /// The paper's own: a front of particles, each of which places its neighbours, and a few
+    /// The paper's method: a front of particles, each of which places its neighbours, and a few
     /// relaxation steps.
     Front,
-    /// The particle system that the paper compares its uniform sampling with (Table 1): that of
-    /// Witkin and Heckbert 1994.
+    /// The particle system of Witkin and Heckbert 1994, with which the paper compares its uniform
+    /// sampling (Table 1).
     WitkinHeckbert,
-    /// The particle system that the paper compares its non-uniform sampling with (Table 1): forces
-    /// between discs.
+    /// Forces between discs, the particle system with which the paper compares its non-uniform
+    /// sampling (Table 1).
     Forces,
 }
 
@@ -51,9 +50,9 @@ pub enum LessonMethod {
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonOrder"))]
 #[serde(rename_all = "snake_case")]
 pub enum QueueOrder {
-    /// The particle that has waited longest is next: this gives the rings of Fig. 11.
+    /// The particle that has waited longest is next. This gives the rings of Fig. 11.
     Queue,
-    /// The particle that came last is next, as the word "stack" in the text says.
+    /// The newest particle is next, as the word "stack" in the text implies.
     Stack,
 }
 
@@ -62,15 +61,15 @@ pub enum QueueOrder {
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonProjection"))]
 #[serde(rename_all = "snake_case")]
 pub enum Projection {
-    /// The child moves along the circle C(p, 2r), which keeps the distance to the parent: the
-    /// paper's way.
+    /// The child moves along the circle C(p, 2r), which keeps its distance from the parent, as in
+    /// the paper.
     Circle,
-    /// The child moves by Newton's method in space, "the most common technique", which does not
-    /// keep the distance to the parent.
+    /// The child moves by Newton's method in space, "the most common technique", which changes its
+    /// distance from the parent.
     Newton,
 }
 
-/// The start of the search on the circle.
+/// Where the search on the circle starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonStart"))]
 #[serde(rename_all = "snake_case")]
@@ -81,21 +80,20 @@ pub enum SearchStart {
     Curvature,
 }
 
-/// Whether a particle with which a child was identified stays among the neighbours of the parent
-/// (§4.4).
+/// Whether a particle that a child was identified with remains a neighbour of the parent (§4.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonMatched"))]
 #[serde(rename_all = "snake_case")]
 pub enum Matched {
-    /// The particle leaves the neighbours, so that no second child of the same parent is identified
-    /// with it: the paper's way.
+    /// The particle is removed from the neighbours, so that no second child of the same parent is
+    /// identified with it, as in the paper.
     Leave,
-    /// The particle stays, and so do the new children. No two particles are then closer than the
+    /// The particle stays, and so do the new children. Then no two particles are closer than the
     /// match radius.
     Stay,
 }
 
-/// Order of the projection of children and their comparison with the particles that exist.
+/// The order in which children are projected and compared with existing particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
@@ -103,20 +101,20 @@ pub enum LessonPlacing {
     /// Particle by particle: the children of a particle are projected, then compared, as in
     /// Algorithm 2.
     OneByOne,
-    /// A whole generation level together, as in the fast front. A child is compared where the
-    /// curvature around its parent predicts it; only free ones are projected, and then compared
+    /// A whole generation level together, as in the fast front. Children are compared where the
+    /// curvature around their parent predicts them; only the free ones are projected, and compared
     /// again.
     LevelByLevel,
 }
 
-/// The choices of a run. `Default` gives those of the paper; where it names no value, those of the
-/// fast sampler.
+/// The choices of a run. `Default` gives the paper's values, and the fast sampler's where the paper
+/// states none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonSettings"))]
 #[serde(default)]
 pub struct LessonSettings {
-    /// Method that covers the surface. Of the settings below, the two particle systems use those of
-    /// the sizes, the seeds, `residual`, `max_iterations` and `max_particles`.
+    /// Method that places particles on the surface. Of the settings below, the two particle systems
+    /// use the sizes, the seeds, `residual`, `max_iterations` and `max_particles`.
     pub method: LessonMethod,
     /// Whether all particles have one radius (§4), or one that follows the curvature (§5).
     #[cfg_attr(test, ts(type = "'uniform' | 'adaptive'"))]
@@ -127,23 +125,23 @@ pub struct LessonSettings {
     /// Law for the radius of an adaptive particle, given the curvature.
     #[cfg_attr(test, ts(type = "'chord_error' | 'max_curvature' | 'sum_of_curvatures'"))]
     pub law: LawKind,
-    /// The number that the law scales: for `chord_error` the gap between the surface and a triangle
-    /// of neighbours, a length; for the other two the radius over the radius of curvature.
+    /// Scale of the law: for `chord_error` the gap between the surface and a triangle of
+    /// neighbours, a length; for the other two the radius divided by the radius of curvature.
     pub law_scale: f64,
     /// Smallest radius of an adaptive particle, a length.
     pub radius_min: f64,
-    /// Largest radius of an adaptive particle, a length. In Witkin and Heckbert's system half of
-    /// the surface's diameter, a radius at which a particle divides whatever its energy; 0 has it
-    /// measured.
+    /// Largest radius of an adaptive particle, a length. In Witkin and Heckbert's system the radius
+    /// at which a particle divides whatever its energy, half of the surface's diameter; with 0 it
+    /// is measured.
     pub radius_max: f64,
     /// An adaptive child is added if the free angle τ is at least this share of φ, the angle that
-    /// it takes. The paper compares them as they are, which is 1: on a lattice, where the two are
-    /// equal, rounding then decides.
+    /// it occupies. The paper's share is 1; on a lattice, where the two are equal, rounding then
+    /// decides.
     pub fit: f64,
-    /// Points near the surface at which fronts begin, in this order, each when the one before it
-    /// has closed. Other seeds are looked for only if none are given.
+    /// Points near the surface where fronts begin, in this order; each begins when the front before
+    /// it has closed. Other seeds are searched only if this is empty.
     pub seeds: Vec<[f64; 3]>,
-    /// Seed of the random choice of the first seed point, where no seed points are given.
+    /// Random seed for the choice of the first seed point, if `seeds` is empty.
     pub seed: u32,
     /// Method that moves a child onto the surface.
     pub projection: Projection,
@@ -151,7 +149,7 @@ pub struct LessonSettings {
     pub start: SearchStart,
     /// Order in which waiting particles are treated.
     pub order: QueueOrder,
-    /// Whether matched particles leave the neighbours.
+    /// Whether matched particles are removed from the neighbours.
     pub matched: Matched,
     /// A child is identified with a particle within this distance, in 2r.
     pub match_tolerance: f64,
@@ -164,12 +162,12 @@ pub struct LessonSettings {
     pub residual: f64,
     /// Relaxation steps.
     pub relax_steps: u32,
-    /// Size of a relaxation step. If it is not given: 0.6 σ² with σ = r in uniform sampling, 0.33
-    /// of the overlap in adaptive.
+    /// Size of a relaxation step. The default is 0.6 σ² with σ = r in uniform sampling, and 0.33 of
+    /// the overlap in adaptive sampling.
     pub step_size: Option<f64>,
-    /// A particle system that has not come to rest after so many iterations ends all the same.
+    /// A particle system ends after this many iterations even if it has not settled.
     pub max_iterations: u32,
-    /// The run stops at this many particles. More than [`MAX_PARTICLES`] of them can be asked for.
+    /// The run stops at this number of particles. It may exceed [`MAX_PARTICLES`].
     pub max_particles: u32,
 }
 
@@ -188,7 +186,7 @@ impl Default for LessonSettings {
             seed: 0,
             projection: Projection::Circle,
             start: SearchStart::Tangent,
-            // The text says stack, but the rings of Fig. 11 are those of a queue.
+            // The text says stack, but the rings of Fig. 11 need a queue.
             order: QueueOrder::Queue,
             matched: Matched::Leave,
             match_tolerance: 0.7,
@@ -204,7 +202,7 @@ impl Default for LessonSettings {
 }
 
 impl LessonSettings {
-    /// The choices of the fast uniform front, whose particles these settings reproduce.
+    /// The choices of the fast uniform front; these settings reproduce its particles.
     #[must_use]
     pub fn of_fast_front() -> Self {
         Self { placing: LessonPlacing::LevelByLevel, matched: Matched::Stay, ..Self::default() }
@@ -247,7 +245,7 @@ impl LessonSettings {
     ///
     /// # Errors
     ///
-    /// The first one that is out of its range, or does not go with another.
+    /// The first setting that is out of range or incompatible with another.
     pub fn validate(&self) -> Result<(), LessonError> {
         let ranges = [
             ("match_tolerance", self.match_tolerance, 0.1, 0.95),
@@ -295,13 +293,13 @@ impl LessonSettings {
     }
 }
 
-/// The radius of an adaptive particle, from the curvature and a scale.
+/// The radius of an adaptive particle as a function of curvature and scale.
 fn law(kind: LawKind) -> fn(&Curvature<f64, DVec3>, f64) -> f64 {
     match kind {
         LawKind::SumOfCurvatures => sum_of_curvatures,
         LawKind::MaxCurvature => |curvature, scale| scale / curvature.max_abs(),
-        // The middle of an equilateral triangle of side 2r, inscribed in a sphere, is this far from
-        // the sphere.
+        // The distance between a sphere and the centre of an inscribed equilateral triangle of side
+        // 2r.
         LawKind::ChordError => {
             |curvature, error| 0.5 * (3.0 * error * (2.0 / curvature.max_abs() - error)).max(0.0).sqrt()
         }
@@ -312,7 +310,7 @@ fn law(kind: LawKind) -> fn(&Curvature<f64, DVec3>, f64) -> f64 {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LessonError {
-    /// A setting is no number within its range.
+    /// A setting is not a number within its range.
     #[error("{name} is {value}, but must lie between {min} and {max}")]
     OutOfRange {
         /// Name of the setting.
@@ -324,29 +322,29 @@ pub enum LessonError {
         /// Largest value allowed.
         max: f64,
     },
-    /// No particles can be put in the box.
+    /// No particles can be placed in the box.
     #[error(transparent)]
     Box(#[from] BoxError),
-    /// Placing level by level goes with one choice of the others.
+    /// Placing level by level requires one particular choice of other settings.
     #[error("placing level by level needs a queue, the circle, and matched particles that stay")]
     Levels,
-    /// The system of Witkin and Heckbert wants one size.
+    /// The system of Witkin and Heckbert requires a single size.
     #[error("Witkin and Heckbert's system wants one radius everywhere: choose uniform sampling, or forces")]
     OneSize,
-    /// Adaptive sampling goes with one choice of some others.
+    /// Adaptive sampling requires one particular choice of other settings.
     #[error("adaptive sampling places one particle after the other, on circles, and leaves gaps")]
     Adaptive,
-    /// More particles than a run follows.
+    /// More particles than the limit are expected.
     #[error(
         "about {expected} particles are to be expected, and the event log follows at most {limit}: \
          choose radii {factor:.2} times as large"
     )]
     TooMany {
-        /// Particles to expect.
+        /// Expected number of particles.
         expected: u32,
         /// Largest number of particles that a run may have.
         limit: u32,
-        /// Factor by which all radii have to be multiplied to stay within the limit.
+        /// Factor for all radii that brings the number within the limit.
         factor: f64,
     },
 }

@@ -1,17 +1,16 @@
-//! The beginnings of chapters, from which their events are made again.
+//! Copies of the run at the beginnings of chapters, from which later events are computed again.
 
 use super::course::Course;
 
-/// The snapshots hold no more particles than this together, or twice as many for a moment: about 50
-/// MB.
+/// Most particles in all snapshots together; for a moment there may be twice as many, about 50 MB.
 const MOST: usize = 250_000;
 
-/// The run at the beginning of every chapter whose number is a multiple of the stride. The way back
-/// begins at one of them.
+/// The run at the beginning of every chapter whose number is a multiple of the stride. To go back,
+/// the run continues from one of them.
 pub(super) struct Snapshots {
     kept: Vec<Course>,
     stride: usize,
-    /// Number of particles that are held.
+    /// Number of particles in all snapshots.
     held: usize,
     most: usize,
 }
@@ -21,8 +20,8 @@ impl Snapshots {
         Self { kept: Vec::new(), stride: 1, held: 0, most: MOST }
     }
 
-    /// Takes a snapshot before a chapter, unless it is not at the stride. The stride grows until
-    /// few enough particles are held.
+    /// Takes a snapshot before a chapter whose number is a multiple of the stride. The stride grows
+    /// until the snapshots hold few enough particles.
     pub(super) fn add(&mut self, chapter: usize, course: &Course) {
         if !chapter.is_multiple_of(self.stride) {
             return;
@@ -40,7 +39,7 @@ impl Snapshots {
         }
     }
 
-    /// The run at the beginning of a chapter, made from the last snapshot before it.
+    /// The run at the beginning of a chapter, continued from the last snapshot before it.
     pub(super) fn at(&self, chapter: usize) -> Course {
         let mut course = self.kept[chapter / self.stride].clone();
         for _ in 0..chapter % self.stride {
@@ -53,12 +52,12 @@ impl Snapshots {
 
 #[cfg(test)]
 impl Snapshots {
-    /// Keeps so few that a short run drops some.
+    /// A limit so low that even a short run drops snapshots.
     pub(super) fn with_most(most: usize) -> Self {
         Self { most, ..Self::new() }
     }
 
-    /// Number of chapters whose beginning is kept.
+    /// Number of snapshots.
     pub(super) fn kept(&self) -> usize {
         self.kept.len()
     }

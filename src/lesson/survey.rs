@@ -1,28 +1,27 @@
-//! A first look at the box: points of the surface at which fronts may begin, and the area that each
-//! stands for.
+//! Surveys the box: points of the surface where fronts may begin, and the area around each.
 
 use crate::paper::ImplicitSurface;
 use glam::DVec3;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
-/// Cells of the grid along the longest side of the box, as many as in the survey of the sampler. A
-/// component smaller than a cell may be missed.
+/// Cells of the grid along the longest side of the box, as in the sampler's survey. A component
+/// smaller than a cell may be missed.
 const CELLS: f64 = 32.0;
 
-/// A point near the surface, and the part of the surface around it.
+/// A point near the surface, which represents a part of it.
 pub(super) struct SurfacePatch {
     pub(super) point: DVec3,
     /// Area of that part.
     pub(super) area: f64,
 }
 
-/// Points spread over the surface, in the order of a grid. Every edge of the grid at whose ends f
-/// differs in sign gives one.
+/// Points spread over the surface, in the order of the grid: one on each edge between nodes with f
+/// of different sign.
 ///
-/// The area follows from the edges by Cauchy's formula: an edge along an axis crosses the surface
-/// once in s² of projected area, where s is the spacing, so each crossing stands for s²/(|n_x| +
-/// |n_y| + |n_z|) of true area.
+/// The area follows from the edges by Cauchy's formula. Edges along an axis cross the surface once
+/// per s² of projected area, where s is the spacing, so each crossing represents an area of
+/// s²/(|n_x| + |n_y| + |n_z|).
 pub(super) fn survey(surface: &mut ImplicitSurface) -> Vec<SurfacePatch> {
     let (lo, size) = (surface.bounds.lo(), surface.bounds.hi() - surface.bounds.lo());
     let cells = (size * (CELLS / size.max_element())).ceil();
@@ -47,7 +46,7 @@ pub(super) fn survey(surface: &mut ImplicitSurface) -> Vec<SurfacePatch> {
             }
             let point = at(start).lerp(at(node(index + strides[axis])), a / (a - b));
             let gradient = surface.jet(point).gradient.abs();
-            // The other two spacings.
+            // The product of the other two spacings.
             let section = step.x * step.y * step.z / step[axis];
             let area = section * gradient.length() / (gradient.x + gradient.y + gradient.z);
             if area.is_finite() {
@@ -58,7 +57,7 @@ pub(super) fn survey(surface: &mut ImplicitSurface) -> Vec<SurfacePatch> {
     patches
 }
 
-/// The points with one first that `seed` chooses.
+/// The points, beginning with one that `seed` chooses.
 pub(super) fn shuffled(mut points: Vec<DVec3>, seed: u32) -> Vec<DVec3> {
     if !points.is_empty() {
         let random = Pcg32::seed_from_u64(u64::from(seed)).next_u64();

@@ -1,5 +1,5 @@
-//! The two particle systems that the paper compares its methods with: the general scheme of §3,
-//! line by line.
+//! The two particle systems that the paper compares its methods with, following the general scheme
+//! of §3 line by line.
 //!
 //! ```text
 //! Create a set of particles lying on the surface             add_seeds: one particle
@@ -12,15 +12,15 @@
 //! end while
 //! ```
 //!
-//! `witkin_heckbert` and `forces` have the rules of the two systems for moves, divisions and
-//! deaths. An iteration is a chapter.
+//! `witkin_heckbert` and `forces` hold each system's rules for moves, divisions and deaths. An
+//! iteration is a chapter.
 //!
-//! # Differs from the paper
+//! # Differences from the paper
 //!
 //! * The paper detects convergence by the number of particles and their residual motion and gives
-//!   no numbers (§3). Here a run has settled after [`QUIET`] consecutive iterations without fission
-//!   and death and with a mean motion of at most [`REST`].
-//! * The first particle does not die, so that there always is one.
+//!   no thresholds (§3). Here a run has settled after [`QUIET`] consecutive iterations without
+//!   fission or death and with a mean move of at most [`REST`].
+//! * The first particle does not die, so that at least one remains.
 
 use super::course::{ChapterKind, Course};
 use super::dynamics::{Dynamics, largest_move};
@@ -34,11 +34,11 @@ use glam::DVec3;
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 
-/// Consecutive iterations of rest after which a run has settled: in as many a particle at rest has
-/// moved by a tenth of its radius at most.
+/// Consecutive quiet iterations after which a run has settled; over so many a particle moves by at
+/// most a tenth of its radius on average.
 pub(super) const QUIET: u32 = 20;
 
-/// Mean move in an iteration, in radii, up to which particles count as not moving. Larger: a run
+/// Mean move in an iteration, in radii, below which the particles count as still. Larger: a run
 /// ends sooner, and fewer particles have six neighbours.
 const REST: f64 = 0.005;
 
@@ -47,8 +47,7 @@ fn uniform(random: &mut Pcg32) -> f64 {
     f64::from(random.next_u32() >> 8) / 16_777_216.0
 }
 
-/// A random unit vector in the tangent plane: that of a point of the square that is in the unit
-/// disc.
+/// A random unit vector in the tangent plane: the direction of a random point in the unit disc.
 fn tangent(normal: [f64; 3], random: &mut Pcg32) -> DVec3 {
     let (u, v) = frame_of(normal);
     loop {
@@ -84,7 +83,7 @@ impl Course {
         let particles = self.run.particles.len() as u32;
         let energy = self.dynamics.iter().map(|own| own.energy).sum::<f64>() / f64::from(particles);
         self.run.seen.push(Event::IterationBegins { iteration, particles, energy });
-        // Every particle moves, then every particle is decided on.
+        // First every particle moves; then each may divide or die.
         self.left = 2 * particles;
         Some(ChapterKind::Iteration { iteration })
     }
@@ -93,7 +92,7 @@ impl Course {
     /// the mean radius.
     fn interact(&mut self, mean: f64) {
         let is_gaussian = self.setup.settings.method == LessonMethod::WitkinHeckbert;
-        // A disc meets those that are not larger.
+        // A disc only meets discs that are not larger.
         let reach = if is_gaussian { GAUSSIAN_REACH } else { 2.0 * OVERLAP_REACH };
         let particles = &self.run.particles;
         self.run.buckets = Buckets::new(reach * mean, particles);
@@ -103,7 +102,7 @@ impl Course {
             for near in self.run.buckets.near(particles, own.p(), reach * own.radius) {
                 let j = near.particle as usize;
                 let other = &particles[j];
-                // Particles that face away from each other are on two sides of a thin part.
+                // Particles that face away from each other are on opposite sides of a thin part.
                 if j == i || own.n().dot(other.n()) <= 0.0 {
                     continue;
                 }
@@ -119,7 +118,7 @@ impl Course {
 
     /// Does one unit of an iteration.
     pub(super) fn iterate(&mut self) {
-        // Children that are born in this iteration have their turn in the next one.
+        // Children born in this iteration take part from the next one on.
         let living = self.dynamics.len();
         let done = 2 * living - self.left as usize;
         if done < living {
@@ -181,12 +180,11 @@ impl Course {
         }
     }
 
-    /// The two children of a particle, half a radius to either side of it: half as far where one of
-    /// them does not come to the surface, as beside a lone particle that has grown larger than the
-    /// surface bends, and so on down to half the wanted radius. `None` if one does not come from
-    /// there either.
+    /// The two children of a particle, half a radius to either side. If one of them cannot be
+    /// returned to the surface, as around a lone particle larger than its surface, the distance is
+    /// halved repeatedly, down to half the wanted radius. `None` if that fails, too.
     ///
-    /// The sources do not say where they are put.
+    /// The sources do not say where children are put.
     fn children(&mut self, parent: &Particle, direction: DVec3) -> Option<[Particle; 2]> {
         let wanted = match self.setup.settings.method {
             LessonMethod::WitkinHeckbert => witkin_heckbert::wanted(&self.setup),
@@ -199,11 +197,11 @@ impl Course {
         })
     }
 
-    /// A child of a particle at an offset from it; `None` if it does not come to the surface.
+    /// A child of a particle at an offset; `None` if it cannot be returned to the surface.
     fn child(&mut self, parent: &Particle, offset: DVec3) -> Option<Particle> {
         let (position, normal) = self.run.come_back(parent, parent.p() + offset, parent.radius)?;
         let radius = match self.setup.settings.method {
-            // Both together cover the area that their parent has covered.
+            // Together both cover the area of their parent.
             LessonMethod::WitkinHeckbert => parent.radius * core::f64::consts::FRAC_1_SQRT_2,
             LessonMethod::Front | LessonMethod::Forces => self.run.radius_at(position)?,
         };

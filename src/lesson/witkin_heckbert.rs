@@ -1,22 +1,21 @@
 //! Particles of one size: A. P. Witkin and P. S. Heckbert, *Using Particles to Sample and Control
-//! Implicit Surfaces* (SIGGRAPH 1994), §4. The paper compares its uniform sampling with it (Table
-//! 1).
+//! Implicit Surfaces* (SIGGRAPH 1994), §4. The paper compares its uniform sampling with this system
+//! (Table 1).
 //!
-//! The symbols are those of the source: σ is the radius of a particle, σ̂ the wanted one, r_ij =
-//! p_i − p_j.
+//! The symbols are those of the source: σ is the radius of a particle, σ̂ the wanted radius, and
+//! r_ij = p_i − p_j.
 //!
-//! # Differs from the source
+//! # Differences from the source
 //!
 //! * Energies are cut off at 3σ, where they are 1.1 % of α.
-//! * β has the unit of an inverse length. The unit here is d/2, and σ_max = d/2, where d is the
-//!   diagonal of the box around the surface, and no less than 2σ̂.
-//! * No particle moves farther than 0.35 σ in an iteration, and no radius changes by more than a
-//!   factor of 2: with a time step that is not small, a pair that has just divided could leave the
-//!   surface, or get negative radii.
+//! * β has the unit of an inverse length. The unit of length is d/2, where d is the diagonal of the
+//!   box around the surface. σ_max = d/2, but at least 2σ̂.
+//! * In an iteration no particle moves farther than 0.35 σ, and no radius changes by more than a
+//!   factor of 2. The time step is not small: without these limits a pair that has just divided
+//!   could leave the surface or get negative radii.
 //! * The source samples closed surfaces. A particle that would leave the box stays and counts as
-//!   near equilibrium. On the border it has neighbours on one side only, so that it divides more
-//!   often there: the gyroid gets 1.4 times as many particles as a front places, closed surfaces
-//!   1.1 times.
+//!   near equilibrium. At the border it has neighbours on one side only, so it divides more often,
+//!   and an open surface gets more particles than a front places.
 
 use super::course::Setup;
 use super::dynamics::Dynamics;
@@ -44,9 +43,9 @@ const NU: f64 = 0.2;
 /// δ: share of σ̂ below which a particle may die.
 const DELTA: f64 = 0.7;
 
-/// Largest factor by which a radius changes in an iteration: that of two fissions.
+/// Largest factor by which a radius changes in an iteration, as by two fissions.
 const MAX_GROWTH: f64 = 2.0;
-/// Smallest σ, in σ̂: a particle as small dies with a probability of 13/14.
+/// Smallest σ, in σ̂; a particle of this size dies with a probability of 13/14.
 const LEAST: f64 = 0.05;
 
 /// The wanted radius σ̂.
@@ -63,11 +62,11 @@ fn largest(setup: &Setup) -> f64 {
 }
 
 /// "Compute the energy of the set of particles": E_ij = α exp(−|r_ij|²/2σ_i²), the energy of
-/// particle i due to j, and its part of the velocities of both.
+/// particle i due to j, and its contribution to the velocities of both.
 ///
 /// D_i = Σⱼ E_ij, and P_i = σ_i² Σⱼ r_ij (E_ij/σ_i² + E_ji/σ_j²). Equation 9 of the source
-/// subtracts the two terms as printed; its erratum adds them. Every pair is met from both sides,
-/// each with its own σ.
+/// subtracts the two terms as printed; its erratum adds them. Every pair is visited from both
+/// sides, each with its own σ.
 pub(super) fn interact(
     dynamics: &mut [Dynamics],
     (i, own): (usize, &Particle),
@@ -84,8 +83,8 @@ pub(super) fn interact(
 
 /// "Compute the repulsion radius", "update the position": one time step.
 ///
-/// σ̇ = −ρ (D − Ê) / (σ⁻³ Σⱼ |r_ij|² E_ij + β) brings D to Ê. ṗ is the part of P along the surface,
-/// less φ f ∇f/|∇f|², which leads back to the surface. Returns P, and the move.
+/// σ̇ = −ρ (D − Ê) / (σ⁻³ Σⱼ |r_ij|² E_ij + β) brings D to Ê. ṗ is the part of P along the surface
+/// minus φ f ∇f/|∇f|², which leads back to the surface. Returns P, and the move.
 pub(super) fn step(
     surface: &mut ImplicitSurface,
     setup: &Setup,
@@ -99,7 +98,7 @@ pub(super) fn step(
 
     let stretch = dynamics.moment / (sigma * sigma * sigma);
     let growth = RHO * (WANTED_ENERGY - dynamics.energy) / (stretch + BETA / largest(setup));
-    // The radius changes whether the particle can go or not.
+    // The radius changes even if the particle cannot move.
     own.radius = (sigma + growth * TIME_STEP)
         .max(sigma / MAX_GROWTH)
         .min(sigma * MAX_GROWTH)
