@@ -1,11 +1,11 @@
-//! Division of records among buffers, so that no buffer is larger than any device takes.
+//! Splits records among buffers, so that every device accepts their size.
 
 use core::ops::Range;
 
-/// Records per chunk: for particles 7 MiB of records and 1 MiB of colours. That is far below the
-/// buffer limit of any device and takes only 4 draw calls per pass for a million of them.
+/// Records per chunk. For particles that is 7 MiB of records and 1 MiB of colours, far below the
+/// buffer limit of any device; a million particles need only 4 draw calls per pass.
 pub const CHUNK: u32 = 1 << 18;
-/// Largest number of records of each kind, more than the particles that a run may place: particles
+/// Largest number of records of each kind. It is more than the particles that a run may place: they
 /// take 144 MiB on the GPU, faces 396 MiB.
 pub const MOST_RECORDS: u32 = 18 * CHUNK;
 
@@ -15,7 +15,7 @@ pub struct ChunkSpan {
     pub chunk: usize,
     /// Index within the chunk of the first of these records.
     pub start: u32,
-    /// Range of these records, counted from the first record that is split.
+    /// Range of these records, relative to the first record that is split.
     pub records: Range<usize>,
 }
 

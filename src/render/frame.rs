@@ -21,8 +21,8 @@ pub struct Frame {
     pub body: Body,
     /// The clip box, drawn where a picture has one.
     pub clip_box: ClipBox,
-    /// Cutting plane: its normal and its offset. What has normal · p > offset is hidden; without a
-    /// plane the normal is zero.
+    /// Cutting plane: its normal and its offset. Points with normal · p > offset are hidden.
+    /// Without a plane the normal is zero.
     pub plane: [f32; 4],
 }
 
@@ -56,7 +56,7 @@ pub struct Light {
     pub dim: f32,
     /// Unit direction to the sky of the hemispherical light, in world coordinates.
     pub sky: [f32; 3],
-    /// Fraction by which what is seen from behind is drawn as an inside, 0 to 1.
+    /// Fraction by which back sides are drawn as an inside, 0 to 1.
     pub dim_backfaces: f32,
     /// Background colour, linear, not premultiplied by its opacity.
     pub background: [f32; 4],
@@ -74,9 +74,9 @@ pub struct Light {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Appearance {
-    /// Current time in seconds on the renderer's clock.
+    /// Duration in seconds of a new particle's appearance; 0 shows it at once.
     pub time: f32,
-    /// Duration in seconds of the appearance of a new particle; 0 shows it at once.
+    /// Newest generation level that is drawn; larger than every level if all are drawn.
     pub fade: f32,
     /// Newest generation level that is drawn. Larger than every level if all are drawn.
     pub level: f32,
@@ -106,9 +106,9 @@ pub struct Body {
     pub colour: [f32; 3],
     /// 1 for a surface whose inside can be seen, 0 for a closed one.
     pub is_open: f32,
-    /// Smallest corner of the box that the body ends at, and a number that is not used.
+    /// Smallest corner of the box where the body ends, and an unused number.
     pub lo: [f32; 4],
-    /// Largest corner, and a number that is not used.
+    /// Largest corner, and an unused number.
     pub hi: [f32; 4],
 }
 
@@ -116,9 +116,9 @@ pub struct Body {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ClipBox {
-    /// Smallest corner, and a number that is not used.
+    /// Smallest corner, and an unused number.
     pub lo: [f32; 4],
-    /// Largest corner, and a number that is not used.
+    /// Largest corner, and an unused number.
     pub hi: [f32; 4],
     /// Colour of the edges, linear, not premultiplied by its opacity.
     pub colour: [f32; 4],

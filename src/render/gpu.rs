@@ -23,8 +23,8 @@ pub struct Callbacks {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CreateError {
-    /// The canvas gives no graphics context: none is supported, or the canvas already has one of
-    /// another kind.
+    /// The canvas provides no graphics context: the browser supports none, or the canvas already
+    /// has a context of another kind.
     #[error("the canvas gives no graphics context: {0}")]
     Surface(#[from] wgpu::CreateSurfaceError),
     /// There is no graphics adapter.
@@ -48,8 +48,8 @@ pub(super) struct Gpu {
 }
 
 impl Gpu {
-    /// Opens a device that can draw on `surface`, with `features` of its adapter. Returns it with
-    /// the adapter.
+    /// Opens a device that can draw on `surface`, with `features` of its adapter. Returns the
+    /// device and the adapter.
     pub(super) async fn open(
         instance: &wgpu::Instance,
         surface: Option<&wgpu::Surface<'_>>,
@@ -92,7 +92,7 @@ impl Gpu {
         Ok((Self { device, queue, info, lost, callbacks }, adapter))
     }
 
-    /// Name of the back end: "webgpu", "webgl2", or that of a native one.
+    /// Name of the back end: "webgpu", "webgl2" or a native one.
     pub(super) fn backend(&self) -> &'static str {
         match self.info.backend {
             wgpu::Backend::BrowserWebGpu => "webgpu",
@@ -114,7 +114,7 @@ impl Gpu {
         self.lost.load(Ordering::Relaxed)
     }
 
-    /// Records the loss of the device, unless it is known.
+    /// Records the loss of the device, if it is not yet recorded.
     pub(super) fn mark_lost(&self, reason: &str, message: &str) {
         if !self.lost.swap(true, Ordering::Relaxed) {
             (self.callbacks.on_lost)(reason, message);

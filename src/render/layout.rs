@@ -1,23 +1,23 @@
-//! Layout of the instance records, one per particle, one per face of a mesh and one per piece of a
+//! Layout of the instance records: one per particle, per face of a mesh, and per segment of a
 //! crease.
 //!
-//! The pipelines are built from the lists of formats, and a test compares the lists with the WGSL.
+//! The pipelines are built from these lists of formats; a test compares the lists with the WGSL.
 
 use AttributeFormat::{Float32, Float32x3, Float32x4, Snorm16x2, Unorm8x4};
 use bytemuck::{Pod, Zeroable};
 
 /// Instance record of a particle without its colour: 28 bytes.
 ///
-/// Colours have a buffer of their own, of 4 bytes each: sRGB red, green, blue and opacity of 8 bits
-/// each. A change of colours then uploads 4 bytes per particle instead of 32, and no copy of the
-/// records has to be kept.
+/// Colours have a separate buffer of 4 bytes each: sRGB red, green, blue and opacity. A change of
+/// colours then uploads 4 bytes per particle instead of 32, and no copy of the records has to be
+/// kept.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Record {
     /// World position.
     pub position: [f32; 3],
-    /// Repulsion radius in world units. A particle with radius 0 is not drawn. A negative radius is
-    /// that of a particle on a crease, which is drawn as a dot that faces the eye.
+    /// Repulsion radius in world units; a particle with radius 0 is not drawn. A negative radius
+    /// means a particle on a crease, which is drawn as a dot facing the eye.
     pub radius: f32,
     /// Unit normal in the octahedral encoding, as two signed normalised 16-bit integers. The
     /// largest error is 0.004°.
@@ -47,23 +47,23 @@ impl Record {
     }
 }
 
-/// Instance record of a triangle without its colours: 64 bytes. It repeats what it needs of its
-/// corners, because WebGL2 cannot look particles up by index, and a shader that has all three knows
-/// where in the triangle it is.
+/// Instance record of a triangle without its colours: 64 bytes. It repeats the data of its corners,
+/// because WebGL2 cannot look particles up by index, and because a shader with all three corners
+/// knows its position in the triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct FaceRecord {
     /// World position and repulsion radius of each corner, counter-clockwise seen from outside. A
-    /// face with a radius 0 is not drawn.
+    /// face with a radius of 0 is not drawn.
     pub corners: [[f32; 4]; 3],
     /// Normals of the corners, as in [`Record`].
     pub normals: [[i16; 2]; 3],
-    /// Newest generation level among the corners, or −1 where none has a level.
+    /// Newest generation level among the corners, or −1 if no corner has a level.
     pub level: f32,
 }
 
-/// Colours of a triangle's corners, and of the marks on them, which are opaque where there is one:
-/// 24 bytes.
+/// Colours of a triangle's corners and of the marks on them: 24 bytes. A mark is opaque, and 0
+/// means no mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct FaceTint {
@@ -133,9 +133,8 @@ impl AttributeFormat {
     }
 }
 
-/// Formats of the vertex attributes of the two buffers of an instance: those of the fields of its
-/// record in order, and those of its colours. They have the `@location`s from 0 on, without a gap
-/// from the one buffer to the other.
+/// Formats of the vertex attributes in the two buffers of an instance: the fields of its record,
+/// then its colours. Their `@location`s count from 0 through both buffers.
 pub type InstanceFormats = [&'static [AttributeFormat]; 2];
 
 /// Formats of a particle: a [`Record`] and its colour.
@@ -145,11 +144,11 @@ pub const PARTICLE: InstanceFormats = [&[Float32x3, Float32, Snorm16x2, Float32,
 pub const FACE: InstanceFormats =
     [&[Float32x4, Float32x4, Float32x4, Snorm16x2, Snorm16x2, Snorm16x2, Float32], &[Unorm8x4; 6]];
 
-/// Formats of a piece of a crease: the world position of each end with the repulsion radius of the
-/// particle there, and its colour.
+/// Formats of a crease segment: the world position of each end with the repulsion radius of the
+/// particle there, and the segment's colour.
 pub const PIECE: InstanceFormats = [&[Float32x4; 2], &[Unorm8x4]];
 
-/// Bytes of a record of fields with these formats.
+/// Bytes of a record with fields of these formats.
 #[must_use]
 pub fn stride(formats: &[AttributeFormat]) -> u64 {
     formats.iter().map(|format| format.size()).sum()

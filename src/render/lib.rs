@@ -1,15 +1,15 @@
-//! Renderer of particles, as discs, as spheres or as the faces between them, on WebGPU, WebGL2 and
-//! Vulkan through wgpu.
+//! Draws particles as discs, as spheres or as the faces between them, on WebGPU, WebGL2 and Vulkan
+//! through wgpu.
 //!
 //! The renderer takes columns of numbers and a camera matrix; it knows no field and no sampler.
 //!
 //! # How a disc is drawn
 //!
 //! * **Geometry.** Each particle is an instanced quad, a strip of four vertices. The vertex shader
-//!   spans the tangent plane by an axis that is not foreshortened and one that is. It pads the quad
-//!   by one pixel on the screen, so that the edge can be antialiased even if the disc is seen
-//!   edge-on. The particles come from instance buffers, because WebGL2 has no storage buffers in
-//!   the vertex stage.
+//!   spans the tangent plane by two axes, one of them not foreshortened. It pads the quad by one
+//!   pixel on the screen, so that the edge can be antialiased even if the disc is seen edge-on. The
+//!   particles come from instance buffers, because WebGL2 has no storage buffers in the vertex
+//!   stage.
 //! * **Antialiasing.** The fragment shader computes the coverage of a pixel from its distance to
 //!   the rim.
 //! * **Order.** Coverage requires blending, and blending depends on the order of drawing, but
@@ -28,61 +28,60 @@
 //!
 //! # How the body beneath the discs is drawn
 //!
-//! Between discs the far side of the surface and the background would show. Each particle is
-//! therefore drawn a second time, before the discs: as a *bed*, a larger opaque disc in one quiet
-//! tone. A bed lies a little behind its disc, along the normal and in depth, so that it does not
-//! cut through the discs beside it, and it gets smaller towards the outline, where it would stick
-//! out. Where a disc is so narrow on the screen that the gaps beside it fall between pixels, its
-//! bed takes on its colour: grey in some of these pixels would show as dots. Beds need no mesh; the
-//! body grows with the run. The body ends at the faces of the box and
-//! at the cutting plane. Of a closed surface, beds seen from behind are left out. Particles that
-//! are not shown yet, because only a part of the run is, have faint beds: the surface to come.
+//! Between discs one would see the far side of the surface and the background. Each particle is
+//! therefore first drawn as a *bed*, a larger opaque disc in one quiet tone. A bed lies slightly
+//! behind its disc, along the normal and in depth, so that it does not cut through neighbouring
+//! discs, and it shrinks towards the outline, where it would stick out. Where a disc is so narrow
+//! on the screen that the gaps next to it fall between pixels, its bed takes the disc's colour;
+//! grey in some of these pixels would show as dots. Beds need no mesh, so the body grows with the
+//! run. It ends at the faces of the box and at the cutting plane. On a closed surface, beds seen
+//! from behind are not drawn. While only a part of the run is shown, later particles have faint
+//! beds.
 //!
 //! # How a sphere is drawn
 //!
-//! A sphere is a disc that faces the eye, as large as its outline. The fragment shader finds where
-//! the ray of the pixel meets the sphere, and writes that depth: spheres that touch cut each other
-//! where they should. Core, rim and points are those of discs.
+//! A sphere is a disc that faces the eye and is as large as its outline. The fragment shader
+//! intersects the pixel's ray with the sphere and writes the depth found, so that touching spheres
+//! intersect correctly. Core, rim and points are those of discs.
 //!
 //! # How a mesh is drawn
 //!
-//! * **Geometry.** Each face is an instanced triangle whose record repeats the three corners. A
-//!   fragment then knows its barycentric coordinates and all corners, which indexed triangles could
-//!   not tell it without storage buffers.
-//! * **Edges** lie in the faces: a fragment's distance from a side in pixels is its barycentric
-//!   coordinate over the slope of that. Each of two neighbours draws half of the line, which is as
-//!   wide on the screen everywhere. Where faces are so small that lines would fill them, lines
-//!   fade.
-//! * **Marks** are dots around corners, in the faces as well. They lie on the surface and are cut
-//!   off by it.
-//! * **Silhouettes** are antialiased by four samples per pixel, for which the pipelines are
-//!   compiled when the first faces are drawn.
+//! * **Geometry.** Each face is an instanced triangle whose record repeats the three corners. So a
+//!   fragment knows its barycentric coordinates and all corners; with indexed triangles that would
+//!   require storage buffers.
+//! * **Edges** are drawn in the faces: a fragment's distance from a side, in pixels, is its
+//!   barycentric coordinate divided by the slope of that coordinate. Each of two neighbours draws
+//!   half of the line, whose width on the screen is constant. Where faces are so small that lines
+//!   would fill them, lines fade.
+//! * **Marks** are dots around corners, also drawn in the faces. They lie on the surface and end
+//!   with it.
+//! * **Silhouettes** are antialiased by four samples per pixel. Pipelines for these are compiled
+//!   when the first faces are drawn.
 //!
-//! # How a surface takes light from itself
+//! # How ambient occlusion is drawn
 //!
-//! The surface is darker where less of the light from all around reaches it. What is nearest to the
-//! eye is drawn first, at every other pixel each way: its depth and its normal; discs are stood for
-//! by their beds, in their places. A second pass finds the openness of each texel from 16 places
-//! around it that rise above its tangent plane; a third one takes the mean of neighbours on the
-//! same surface, in which the pattern of these places cancels out. Everything that is lit
-//! multiplies its light by a share of it when it is drawn. Reach and darkness follow from the
-//! picture alone, so that a frame in motion, one at rest and a larger picture are alike.
+//! The surface is darker where less of the light from all around reaches it. First the nearest
+//! surface is drawn at half the resolution, as depth and normal; beds replace discs here. A second
+//! pass estimates the openness of each texel from 16 points around it that rise above its tangent
+//! plane. A third pass averages neighbours on the same surface, which cancels the pattern of these
+//! points. When something lit is drawn, the openness dims its light. Reach and darkness depend only
+//! on the picture, so that a moving frame, a still one and a larger picture look alike.
 //!
 //! # How a plane cuts
 //!
-//! A disc or sphere whose centre is beyond the cutting plane is not drawn, so that discs stay
-//! whole. Faces are cut along the plane: their fragments beyond it are discarded, and those at the
-//! edge cover as many of the pixel's samples as lie on the side that is shown.
+//! A disc or sphere is hidden as a whole if its centre lies beyond the cutting plane. Faces are cut
+//! along the plane: fragments beyond it are discarded, and fragments at the edge cover those
+//! samples of the pixel that lie on the visible side.
 //!
 //! # Colour
 //!
 //! Colours are given in sRGB, lit and blended in linear light, and written through an sRGB view.
 //!
-//! # What it draws on
+//! # Targets
 //!
 //! The modules for chunks, layout, style and camera need no GPU. The renderer, behind the feature
 //! `render`, needs a device and a texture to draw on. `Screen` opens a canvas of the page (features
-//! `webgpu` and `webgl`), `OffScreen` a texture, natively (feature `vulkan`).
+//! `webgpu` and `webgl`), `OffScreen` a native texture (feature `vulkan`).
 
 pub mod chunks;
 pub mod frame;

@@ -1,13 +1,13 @@
-//! A texture in the place of a canvas, to draw natively.
+//! A texture to draw on natively, instead of a canvas.
 
 use super::gpu::{Callbacks, CreateError, Gpu};
 use super::painter::Canvas;
 use super::renderer::Renderer;
 
-/// Format of the texture, which every device of Vulkan draws on.
+/// Format of the texture, which every Vulkan device can draw on.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
-/// A texture that pictures are drawn on, one in the place of the other.
+/// A texture on which pictures are drawn, each replacing the last.
 pub struct OffScreen {
     view: wgpu::TextureView,
     size: [u32; 2],
@@ -15,8 +15,8 @@ pub struct OffScreen {
 }
 
 impl OffScreen {
-    /// Opens the machine's graphics card, or else its driver without one, and returns a texture of
-    /// this size with a renderer that draws on it. The size is that of [`Renderer::picture_size`].
+    /// Opens the machine's graphics card, or else a software driver. Returns a texture of this size
+    /// and a renderer for it. The size must come from [`Renderer::picture_size`].
     ///
     /// # Errors
     ///
@@ -43,8 +43,8 @@ impl OffScreen {
         Ok((Self { view, size, timer }, renderer))
     }
 
-    /// Draws a picture and waits for it. `time_s` is the current time on the caller's clock, in
-    /// seconds. Returns the seconds that the device took, if it has a clock.
+    /// Draws a picture and waits for it. `time_s` is the current time on the caller's clock.
+    /// Returns the seconds that the device took, if it has a clock.
     pub fn draw(&mut self, renderer: &mut Renderer, time_s: f64) -> Option<f64> {
         if let Some(timer) = &self.timer {
             timer.mark(&renderer.gpu, 0);
@@ -58,18 +58,18 @@ impl OffScreen {
         self.timer.as_ref().and_then(|timer| timer.read(&renderer.gpu))
     }
 
-    /// Pixels of a picture: those of [`Picture::pixels`](super::Picture::pixels). `None` if the
+    /// Pixels of a picture, as from [`Picture::pixels`](super::Picture::pixels). `None` if the
     /// device is lost.
     pub fn read(&self, renderer: &mut Renderer, is_transparent: bool, time_s: f64) -> Option<Vec<u8>> {
         let picture = renderer.picture(self.size, is_transparent, time_s)?;
-        // A failure leaves it without pixels.
+        // After a failure there are no pixels.
         picture.map(drop);
         wait(&renderer.gpu);
         picture.pixels()
     }
 }
 
-/// Waits until the device has done all that was submitted.
+/// Waits until the device has done all submitted work.
 fn wait(gpu: &Gpu) {
     // An error means that the device is lost, which its callback reports.
     let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
@@ -83,7 +83,7 @@ struct Timer {
 }
 
 impl Timer {
-    /// The features that a device must have to take the time of a picture.
+    /// Device features that are needed to measure the time of a picture.
     const FEATURES: wgpu::Features =
         wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
     /// Bytes of the two times.
@@ -108,7 +108,7 @@ impl Timer {
         }
     }
 
-    /// Notes the time at which all that was submitted before is done, as the first or the second.
+    /// Records when all previously submitted work is done, as the first or the second time.
     fn mark(&self, gpu: &Gpu, index: u32) {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encoder.write_timestamp(&self.times, index);
@@ -119,9 +119,9 @@ impl Timer {
         gpu.queue.submit([encoder.finish()]);
     }
 
-    /// Seconds between the two. `None` if the device is lost.
+    /// Seconds between the two times. `None` if the device is lost.
     fn read(&self, gpu: &Gpu) -> Option<f64> {
-        // A failure leaves it without a range.
+        // After a failure there is no range.
         self.readable.map_async(wgpu::MapMode::Read, .., drop);
         wait(gpu);
         let ticks = {

@@ -1,13 +1,13 @@
-//! Encoder of the render passes of a picture.
+//! Encodes the render passes of a picture.
 
 use super::frame::Frame;
 use super::pipelines::{DEPTH_FORMAT, FrameBinding, Kind, NEAREST_FORMAT, Pipelines};
 use super::store::Store;
 use super::style::{Drawing, Style};
 
-/// Samples per pixel of a picture with faces. The silhouette of a mesh has no rim that a shader
-/// could antialias. All devices of WebGPU and WebGL2 have targets with four samples, and not all
-/// with another number.
+/// Samples per pixel of a picture with faces, since a shader cannot antialias the silhouette of a
+/// mesh as it does the rim of a disc. Every WebGPU and WebGL2 device supports four samples; other
+/// numbers are optional.
 const FACE_SAMPLES: u32 = 4;
 
 /// Draws pictures into targets.
@@ -15,40 +15,39 @@ pub(super) struct Painter {
     pub(super) format: wgpu::TextureFormat,
     frame: FrameBinding,
     pipelines: Pipelines,
-    /// Buffers of the canvas, kept between pictures.
+    /// Buffers for the canvas, kept between pictures.
     buffers: Option<Buffers>,
 }
 
-/// The textures that a picture is drawn with, besides its target.
+/// The textures that drawing needs, besides the target.
 #[derive(Clone)]
 struct Buffers {
     depth: wgpu::Texture,
     /// The multisampled colour texture, if a pixel has several samples.
     samples: Option<wgpu::Texture>,
-    /// The texture that the samples are resolved to, if it is copied to the target.
+    /// The texture to which samples are resolved before it is copied to the target.
     resolved: Option<wgpu::Texture>,
     occlusion: Occlusion,
 }
 
-/// Textures of the ambient-occlusion passes, at half the resolution of the picture along each axis;
-/// of a single texel, which is not drawn, in a picture without occlusion.
+/// Textures of the ambient-occlusion passes, at half the picture's resolution along each axis.
+/// Without occlusion they have a single, unused texel.
 #[derive(Clone)]
 struct Occlusion {
     is_drawn: bool,
     depth: wgpu::TextureView,
-    /// Depths of what is nearest with normals, then with openness: each is read, by its group, to
-    /// draw on the other.
+    /// Depths of the nearest surface, first with normals, then with openness. A pass reads one,
+    /// through its group, while it draws on the other.
     nearest: [(wgpu::TextureView, wgpu::BindGroup); 2],
 }
 
-/// The particles, faces and pieces of creases that are drawn.
+/// The particles, faces and crease segments to draw.
 pub(super) struct Content {
     pub(super) particles: Store,
-    /// Number of particles that make up the body.
+    /// Number of particles whose beds make up the body.
     pub(super) body: u32,
     pub(super) faces: Store,
-    /// Number of particles that the faces stand for. Only the particles after these are drawn
-    /// themselves.
+    /// Number of particles that faces replace. Only later particles are drawn themselves.
     pub(super) face_particles: u32,
     pub(super) lines: Store,
 }
@@ -58,15 +57,15 @@ pub(super) struct Scene<'a> {
     pub(super) content: &'a Content,
     pub(super) style: &'a Style,
     pub(super) frame: Frame,
-    /// Whether the background is left out.
+    /// Whether the background stays transparent.
     pub(super) transparent: bool,
 }
 
 /// Texture view that a picture is drawn on.
 pub(super) struct Canvas<'a> {
     pub(super) view: &'a wgpu::TextureView,
-    /// The texture to which samples are copied once they are resolved; without one they are
-    /// resolved to the view.
+    /// The texture to which resolved samples are copied; without it samples are resolved to the
+    /// view.
     pub(super) copied: Option<&'a wgpu::Texture>,
     pub(super) size: [u32; 2],
     /// Whether the buffers are kept for the next target of the same size.
@@ -91,7 +90,7 @@ impl Painter {
     ) {
         queue.write_buffer(&self.frame.buffer, 0, bytemuck::bytes_of(&scene.frame));
         if canvas.keep {
-            // The memory of the old ones is given back before that of the new ones is taken.
+            // Frees the old buffers' memory before new ones are allocated.
             self.buffers.take_if(|buffers| !buffers.fit(canvas, scene));
         }
         let buffers = match &self.buffers {
@@ -137,7 +136,7 @@ impl Painter {
         queue.submit([encoder.finish()]);
     }
 
-    /// Begins a pass whose depths are not kept.
+    /// Begins a pass whose depths are discarded.
     fn pass<'a>(
         &self,
         encoder: &'a mut wgpu::CommandEncoder,
@@ -168,7 +167,7 @@ impl Painter {
         pass
     }
 
-    /// Makes the buffers of a picture.
+    /// Creates the buffers for a picture.
     fn buffers(&self, device: &wgpu::Device, canvas: &Canvas<'_>, scene: &Scene<'_>) -> Buffers {
         let texture = |[width, height]: [u32; 2], format, sample_count, usage| {
             device.create_texture(&wgpu::TextureDescriptor {
@@ -213,7 +212,7 @@ struct PassTarget<'a> {
     depth: Option<&'a wgpu::TextureView>,
 }
 
-/// Hands out the pipelines for a target.
+/// Returns the pipeline of a kind for a target.
 type Get<'a> = dyn FnMut(Kind) -> wgpu::RenderPipeline + 'a;
 
 impl Scene<'_> {
@@ -222,7 +221,7 @@ impl Scene<'_> {
         if self.transparent { wgpu::Color::TRANSPARENT } else { wgpu::Color { r, g, b, a: 1.0 } }
     }
 
-    /// Whether there are faces in the picture.
+    /// Whether the picture has faces.
     fn has_faces(&self) -> bool {
         self.style.drawing != Drawing::Discs && self.content.faces.count > 0
     }
@@ -232,19 +231,19 @@ impl Scene<'_> {
         if self.has_faces() { FACE_SAMPLES } else { 1 }
     }
 
-    /// Whether the surface takes light from itself. Discs without a body do not: each would take it
-    /// from those behind its gaps.
+    /// Whether ambient occlusion is drawn. Discs without a body get none: those behind the gaps
+    /// would darken the discs in front.
     fn is_occluded(&self) -> bool {
         let Style { occlusion, spheres, body, .. } = self.style;
         *occlusion > 0.0 && (*spheres || body.is_some() || self.has_faces())
     }
 
-    /// The first particle that is drawn itself: the faces stand for those before.
+    /// The first particle that is drawn itself; faces replace the ones before it.
     fn first(&self) -> u32 {
         if self.has_faces() { self.content.face_particles } else { 0 }
     }
 
-    /// Draws the particles of these that no face stands for.
+    /// Draws those of these particles that no face replaces.
     fn draw_particles(&self, pass: &mut wgpu::RenderPass<'_>, range: core::ops::Range<u32>) {
         let first = range.start.max(self.first());
         draw_instances(pass, &self.content.particles, 4, first..range.end.max(first));
@@ -310,8 +309,8 @@ impl Scene<'_> {
     }
 }
 
-/// Draws a strip of so many vertices per record. The buffer slices begin at the first record drawn,
-/// because WebGL2 has no base instance.
+/// Draws a strip of this many vertices per record. The buffer slices begin at the first record
+/// drawn, because WebGL2 has no base instance.
 fn draw_instances(
     pass: &mut wgpu::RenderPass<'_>,
     store: &Store,

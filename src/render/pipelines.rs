@@ -6,8 +6,8 @@ use super::shaders::{DISCS, FACES, LINES, OCCLUSION, Shader};
 
 /// Format of the depth buffers.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// Format of what is nearest to the eye: the bits of a depth, and those of a normal or of the
-/// openness. All devices draw on it.
+/// Format of the nearest-surface texture: the bits of a depth, and of a normal or an openness.
+/// Every device can draw on it.
 pub(super) const NEAREST_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 
 /// The uniform buffer for a [`Frame`], which all pipelines of a device share.
@@ -17,18 +17,17 @@ pub(super) struct FrameBinding {
     layout: wgpu::BindGroupLayout,
 }
 
-/// Blending of colours that are premultiplied by their opacity.
+/// Blending of premultiplied colours.
 const BLEND: wgpu::BlendState = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 
-/// Kind of a pipeline: the shapes that it draws, and into which pass.
+/// Kind of a pipeline: the shapes it draws, and the pass in which.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// The body beneath discs, with depth writes.
     Bed,
-    /// The body of particles that a later level will place, with depth writes.
+    /// The body of particles that later levels will place, with depth writes.
     BedToCome,
-    /// The body into the nearest-surface texture: depth and normal of what is nearest at each
-    /// pixel.
+    /// The body into the nearest-surface texture, as depth and normal at each pixel.
     BedNearest,
     /// Fully covered pixels of discs, with depth writes.
     DiscCore,
@@ -40,20 +39,18 @@ pub(super) enum Kind {
     BallCore,
     /// Partly covered pixels of spheres.
     BallRim,
-    /// Spheres into the nearest-surface texture: depth and normal of the sphere that is nearest at
-    /// each pixel.
+    /// Spheres into the nearest-surface texture, as depth and normal at each pixel.
     BallNearest,
     /// Faces, with depth writes.
     Face,
-    /// Faces that a plane may cut, with depth writes. The samples of a pixel antialias the edge at
-    /// the plane.
+    /// Faces that a plane may cut, with depth writes. Their edge at the plane is antialiased by the
+    /// samples of a pixel.
     CutFace,
-    /// Faces into the nearest-surface texture: depth and normal of the face that is nearest at each
-    /// pixel.
+    /// Faces into the nearest-surface texture, as depth and normal at each pixel.
     FaceNearest,
     /// Ambient occlusion: the openness of the nearest surface at each pixel.
     Occlusion,
-    /// The ambient occlusion, smoothed by the mean over neighbouring pixels.
+    /// Smooths the ambient occlusion by the mean over neighbouring pixels.
     Mean,
     /// A ring around a particle, over everything.
     Ring,
@@ -68,16 +65,16 @@ pub(super) enum Kind {
 enum Way {
     /// Blends and writes depths.
     Solid,
-    /// Writes depths. The opacity says how many samples of a pixel are covered, instead of being
+    /// Writes depths. The opacity determines how many samples of a pixel are covered and is not
     /// blended.
     Covering,
     /// Blends with depth test, without depth writes.
     Blended,
     /// Blends over everything.
     Above,
-    /// Writes depths and what is nearest.
+    /// Writes depths and the nearest-surface texture.
     Nearest,
-    /// Computes every texel of what is nearest.
+    /// Computes every texel of the nearest-surface texture.
     Screen,
 }
 
@@ -116,7 +113,7 @@ impl Kind {
         Spec { shader, vertex, fragment, buffers, way }
     }
 
-    /// Whether its shader reads what is nearest.
+    /// Whether the shader reads the nearest-surface texture.
     fn reads_nearest(self) -> bool {
         matches!(
             self,
@@ -139,17 +136,17 @@ impl Kind {
 pub(super) struct Pipelines {
     /// Format of the pictures: an sRGB format, so that blending is linear.
     format: wgpu::TextureFormat,
-    /// Without and with the group with what is nearest.
+    /// Without and with the group of the nearest-surface texture.
     layouts: [wgpu::PipelineLayout; 2],
     /// Layout of that group.
     nearest: wgpu::BindGroupLayout,
-    /// By their names.
+    /// Shader modules by name.
     modules: Vec<(&'static str, wgpu::ShaderModule)>,
-    /// By what they draw, and the samples per pixel of the target.
+    /// Pipelines by what they draw and the samples per pixel of the target.
     made: Vec<((Kind, u32), wgpu::RenderPipeline)>,
 }
 
-/// Returns the entry of `key`, which `make` makes unless it is there.
+/// Returns the entry of `key`, which `make` creates if it is missing.
 fn entry<K: PartialEq, V: Clone>(made: &mut Vec<(K, V)>, key: K, make: impl FnOnce() -> V) -> V {
     if let Some((_, value)) = made.iter().find(|(other, _)| *other == key) {
         return value.clone();
@@ -187,7 +184,7 @@ impl Pipelines {
         Self { format, layouts, nearest, modules: Vec::new(), made: Vec::new() }
     }
 
-    /// The group with what is nearest, for the pipelines that read it.
+    /// The group of the nearest-surface texture, for the pipelines that read it.
     pub(super) fn group(&self, device: &wgpu::Device, nearest: &wgpu::TextureView) -> wgpu::BindGroup {
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("nearest"),
@@ -199,7 +196,7 @@ impl Pipelines {
         })
     }
 
-    /// The pipeline that draws `kind` on a target with so many samples per pixel.
+    /// The pipeline that draws `kind` on a target with this number of samples per pixel.
     pub(super) fn get(&mut self, device: &wgpu::Device, kind: Kind, samples: u32) -> wgpu::RenderPipeline {
         let Self { format, layouts, modules, made, .. } = self;
         entry(made, (kind, samples), || {
@@ -308,7 +305,7 @@ impl FrameBinding {
     }
 }
 
-/// Attribute `k` of a buffer, at a location of the shader.
+/// Attribute `k` of a buffer at a shader location.
 fn attribute(formats: &[AttributeFormat], k: usize, shader_location: u32) -> wgpu::VertexAttribute {
     let format = match formats[k] {
         AttributeFormat::Float32 => wgpu::VertexFormat::Float32,

@@ -1,6 +1,6 @@
 //! Conversion of a read-back texture to the rows of a picture.
 
-/// Bytes of a row in a read-back buffer. Rows start at multiples of 256 bytes (WebGPU,
+/// Bytes of a row in a read-back buffer, whose rows start at multiples of 256 bytes (WebGPU,
 /// `bytesPerRow`).
 #[must_use]
 pub const fn padded_row(width_px: u32) -> u32 {

@@ -1,4 +1,4 @@
-//! Renderer: a graphics device, and the particles and faces to draw with it.
+//! The renderer: a graphics device, and the particles and faces to draw with it.
 
 use super::chunks::MOST_RECORDS;
 use super::frame::Frame;
@@ -10,7 +10,7 @@ use super::store::{Part, Store};
 use super::style::{PictureTarget, Style};
 use super::view::View;
 
-/// Columns of particles, or of the corners of faces: one entry each, or three for vectors.
+/// Columns of particles or of the corners of faces. Each has one entry, or three for vectors.
 #[derive(Clone, Copy, Debug)]
 pub struct Columns<'a> {
     /// World positions.
@@ -30,7 +30,7 @@ impl Columns<'_> {
     ///
     /// # Panics
     ///
-    /// If another column is shorter than that of the radii.
+    /// If another column is shorter than the radii.
     fn records(&self, birth: f32) -> impl Iterator<Item = Record> {
         let Self { positions, normals, radii, levels, .. } = *self;
         let (positions, normals) = (positions.as_chunks::<3>().0, normals.as_chunks::<3>().0);
@@ -38,15 +38,14 @@ impl Columns<'_> {
     }
 }
 
-/// The caller's clock, in single precision: time is counted from the first finite one that is asked
-/// for.
+/// The caller's clock in single precision, relative to the first finite time that was read.
 #[derive(Default)]
 struct Clock {
     epoch_s: Option<f64>,
 }
 
-/// Time from the epoch that stands for ±∞, in seconds. It is more than a day and has a resolution
-/// of 8 ms.
+/// Time from the epoch that replaces ±∞, in seconds. It is more than a day; single precision
+/// resolves 8 ms there.
 const INFINITE_TIME_S: f64 = 1e5;
 
 impl Clock {
@@ -60,7 +59,7 @@ impl Clock {
     }
 }
 
-/// Draws particles on a surface, as discs or as the faces between them. After the device is lost,
+/// Draws particles on a surface, as discs or as the faces between them. Once the device is lost,
 /// its methods do nothing.
 pub struct Renderer {
     pub(super) gpu: Gpu,
@@ -69,7 +68,7 @@ pub struct Renderer {
     /// Buffers in which records are packed before they are uploaded.
     scratch: Vec<Record>,
     face_scratch: Vec<FaceRecord>,
-    /// Size in pixels of what is drawn on, for which the camera is made.
+    /// Size of the target in pixels, for which the camera is set.
     pub(super) size: [u32; 2],
     view: View,
     style: Style,
@@ -77,7 +76,7 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// A renderer into textures of `format`, which must be an sRGB format, so that blending is
+    /// A renderer for textures of `format`, which must be an sRGB format so that blending is
     /// linear.
     pub(super) fn new(gpu: Gpu, format: wgpu::TextureFormat) -> Self {
         let painter = Painter::new(&gpu.device, format);
@@ -101,7 +100,7 @@ impl Renderer {
         }
     }
 
-    /// Name of the back end: "webgpu", "webgl2", or that of a native one.
+    /// Name of the back end: "webgpu", "webgl2" or a native one.
     #[must_use]
     pub fn backend(&self) -> &'static str {
         self.gpu.backend()
@@ -119,15 +118,15 @@ impl Renderer {
         self.gpu.is_lost()
     }
 
-    /// Records the loss of the device, for a lost WebGL context, which wgpu does not report.
+    /// Records the loss of the device when a WebGL context is lost, which wgpu does not report.
     pub fn mark_lost(&self, reason: &str, message: &str) {
         self.gpu.mark_lost(reason, message);
     }
 
-    /// Sets the size in pixels of what is drawn on, and returns the size in effect.
+    /// Sets the size of the target in pixels. Returns the size in effect.
     ///
-    /// A size beyond the largest texture is scaled down in proportion. If a side is 0, nothing is
-    /// drawn until the next resize.
+    /// A size beyond the largest texture is reduced in proportion. If a side is 0, nothing is drawn
+    /// until the next resize.
     pub fn resize(&mut self, size: [u32; 2]) -> [u32; 2] {
         self.size = self.fit(size);
         self.size
@@ -144,7 +143,7 @@ impl Renderer {
         size
     }
 
-    /// `size`, scaled down in proportion to the largest texture if it is larger.
+    /// `size`, reduced in proportion if it exceeds the largest texture.
     fn fit(&self, size: [u32; 2]) -> [u32; 2] {
         let largest = self.gpu.device.limits().max_texture_dimension_2d;
         let longest = size[0].max(size[1]);
@@ -157,15 +156,15 @@ impl Renderer {
         })
     }
 
-    /// Writes particles `first..first + columns.radii.len()`. The number of particles drawn
-    /// increases to include them.
+    /// Writes particles `first..first + columns.radii.len()`, and increases the number of particles
+    /// drawn to include them.
     ///
-    /// `birth_s` is the time at which the particles begin to appear, in seconds on the clock of the
-    /// pictures; −∞ shows them at once.
+    /// `birth_s` is the time at which the particles begin to appear, in seconds on the pictures'
+    /// clock; −∞ shows them at once.
     ///
     /// # Panics
     ///
-    /// If a column is shorter than that of the radii, or they end beyond [`MOST_RECORDS`].
+    /// If a column is shorter than the radii, or the particles exceed [`MOST_RECORDS`].
     pub fn write(&mut self, first: u32, columns: Columns<'_>, birth_s: f64) {
         if self.is_lost() || columns.radii.is_empty() {
             return;
@@ -190,19 +189,19 @@ impl Renderer {
         }
     }
 
-    /// Sets the number of particles that are drawn, and of those that make up the body; particles
-    /// of the body that are not drawn are still to come. The buffers keep their size.
+    /// Sets the number of particles that are drawn, and the number that make up the body; of the
+    /// rest of the body only beds are drawn, faintly. The buffers keep their size.
     pub fn set_count(&mut self, count: u32, body: u32) {
         self.content.particles.count = count.min(MOST_RECORDS);
         self.content.body = body.min(MOST_RECORDS);
     }
 
-    /// Writes faces from `first` on: three entries of the columns each, counter-clockwise seen from
-    /// outside. `marks` has the colour of the mark on each corner, 0 for none.
+    /// Writes faces from `first` on. Each takes three entries of the columns, counter-clockwise
+    /// seen from outside. `marks` has the colour of the mark on each corner, 0 for none.
     ///
     /// # Panics
     ///
-    /// If a column is shorter than that of the radii, or they end beyond [`MOST_RECORDS`].
+    /// If a column is shorter than the radii, or the faces exceed [`MOST_RECORDS`].
     pub fn write_faces(&mut self, first: u32, corners: Columns<'_>, marks: &[u32]) {
         let count = (corners.radii.len() / 3) as u32;
         if self.is_lost() || count == 0 {
@@ -218,8 +217,8 @@ impl Renderer {
         self.tint_faces(first, corners.colours, marks);
     }
 
-    /// Writes the colours of faces from `first` on, and those of their marks, three each. Faces
-    /// beyond the capacity of the buffers are skipped.
+    /// Writes the colours of faces from `first` on and of their marks, three each. Faces beyond the
+    /// capacity of the buffers are skipped.
     pub fn tint_faces(&mut self, first: u32, colours: &[u32], marks: &[u32]) {
         if self.is_lost() || (first as usize + colours.len() / 3) > MOST_RECORDS as usize {
             return;
@@ -230,8 +229,8 @@ impl Renderer {
         self.content.faces.write(&self.gpu.queue, Part::Colours, first, bytemuck::cast_slice(&tints));
     }
 
-    /// Sets the number of faces, and of the particles that are not drawn as discs where faces are
-    /// drawn. Without faces their buffers are given back.
+    /// Sets the number of faces, and the number of particles that faces replace. Without faces
+    /// their buffers are released.
     pub fn set_faces(&mut self, count: u32, particles: u32) {
         let Content { faces, face_particles, .. } = &mut self.content;
         (faces.count, *face_particles) = (count.min(MOST_RECORDS), particles);
@@ -241,8 +240,8 @@ impl Renderer {
         }
     }
 
-    /// Draws these pieces of creases from now on: eight numbers each, the position of either end
-    /// and the radius of the particle there, and a colour, sRGB as 0xAABBGGRR.
+    /// Replaces the crease segments. Each has eight numbers, the position of both ends with the
+    /// radius of the particle there, and a colour, sRGB as 0xAABBGGRR.
     ///
     /// # Panics
     ///
@@ -259,7 +258,7 @@ impl Renderer {
         lines.write(&gpu.queue, Part::Colours, 0, bytemuck::cast_slice(colours));
     }
 
-    /// Sets the camera, which must be made for the current size of what is drawn on.
+    /// Sets the camera, which must be made for the current size of the target.
     pub fn set_view(&mut self, view: View) {
         self.view = view;
     }
@@ -275,11 +274,11 @@ impl Renderer {
         self.paint(canvas, frame, false);
     }
 
-    /// Draws into a texture of [`Renderer::picture_size`] and begins to copy it to memory that
+    /// Draws into a texture of [`Renderer::picture_size`] and begins to copy it to memory, which
     /// [`Picture::map`] makes readable.
     ///
-    /// A picture with another aspect ratio than what is drawn on shows more at the sides, or at top
-    /// and bottom. Returns `None` if the device is lost.
+    /// If the picture's aspect ratio differs from the canvas's, it shows more at the sides, or at
+    /// top and bottom. Returns `None` if the device is lost.
     pub fn picture(&mut self, size: [u32; 2], transparent: bool, time_s: f64) -> Option<Picture> {
         if self.is_lost() {
             return None;
@@ -350,7 +349,7 @@ impl Renderer {
     }
 }
 
-/// A picture whose pixels are being copied to memory that can be read.
+/// A picture whose pixels are being copied to readable memory.
 pub struct Picture {
     buffer: wgpu::Buffer,
     size: [u32; 2],
@@ -359,8 +358,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Requests the pixels. `done` is called with `true` when [`Picture::pixels`] can be called, or
-    /// with `false` if it failed.
+    /// Requests the pixels. `done` is called with `true` once [`Picture::pixels`] can be called, or
+    /// with `false` after a failure.
     pub fn map(&self, done: impl FnOnce(bool) + Send + 'static) {
         self.buffer.map_async(wgpu::MapMode::Read, .., move |result| done(result.is_ok()));
     }

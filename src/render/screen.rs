@@ -4,13 +4,13 @@ use super::gpu::{Callbacks, CreateError, Gpu};
 use super::painter::Canvas;
 use super::renderer::Renderer;
 
-/// Outcome of [`Screen::draw`].
+/// Result of [`Screen::draw`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrawOutcome {
     /// The picture was submitted and will be shown.
     Drawn,
-    /// The surface cannot be drawn on now, because it is empty, hidden or busy. Draw again when
-    /// something changes.
+    /// The surface cannot be drawn on now, because it is empty, hidden or busy. Draw again after
+    /// the next change.
     Skipped,
     /// The device is lost. A new renderer is needed.
     Lost,
@@ -26,7 +26,7 @@ pub struct Screen {
 }
 
 impl Screen {
-    /// Opens a device that can draw on `surface_target`, and returns the two with a renderer on it.
+    /// Opens a device that can draw on `surface_target`. Returns the screen and its renderer.
     ///
     /// # Errors
     ///
@@ -44,7 +44,7 @@ impl Screen {
         Ok((screen, renderer))
     }
 
-    /// A surface that `adapter` draws on.
+    /// A surface for `adapter`.
     fn new(surface: wgpu::Surface<'static>, adapter: &wgpu::Adapter) -> Result<Self, CreateError> {
         let mut config = surface.get_default_config(adapter, 1, 1).ok_or(CreateError::Format)?;
         let capabilities = surface.get_capabilities(adapter);
@@ -52,8 +52,8 @@ impl Screen {
         let view_format = if downlevel.flags.contains(wgpu::DownlevelFlags::SURFACE_VIEW_FORMATS) {
             let view_format = config.format.add_srgb_suffix();
             config.view_formats = vec![view_format];
-            // Every canvas of WebGPU can be copied to, although wgpu lists only that it can be
-            // drawn to.
+            // Every WebGPU canvas can be a copy target, although wgpu lists it only as a render
+            // target.
             if adapter.get_info().backend == wgpu::Backend::BrowserWebGpu {
                 config.usage |= wgpu::TextureUsages::COPY_DST;
             }
@@ -89,7 +89,7 @@ impl Screen {
         outcome(renderer, DrawOutcome::Drawn)
     }
 
-    /// The texture of the next picture; `None` if it cannot be had now.
+    /// The texture of the next picture; `None` if it is not available now.
     fn next(&mut self, device: &wgpu::Device, size: [u32; 2]) -> Option<wgpu::SurfaceTexture> {
         if !self.configured || size != [self.config.width, self.config.height] {
             self.configure(device, size);
@@ -122,9 +122,9 @@ impl Screen {
         })
     }
 
-    /// The texture, if samples are not to be resolved to its view but copied to it: where the view
-    /// has another format, a driver may resolve to the format of the texture, and the picture be
-    /// too dark (seen in Chromium 156 with SwiftShader's WebGPU).
+    /// The texture, if samples must be copied to it instead of resolved to its view. If the view
+    /// has another format, a driver may resolve in the texture's format and make the picture too
+    /// dark (seen in Chromium 156 with SwiftShader's WebGPU).
     fn copied<'a>(&self, texture: &'a wgpu::SurfaceTexture) -> Option<&'a wgpu::Texture> {
         let can_copy = self.config.usage.contains(wgpu::TextureUsages::COPY_DST);
         (can_copy && self.view_format != self.config.format).then_some(&texture.texture)

@@ -1,14 +1,13 @@
 //! Sources of the shaders.
 
-/// A shader: the text that all shaders share, and that of its own file.
+/// A shader: the shared text, and the text of its own file.
 #[derive(Clone, Copy, Debug)]
 pub struct Shader {
     /// File name in `shaders/`.
     pub name: &'static str,
     /// The common text and that of the file.
     pub source: &'static str,
-    /// Text without comments and indentation, which is what the device gets and what the bundle
-    /// contains.
+    /// The text without comments and indentation, for the device and the bundle.
     pub lean: &'static str,
 }
 
@@ -30,10 +29,10 @@ macro_rules! shader {
         Shader { name: $name, source: SOURCE, lean: TEXT }
     }};
 }
-/// File name in `shaders/` of the text that every shader begins with.
+/// File in `shaders/` whose text begins every shader.
 pub const COMMON: &str = "common.wgsl";
 
-/// All shaders. A test checks that they are the files in `shaders/`.
+/// All shaders. A test compares them with the files in `shaders/`.
 pub const SHADERS: [Shader; 4] = [DISCS, FACES, LINES, OCCLUSION];
 
 /// Draws particles as discs or as spheres, and a ring around one of them.
@@ -42,11 +41,11 @@ pub const DISCS: Shader = shader!("discs.wgsl");
 pub const FACES: Shader = shader!("faces.wgsl");
 /// Draws the edges of the clip box, and the creases of a surface.
 pub const LINES: Shader = shader!("lines.wgsl");
-/// Finds how open a surface is to light from all around.
+/// Computes how open a surface is to light from all around.
 pub const OCCLUSION: Shader = shader!("occlusion.wgsl");
 
-/// Copies `source` without `//` comments, indentation and empty lines to `out`, as far as there is
-/// room, and returns the length of the whole.
+/// Copies `source` to `out` without `//` comments, indentation and empty lines, as far as it fits.
+/// Returns the full length.
 const fn strip(source: &str, out: &mut [u8]) -> usize {
     let bytes = source.as_bytes();
     let mut length = 0;

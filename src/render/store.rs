@@ -4,12 +4,11 @@ use super::chunks::{CHUNK, ChunkSpan, MOST_RECORDS, split_at_chunks};
 use super::layout::{InstanceFormats, stride};
 use core::ops::Range;
 
-/// Initial capacity of the first chunk, of 128 KiB for particles. Six doublings lead from it to a
-/// whole [`CHUNK`], and each copies what is there once.
+/// Initial capacity of the first chunk, 128 KiB for particles. Six doublings lead to a whole
+/// [`CHUNK`]; each copies the content once.
 const FIRST: u32 = 1 << 12;
 
-/// A buffer of a chunk: of the geometry of each record or, apart from it, of its colours, which
-/// change more often.
+/// A buffer of a chunk: the geometry of its records, or their colours, which change more often.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Records,
@@ -42,8 +41,8 @@ impl Store {
         Self { strides: formats.map(stride), chunks: Vec::new(), count: 0 }
     }
 
-    /// Uploads a part of the records from `first` on, whose bytes these are. Records beyond the
-    /// capacity of the buffers are dropped.
+    /// Uploads a part of the records from `first` on. Records beyond the capacity of the buffers
+    /// are dropped.
     pub(super) fn write(&self, queue: &wgpu::Queue, part: Part, first: u32, bytes: &[u8]) {
         let stride = self.strides[part as usize];
         let count = (bytes.len() as u64 / stride) as u32;
@@ -77,7 +76,7 @@ impl Store {
     ///
     /// # Panics
     ///
-    /// If that is more than [`MOST_RECORDS`].
+    /// If `count` is more than [`MOST_RECORDS`].
     pub(super) fn reserve(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, count: u32) {
         assert!(count <= MOST_RECORDS, "{count} records asked for, at most {MOST_RECORDS} are drawn");
         for index in 0..count.div_ceil(CHUNK) {
@@ -101,7 +100,7 @@ impl Store {
         }
     }
 
-    /// Gives the buffers back.
+    /// Releases the buffers.
     pub(super) fn release(&mut self) {
         self.chunks.clear();
     }

@@ -1,4 +1,4 @@
-//! Style of a picture, and the uniform block that follows from style and camera.
+//! Style of a picture, and the uniform block computed from style and camera.
 
 use super::frame::{self, Appearance, Body, Camera, Frame, Light, Look};
 use super::pixels::decode;
@@ -6,9 +6,9 @@ use super::view::View;
 
 /// Style of a picture. Colours are sRGB with components from 0 to 1, opacity last.
 ///
-/// Values out of range are clamped when the picture is drawn; NaN counts as the lower bound. Ranges
-/// of lengths and times are wider than anyone asks for: they keep what the shaders compute finite
-/// and not zero.
+/// Values out of range are clamped when the picture is drawn; NaN counts as the lower bound. The
+/// ranges of lengths and times are wider than anyone needs: they only keep the shaders' results
+/// finite and nonzero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Style {
     /// Background colour. The canvas is opaque, so the opacity has no effect there.
@@ -17,37 +17,37 @@ pub struct Style {
     pub drawing: Drawing,
     /// Body beneath discs and spheres, which closes the gaps between them.
     pub body: Option<BodyStyle>,
-    /// Whether particles are drawn as spheres where they would be drawn as discs.
+    /// Whether spheres replace discs.
     pub spheres: bool,
     /// Radius of a disc or sphere in repulsion radii. At 1 the discs of a hexagonal packing touch;
-    /// the default is a choice, which leaves gaps that make the order visible.
+    /// the default leaves gaps that make the order visible.
     pub disc_scale: f32,
     /// Direction to the key light in view coordinates: x right, y up, z towards the viewer. The
-    /// default is a choice: from the upper left, as drawings are lit.
+    /// default is the upper left, the convention of drawings.
     pub key_light_view: [f32; 3],
     /// Fraction by which the whole picture fades to the background, 0 to 1.
     pub dim: f32,
-    /// Fraction by which discs and faces seen from behind are drawn as an inside, darker and
-    /// greyer, 0 to 1.
+    /// Fraction by which discs and faces seen from behind look like an inside, darker and greyer, 0
+    /// to 1.
     pub dim_backfaces: f32,
     /// Fraction of the ambient occlusion that darkens the surface, 0 to 1. With 0 it is not
     /// computed.
     pub occlusion: f32,
     /// Difference in warmth between lit and shaded places, 0 to 1. With 0 the light is white.
     pub warmth: f32,
-    /// Duration in seconds of the appearance of a new particle; 0 shows it at once. The default is
-    /// a choice: some frames, in which the eye catches that something appears.
+    /// Duration in seconds of a new particle's appearance; 0 shows it at once. The default is a few
+    /// frames, enough for the eye to notice.
     pub fade_s: f32,
-    /// Newest generation level that is drawn. Particles of later levels are hidden, those of
-    /// earlier ones fade by `mute`. With `None` all levels are drawn alike.
+    /// Newest generation level that is drawn. Later levels are hidden, earlier ones fade by `mute`.
+    /// With `None` all levels are drawn alike.
     pub level: Option<u32>,
     /// Fraction by which earlier levels fade to the background, 0 to 1.
     pub mute: f32,
-    /// Index of a particle that is marked by a ring.
+    /// Index of a particle with a ring around it.
     pub outline: Option<u32>,
     /// Clip box whose edges are drawn.
     pub clip_box: Option<ClipBoxStyle>,
-    /// Plane beyond which nothing is drawn of particles and faces.
+    /// Plane beyond which particles and faces are hidden.
     pub plane: Option<CuttingPlane>,
     /// Canvas pixels per page pixel, the unit of line widths.
     pub pixel_ratio: f32,
@@ -59,8 +59,8 @@ pub enum Drawing {
     /// Particles are drawn as discs.
     #[default]
     Discs,
-    /// The faces between the particles are drawn, and discs for newer particles, which no face
-    /// joins yet.
+    /// Faces are drawn between the particles, and discs for newer particles that no face contains
+    /// yet.
     Faces {
         /// Whether each face has one normal and one colour.
         flat: bool,
@@ -69,17 +69,15 @@ pub enum Drawing {
     },
 }
 
-/// The body: each particle as a larger disc, a little behind its own. Particles that are not shown
-/// yet are part of it, faintly.
+/// The body: each particle as a larger disc slightly behind its own, faint if the particle is not
+/// shown yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyStyle {
     /// Colour: sRGB, components from 0 to 1.
     pub colour: [f32; 3],
-    /// Whether the inside of the surface can be seen. If not, nothing of the body is drawn from
-    /// behind.
+    /// Whether the inside of the surface can be seen. If not, the body's back sides are not drawn.
     pub is_open: bool,
-    /// Smallest and largest corner of the box of the surface, in world coordinates. The body ends
-    /// at its faces.
+    /// Smallest and largest corner of the surface's box, in world coordinates, where the body ends.
     pub bounds: [[f32; 3]; 2],
 }
 
@@ -100,13 +98,13 @@ pub struct ClipBoxStyle {
     pub colour: [f32; 4],
 }
 
-/// A plane that hides what is in front of it: particles by their centres, faces in part.
+/// A plane that hides one side: particles by their centres, faces in part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CuttingPlane {
-    /// Normal, of any length, in world coordinates. It points to the side that is hidden. With a
-    /// zero normal nothing is.
+    /// Normal, of any length, in world coordinates. It points to the hidden side; a zero normal
+    /// hides nothing.
     pub normal: [f32; 3],
-    /// A place p is hidden if normal · p > offset.
+    /// A point p is hidden if normal · p > offset.
     pub offset: f32,
 }
 
@@ -137,7 +135,7 @@ impl Default for Style {
 /// Target of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureTarget {
-    /// Size in pixels of the canvas, which the view was made for.
+    /// Size in pixels of the canvas for which the view was made.
     pub canvas: [u32; 2],
     /// Size of the target in pixels.
     pub size: [u32; 2],
@@ -213,11 +211,11 @@ impl Style {
     }
 }
 
-/// The uniform of a picture without a cutting plane, which hides nothing.
+/// The uniform of a picture without a cutting plane.
 const NO_PLANE: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
 impl CuttingPlane {
-    /// Normal and offset; of a plane that is not finite, those that hide nothing.
+    /// Normal and offset. A plane that is not finite hides nothing.
     fn uniform(self) -> [f32; 4] {
         let [x, y, z] = self.normal;
         let uniform = [x, y, z, self.offset];
@@ -228,12 +226,12 @@ impl CuttingPlane {
 /// Larger than any level of 2³² particles.
 const ALL_LEVELS: f32 = 1e10;
 
-/// Luminance of a background to which black and white have equal contrast (WCAG 2: √(1.05 · 0.05) −
+/// Luminance of a background on which black and white have equal contrast (WCAG 2: √(1.05 · 0.05) −
 /// 0.05).
 const LIGHT_GROUND: f32 = 0.179;
 
-/// Light along the outline on a dark ground, which sets it off. On a light one the shade of the
-/// outline does.
+/// Light added along the outline to set it off from a dark background. On a light background its
+/// shade does.
 const RIM_LIGHT: f32 = 0.10;
 
 /// Relative luminance of a linear colour.

@@ -14,7 +14,7 @@ pub struct View {
     pub direction: [f32; 3],
 }
 
-/// Why a slice of numbers is not a camera.
+/// Why numbers do not form a camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum ViewError {
@@ -67,8 +67,8 @@ impl View {
         [3, 7, 11].iter().any(|&k| self.clip_from_world[k] != 0.0)
     }
 
-    /// Matrix for a target of size `to`, given a camera for size `from`. Everything visible at size
-    /// `from` stays visible, and circles stay round.
+    /// The matrix for a target of size `to`, if the camera was made for size `from`. Everything
+    /// visible at size `from` stays visible, and circles stay round.
     #[must_use]
     pub fn clip_from_world_for(&self, from: [u32; 2], to: [u32; 2]) -> [[f32; 4]; 4] {
         let aspect = |size: [u32; 2]| size[0].max(1) as f32 / size[1].max(1) as f32;
@@ -82,9 +82,9 @@ impl View {
         columns
     }
 
-    /// Unit vector in world coordinates of direction `v` in view coordinates (x right, y up, z
-    /// towards the viewer). If `v` is zero or the camera is degenerate, it points towards the
-    /// viewer.
+    /// Converts direction `v` from view coordinates (x right, y up, z towards the viewer) to a unit
+    /// vector in world coordinates. It points towards the viewer if `v` is zero or the camera is
+    /// degenerate.
     #[must_use]
     pub fn world_from_view(&self, v: [f32; 3]) -> [f32; 3] {
         let m = &self.clip_from_world;

@@ -1,7 +1,7 @@
-//! The renderer as JavaScript sees it: newtypes and copies.
+//! The renderer's interface for JavaScript.
 //!
-//! Every method borrows the renderer for the length of the call only, also the asynchronous one, so
-//! that a picture may be on its way while the next frame is drawn.
+//! Every method borrows the renderer only during the call, even the asynchronous one, so that the
+//! next frame can be drawn while a picture is being read.
 
 use crate::chunks::MOST_RECORDS;
 use crate::style::{BodyStyle, ClipBoxStyle, CuttingPlane, Drawing, Style};
@@ -15,11 +15,11 @@ use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::{JsFuture, future_to_promise, spawn_local};
 use web_sys::HtmlCanvasElement;
 
-/// Particles copied at a time: 2.4 MB of columns, so that a million need no second copy of
-/// themselves in this memory.
+/// Particles copied at a time: 2.4 MB of columns, so that a million particles need no second copy
+/// in this memory.
 const SLICE: u32 = 1 << 16;
-/// Milliseconds between two looks at whether a picture has arrived, where nobody calls (WebGL2). It
-/// is the least that the HTML Standard gives timers that are set from timers (§8.6, "Timers").
+/// Milliseconds between two checks whether a picture has arrived, for WebGL2, which calls nobody.
+/// The HTML Standard's minimum for timers that are set from timers (§8.6, "Timers").
 const POLL_MS: i32 = 4;
 
 #[wasm_bindgen]
@@ -28,8 +28,8 @@ extern "C" {
     fn set_timeout(handler: &Function, timeout_ms: i32);
 }
 
-/// Draws particles on a canvas. `free()` it when done; a lost device needs a new renderer on a new
-/// canvas.
+/// Draws particles on a canvas. Call `free()` when done. After the device is lost, create a new
+/// renderer on a new canvas.
 #[wasm_bindgen]
 pub struct Renderer {
     inner: Rc<RefCell<Inner>>,
@@ -58,15 +58,15 @@ impl Scratch {
 
 #[wasm_bindgen]
 impl Renderer {
-    /// Opens a graphics device on `canvas`, which must have no context of another kind yet.
+    /// Opens a graphics device on `canvas`, which must not have a context of another kind.
     ///
-    /// `on_lost(reason, message)` is called once, when the device is gone; reason is "unknown" or
-    /// "destroyed". `on_error(message)` is called when the device refuses a call; drawing goes on.
-    /// Both are called after the method that caused them has returned, and may use the renderer.
+    /// `on_lost(reason, message)` is called once, when the device is lost; reason is "unknown" or
+    /// "destroyed". `on_error(message)` is called when the device rejects a call; drawing
+    /// continues. Both are called after the causing method has returned, and may use the renderer.
     ///
     /// # Errors
     ///
-    /// Throws an `Error` where the canvas, the adapter or the device cannot be had.
+    /// Throws an `Error` if the canvas, the adapter or the device is not available.
     pub async fn create(
         canvas: HtmlCanvasElement,
         #[wasm_bindgen(unchecked_param_type = "(reason: string, message: string) => void")] on_lost: Function,
@@ -82,7 +82,7 @@ impl Renderer {
         let target = wgpu::SurfaceTarget::Canvas(canvas.clone());
         let (screen, inner) = Screen::open(target, callbacks).await?;
         let (screen, inner) = (RefCell::new(screen), Rc::new(RefCell::new(inner)));
-        // wgpu hears nothing of a lost WebGL context. The default action would forbid restoring it.
+        // wgpu does not see a lost WebGL context. The default action would forbid restoring it.
         let weak = Rc::downgrade(&inner);
         let on_context_lost = Closure::new(move |event: web_sys::Event| {
             event.prevent_default();
@@ -103,7 +103,7 @@ impl Renderer {
         self.inner.borrow().backend().to_owned()
     }
 
-    /// Name of the graphics adapter as the driver gives it; may be empty, since browsers hide it.
+    /// Name of the graphics adapter according to the driver; may be empty, since browsers hide it.
     pub fn adapter(&self) -> String {
         self.inner.borrow().adapter().to_owned()
     }
@@ -114,23 +114,22 @@ impl Renderer {
     }
 
     /// Sets the canvas's size in pixels. Beyond the device's limit it shrinks in proportion (read
-    /// `canvas.width` after the next `draw`); where a side is 0 nothing is drawn.
+    /// `canvas.width` after the next `draw`). If a side is 0 nothing is drawn.
     pub fn resize(&self, width_px: u32, height_px: u32) {
         self.inner.borrow_mut().resize([width_px, height_px]);
     }
 
-    /// Appends or overwrites particles `first..first + radii.length`; the number drawn grows to
-    /// their end.
+    /// Appends or overwrites particles `first..first + radii.length`. The number of particles drawn
+    /// grows to include them.
     ///
-    /// Three numbers per particle in `positions` and `normals`; a negative radius is that of a dot
-    /// that faces the eye; a level of 4294967295 stands for none, and such a particle is always
-    /// drawn; `colours` are 0xAABBGGRR, sRGB. They begin to appear at `birth_s` on the clock of
-    /// `draw`; -Infinity shows them at once.
+    /// `positions` and `normals` have three numbers per particle. A negative radius means a dot
+    /// that faces the eye; the level 4294967295 means no level, and such a particle is always
+    /// drawn; `colours` are 0xAABBGGRR, sRGB. The particles begin to appear at `birth_s` on the
+    /// clock of `draw`; -Infinity shows them at once.
     ///
     /// # Errors
     ///
-    /// Throws where the columns disagree in length or there are more particles than
-    /// `max_particles()`.
+    /// Throws if the columns differ in length or there are more particles than `max_particles()`.
     #[allow(clippy::too_many_arguments, reason = "JavaScript hands over one typed array for each column")]
     pub fn write(
         &self,
@@ -163,7 +162,7 @@ impl Renderer {
     ///
     /// # Errors
     ///
-    /// Throws where there are more particles than `max_particles()`.
+    /// Throws if there are more particles than `max_particles()`.
     pub fn write_colours(&self, first: u32, colours: &Uint32Array) -> Result<(), JsError> {
         let count = colours.length();
         check_end(first, count, "particles")?;
@@ -177,8 +176,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws the first `count` particles from now on, and the first `body` ones as the body beneath
-    /// them: fainter those that are not drawn.
+    /// Sets how many particles are drawn, and how many form the body beneath them. The body is
+    /// fainter where its particles are not drawn.
     pub fn set_count(&self, count: u32, body: u32) {
         self.inner.borrow_mut().set_count(count, body);
     }
@@ -188,13 +187,13 @@ impl Renderer {
         MOST_RECORDS
     }
 
-    /// Writes faces from `first` on: of each corner what `write` takes of a particle, three corners
-    /// a face, counter-clockwise seen from outside. `marks` are the colours of marks on the
-    /// corners, 0 for none. Hand over some ten thousand at a time.
+    /// Writes faces from `first` on. Each face has three corners, counter-clockwise seen from
+    /// outside, with the data of a particle in `write`. `marks` are the colours of marks on the
+    /// corners, 0 for none. Pass some ten thousand faces at a time.
     ///
     /// # Errors
     ///
-    /// Throws where the columns disagree in length or there are more faces than `max_faces()`.
+    /// Throws if the columns differ in length or there are more faces than `max_faces()`.
     #[allow(clippy::too_many_arguments, reason = "JavaScript hands over one typed array for each column")]
     pub fn write_faces(
         &self,
@@ -220,11 +219,11 @@ impl Renderer {
         Ok(())
     }
 
-    /// Changes the colours of faces from `first` on, and those of their marks, three each.
+    /// Changes the colours of faces from `first` on and of their marks, three each.
     ///
     /// # Errors
     ///
-    /// The errors of `write_faces`.
+    /// As for `write_faces`.
     pub fn tint_faces(&self, first: u32, colours: &Uint32Array, marks: &Uint32Array) -> Result<(), JsError> {
         check_corners(first, colours.length(), marks)?;
         let mut scratch = self.scratch.borrow_mut();
@@ -234,19 +233,18 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws the first `count` faces from now on, where the style asks for faces, in the place of
-    /// the first `particles` particles. Without faces there are discs.
+    /// Sets how many faces are drawn, if the style asks for faces, and how many particles they
+    /// replace. Without faces discs are drawn.
     pub fn set_faces(&self, count: u32, particles: u32) {
         self.inner.borrow_mut().set_faces(count, particles);
     }
 
-    /// Draws these pieces of creases from now on: eight numbers each in `ends`, the position of
-    /// either end and the radius of the particle there; `colours` are 0xAABBGGRR, sRGB.
+    /// Replaces the crease segments. `ends` has eight numbers for each, the position of both ends
+    /// with the radius of the particle there; `colours` are 0xAABBGGRR, sRGB.
     ///
     /// # Errors
     ///
-    /// Throws where the columns disagree in length or there are more of them than
-    /// `max_particles()`.
+    /// Throws if the columns differ in length or there are more segments than `max_particles()`.
     pub fn write_lines(&self, ends: &Float32Array, colours: &Uint32Array) -> Result<(), JsError> {
         let count = colours.length();
         check_end(0, count, "lines")?;
@@ -261,27 +259,27 @@ impl Renderer {
     }
 
     /// Sets the camera: clip from world (16, column-major, depth 0 to 1), eye (3) and viewing
-    /// direction (3) in world coordinates. Further numbers are ignored; whether the camera is
-    /// orthographic follows from the matrix.
+    /// direction (3) in world coordinates. Further numbers are ignored. The matrix tells whether
+    /// the camera is orthographic.
     ///
     /// # Errors
     ///
-    /// Throws for fewer than 22 numbers and for a number that is not finite; the last camera stays.
+    /// Throws for fewer than 22 numbers or a number that is not finite; the last camera stays.
     pub fn set_view(&self, view: &[f32]) -> Result<(), JsError> {
         self.inner.borrow_mut().set_view(View::from_slice(view)?);
         Ok(())
     }
 
-    /// Sets the look from a JSON object; missing keys take their defaults, unknown ones are
+    /// Sets the look from a JSON object. Missing keys take their defaults, unknown ones are
     /// ignored.
     ///
     /// `background` [r, g, b, a] · `faces` {flat, edge_px} or null for discs · `body` {colour,
-    /// is_open, bounds: {min, max}} beneath them or null · `spheres` in the place of discs ·
+    /// is_open, bounds: {min, max}} beneath them or null · `spheres` instead of discs ·
     /// `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `occlusion` · `warmth`
     /// · `fade_s` · `level` newest generation level drawn, null for all · `outline` index of the
-    /// particle with a ring around it, negative for none · `box` {min, max, colour} or null ·
-    /// `plane` {normal, offset} that hides what its normal points to, or null · `pixel_ratio`.
-    /// Meaning, units and defaults: `render::style::Style`.
+    /// particle with a ring, negative for none · `box` {min, max, colour} or null · `plane`
+    /// {normal, offset}, which hides the side of its normal, or null · `pixel_ratio`. Meaning,
+    /// units and defaults: `render::style::Style`.
     ///
     /// # Errors
     ///
@@ -292,8 +290,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws one picture on the canvas: "drawn", "skipped" (nothing to draw on now) or "lost" (make
-    /// a new renderer).
+    /// Draws one picture on the canvas. Returns "drawn", "skipped" (nothing to draw on now) or
+    /// "lost" (create a new renderer).
     pub fn draw(&self, time_s: f64) -> String {
         match self.screen.borrow_mut().draw(&mut self.inner.borrow_mut(), time_s) {
             DrawOutcome::Drawn => "drawn",
@@ -303,15 +301,15 @@ impl Renderer {
         .to_owned()
     }
 
-    /// `[width, height]` that `read_pixels` draws for a wanted size: the wanted one unless the
+    /// The `[width, height]` that `read_pixels` draws for a wanted size: the same size, unless the
     /// device cannot.
     pub fn picture_size(&self, width_px: u32, height_px: u32) -> Uint32Array {
         Uint32Array::from(self.inner.borrow().picture_size([width_px, height_px]).as_slice())
     }
 
     /// Draws the picture into a texture of `picture_size(width_px, height_px)`, with every particle
-    /// fully shown, and resolves to its pixels: rows from top to bottom, red, green, blue, opacity
-    /// (not multiplied in), sRGB. Rejects where the device is lost.
+    /// fully shown. Resolves to its pixels: rows from top to bottom, red, green, blue, opacity (not
+    /// premultiplied), sRGB. Rejects if the device is lost.
     #[wasm_bindgen(unchecked_return_type = "Promise<Uint8Array<ArrayBuffer>>")]
     #[expect(clippy::missing_panics_doc, reason = "it panics in no call that JavaScript could make")]
     pub fn read_pixels(&self, width_px: u32, height_px: u32, transparent: bool) -> Promise {
@@ -343,7 +341,7 @@ impl Renderer {
         })
     }
 
-    /// Gives the device and its memory back; later calls do nothing. `on_lost` hears "destroyed".
+    /// Releases the device and its memory; later calls do nothing. `on_lost` gets "destroyed".
     pub fn destroy(&self) {
         self.inner.borrow().destroy();
         if cfg!(feature = "webgl") {
@@ -354,7 +352,7 @@ impl Renderer {
 
 impl Drop for Renderer {
     fn drop(&mut self) {
-        // Fails only for a listener that is not there.
+        // Fails only if the listener does not exist.
         let _ = self.canvas.remove_event_listener_with_callback(
             "webglcontextlost",
             self.on_context_lost.as_ref().unchecked_ref(),
@@ -362,9 +360,9 @@ impl Drop for Renderer {
     }
 }
 
-/// Calls `callback` once the JavaScript that runs now has returned: wgpu reports from within calls,
-/// when the renderer is borrowed. What the callback throws is its own affair; there is no caller to
-/// hand it to.
+/// Calls `callback` after the running JavaScript has returned: wgpu reports from within calls,
+/// while the renderer is borrowed. Exceptions of the callback are ignored, since no caller could
+/// receive them.
 fn call_later(callback: &Function, arguments: Array) {
     let callback = callback.clone();
     spawn_local(async move {
@@ -372,8 +370,8 @@ fn call_later(callback: &Function, arguments: Array) {
     });
 }
 
-/// Lets go of a canvas's WebGL context now. A browser keeps sixteen, and else would wait for its
-/// garbage collector.
+/// Releases a canvas's WebGL context now. Browsers allow about sixteen, and would otherwise wait
+/// for the garbage collector.
 fn lose_context(canvas: &HtmlCanvasElement) {
     let lose = || -> Result<(), JsValue> {
         let context = canvas.get_context("webgl2")?.ok_or(JsValue::NULL)?;
@@ -383,7 +381,7 @@ fn lose_context(canvas: &HtmlCanvasElement) {
         method(&extension, "loseContext")?.call0(&extension)?;
         Ok(())
     };
-    // Where the extension is missing, the garbage collector does it.
+    // Without the extension, the garbage collector releases it.
     let _ = lose();
 }
 
@@ -411,7 +409,7 @@ fn check_corners(first: u32, corners: u32, marks: &Uint32Array) -> Result<(), Js
     check_end(first, corners / 3, "faces")
 }
 
-/// Refuses more records than a renderer draws of either kind.
+/// Refuses more records than a renderer can draw.
 fn check_end(first: u32, count: u32, what: &str) -> Result<(), JsError> {
     let (end, most) = (u64::from(first) + u64::from(count), MOST_RECORDS);
     if end > u64::from(most) {
@@ -430,7 +428,7 @@ fn copy_words(from: &Uint32Array, to: &mut Vec<u32>) {
     from.copy_to(to);
 }
 
-/// Reads a style by the browser's own JSON parser: a parser of ours would be a tenth of the bundle.
+/// Parses a style with the browser's JSON parser; another parser would be a tenth of the bundle.
 fn read_style(json: &str) -> Result<Style, JsError> {
     let value = JSON::parse(json).map_err(|_| JsError::new("the style is not JSON"))?;
     let mut style = Style::default();
@@ -484,8 +482,8 @@ fn read_style(json: &str) -> Result<Style, JsError> {
     Ok(style)
 }
 
-/// Overwrites `numbers` by the value of `key`, where it is there: a number for one, an array of as
-/// many for several.
+/// Overwrites `numbers` by the value of `key`, if present: a number for one, an array of the same
+/// length for several.
 fn read(object: &JsValue, key: &str, numbers: &mut [f32]) -> Result<(), JsError> {
     let value = get(object, key)?;
     if value.is_undefined() {

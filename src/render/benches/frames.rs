@@ -1,8 +1,8 @@
-//! Times of a frame of the page's first surface, natively: discs, spheres and the mesh.
+//! Measures the time of a frame of the page's first surface, natively: discs, spheres and the mesh.
 //!
 //! `cargo bench -p marching-particles-render --features vulkan --bench frames` draws 100,000
-//! particles and a million; `-- COUNT…` draws other numbers. The executable needs nothing but a
-//! Vulkan driver.
+//! particles and a million; `-- COUNT…` draws other numbers. The executable needs only a Vulkan
+//! driver.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 #[path = "../tests/pictures/stage.rs"]
@@ -18,11 +18,11 @@ use std::time::{Duration, Instant};
 
 /// Numbers of particles.
 const COUNTS: [u32; 2] = [100_000, 1_000_000];
-/// Size of a frame in pixels: that of a notebook's window.
+/// Size of a frame in pixels, like the window of a notebook.
 const SIZE: [u32; 2] = [1440, 900];
-/// Frames before the times are taken, in which pipelines are compiled and buffers made.
+/// Frames before the measurement, in which pipelines are compiled and buffers created.
 const UNTIMED: usize = 3;
-/// Frames of which the median is taken; fewer after [`LONGEST`], but at least [`LEAST`].
+/// Frames whose median is taken. After [`LONGEST`] fewer are enough, but at least [`LEAST`].
 const FRAMES: usize = 100;
 const LEAST: usize = 5;
 const LONGEST: Duration = Duration::from_secs(10);
@@ -48,8 +48,8 @@ fn sampled(count: u32) -> (Shape, Bounds) {
     (shape, surface.bounds)
 }
 
-/// Draws frames and returns their number, and the median times of one in seconds: of the device, if
-/// it has a clock, and until it is drawn, with all that the processor does.
+/// Draws frames. Returns their number and the median seconds per frame: on the device, if it has a
+/// clock, and in total until the frame is drawn, including the processor's work.
 fn times(off_screen: &mut OffScreen, renderer: &mut Renderer) -> (usize, Option<f64>, f64) {
     for _ in 0..UNTIMED {
         off_screen.draw(renderer, 0.0);
@@ -69,7 +69,7 @@ fn times(off_screen: &mut OffScreen, renderer: &mut Renderer) -> (usize, Option<
 }
 
 fn main() {
-    // cargo bench hands over options of its own.
+    // cargo bench passes options of its own.
     let asked: Vec<u32> = std::env::args().skip(1).filter_map(|argument| argument.parse().ok()).collect();
     let counts = if asked.is_empty() { COUNTS.to_vec() } else { asked };
     let (mut off_screen, mut renderer) = stage::open(SIZE);
