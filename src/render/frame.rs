@@ -74,11 +74,11 @@ pub struct Light {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Appearance {
-    /// Duration in seconds of a new particle's appearance; 0 shows it at once.
+    /// Current time in seconds on the renderer's clock.
     pub time: f32,
-    /// Newest generation level that is drawn; larger than every level if all are drawn.
+    /// Duration in seconds of a new particle's appearance; 0 shows it at once.
     pub fade: f32,
-    /// Newest generation level that is drawn. Larger than every level if all are drawn.
+    /// Newest generation level that is drawn; larger than every level if all are drawn.
     pub level: f32,
     /// Fraction by which levels before the newest fade to the background, 0 to 1.
     pub mute: f32,
