@@ -15,7 +15,7 @@ const ENTRIES = ['index', 'node', 'worker', 'worker-node', 'three', 'view', 'ele
 const DECLARATIONS = ['index', 'three', 'view', 'element'];
 
 /**
- * The package has no folders: a file has the name of its folder in front of its own.
+ * The package has no folders: a file's name begins with the name of its folder.
  * @param {string} path
  */
 function flatName(path) {
@@ -25,8 +25,8 @@ function flatName(path) {
 }
 
 /**
- * Adds the workers and the modules that scripts name by `new URL('…', import.meta.url)`, and leaves
- * their addresses in this form, which browsers and bundlers read.
+ * Adds the workers and the modules that scripts name by `new URL('…', import.meta.url)`, and keeps their addresses in
+ * this form, which browsers and bundlers understand.
  * @type {Plugin}
  */
 const flat = {
@@ -51,7 +51,7 @@ async function write(entries, output) {
     platform: 'neutral',
     resolve: { mainFields: ['module', 'main'] },
     moduleTypes: { '.wasm': 'binary' },
-    // The development server of the page sets it.
+    // Only the page's development server sets it.
     transform: { define: { 'import.meta.env.VITE_WITHOUT_WEBGPU': 'undefined' } },
     plugins: [flat],
   });
@@ -59,12 +59,12 @@ async function write(entries, output) {
   await bundle.close();
 }
 
-/** Builds the package into a folder, of which nothing stays. @param {string} out */
+/** Builds the package into a folder, whose old content is deleted. @param {string} out */
 export async function buildPackage(out) {
   rmSync(out, { recursive: true, force: true });
   mkdirSync(out, { recursive: true });
   await write(ENTRIES, { dir: out });
-  // All in one file.
+  // Everything in one file.
   await write(['inline'], { dir: out, codeSplitting: false });
   for (const name of ['package.json', 'README.md']) copyFileSync(join(here, name), join(out, name));
   for (const name of DECLARATIONS) {

@@ -1,7 +1,7 @@
-/** Checks of single values, whose errors name them. @module */
+/** Checks of single values. Their errors name the value. @module */
 import { InputError } from './errors.js';
 
-/** A value as an error names it. @param {unknown} value */
+/** A value in the words of an error. @param {unknown} value */
 export const shown = (value) => (typeof value === 'string' ? `“${value.slice(0, 40)}”` : String(value));
 
 /** @type {(name: string, value: unknown, is: (v: number) => boolean, what: string) => number} */
@@ -23,7 +23,7 @@ export function flag(name, value) {
 }
 
 /**
- * Three numbers for each of some points, in double precision.
+ * Three coordinates per point, in double precision.
  * @param {string} name @param {unknown} value
  */
 export function vectors(name, value) {

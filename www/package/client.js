@@ -1,6 +1,6 @@
 /**
- * The program's side of the sampler: asks it, in a worker or in the program's own thread, and holds
- * the samples.
+ * The program's side of the sampler: sends it requests, in a worker or in the program's own thread, and holds the
+ * samples.
  *
  * @module
  */
@@ -13,7 +13,7 @@ import { checked, checkedCalls, paramsOf } from './options.js';
  * @import { Mesh, Options, Progress } from './index.js'
  */
 
-/** Formats of meshes alone. */
+/** Formats that hold only meshes. */
 const MESHES = ['glb', '3mf', 'stl', 'obj'];
 
 /**
@@ -21,7 +21,7 @@ const MESHES = ['glb', '3mf', 'stl', 'obj'];
  *   settled: () => void}} Pending
  */
 
-/** One worker, started when it is asked for the first time, and again after it has failed. */
+/** A worker, which starts with its first request and again after a failure. */
 class Client {
   #open;
   #lastId = 0;
@@ -35,7 +35,7 @@ class Client {
     this.#open = open;
   }
 
-  /** The worker, by which a sample knows whether its particles are still there. */
+  /** The worker's line. A sample compares it to see whether its particles still exist. */
   get line() {
     return this.#line;
   }
@@ -52,7 +52,7 @@ class Client {
     return new Promise((resolve, reject) => {
       const abort = () => {
         this.#line?.post({ type: 'stop', id });
-        // What the worker has made meanwhile is not wanted any more.
+        // The caller no longer wants the worker's result.
         this.#settle(id)?.reject(signal?.reason);
       };
       this.#pending.set(id, {
@@ -99,7 +99,7 @@ class Client {
   }
 
   /**
-   * Tells of progress. A function that fails ends its sampling.
+   * Reports progress. An exception from the callback ends the sampling.
    * @param {number} id @param {Progress} progress
    */
   #tell(id, progress) {
@@ -111,7 +111,7 @@ class Client {
     }
   }
 
-  /** Ends the worker: its memory cannot be trusted after an error. @param {Error} error */
+  /** Ends the worker, whose memory cannot be trusted after an error. @param {Error} error */
   #failed(error) {
     this.#line?.end();
     this.#line = null;
@@ -176,7 +176,7 @@ class Sample {
   }
 
   /**
-   * The mesh or the particles as a file.
+   * Writes the mesh or the particles as a file.
    * @param {string} format @param {{mesh?: boolean}} [how]
    * @returns {Promise<Uint8Array<ArrayBuffer>>}
    */
@@ -192,8 +192,8 @@ class Sample {
   }
 
   /**
-   * The particles on the surface of other parameters. They leave this sample, which keeps its
-   * columns, and are freed where they cannot move.
+   * Moves the particles to the surface of other parameters. They leave this sample, which keeps its columns, and are
+   * freed if they cannot follow.
    * @param {Record<string, number>} params @param {Pick<Options, 'signal' | 'onProgress'>} [options]
    */
   async moved(params, options = {}) {
@@ -214,7 +214,7 @@ class Sample {
     return new Sample(this.#client, await this.#client.ask(question, how), this.#how);
   }
 
-  /** Frees the memory of the worker once what was asked before is done. The columns stay. */
+  /** Frees the worker's memory once earlier requests are done. The columns stay. */
   dispose() {
     if (this.#isThere && this.#line === this.#client.line) this.#line?.post({ type: 'free', id: this.#id });
     this.#isThere = false;
@@ -234,8 +234,8 @@ class Sample {
 }
 
 /**
- * Returns the function `sample`: functions are sampled by what `openHere` opens, which is in the
- * thread of the program, and the rest by what `open` opens.
+ * Returns the function `sample`. Functions are sampled through `openHere`, in the program's own thread, and everything
+ * else through `open`.
  * @param {(heard: Heard) => Line} open @param {(heard: Heard) => Line} openHere
  */
 export function createSampler(open, openHere) {

@@ -1,5 +1,5 @@
 /**
- * Points as a field: a smooth surface through them, fitted in slices.
+ * Points as a field: fits a smooth surface to them, in slices.
  *
  * @module
  */
@@ -8,7 +8,7 @@ import { Points } from '../src/wasm/points/points.js';
 /** @import { Cloud } from './protocol.js' */
 /** @import { SolvedModel } from '../src/engine/core-types.js' */
 
-/** Points as a file, which is what the core fits surfaces to. @param {Cloud} cloud */
+/** Points as a PLY file, from which the core fits surfaces. @param {Cloud} cloud */
 function ply({ points, normals }) {
   const names = normals ? ['x', 'y', 'z', 'nx', 'ny', 'nz'] : ['x', 'y', 'z'];
   const count = points.length / 3;
@@ -24,7 +24,7 @@ function ply({ points, normals }) {
 }
 
 /**
- * Fits the surface, and returns it as the core takes it, or what is wrong with the points.
+ * Fits the surface. Returns it in the core's form, or what is wrong with the points.
  * @param {Cloud} cloud
  * @param {<T>(slice: (budget: number) => T | undefined) => Promise<T>} inSlices
  * @returns {Promise<{system: Uint8Array, about: SolvedModel} | {error: string}>}

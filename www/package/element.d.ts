@@ -2,8 +2,8 @@ import type { Format, Report } from './index.js';
 import type { View } from './view.js';
 
 /**
- * The element `<marching-particles>`. Its attributes are properties, too. It tells of `progress`, of
- * the `report` and of an `error` by events with a `detail`, and samples once it comes into sight.
+ * The element `<marching-particles>`. Its attributes are also properties. It sends the events `progress`, `report` and
+ * `error`, each with a `detail`, and samples once it becomes visible.
  */
 export class MarchingParticles extends HTMLElement {
   formula: string | null;
@@ -17,15 +17,15 @@ export class MarchingParticles extends HTMLElement {
   method: string | null;
   seed: string | null;
   adaptive: boolean;
-  /** what the colours mean, such as `level`, `normal` or `curvature` */
+  /** meaning of the colours, such as `level`, `normal` or `curvature` */
   colour: string | null;
   /** `discs`, `spheres` or `mesh` */
   draw: string | null;
   /** `auto`, `light` or `dark` */
   theme: string | null;
-  /** `webgpu`, `webgl2` or `canvas2d`: what is to draw the picture; read when it comes into sight */
+  /** `webgpu`, `webgl2` or `canvas2d`: the way of drawing to use; read when the element becomes visible */
   backend: string | null;
-  /** whether pointer and keys turn the picture and zoom in it; it can then have the focus */
+  /** whether pointer and keys turn and zoom the picture; it can then have the focus */
   controls: boolean;
   readonly view: View | null;
   readonly report: Report | null;

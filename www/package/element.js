@@ -1,5 +1,5 @@
 /**
- * The element `<marching-particles>`: a surface by one tag.
+ * The element `<marching-particles>`: a surface with one tag.
  *
  * @module
  */
@@ -10,7 +10,7 @@ import { createView } from './view.js';
 /** @import { BackendKind, View, ViewState } from './view.js' */
 
 /**
- * What the attributes that are settings are in the state.
+ * The changes of the state that attributes for settings stand for.
  * @type {Record<string, (value: string) => Record<string, number | string>>}
  */
 const SETTINGS = {
@@ -26,7 +26,7 @@ const TEXTS = [
   ...Object.keys(SETTINGS).filter((name) => name !== 'adaptive'),
 ];
 const FLAGS = ['adaptive', 'controls'];
-/** Time without a change of `params` after which a motion is over. */
+/** A motion is over after this time without a change of `params`. */
 const STILL_MS = 250;
 
 const TWICE =
@@ -38,7 +38,7 @@ const SHEET = `:host { display: block; position: relative; aspect-ratio: 4 / 3; 
 div { position: absolute; inset: 0; }
 div:focus-visible { outline: 2px solid Highlight; outline-offset: -2px; }
 :host(:not([controls])) div { pointer-events: none; }`;
-/** What a picture with `controls` tells those who do not see it. */
+/** What a screen reader says about a picture with `controls`. */
 const KEYS = 'Arrow keys turn it, plus and minus zoom.';
 
 /** @param {string} name @param {string} value */
@@ -60,7 +60,7 @@ function paramsOf(text) {
   );
 }
 
-// Node, which has no elements, may import what imports this.
+// Node has no elements, but may import a module that imports this one.
 const Base = globalThis.HTMLElement ?? class {};
 
 /** A surface, sampled and drawn while it is near the visible part of the page. */
@@ -70,20 +70,20 @@ export class MarchingParticles extends Base {
   #host;
   /** @type {View | null} */
   #view = null;
-  /** Whether it has come into sight since it is in the page. */
+  /** Whether it has been visible since it was added to the page. */
   #isSeen = false;
   #isDue = false;
-  /** The attributes that the element has set itself. @type {Record<string, string | null>} */
+  /** The attributes that the element has set by itself. @type {Record<string, string | null>} */
   #given = {};
   #visible;
-  /** The parameters that the picture was given last. @type {Record<string, number>} */
+  /** The last parameters that were given to the picture. @type {Record<string, number>} */
   #params = {};
   /** The timer that ends a motion. @type {ReturnType<typeof setTimeout> | undefined} */
   #still;
 
   constructor() {
     super();
-    // The picture within has the keys; the focus of the element is its.
+    // The picture inside handles the keys, so the focus of the element passes to it.
     const root = this.attachShadow({ mode: 'open', delegatesFocus: true });
     const sheet = new CSSStyleSheet();
     sheet.replaceSync(SHEET);
@@ -97,12 +97,12 @@ export class MarchingParticles extends Base {
     });
   }
 
-  /** The picture; null before it has come into sight. */
+  /** The picture; null before the element becomes visible. */
   get view() {
     return this.#view;
   }
 
-  /** The last report; null while particles are placed. */
+  /** The last report; null while particles are being placed. */
   get report() {
     return this.#view?.report ?? null;
   }
@@ -130,13 +130,13 @@ export class MarchingParticles extends Base {
   /** @param {string} name @param {string | null} _before @param {string | null} value */
   attributeChangedCallback(name, _before, value) {
     this.#describe();
-    // A picture stays with what draws it.
+    // A picture keeps its way of drawing.
     if (name === 'controls' || (name === 'backend' && this.#view) || !this.#isSeen || this.#isDue) return;
     if (name === 'params' && value !== null && this.#view) {
       this.#try(() => this.#move(paramsOf(value)));
       return;
     }
-    // Attributes that change together are one change.
+    // Attributes that change together are handled as one change.
     this.#isDue = true;
     queueMicrotask(() => {
       this.#isDue = false;
@@ -145,9 +145,8 @@ export class MarchingParticles extends Base {
   }
 
   /**
-   * Names the picture for those who do not see it, where the page does not, and lets keys reach it
-   * where it has `controls`. It is an image only without them: what is in an image cannot have the
-   * focus.
+   * Names the picture for screen readers, unless the page does, and lets keys reach it if it has `controls`. Only
+   * without them its role is an image, since nothing inside an image can have the focus.
    */
   #describe() {
     const text = this.getAttribute('formula') ?? this.getAttribute('surface');
@@ -164,7 +163,7 @@ export class MarchingParticles extends Base {
   }
 
   /**
-   * Sets an attribute that the page has left to the element, or takes it back.
+   * Sets an attribute that the page has not set, or removes it again.
    * @param {string} name
    * @param {string | null} value
    */
@@ -177,11 +176,11 @@ export class MarchingParticles extends Base {
   }
 
   /**
-   * Has the particles follow the surface to other parameters.
+   * Lets the particles follow the surface to other parameters.
    * @param {Record<string, number>} params
    */
   #move(params) {
-    // A slider can take no parameter back.
+    // A slider cannot remove a parameter.
     if (Object.keys(this.#params).some((name) => !Object.hasOwn(params, name))) return this.#show();
     this.#params = params;
     const give = (/** @type {boolean} */ live) => {
@@ -193,18 +192,18 @@ export class MarchingParticles extends Base {
     return undefined;
   }
 
-  /** Draws what the attributes say. After what was wrong with one, the next change tries again. */
+  /** Draws what the attributes ask for. If one is wrong, the next change tries again. */
   #show() {
     if (!this.#isSeen) return undefined;
     return this.#try(() => {
       const state = this.#state();
       this.#params = state.parameters;
-      // The end of a motion would bring back the parameters before.
+      // Otherwise the end of a motion would restore older parameters.
       clearTimeout(this.#still);
       if (this.#view) return this.#view.set(state);
       const backend = /** @type {BackendKind | null} */ (this.getAttribute('backend')) ?? undefined;
       this.#view = createView(this.#host, state, { backend });
-      // A picture takes the focus, which it is to have only with `controls`.
+      // By default a picture can have the focus; here it may only with `controls`.
       this.#describe();
       for (const name of /** @type {const} */ (['progress', 'report', 'error']))
         this.#view.on(name, (/** @type {unknown} */ detail) => this.#tell(name, detail));
@@ -218,8 +217,8 @@ export class MarchingParticles extends Base {
   }
 
   /**
-   * Does what an attribute asks for. What is wrong with the attribute is an event; what is wrong
-   * with the surface the picture tells itself.
+   * Does what an attribute asks for. An error in an attribute becomes an event; the picture reports errors of the
+   * surface itself.
    * @param {() => Promise<unknown> | undefined} act
    */
   async #try(act) {
@@ -230,7 +229,7 @@ export class MarchingParticles extends Base {
     }
   }
 
-  /** What the attributes say. What none speaks of is as if none ever had. */
+  /** The state according to the attributes. Whatever they do not mention has its default. */
   #state() {
     /** @type {ViewState & {parameters: Record<string, number>, settings: object}} */
     const state = {
@@ -249,7 +248,7 @@ export class MarchingParticles extends Base {
   }
 }
 
-// Each attribute is a property, too: a text or null, or whether it is there.
+// Each attribute is also a property: a text or null, or a flag.
 for (const name of TEXTS)
   Object.defineProperty(MarchingParticles.prototype, name, {
     get() {
@@ -271,7 +270,7 @@ for (const name of FLAGS)
   });
 
 if (globalThis.customElements) {
-  // An element is defined once: a second version on the page leaves it to the first.
+  // An element is defined once: a second version on the page leaves the definition to the first.
   if (customElements.get('marching-particles')) console.warn(String(new InputError(TWICE)));
   else customElements.define('marching-particles', MarchingParticles);
 }

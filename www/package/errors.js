@@ -1,4 +1,4 @@
-/** The errors of the package. Each has a name of its own and says what to do. @module */
+/** The errors of the package. Each has its own name and says what to do. @module */
 
 class NamedError extends Error {
   /** @param {string} message @param {{cause?: unknown}} [facts] */
@@ -7,9 +7,9 @@ class NamedError extends Error {
     this.name = new.target.name;
   }
 }
-/** An argument or an option is not what it has to be. */
+/** An argument or an option is not valid. */
 export class InputError extends NamedError {}
-/** The formula has a mistake between `start` and `end`, in UTF-16 code units. */
+/** The formula is wrong between `start` and `end`, in UTF-16 code units. */
 export class FormulaError extends NamedError {
   /**
    * @param {string} message
@@ -23,24 +23,24 @@ export class FormulaError extends NamedError {
     this.choices = choices;
   }
 }
-/** The function that is sampled threw, which is the `cause`, or returned something else than its values. */
+/** The sampled function threw the `cause`, or did not return its values. */
 export class FieldError extends NamedError {}
 /** No particle could be placed. */
 export class NoSurfaceError extends NamedError {}
-/** The sample was disposed of, or its particles have moved on with another one. */
+/** The sample was disposed of, or its particles have moved to another sample. */
 export class DisposedError extends NamedError {}
-/** The worker has not started, or it has failed. The next sampling starts another one. */
+/** The worker did not start, or failed. The next sampling starts a new one. */
 export class WorkerError extends NamedError {}
 
 const CLASSES = { InputError, FormulaError, FieldError, NoSurfaceError, DisposedError, WorkerError };
 
 /**
- * The error that a worker tells of.
+ * Turns an error that a worker reported into an `Error`.
  * @param {{name: string, message: string, facts: object}} words
  */
 export function errorOf({ name, message, facts }) {
   const Class = CLASSES[/** @type {keyof typeof CLASSES} */ (name)] ?? WorkerError;
-  // A single letter is a name, such as that of f.
+  // A single letter is a name, such as f.
   const text = message.replace(/^[a-z](?=[a-z])/, (letter) => letter.toUpperCase());
   return new Class(/[.?!]$/.test(text) ? text : `${text}.`, facts);
 }

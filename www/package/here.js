@@ -1,5 +1,5 @@
 /**
- * The sampler in the thread of the program, in slices: for functions, which cannot leave it.
+ * The sampler in the program's own thread, in slices, for functions, which cannot be sent to a worker.
  *
  * @module
  */
@@ -7,13 +7,12 @@
 /** @import { Heard, Line, Load } from './protocol.js' */
 
 /**
- * The core of a thread is one: after an error its memory cannot be trusted, and it cannot be loaded
- * again.
+ * A thread has only one core. After an error its memory cannot be trusted, and it cannot be loaded again.
  */
 let hasFailed = false;
 
 /**
- * Returns what opens a line to a sampler that is loaded when it is asked for the first time.
+ * Returns a function that opens a line to a sampler, which is loaded with its first request.
  * @param {Load} load
  * @returns {(heard: Heard) => Line}
  */

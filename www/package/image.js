@@ -1,4 +1,4 @@
-/** Checks an image, and what is chosen of it or of a mesh. @module */
+/** Checks an image, and the options that choose a surface of it or of a mesh. @module */
 import { flag, number, shown } from './checks.js';
 import { InputError } from './errors.js';
 
@@ -8,7 +8,7 @@ import { InputError } from './errors.js';
  * @import { SentField, SentVoxels } from './protocol.js'
  */
 
-/** The types of voxels in the core, by the arrays that hold them. @type {[Function, string][]} */
+/** The core's voxel type for each kind of array. @type {[Function, string][]} */
 const TYPES = [
   [Uint8Array, 'uint8'],
   [Uint8ClampedArray, 'uint8'],
@@ -39,7 +39,7 @@ function triple(name, value, is, what) {
   return list.map((v, axis) => number(`${name}[${axis}]`, v, is, what));
 }
 
-/** The affine map from the indices of voxels to points, row by row. @param {Given} given */
+/** The affine map from voxel indices to points, row by row. @param {Given} given */
 function rowsOf({ spacing, origin, affine }) {
   if (affine !== undefined) {
     if (spacing !== undefined || origin !== undefined)
@@ -56,7 +56,7 @@ function rowsOf({ spacing, origin, affine }) {
   return AXES.flatMap((r) => [...AXES.map((c) => (r === c ? steps[c] : 0)), first[r]]);
 }
 
-/** A file as it is sent. @param {unknown} content @returns {Blob | null} */
+/** A file's content in the form in which it is sent. @param {unknown} content @returns {Blob | null} */
 export function blobOf(content) {
   if (content instanceof Blob) return content;
   return content instanceof ArrayBuffer || ArrayBuffer.isView(content)
@@ -102,7 +102,7 @@ export function imageOf(given) {
   return { name: called, type, size: sizes, rows: rowsOf(given), voxels };
 }
 
-/** The options that choose a surface, and of what. @type {Record<string, ('image' | 'mesh')[]>} */
+/** The options that choose a surface, and for what they are. @type {Record<string, ('image' | 'mesh')[]>} */
 const CHOICES = {
   iso: ['image'],
   label: ['image'],
@@ -111,14 +111,14 @@ const CHOICES = {
   smooth: ['image', 'mesh'],
 };
 
-/** The angle of edges that stay sharp in the core, where 0 is none. @param {unknown} edges */
+/** The core's angle of edges that stay sharp; 0 means none. @param {unknown} edges */
 function angleOf(edges) {
   if (edges === 'none') return 0;
   return number('edges', edges, (v) => v >= 1 && v <= 180, "an angle from 1 to 180 degrees, 'auto' or 'none'");
 }
 
 /**
- * What is chosen of an image or a mesh, by the names of the core.
+ * The choices for an image or a mesh, by their names in the core.
  * @param {Options} options @param {'image' | 'mesh' | null} kind
  * @returns {SentField['parameters']}
  */

@@ -12,98 +12,96 @@ export interface Progress {
    */
   phase: string;
   particles: number;
-  /** share of the work that is done, that of the report included */
+  /** share of the work that is done, including the report */
   fraction: number;
 }
 /** A length in the units of the field, or a share of the diagonal of the box such as '1%'. */
 export type Size = number | `${number}%`;
 /**
- * What a surface is sampled with. One of `count`, `spacing` and `radius` gives the size; without it
- * the radius is 0.6 % of the diagonal, and adaptive particles keep close to the surface.
+ * Options of a sampling. One of `count`, `spacing` and `radius` sets the size; the default radius is 0.6 % of the
+ * diagonal, and adaptive particles stay close to the surface.
  */
 export interface Options {
   /** number of particles, met within 3 %: 1 to 4,000,000 */
   count?: number;
   /**
-   * distance between neighbours, two radii; by a formula of x, y, z or a function it depends on the
-   * place. Beside a count it gives the proportions
+   * distance between neighbours, two radii. A formula of x, y, z or a function makes it depend on the place; with a
+   * count it gives the proportions
    */
   spacing?: number | string | OfPlace;
   /** half of the distance between neighbours */
   radius?: Size;
-  /** the box that is sampled; without it one that fits the surface */
+  /** the box to sample; by default one that fits the surface */
   bounds?: Bounds;
-  /** of points: whether their surface ends at their border, as it does without it, or goes on */
+  /** of points: whether their surface ends at their border (default) or continues */
   beyondPoints?: 'cut' | 'kept';
   /**
-   * of points, an image or a mesh: a formula that names their surface `model`, as an operand of max, min,
-   * smin, smax or abs, or with a number that is added: `max(model, z)` cuts it
+   * of points, an image or a mesh: a formula in which `model` is their surface, as an operand of max, min, smin, smax
+   * or abs, or with a number added: `max(model, z)` cuts it
    */
   formula?: string;
   /** values of the names in the formula */
   params?: Record<string, number>;
   /**
-   * of an image: the value of the voxels on the surface; without it Otsu's, which separates dark
-   * from bright ones best
+   * of an image: the value of the voxels on the surface; by default Otsu's, which best separates dark from bright
+   * voxels
    */
   iso?: number;
-  /** of an image: a whole number whose voxels are inside, in place of `iso` */
+  /** of an image: a whole number whose voxels are inside, instead of `iso` */
   label?: number;
   /**
-   * of an image: width of a Gaussian in voxels, 0 for none. Without it from 0.7 to 2 or 0, by the
-   * noise that is measured and the rounding of whole numbers; over the distances from a label 1. Of
-   * a mesh: that in cells of the grid of a scan, up to 10, for which the mesh is taken then
+   * of an image: width of a Gaussian in voxels, 0 for none. The default is 0 or 0.7 to 2, by the measured noise and the
+   * rounding of whole numbers; for a label it is 1, over the distances. Of a mesh: treats it as a scan, and is the
+   * width in cells of its grid, up to 10
    */
   smooth?: number;
   /** of an image: whether the darker voxels are inside */
   darkInside?: boolean;
   /**
-   * of a mesh: the angle in degrees from which on an edge stays sharp; `auto`, which is chosen
-   * without it, keeps those of 30° if they form curves on a closed mesh, `none` rounds all
+   * of a mesh: the angle in degrees above which an edge stays sharp; `auto`, the default, is 30° if such edges form
+   * curves on a closed mesh; `none` rounds all edges
    */
   edges?: number | 'auto' | 'none';
-  /** whether particles are small where the surface bends and large where it is flat */
+  /** whether particles are smaller where the surface is more curved */
   adaptive?: boolean;
-  /** how the radius follows from the curvature; `chord_error` without it */
+  /** how the radius follows from the curvature; default `chord_error` */
   law?: 'chord_error' | 'max_curvature' | 'sum_of_curvatures';
   /** largest gap between the surface and a triangle of neighbours */
   chordError?: Size;
-  /** radius of a particle over the radius of curvature under it, for the other two laws */
+  /** radius of a particle divided by the radius of curvature under it, for the other two laws */
   curvatureScale?: number;
   radiusMin?: Size;
   radiusMax?: Size;
-  /** slope of the radius along the surface */
+  /** largest slope of the radius along the surface */
   grading?: number;
-  /** of a formula: whether the faces of the box close what they cut, the solid f <= 0 in the box */
+  /** of a formula: whether the faces of the box close the surface, giving the solid f <= 0 in the box */
   closed?: boolean;
   /** whether opposite faces of a closed box have the same particles */
   periodic?: boolean;
   /**
-   * of a formula: thickness of a sheet around the surface that is sampled in its place, a number or
-   * a formula
+   * of a formula: thickness of a sheet around the surface, which is sampled instead; a number or a formula
    */
   thickness?: number | string;
-  /** `refined` takes longer and is more even */
+  /** `refined` takes longer and spaces particles more evenly */
   method?: 'front' | 'refined';
-  /** steps of relaxation after the front; 10 without it */
+  /** relaxation steps after the front; default 10 */
   relax?: number;
-  /** distance over two radii within which a child joins a particle that is there, 0.5 to 0.9 */
+  /** a child joins an existing particle within this distance, divided by two radii, 0.5 to 0.9 */
   matchTolerance?: number;
-  /** whether gaps where fronts meet get a particle; `fill` without it */
+  /** whether gaps between fronts are filled with a particle; default `fill` */
   gaps?: 'fill' | 'leave';
   seed?: number;
   /** number of particles at which the run stops */
   maxParticles?: number;
   /**
-   * numbers at the particles, by name: formulas of x, y, z and of the normal (n_x, n_y, n_z), the
-   * principal curvatures (k_1, k_2), a direction of k_1 (d_x, d_y, d_z), radius, level, area and edge,
-   * the distance to the nearest sharp edge; or
-   * functions of place. Files have them as well
+   * values at the particles, by name: formulas of x, y, z, the normal (n_x, n_y, n_z), the principal curvatures (k_1,
+   * k_2), the direction of k_1 (d_x, d_y, d_z), radius, level, area and edge, the distance to the nearest sharp edge;
+   * or functions of a point. Files contain them, too
    */
   values?: Record<string, string | OfPlace>;
-  /** whether a report is made, which takes about as long as the sampling; true without it */
+  /** whether to make a report, which takes about as long as the sampling; default true */
   measure?: boolean;
-  /** ends the sampling, whose promise is rejected with the signal's reason */
+  /** ends the sampling, whose promise rejects with the signal's reason */
   signal?: AbortSignal;
   onProgress?: (progress: Progress) => void;
 }
@@ -111,11 +109,11 @@ export type { ImageInfo, MeshChange, MeshInfo, Report };
 export type Warning = Report['warnings'][number];
 export interface Mesh {
   /**
-   * three rows of `points` for each triangle, counter-clockwise seen from outside. With `points` and
-   * `normals` they shade sharp edges sharply
+   * three rows of `points` for each triangle, counter-clockwise seen from outside. Shaded with `normals` they show
+   * sharp edges as sharp
    */
   faces: Uint32Array;
-  /** what a closed mesh encloses; null where it is open */
+  /** the volume of a closed mesh; null if it is open */
   volume: number | null;
   components: { triangles: number; euler: number; open_edges: number }[];
   /** number of particles in no triangle */
@@ -128,8 +126,8 @@ export interface Sample {
   /** number of particles */
   readonly count: number;
   /**
-   * three values for each row of the columns; in double precision where the box is far from the
-   * origin. A particle has one row, or one on each side of a crease or a seam
+   * three values for each row of the columns, in double precision if the box is far from the origin. A particle has one
+   * row, or one on each side of a crease or a seam
    */
   readonly points: Float32Array | Float64Array;
   readonly normals: Float32Array;
@@ -141,41 +139,37 @@ export interface Sample {
   readonly report: Report | null;
   readonly warnings: Warning[];
   readonly bounds: Bounds;
-  /** values of the names in the formula; of an image `iso` and `smooth`, of a mesh
-   * `edges` or `smooth`, as they were chosen */
+  /** values of the names in the formula; for an image the chosen `iso` and `smooth`, for a mesh `edges` or `smooth` */
   readonly params: Record<string, number>;
-  /** numbers at the rows of the columns, by the names of the option `values` */
+  /** values at the rows of the columns, by the names in the option `values` */
   readonly values: Record<string, Float32Array>;
-  /** of an image: what is known of it, and what was chosen */
+  /** of an image: its properties, and what was chosen */
   readonly image: ImageInfo | null;
-  /** of a mesh: what it had, what was mended, and what it was taken for */
+  /** of a mesh: its properties, its repairs, and how it was treated */
   readonly original: MeshInfo | null;
   /**
-   * of a mesh by itself: how far the new one is from it, with volume and area before and after;
-   * null with `measure: false`
+   * of a mesh without a formula: its distance from the new mesh, with volume and area before and after; null with
+   * `measure: false`
    */
   readonly change: MeshChange | null;
   readonly digest: string;
   /**
-   * joins the particles to triangles; with `weld` those at a crease or a seam share a row, and have
-   * the normal of one side
+   * joins the particles to triangles. With `weld` the rows of a particle at a crease or a seam become one, with the
+   * normal of one side
    */
   mesh(how?: { weld?: boolean }): Promise<Mesh>;
   /**
-   * a file: the mesh as `glb`, `3mf`, `stl` or `obj`, the particles as `ply` or `csv`; with `mesh` a
-   * `ply` of the mesh. A file of a formula says what it was made from
+   * a file: the mesh as `glb`, `3mf`, `stl` or `obj`, the particles as `ply` or `csv`; with `mesh` a `ply` of the mesh.
+   * The file of a formula records how it was made
    */
   toFile(format: Format, how?: { mesh?: boolean }): Promise<Uint8Array<ArrayBuffer>>;
   /**
-   * the particles on the surface of other parameters, or of another
-   * `iso` of an image; they leave
-   * this sample, whose columns stay,
-   * and are gone where there is no such surface or the signal ends it
+   * the particles on the surface of other parameters, or of another `iso` of an image. They leave this sample, whose
+   * columns stay. They are lost if there is no such surface or the signal ends the move
    */
   moved(params: Record<string, number>, options?: Pick<Options, 'signal' | 'onProgress'>): Promise<Sample>;
   /**
-   * frees the memory of the worker, once the meshes and files that were asked for are made; the
-   * columns stay
+   * frees the worker's memory once the requested meshes and files are made; the columns stay
    */
   dispose(): void;
   [Symbol.dispose](): void;
@@ -185,31 +179,30 @@ export interface Sample {
 export type OfPlace = (x: number, y: number, z: number) => number;
 /** A function of many points at once. */
 export interface Batch {
-  /** writes f at each point to `out`; `xyz` has three numbers for each of its values */
+  /** writes f at each point to `out`; `xyz` has three coordinates for each of its values */
   batch(xyz: Float64Array, out: Float64Array): void;
 }
 /**
- * A function put together of smooth ones, the pieces, by one that gives the index of the piece at a
- * point. The surface has an edge where it passes from one piece to another. A piece is called also
- * a few particles beyond its part.
+ * A function composed of smooth ones, the pieces; `label` gives the index of the piece at a point. The surface has an
+ * edge where the piece changes. A piece is also called a few particles beyond its own region.
  */
 export interface Pieces {
   label(x: number, y: number, z: number): number | boolean;
   pieces: OfPlace[];
 }
-/** Points of a surface, three numbers each, and their outward normals if they are known. */
+/** Points of a surface, three coordinates each, and their outward normals if known. */
 export interface Points {
   points: Numbers;
   normals?: Numbers;
 }
 /** x, y and z of each point, one after the other or in rows of three. */
 export type Numbers = Float32Array | Float64Array | Int32Array | number[] | [number, number, number][];
-/** A file of an image: NIfTI, NRRD, NPY, MetaImage, Gaussian cube or TIFF, whichever its content says. */
+/** A file of an image: NIfTI, NRRD, NPY, MetaImage, Gaussian cube or TIFF; its content decides. */
 export interface ImageFile {
   image: Blob | ArrayBuffer | Uint8Array;
-  /** name of the file, by which a `.img` beside a NIfTI header is found */
+  /** name of the file, from which the name of a NIfTI header's `.img` file follows */
   name?: string;
-  /** files beside it, one of which holds the voxels of a header */
+  /** other files, one of which holds the voxels of a header */
   beside?: File | File[];
 }
 /** Voxels of an array: voxel (i, j, k) is `image[i + size[0] * (j + size[1] * k)]`. */
@@ -227,17 +220,17 @@ export interface ImageArray {
     | Float32Array
     | Float64Array;
   size: [number, number, number];
-  /** distances between neighbours along each axis, or one for all; 1 without it */
+  /** distances between neighbours along each axis, or one for all; default 1 */
   spacing?: number | [number, number, number];
-  /** the point of voxel (0, 0, 0); the origin without it */
+  /** the position of voxel (0, 0, 0); default the origin */
   origin?: [number, number, number];
-  /** the rows of a matrix that maps (i, j, k, 1) to a point, in place of spacing and origin */
+  /** the rows of a matrix that maps (i, j, k, 1) to a point, instead of spacing and origin */
   affine?: number[][];
   name?: string;
 }
 /**
- * A triangle mesh, which is sampled anew: a file (STL, OBJ, PLY, OFF or GLB, whichever its content
- * says), or arrays of three coordinates for each vertex and three vertices for each face.
+ * A triangle mesh to sample again: a file (STL, OBJ, PLY, OFF or GLB; its content decides), or arrays of three
+ * coordinates for each vertex and three vertices for each face.
  */
 export interface MeshSource {
   mesh:
@@ -248,39 +241,37 @@ export interface MeshSource {
   name?: string;
 }
 /**
- * What is sampled: a formula such as `x^2 + y^2 + z^2 = a`; a function f(x, y, z), negative inside
- * and NaN where it has no value, of a point or of many at once; the pieces of such a function;
- * points; a three-dimensional image; or a triangle mesh.
+ * What can be sampled: a formula such as `x^2 + y^2 + z^2 = a`; a function f(x, y, z) of one point or of many at once,
+ * negative inside and NaN where undefined; the pieces of such a function; points; a three-dimensional image; or a
+ * triangle mesh.
  */
 export type Field = string | OfPlace | Batch | Pieces | Points | ImageFile | ImageArray | MeshSource;
 
 /**
- * Covers the surface f = 0 with evenly spaced particles. Formulas, points, images and meshes are
- * sampled in a worker; a function is called in the thread that it belongs to, in slices of some milliseconds
- * between which the page draws.
+ * Covers the surface f = 0 with evenly spaced particles. Formulas, points, images and meshes are sampled in a worker. A
+ * function is called in its own thread, in slices of some milliseconds between which the page can draw.
  */
 export function sample(field: Field, options?: Options): Promise<Sample>;
 
-/** An argument or an option is not what it has to be. */
+/** An argument or an option is not valid. */
 export class InputError extends Error {}
-/** The formula has a mistake between `start` and `end`, in UTF-16 code units. */
+/** The formula is wrong between `start` and `end`, in UTF-16 code units. */
 export class FormulaError extends Error {
   readonly start: number;
   readonly end: number;
   /**
-   * a text for that place, where one would mend it; `choices`: several, each with another meaning
+   * a text for that place, if one would correct it; `choices` holds several with different meanings
    */
   readonly suggestion: string | null;
   readonly choices: string[];
 }
 /**
- * The function that is sampled threw, which is the `cause`, or returned something else than its
- * values.
+ * The sampled function threw the `cause`, or did not return its values.
  */
 export class FieldError extends Error {}
 /** No particle could be placed. */
 export class NoSurfaceError extends Error {}
-/** The sample was disposed of, or its particles have moved on with another one. */
+/** The sample was disposed of, or its particles have moved to another sample. */
 export class DisposedError extends Error {}
-/** The worker has not started, or it has failed. The next sampling starts another one. */
+/** The worker did not start, or failed. The next sampling starts a new one. */
 export class WorkerError extends Error {}

@@ -1,4 +1,4 @@
-/** The package in a browser, and where a bundler builds for one. @module */
+/** The package in a browser, and for bundlers that target one. @module */
 import { createSampler } from './client.js';
 import { openHere } from './here.js';
 import { load } from './load.js';

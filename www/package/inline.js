@@ -1,6 +1,6 @@
 /**
- * The package in one file, with the modules of the core in it: for pages that load it from another
- * host, or may not start workers. Everything is sampled in the thread that imports it, in slices.
+ * The package in one file that contains the modules of the core, for pages that load it from another host or may not
+ * start workers. Everything is sampled in the importing thread, in slices.
  *
  * @module
  */

@@ -1,4 +1,4 @@
-/** Where the modules of the core lie in Node: beside the script. @module */
+/** Locates the core's modules in Node: next to the script. @module */
 import { readFile } from 'node:fs/promises';
 
 const MODULES = {

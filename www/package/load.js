@@ -1,4 +1,4 @@
-/** Where the modules of the core lie in a browser: beside the script. @module */
+/** Locates the core's modules in a browser: next to the script. @module */
 
 const MODULES = {
   core: new URL('../src/wasm/core/core_bg.wasm', import.meta.url),

@@ -1,4 +1,4 @@
-/** Checks a triangle mesh that is sampled anew. @module */
+/** Checks a triangle mesh that is to be sampled again. @module */
 import { shown, vectors } from './checks.js';
 import { InputError } from './errors.js';
 import { blobOf } from './image.js';

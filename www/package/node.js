@@ -8,7 +8,7 @@ export * from './errors.js';
 
 /** @param {import('./protocol.js').Heard} heard @returns {import('./protocol.js').Line} */
 function open({ onMessage, onFail }) {
-  // Flags of the program, such as --input-type, are not for the worker.
+  // Flags of the program, such as --input-type, do not apply to the worker.
   const options = { name: 'marching-particles', execArgv: [] };
   const worker = new Worker(new URL('./worker-node.js', import.meta.url), options);
   worker.on('message', onMessage);

@@ -1,5 +1,5 @@
 /**
- * Checks what a program gives `sample`, and turns it into what is sent to the sampler.
+ * Checks the arguments of `sample` and turns them into a request to the sampler.
  *
  * @module
  */
@@ -40,7 +40,7 @@ function boundsOf(bounds) {
 }
 
 const SIZES = ['count', 'spacing', 'radius'];
-/** Largest number of particles that may be asked for. */
+/** Largest number of particles that can be requested. */
 const MOST = 4_000_000;
 
 const isPositive = (/** @type {number} */ v) => v > 0;
@@ -50,7 +50,7 @@ const A_SIZE = "a length above 0, or a share of the box diagonal such as '1%'";
 const A_SPACING = "a length above 0, a formula such as '0.02 + 0.1 hypot(x, y)' or a function (x, y, z) => number";
 
 /**
- * Whether a value is a function of place, by a formula or of the program.
+ * Whether a value is a function of a point, as a formula or in the program.
  * @param {unknown} value @returns {value is string | OfPlace}
  */
 const isFunction = (value) => typeof value === 'string' || typeof value === 'function';
@@ -67,7 +67,7 @@ function functionsOf(values) {
 }
 
 /**
- * The share that a text such as `0.6%` says, rounded once.
+ * The share that a text such as `0.6%` stands for, rounded once.
  * @param {string} name @param {string} text
  */
 function shareOf(name, text) {
@@ -76,8 +76,8 @@ function shareOf(name, text) {
 }
 
 /**
- * The options that are settings of the core: the name of the setting, the kind of the values, and
- * the values of a choice or the one of a flag that is set.
+ * The options that are settings of the core: the name of the setting, the kind of its values, and the values of a
+ * choice or the value of a flag that is set.
  * @typedef {'count' | 'whole' | 'number' | 'spacing' | 'size' | 'text' | 'choice' | 'flag'} Kind
  * @type {Record<string, {setting: string, kind: Kind, values?: string[]}>}
  */
@@ -103,7 +103,7 @@ const SETTINGS = {
   maxParticles: { setting: 'max_particles', kind: 'whole' },
   beyondPoints: { setting: 'beyond_points', kind: 'choice', values: ['cut', 'kept'] },
 };
-/** The options for a formula by itself. */
+/** The options for a formula alone. */
 const OF_FORMULAS = ['closed', 'periodic', 'thickness'];
 const KNOWN = [
   ...Object.keys(SETTINGS),
@@ -121,12 +121,12 @@ const KNOWN = [
   'onProgress',
 ];
 
-/** The option that is a setting of the core. @param {string} setting */
+/** The option for a setting of the core. @param {string} setting */
 export const optionOf = (setting) =>
   Object.keys(SETTINGS).find((name) => name !== 'spacing' && SETTINGS[name].setting === setting) ?? setting;
 
 /**
- * The settings of the core that options ask for, and by which option each of them was given.
+ * The core's settings that the options set, and for each the option that set it.
  * @param {Record<string, unknown>} options
  */
 function settingsOf(options) {
@@ -139,7 +139,7 @@ function settingsOf(options) {
   for (const [name, { setting, kind, values = [] }] of Object.entries(SETTINGS)) {
     const value = options[name];
     if (value === undefined || (kind === 'flag' && flag(name, value) === false)) continue;
-    // A function of place is no setting.
+    // A function of a point is not a setting.
     if (kind === 'spacing' && isFunction(value)) continue;
     given[setting] = name;
     if (kind === 'flag') settings[setting] = values[0];
@@ -152,7 +152,7 @@ function settingsOf(options) {
       settings.count = number(name, value, isCount, 'a whole number from 1 to 4,000,000');
     } else if (kind === 'text')
       settings[setting] = typeof value === 'string' ? value : number(name, value, () => true, 'a number or a formula');
-    // The core has radii, half of the distance between neighbours.
+    // The core has radii, which are half the distance between neighbours.
     else if (kind === 'spacing') settings.radius = 0.5 * number(name, value, isPositive, A_SPACING);
     else if (typeof value === 'string') settings[setting] = shareOf(name, value);
     else if (name === 'radius') settings.radius = number(name, value, isPositive, A_SIZE);
@@ -225,7 +225,7 @@ function modelFormula(formula, { cloud, given }) {
 }
 
 /**
- * What the sampler is asked for.
+ * The request to the sampler.
  * @param {unknown} field @param {Options} options
  */
 export function checked(field, options) {
@@ -236,7 +236,7 @@ export function checked(field, options) {
   const unknown = Object.keys(options).find((name) => !KNOWN.includes(name));
   if (unknown !== undefined)
     throw new InputError(`${unknown}: there is no such option. There are ${KNOWN.join(', ')}.`);
-  // Of a spacing that depends on the place a count gives the scale.
+  // If the spacing depends on the point, a count sets its scale.
   const sizes = isFunction(options.spacing) ? SIZES.filter((name) => name !== 'count') : SIZES;
   const [first, second] = sizes.filter((name) => options[/** @type {keyof Options} */ (name)] !== undefined);
   if (second) throw new InputError(`${first}, ${second}: one of the two, not both.`);

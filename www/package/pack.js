@@ -1,6 +1,6 @@
 /**
- * Builds the package into the folder that the environment variable PACKAGE names, else `target/package`, and packs it:
- * `marching-particles.tgz` beside its files. Nothing is published.
+ * Builds the package into the folder that the environment variable PACKAGE names, else `target/package`, and packs it
+ * as `marching-particles.tgz` in the same folder. Nothing is published.
  *
  * @module
  */

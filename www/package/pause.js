@@ -1,5 +1,5 @@
 /**
- * Lets the thread hear its messages, and a page draw, between two slices of work.
+ * Pauses between two slices of work, so that the thread can receive messages and a page can draw.
  *
  * @module
  */
@@ -8,15 +8,15 @@
 const waiting = [];
 const next = () => waiting.shift()?.();
 
-/** Returns a function that has `next` called in a task of its own, sooner than by a timer. */
+/** Returns a function that calls `next` in a separate task, sooner than a timer would. */
 function messages() {
   const channel = new MessageChannel();
   channel.port1.onmessage = next;
   return () => channel.port2.postMessage(null);
 }
 
-// Node hands a port up to 1000 messages in one task: a message to itself would keep others waiting,
-// and an open port would keep the program alive.
+// In Node a port delivers up to 1000 messages in one task, so a message to itself would keep others waiting; and an
+// open port would keep the program alive.
 const resume = typeof setImmediate === 'function' ? () => void setImmediate(next) : messages();
 
 /** @returns {Promise<void>} */

@@ -1,15 +1,15 @@
 /**
- * Functions of the program as the core calls them: up to 512 points at a time.
+ * Calls functions of the program for the core, for up to 512 points at a time.
  *
  * @module
  */
 
 /** @import { Batch, OfPlace, Pieces } from './index.js' */
 
-/** What no function gives: a value that it has not written is still this one. */
+/** Marks values that a function has not written; no function returns this one. */
 const UNWRITTEN = -Number.MAX_VALUE;
 
-/** What the function did wrong, in words. */
+/** A sentence about what the function did wrong. */
 class Misuse extends Error {}
 
 /** @param {unknown} value */
@@ -23,13 +23,13 @@ function refusePromise(value) {
 }
 
 /**
- * A function of a point, one of a batch of points, or pieces with their labels. The error of a call
- * is kept: the core says only that there was one.
+ * A function of one point or of many, or pieces with their labels. Keeps the error of a call, since the core reports
+ * only that there was one.
  */
 export class Program {
   #what;
   #write;
-  /** Writes the labels of pieces at points; none of a single function. */
+  /** Writes the labels of pieces at points; missing for a single function. */
   labels;
   /**
    * What went wrong: a sentence, and the error that the function threw.

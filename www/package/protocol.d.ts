@@ -1,4 +1,4 @@
-// Messages between the program and the sampler, which is in a worker or in the thread of the program.
+// Messages between the program and the sampler, which is in a worker or in the program's own thread.
 import type {
   Bounds,
   FieldRequest,
@@ -11,9 +11,9 @@ import type {
 import type { GivenFile } from '../src/engine/files/types.js';
 import type { Batch, OfPlace, Pieces, Progress } from './index.js';
 
-/** Settings of the core by their names there; `lengths` take the places of shares. */
+/** Settings of the core by their names there; `lengths` replace shares. */
 export type Settings = Record<string, number | string | Record<string, number>>;
-/** What is asked; `of`: the request that has made the sample. */
+/** Requests. `of` is the request that made the sample. */
 export type Asked =
   | {
       type: 'sample';
@@ -35,11 +35,11 @@ export type Asked =
     }
   | { type: 'mesh'; id: number; of: number; weld: boolean }
   | { type: 'file'; id: number; of: number; format: string; mesh: boolean };
-/** What is said besides: `stop` ends a request, `free` gives a sample up. */
+/** Other messages: `stop` ends a request, `free` gives up a sample. */
 export type Said = { type: 'stop'; id: number } | { type: 'free'; id: number };
 /**
- * A formula; points, an image or a mesh, with or without a formula whose operand their surface is; or a
- * function of the program, which is sent in its own thread alone.
+ * A formula; points, an image or a mesh, with or without a formula in which their surface is an operand; or a function
+ * of the program, which never leaves its own thread.
  */
 export type SentField = Pick<Partial<FieldRequest>, 'formula' | 'bounds'> & {
   parameters: Record<string, number>;
@@ -47,16 +47,16 @@ export type SentField = Pick<Partial<FieldRequest>, 'formula' | 'bounds'> & {
   given?: GivenFile | SentVoxels | SentFaces;
   program?: OfPlace | Batch | Pieces;
 };
-/** Functions of place; those of the program are sent in its own thread alone. */
+/** Functions of a point; those of the program never leave its own thread. */
 export interface SentFunctions {
   spacing?: string | OfPlace;
   values: Record<string, string | OfPlace>;
 }
-/** The bytes of an array of voxels of a type of the core, and their affine map, row by row. */
+/** The bytes of a voxel array in a type of the core, and its affine map, row by row. */
 export type SentVoxels = { name: string; type: string; size: number[]; rows: number[]; voxels: Uint8Array };
-/** The coordinates of vertices and the vertices of faces, three each. */
+/** The coordinates of vertices and the vertex indices of faces, three each. */
 export type SentFaces = { name: string; points: Float64Array; faces: Uint32Array };
-/** Points, and their normals if they are known, three numbers each. */
+/** Points, and their normals if known, three coordinates each. */
 export interface Cloud {
   points: Float64Array;
   normals: Float64Array | null;
@@ -85,9 +85,9 @@ export interface Answered {
   error?: { name: string; message: string; facts: object };
   progress?: Progress;
 }
-/** Where a module of the core is, or its bytes. */
+/** Returns where a module of the core is, or its bytes. */
 export type Load = (name: 'core' | 'points') => Promise<URL | Uint8Array>;
-/** What a sampler has around it. */
+/** What a sampler needs from its surroundings. */
 export interface Environment {
   post: (message: Answered, transfer?: ArrayBufferLike[]) => void;
   load: Load;
@@ -101,6 +101,6 @@ export interface Line {
 }
 export interface Heard {
   onMessage: (message: Answered) => void;
-  /** the worker has not started, or has failed */
+  /** the worker did not start, or failed */
   onFail: (message: string) => void;
 }

@@ -1,6 +1,6 @@
 /**
- * The sampler's side of the package: samples in slices, each field in a core of its own, and keeps
- * the cores of the samples that can still be asked for a mesh, a file or moved particles.
+ * The sampler's side of the package. It samples in slices, each field in its own core, and keeps the cores of samples
+ * that may still ask for a mesh, a file or moved particles.
  *
  * @module
  */
@@ -24,16 +24,16 @@ import { Program } from './program.js';
 /** First budget of a loop, in units or slices of the core. */
 const FIRST_BUDGET = 64;
 const PROGRESS_MS = 50;
-/** What is chosen of an image and of a mesh, by the names of the core. */
+/** The choices for an image and for a mesh, by their names in the core. */
 const OF_IMAGES = ['iso', 'label', 'smooth', 'dark'];
 const OF_MESHES = ['edges', 'smooth'];
-/** Largest memory of a run and its report: half of what a browser gives a module. */
+/** Largest memory of a run and its report: half of what browsers allow a module. */
 const MEMORY_MB = 2048;
 const WITHOUT_SIMD =
   'There is no WebAssembly SIMD here, which the sampler needs. Chrome and Edge have it from 91 on, Firefox from 89, ' +
   'Safari from 16.4, Node from 16.4; a browser may have it switched off.';
 
-/** An error whose name and facts the other side makes an error of. */
+/** An error whose name and facts become an error on the other side. */
 class Refusal extends Error {
   /** @param {string} name @param {string} message @param {object} [facts] */
   constructor(name, message, facts = {}) {
@@ -45,7 +45,7 @@ class Refusal extends Error {
 
 /** @param {Fault} fault */
 function refusalOf({ kind, message, start, end, suggestion, choices }) {
-  // A setting that is out of its range begins its sentence.
+  // Such a message begins with the name of the setting that is out of range.
   const named = message.replace(/^([a-z_]+) is /, (_, setting) => `The option ${optionOf(setting)} is `);
   if (
     ['request', 'settings', 'too_many', 'box', 'points', 'image', 'mesh', 'no_faces', 'no_solid'].includes(kind) ||
@@ -56,7 +56,7 @@ function refusalOf({ kind, message, start, end, suggestion, choices }) {
 }
 
 /**
- * Refuses an option that has no effect beside the others.
+ * Refuses an option that has no effect together with the others.
  * @param {Core} core @param {Extract<Asked, {type: 'sample'}>} message
  */
 function checkEffects(core, { given, settings }) {
@@ -65,7 +65,7 @@ function checkEffects(core, { given, settings }) {
   const { settings: table } = core.describe();
   const chosen = (/** @type {string} */ name) => settings[name] ?? table.find((row) => row.name === name)?.default;
   for (const { name, when } of table) {
-    // Steps of relaxation count where a front cannot be refined.
+    // Relaxation steps matter even for the refined method, if its front cannot be refined.
     const conditions = name in given ? when.filter((condition) => condition.name !== 'method') : [];
     const failed = conditions.find((condition) => (chosen(condition.name) === condition.value) !== condition.equal);
     if (failed)
@@ -81,7 +81,7 @@ const NEEDED = {
 };
 
 /**
- * The particles as a file, as the page writes it.
+ * The particles as a file, as on the page.
  * @param {Core} core @param {string} format
  */
 async function particlesFile(core, format) {
@@ -118,15 +118,15 @@ async function particlesFile(core, format) {
  * @returns {(message: Asked | Said) => Promise<void>}
  */
 export function serve({ post, load }) {
-  /** The modules that were asked for. @type {Map<'core' | 'points', Promise<unknown>>} */
+  /** The modules that were requested. @type {Map<'core' | 'points', Promise<unknown>>} */
   const modules = new Map();
   /** @type {Map<number, Core>} */
   const cores = new Map();
   /** The functions of the program that cores call. @type {Map<Core, Program[]>} */
   const programs = new Map();
-  /** The end of what each core was asked last. @type {WeakMap<Core, Promise<void>>} */
+  /** The end of each core's last request. @type {WeakMap<Core, Promise<void>>} */
   const turns = new WeakMap();
-  /** Requests under way, and whether each is to stop. @type {Map<number, boolean>} */
+  /** Current requests, and whether each is to stop. @type {Map<number, boolean>} */
   const asked = new Map();
 
   /**
@@ -143,7 +143,7 @@ export function serve({ post, load }) {
   }
 
   /**
-   * A function of the program, as a core calls it.
+   * A function of the program in a form that a core can call.
    * @param {NonNullable<SentField['program']>} program @param {Core} core @param {string} [what]
    */
   function held(program, core, what) {
@@ -159,8 +159,7 @@ export function serve({ post, load }) {
   }
 
   /**
-   * Does work once the core has done what it was asked before, whose slices find nothing changed or
-   * freed between them.
+   * Does work after the core's earlier requests, so that nothing changes or is freed between the slices of one of them.
    * @template T
    * @param {Core} core @param {() => T | Promise<T>} work @returns {Promise<T>}
    */
@@ -172,8 +171,8 @@ export function serve({ post, load }) {
   }
 
   /**
-   * Does work of a core in slices, and returns its result. `tell` makes what the program is told
-   * between slices.
+   * Does a core's work in slices and returns its result. Between slices `tell` makes the progress report for the
+   * program.
    * @template T
    * @param {{id: number, core: Core}} of @param {(budget: number) => T | undefined} slice
    * @param {() => Progress} [tell]
@@ -198,7 +197,7 @@ export function serve({ post, load }) {
   }
 
   /**
-   * Steps a run to its end, and returns its number of particles.
+   * Steps a run to its end. Returns the number of particles.
    * @param {{id: number, core: Core}} of
    */
   async function run(of) {
@@ -260,13 +259,13 @@ export function serve({ post, load }) {
     }
     if (asked.get(id)) throw new Refusal('AbortError', 'The sampling was aborted.');
     const answer = core.set_opened(request);
-    // The field has a copy of its own, which shares voxels and faces.
+    // The field has its own copy, which shares the voxels and faces.
     core.close_opened();
     return answer;
   }
 
   /**
-   * Takes a field, samples it, or lets the particles follow it, and measures them.
+   * Sets a field, then samples it or lets the particles follow it, and measures them.
    * @param {Extract<Asked, {type: 'sample' | 'moved'}>} message @param {Core} core
    */
   async function made(message, core) {
@@ -302,7 +301,7 @@ export function serve({ post, load }) {
     const measured = () => inSlices(of, (budget) => core.measure('particles', budget), measuring);
     let report = measure ? await measured() : null;
     if (report?.warnings.some(({ code }) => code === 'open')) {
-      // Only the mesh, which asks the field, can say which of the gaps are surface.
+      // Only the mesh, which evaluates the field, can tell which of the gaps are surface.
       await inSlices(of, (budget) => core.join(budget));
       report = await measured();
     }
@@ -328,7 +327,7 @@ export function serve({ post, load }) {
   }
 
   /**
-   * Makes a sample, and keeps its core for it.
+   * Makes a sample, and keeps its core.
    * @param {Extract<Asked, {type: 'sample' | 'moved'}>} message @param {Core} core
    */
   async function kept(message, core) {
@@ -337,14 +336,14 @@ export function serve({ post, load }) {
       cores.set(message.id, core);
       return result;
     } catch (error) {
-      // No sample has this core, and after any other error it cannot be trusted to free itself.
+      // No sample uses this core. After any other error it cannot be trusted to free itself.
       if (error instanceof Refusal) free(core);
       throw error;
     }
   }
 
   /**
-   * Joins the particles to a mesh for the program or for a file, or writes them as they are.
+   * Joins the particles to a mesh, for the program or for a file, or writes them as they are.
    * @param {Extract<Asked, {type: 'mesh' | 'file'}>} message @param {Core} core
    * @returns {Promise<[object, ArrayBufferLike[]]>}
    */
@@ -367,8 +366,7 @@ export function serve({ post, load }) {
   }
 
   /**
-   * Finds the core of a sample before it waits for anything, so that a message that comes later
-   * does not overtake this one.
+   * Finds the core of a sample before waiting for anything, so that no later message can overtake this one.
    * @param {Asked} message @returns {Promise<[object, ArrayBufferLike[]]>}
    */
   async function answer(message) {
@@ -381,7 +379,7 @@ export function serve({ post, load }) {
     const core = cores.get(message.of);
     if (!core) throw new Refusal('DisposedError', 'The particles of this sample are gone.');
     if (message.type !== 'moved') return inTurn(core, () => joined(message, core));
-    // The core goes on with the sample that is made of this one.
+    // The core now belongs to the sample that is made from this one.
     cores.delete(message.of);
     return inTurn(core, () => kept(message, core));
   }
@@ -410,8 +408,7 @@ export function serve({ post, load }) {
 }
 
 /**
- * Puts the first row of each particle in the place of its others, which it has where it lies on a
- * crease.
+ * Replaces the further rows of a particle, which it has on a crease, by its first row.
  * @param {Uint32Array} indices @param {Uint32Array} firstRows  nothing without creases
  */
 function weld(indices, firstRows) {
@@ -420,7 +417,7 @@ function weld(indices, firstRows) {
 }
 
 /**
- * The columns of the particles, whose buffers are given away, so that there is no second copy.
+ * The columns of the particles. Their buffers are given away, so that there is no copy.
  * @param {Core} core @param {Pick<Made, 'count' | 'report' | 'bounds' | 'parameters' | 'image' | 'original' | 'change' | 'values'>} about
  * @returns {[Made, ArrayBufferLike[]]}
  */
@@ -441,6 +438,6 @@ function columnsOf(core, about) {
 function wordsOf(error) {
   if (error instanceof Refusal) return { name: error.name, message: error.message, facts: error.facts };
   const words = error instanceof Error ? error.message : String(error);
-  // After a trap the memory of the module cannot be trusted: the client ends this worker.
+  // After a trap the module's memory cannot be trusted: the client ends this worker.
   return { name: 'WorkerError', message: `The sampler stopped on an error: ${words}`, facts: {} };
 }

@@ -1,5 +1,5 @@
 /**
- * Samples as objects of three.js, on the arrays of the sample.
+ * Samples as objects of three.js that use the arrays of the sample.
  *
  * @module
  */
@@ -29,7 +29,7 @@ export function toBufferGeometry(sample, mesh) {
 export const toPoints = (sample, material) => new Points(toBufferGeometry(sample), material);
 
 /**
- * Returns an instance of a geometry for each row of the columns: its z axis is the normal, and a unit of it is the radius.
+ * Returns an instance of a geometry for each row: its z axis is the normal, and one unit of it is the radius.
  * @param {Sample} sample @param {import('three').BufferGeometry} geometry @param {import('three').Material} material
  */
 export function toInstancedMesh({ points, normals, radii }, geometry, material) {

@@ -2,15 +2,15 @@ import type { Bounds, Format, Progress, Report } from './index.js';
 
 export { DisposedError, FormulaError, InputError, NoSurfaceError, WorkerError } from './index.js';
 
-/** What is sampled and how it is drawn; what is left out stays as it is. */
+/** What is sampled and how it is drawn. Missing entries stay as they are. */
 export interface ViewState {
-  /** a surface of the gallery, such as `gyroid`, or a model from points; null: the one without a choice */
+  /** a surface of the gallery, such as `gyroid`, or a model from points; null for the default */
   surface?: string | null;
   formula?: string;
   parameters?: Record<string, number>;
   /** null: a box that fits the surface */
   bounds?: Bounds | null;
-  /** hides what lies at normal · p > offset */
+  /** hides points with normal · p > offset */
   plane?: { normal: [number, number, number]; offset: number } | null;
   /** all settings that are not the default, by their names: `{size_mode: 'count', count: 5000, method: 'refined'}` */
   settings?: Record<string, number | string>;
@@ -24,7 +24,7 @@ export interface ViewState {
 /** What draws a picture. */
 export type BackendKind = 'webgpu' | 'webgl2' | 'canvas2d';
 export interface ViewOptions {
-  /** the back end to try first; without it the best that the machine draws quickly */
+  /** the back end to try first; by default the best that draws quickly on this machine */
   backend?: BackendKind;
 }
 export interface Listeners {
@@ -32,7 +32,7 @@ export interface Listeners {
   report: (report: Report) => void;
   error: (error: Error) => void;
 }
-/** Columns with a row for each particle, or one on each side of a crease or a seam. */
+/** Columns with a row per particle, or one on each side of a crease or a seam. */
 export interface Particles {
   points: Float32Array;
   normals: Float32Array;
@@ -41,19 +41,19 @@ export interface Particles {
 }
 export interface View {
   /**
-   * the report on the first surface, once its picture is complete; rejected as `set` is, but what is not valid has
-   * its default
+   * the report on the first surface, once its picture is complete; rejects like `set`, but invalid entries have their
+   * defaults
    */
   readonly ready: Promise<Report | null>;
   /** a copy of the whole state */
   readonly state: ViewState;
-  /** the last report; null while particles are placed */
+  /** the last report; null while particles are being placed */
   readonly report: Report | null;
-  /** what draws the picture; null before it is there */
+  /** what draws the picture; null before it is known */
   readonly backend: BackendKind | null;
   /**
-   * changes a part of the state; rejected with the error of a formula, if there is no surface, and, with nothing
-   * changed, by an `InputError` that names what is not valid
+   * changes a part of the state; rejects with the error of a formula, if there is no surface, or, changing nothing,
+   * with an `InputError` that names an invalid entry
    */
   set(patch: ViewState): Promise<Report | null>;
   /** moves a slider: particles follow the surface while it is `live`; call once more without it at the end */
@@ -62,18 +62,18 @@ export interface View {
   stop(): Promise<Report | null>;
   /** copies of the columns */
   particles(): Particles;
-  /** calls a function with what happens, and returns what ends that */
+  /** calls a function at each event; returns a function that ends this */
   on<Name extends keyof Listeners>(name: Name, listener: Listeners[Name]): () => void;
-  /** has the camera fit the surface */
+  /** fits the camera to the surface */
   fit(): void;
   lookFrom(side: 'front' | 'right' | 'top' | 'isometric'): void;
-  /** a PNG, in pixels of the picture where no size is given */
+  /** a PNG; by default with the picture's own size in pixels */
   picture(size?: { width?: number; height?: number; transparent?: boolean }): Promise<Blob>;
   /** the mesh of the particles as a file */
   toFile(format: Exclude<Format, 'csv'>): Promise<Uint8Array<ArrayBuffer>>;
-  /** the state as the fragment of a link to the page of Marching Particles */
+  /** the state as the fragment of a link to the page */
   link(): Promise<string>;
-  /** frees the workers, the graphics device and the canvas; what is waited for is rejected by a `DisposedError` */
+  /** frees the workers, the graphics device and the canvas; rejects pending promises with a `DisposedError` */
   destroy(): void;
 }
 

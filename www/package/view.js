@@ -1,5 +1,5 @@
 /**
- * A picture of a surface in an element of a page, by the engine of the page of Marching Particles.
+ * A picture of a surface in an element of any page, drawn by the engine of the Marching Particles page.
  *
  * @module
  */
@@ -19,7 +19,7 @@ export { DisposedError, FormulaError, InputError, NoSurfaceError, WorkerError } 
  */
 
 /**
- * What went wrong with the present surface; null if nothing did. It reads signals.
+ * The fault of the current surface; null if there is none. It reads signals.
  * @param {Engine} engine
  */
 function faultOf(engine) {
@@ -32,8 +32,8 @@ function faultOf(engine) {
 }
 
 /**
- * What the events tell, whenever a signal that they read has another value; null tells nothing.
- * `unread`: the error of the first state.
+ * The events' details, sent whenever a signal that they read changes; null sends nothing. `unread` is the error of the
+ * first state.
  * @type {{[name in keyof Listeners]:
  *   (engine: Engine, unread: ReadonlySignal<Error | null>) => Parameters<Listeners[name]>[0] | null}}
  */
@@ -48,7 +48,7 @@ const EVENTS = {
 
 /** Returns what has a promise rejected at the end of a view, which else would never settle, and what ends it. */
 function lifetime() {
-  /** Each is forgotten with its promise, of which a view may have many. @type {Set<(error: Error) => void>} */
+  /** An entry is removed with its promise, since a view may make many. @type {Set<(error: Error) => void>} */
   const waiting = new Set();
   let isOver = false;
   const gone = () => new DisposedError('The view was destroyed.');
@@ -80,18 +80,18 @@ export function createView(host, state = {}, { backend } = {}) {
   const first = { ...state };
   const engine = createEngine({ host, state: first, backend });
   const { alive, end } = lifetime();
-  /** The error of a first state that is not valid, until another one is set. @type {Signal<Error | null>} */
+  /** The error of an invalid first state, until another state is set. @type {Signal<Error | null>} */
   const unread = signal(null);
-  // What is asked for before the engine has the first state would be overwritten by it.
+  // Anything requested before the engine has the first state would be overwritten by it.
   const begun = once(engine, () => engine.state.value.surface !== '');
 
-  /** What is not valid of a change of a state. @param {State} now @param {ViewState} change */
+  /** The invalid parts of a change of a state. @param {State} now @param {ViewState} change */
   const refused = (now, change) => mergeState(now, { ...change }, description(engine), false).reset.join(', ');
 
   /** @param {() => void} act */
   async function after(act) {
     await alive(begun);
-    // It begins without a core, too, if no sampler comes; then there is nothing to act on.
+    // The engine also begins without a core if no sampler comes; then there is nothing to act on.
     if (engine.description.value) act();
     const report = await alive(settled(engine));
     const fault = faultOf(engine);
@@ -104,7 +104,7 @@ export function createView(host, state = {}, { backend } = {}) {
     unread.value = new InputError(`Not valid, and replaced by defaults: ${names}.`);
     throw unread.value;
   });
-  // Who does not wait for it hears of a fault by the event.
+  // Callers who do not wait for it learn of a fault from the event.
   ready.catch(() => {});
 
   return {

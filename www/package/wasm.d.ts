@@ -1,4 +1,4 @@
-// A module of the core, as the package is built: its bytes.
+// A module of the core, as its bytes, when the package is built.
 declare module '*_bg.wasm' {
   const bytes: Uint8Array;
   export default bytes;
