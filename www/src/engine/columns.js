@@ -15,14 +15,13 @@ export const FATES = 1 << SLOT_BITS;
 /** Returns the fate of a slot. @param {number} slots  the fates of a particle @param {number} k  number of the slot */
 export const fateOf = (slots, k) => (slots >>> (SLOT_BITS * k)) & (FATES - 1);
 /**
- * Generation level of discs that are drawn with the particles but are not particles, such as a model's points, as the
- * renderer knows it.
+ * Generation level that tells the renderer that a disc is not a particle, such as a model's points.
  */
 export const NO_LEVEL = 0xffffffff;
 
 /**
- * The columns of a report, one value per particle; `patch` and `particle` are empty on a surface of one patch,
- * `periodic` unless opposite faces of the box are the same. A core has a method of each name.
+ * The columns of a report, one value per particle. `patch` and `particle` are empty on a surface with one patch, and
+ * `periodic` unless opposite faces of the box are equal. A core has a method with each name.
  */
 export const MEASURED = /** @type {const} */ ([
   'valence',
@@ -42,27 +41,27 @@ export class Columns {
     /** Number of particles. */
     this.particles = 0;
     /**
-     * The first row of the particle of each row on a crease, a seam or a tip. Those rows come first; empty without any.
+     * For each row on a crease, a seam or a tip, the first row of the same particle. Such rows come first; else empty.
      */
     this.twins = new Uint32Array(0);
-    /** Pairs of rows between which a crease goes on. */
+    /** Pairs of rows that a crease connects. */
     this.segments = new Uint32Array(0);
-    /** Pairs of rows between which a seam goes on, where patches meet without an edge. */
+    /** Pairs of rows that a seam connects, where patches meet without an edge. */
     this.seams = new Uint32Array(0);
     /** The last generation level. */
     this.lastLevel = 0;
     this.tally = noTally();
     /**
-     * Whether the particles belong to an earlier field. They stay on the page because the present field has no surface.
+     * Whether the particles belong to an earlier field. They stay on the page because the current field has no surface.
      */
     this.stale = false;
     /** Whether the run was adaptive. The number of slots of a particle depends on it. */
     this.adaptive = false;
-    /** Whether the surface goes on outside the clip box, as far as the slots are known. */
+    /** Whether the surface continues outside the clip box, according to the slots known so far. */
     this.isOpen = false;
     this.positions = new Float32Array(0);
     /**
-     * The positions in double precision, in a box so far from the origin that single precision rounds them; else empty.
+     * Positions in double precision if the box is so far from the origin that single precision is not enough.
      */
     this.exact = new Float64Array(0);
     this.normals = new Float32Array(0);
@@ -81,14 +80,14 @@ export class Columns {
     /** Index of the particle's component; 0 is the largest. @type {Uint32Array | null} */
     this.component = null;
     /**
-     * Number of the smooth piece of the surface between creases and seams on which the particle lies, and the index of
-     * the first of its rows: a particle on one of these has a row on each side. Null where there are none.
+     * Index of the smooth patch on which the particle lies, and the first row of the particle: a particle on a crease
+     * or a seam has a row on each side. Null without creases and seams.
      * @type {Uint32Array | null}
      */
     this.patch = null;
     /** @type {Uint32Array | null} */
     this.particle = null;
-    /** The first row of the particle that it repeats from a lower face of a cell. @type {Uint32Array | null} */
+    /** The first row of the particle on a lower face of a cell that this one repeats. @type {Uint32Array | null} */
     this.periodic = null;
     /**
      * Principal curvatures of the first `curved` particles, two values each. They are requested from the core only
@@ -99,17 +98,17 @@ export class Columns {
     /** The value by which the particles are coloured; null before it is known. @type {Float32Array | null} */
     this.value = null;
     /**
-     * Positions before each relaxation step, the first as they were placed. Of many particles only those are kept.
-     * Empty before a relaxation has ended. They stay until the next run begins, also while no level is shown: nothing
-     * but the whole run could make them again, and their 12 bytes for a particle are few beside the 57 of all columns.
+     * Positions before each relaxation step; the first are those of the front, and the only ones if particles are many.
+     * Empty before the end of a relaxation. Kept until the next run, even while no level is shown: only the whole run
+     * could compute them again, and they take 12 bytes per particle, against 57 for all columns.
      * @type {Float32Array[]}
      */
     this.past = [];
-    /** The one of them that is drawn, null for the present positions. @type {number | null} */
+    /** Index of the past positions that are drawn; null for the current ones. @type {number | null} */
     this.step = null;
     /** The mesh over the particles, while it is drawn. @type {Mesh | null} */
     this.mesh = null;
-    /** What the particles were made from; null before the end of their run. @type {FileRecord | null} */
+    /** How the particles were made; null before the end of their run. @type {FileRecord | null} */
     this.record = null;
   }
 
@@ -131,7 +130,7 @@ export class Columns {
     this.forget();
   }
 
-  /** Returns whether a row is a further one of its particle. @param {number} i */
+  /** Whether a row repeats its particle's first row. @param {number} i */
   isFurther(i) {
     return this.firstRow(i) !== i;
   }
@@ -142,7 +141,7 @@ export class Columns {
   }
 
   /**
-   * Returns the kind of curve on which the particle of a first row lies, of several the crease; null if on none.
+   * Returns the kind of curve on which the particle of a first row lies, preferring the crease; null if on none.
    * @param {number} i
    * @returns {'crease' | 'seam' | null}
    */
@@ -157,19 +156,19 @@ export class Columns {
     return [...(this.segments.length > 0 ? ['creases'] : []), ...(this.seams.length > 0 ? ['seams'] : [])];
   }
 
-  /** The positions that are drawn. */
+  /** The positions to draw. */
   get shown() {
     const past = this.step === null ? undefined : this.past[this.step];
     return past && past.length >= 3 * this.count ? past : this.positions;
   }
 
-  /** The positions as the front placed the particles, where they are known. */
+  /** The positions where the front placed the particles, if known. */
   get placed() {
     const [first] = this.past;
     return first && first.length >= 3 * this.count ? first : this.positions;
   }
 
-  /** Drops the figures of the report, the mesh and the record, which no longer describe the particles. */
+  /** Removes the report's figures, the mesh and the record, which no longer describe the particles. */
   forget() {
     for (const name of MEASURED) this[name] = null;
     this.value = null;
@@ -191,7 +190,7 @@ export class Columns {
   }
 
   /**
-   * Adds rows to the numbers of their levels; from 0 on, these begin anew.
+   * Adds rows to the counts of their levels. From row 0 on, the counts begin again.
    *
    * @param {number} first
    * @param {number} last
@@ -213,7 +212,7 @@ export class Columns {
     const { fresh, seeds, fates } = tally;
     for (let i = first; i < last; i += 1) {
       const level = levels[i];
-      // A particle on a crease or a seam has a row, and children, on either side.
+      // A particle on a crease or a seam has a row, with children, on each side.
       if (!this.isFurther(i)) {
         fresh[level] += 1;
         if (parents[i] === NO_PARENT) seeds[level] += 1;
@@ -232,7 +231,7 @@ export class Columns {
     const { first, total } = range;
     if (first > this.count || first + n > total || range.positions.length !== 3 * n || range.normals.length !== 3 * n)
       return false;
-    // A relaxation moves the particles and leaves their levels and parents; then they are not counted again.
+    // A relaxation moves the particles but keeps their levels and parents; then they need not be counted again.
     const known = this.count;
     const isSame =
       total >= known &&
@@ -283,7 +282,7 @@ export class Columns {
     Object.assign(this, Object.fromEntries(known.map((name) => [name, figures[name]])));
   }
 
-  /** Writes a value of each particle; one of another number of particles is ignored. @param {Float32Array} values */
+  /** Writes a value per particle; values for another number of them are ignored. @param {Float32Array} values */
   writeValue(values) {
     this.value = values.length === this.count ? values : null;
   }
@@ -325,20 +324,20 @@ export class Columns {
     return { min, max };
   }
 
-  /** Takes the loose chips out of the mesh. */
+  /** Removes the loose chips from the mesh. */
   leaveOutChips() {
     if (this.mesh) this.mesh = withoutChips(this.mesh);
   }
 }
 
 /**
- * Returns numbers of each level, as of no particles: of its particles, of the seeds among them, and of the slots of the
- * level before by their fates. There is one more level of the last, for the fates of its slots.
+ * Returns the counts of no particles. Per level there are the particles, the seeds among them, and the slots of the
+ * level before by fate; one further level has the fates of the last level's slots.
  */
 const noTally = () => ({ fresh: new Uint32Array(0), seeds: new Uint32Array(0), fates: new Uint32Array(0) });
 
 /**
- * Whether the first `n` rows of a range have the levels and parents of the rows in their place.
+ * Whether the first `n` rows of a range have the same levels and parents as the rows that they replace.
  * @param {ColumnRange} range @param {Columns} columns @param {number} n
  */
 function isRepeated({ first, levels, parents }, columns, n) {
@@ -375,16 +374,15 @@ export function withoutChips({ triangles, about }) {
     to += part.length;
     from = 3 * (chip + 1);
   }
-  // The chips are the smallest bodies, and the last ones.
+  // Chips are the smallest bodies, and come last.
   const bodies = about.bodies.filter((body) => !body.is_chip);
   const components = about.components.filter(({ body }) => body < bodies.length);
-  // A mesh whose parts touch has no volume, whatever is left out; an open chip takes the volume
-  // from the others only
-  // as long as it is there.
+  // If parts of a mesh touch, its volume is unknown, with or without chips. An open chip only hides the volume of the
+  // others while it is there.
   const isOpen = about.components.some(({ open_edges }) => open_edges > 0);
   const isUnknown = (about.volume === null && !isOpen) || bodies.some(({ volume }) => volume === null);
   const volume = isUnknown ? null : bodies.reduce((sum, one) => sum + Number(one.volume), 0);
-  // The holes that could not be filled come first among the borders.
+  // Borders begin with the holes that could not be filled.
   const rows = new Set(kept);
   const isKept = (/** @type {number[]} */ [row]) => rows.has(row);
   const loops = about.loops.filter(isKept);

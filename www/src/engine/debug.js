@@ -1,5 +1,5 @@
 /**
- * Commands and counts of an engine for tests: they lose the device, wait for the picture and read counters.
+ * Commands and counters of an engine for tests: losing the device, waiting for the picture, reading counters.
  *
  * @module
  */
@@ -9,7 +9,7 @@
  * @import { EngineDebug } from './types.js'
  */
 
-/** Delay between a motion of the camera and its entry in the state. */
+/** Delay between a movement of the camera and its entry in the state. */
 export const CAMERA_MS = 120;
 
 /** Returns the painter, if it draws. @param {Parts['picture']['viewer']} viewer */

@@ -1,8 +1,8 @@
 /**
  * Decides when the camera fits the surface automatically: after a formula was typed, a link was read or the box was
- * enlarged, and when the surface disappears or reappears. A formula that is still being typed is kept once it has stood
- * for another pause. If it gives way to the surface before, the camera goes back, too. The camera moves only while
- * `camera.fit` is set, which it is again for an enlarged box and for a formula that takes the place of another.
+ * enlarged, and when the surface disappears or reappears. A typed formula is on trial until another pause has passed;
+ * if the previous surface returns before that, so does the camera. The camera moves only while `camera.fit` is set. An
+ * enlarged box, and a formula that replaces another one, set it again.
  *
  * @module
  */
@@ -21,22 +21,22 @@ export class Framing {
   #columns;
   #viewer;
 
-  /** Whether the formula changed or a link was read, and the camera has not fitted the surface since. */
+  /** Whether the formula changed or a link was read since the camera last fitted the surface. */
   #isWritten;
 
-  /** The angles that the page gave the camera last. @type {Angles} */
+  /** The last angles that the page gave the camera. @type {Angles} */
   #angles;
 
-  /** Whether another surface was typed, which the camera has not shown since. */
+  /** Whether another surface was typed that the camera has not shown yet. */
   #isAnother;
 
-  /** Whether the formula was typed. That keeps the camera where it is as long as the formula has no surface. */
+  /** Whether the formula was typed. Then the camera stays while the formula has no surface. */
   #isTyped;
 
   #effects;
 
   /**
-   * `keep` keeps the formula that was on trial.
+   * `keep` ends the trial of a formula, which stays.
    * @param {{ store: Store, columns: Columns, viewer: Viewer, keep: () => void }} parts
    */
   constructor({ store, columns, viewer, keep }) {
@@ -49,7 +49,7 @@ export class Framing {
     this.#angles = homeCamera();
     /** Whether the camera shows the whole box because there is no surface. */
     let boxShown = false;
-    /** Where the camera was when the first trial began. @type {CameraState | null} */
+    /** The camera before the first trial began. @type {CameraState | null} */
     let before = null;
     this.#effects = [
       effect(() => {
@@ -69,7 +69,7 @@ export class Framing {
         }
       }),
       effect(() => {
-        // Without a surface the camera shows the box. It returns to the surface when there is one again.
+        // Without a surface the camera shows the box, and returns to the surface when one appears.
         const none = store.empty.value && columns.count === 0;
         const rests = !store.busy.value && !store.progress.value.live;
         if (!rests || none === boxShown) return;
@@ -80,7 +80,7 @@ export class Framing {
   }
 
   /**
-   * Notes that the formula changed, a link was read or the box was made larger.
+   * Records that the formula changed, a link was read or the box was enlarged.
    * @param {{typed: boolean, another?: boolean}} how  `another`: the formula took the place of another one
    */
   written({ typed, another = false }) {
@@ -90,14 +90,14 @@ export class Framing {
     this.#isAnother = typed && (this.#isAnother || another);
   }
 
-  /** Notes that a surface was restored with its camera, which stays: what was written before is gone. */
+  /** Records that a surface was restored together with its camera, which stays. */
   restored() {
     this.#isWritten = false;
     this.#isTyped = false;
     this.#isAnother = false;
   }
 
-  /** Fits the surface that is to come, wherever the hand has left the camera. */
+  /** Fits the next surface, even if a pointer has moved the camera. */
   enlarged() {
     this.#follow();
     this.#viewer.linked = null;
@@ -105,8 +105,7 @@ export class Framing {
   }
 
   /**
-   * Returns whether the camera waits for a surface: the last one stays in the picture while a formula without one is
-   * typed, and the camera stays with it.
+   * Whether the camera waits for a surface. While a typed formula has no surface, the last surface and the camera stay.
    */
   #waits() {
     return this.#isTyped && this.#columns.stale;
@@ -115,14 +114,14 @@ export class Framing {
   #come() {
     if (!this.#rests() || this.#waits()) return;
     this.#isWritten = false;
-    // Beside a mistake stands the surface before, as it was seen.
+    // While the formula has an error, the previous surface stays as it was seen.
     if (this.#isTyped && this.#store.fieldError.value === null) this.#turn();
     this.#fit();
   }
 
   /**
-   * Shows a typed surface from where its outline is largest: another one wherever the hand has left the camera, else
-   * unless the hand has turned it.
+   * Shows a typed surface from where its outline is largest. If the formula is another one, always; else only if no
+   * pointer has turned the camera.
    */
   #turn() {
     const { camera } = this.#viewer;
@@ -135,13 +134,13 @@ export class Framing {
     this.#angles = camera.end;
   }
 
-  /** Whether the hand has turned the camera since the page did. */
+  /** Whether a pointer has turned the camera since the page did. */
   #isTurned() {
     const { end } = this.#viewer.camera;
     return Math.hypot(end.yaw - this.#angles.yaw, end.pitch - this.#angles.pitch) > 1e-3;
   }
 
-  /** Goes back to where the camera was, turned as the hand has turned it since. @param {CameraState} before */
+  /** Moves the camera back, but keeps a rotation made since then. @param {CameraState} before */
   #back(before) {
     const { camera } = this.#viewer;
     if (!camera.state.fit) return;
@@ -154,7 +153,7 @@ export class Framing {
     this.#viewer.moved();
   }
 
-  /** Has the camera fit the surface again, after the hand had taken it. */
+  /** Lets the camera fit the surface again after a pointer has moved it. */
   #follow() {
     const { camera } = this.#viewer;
     if (!camera.state.fit) camera.set({ ...camera.state, fit: true });
@@ -165,8 +164,8 @@ export class Framing {
   }
 
   /**
-   * Returns whether nobody types, no run is active and the last one has a report or found no surface. A faulty formula
-   * makes no difference: the surface still shown may come from an earlier state of the same text.
+   * Whether nobody types, no run is active and the last run has a report or found no surface. A faulty formula makes no
+   * difference: the surface shown may come from an earlier state of the same text.
    */
   #rests() {
     const { busy, typing, report, empty } = this.#store;

@@ -1,5 +1,5 @@
 /**
- * What a file has given a field.
+ * The data that a file gave to a field.
  *
  * @module
  */
@@ -7,7 +7,7 @@
 /** @import { FieldOk } from './types.js' */
 
 /**
- * The name of the model, image or mesh whose surface is sampled, and what a file of it holds; null for a formula.
+ * The name of the model, image or mesh whose surface is sampled, and what its file contains; null for a formula.
  * @param {FieldOk | null} field
  * @returns {{name: string, holds: 'points' | 'voxels' | 'faces'} | null}
  */

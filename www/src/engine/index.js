@@ -1,6 +1,6 @@
 /**
- * The engine of the page samples in a worker, draws on a canvas and keeps the state. The interface reads its signals
- * and calls its commands. Apart from those, the interface imports only types and constants from this folder.
+ * The engine of the page: samples in a worker, draws on a canvas and keeps the state. The interface reads its signals
+ * and calls its commands; otherwise it imports only types and constants from this folder.
  *
  * @module
  */
@@ -23,8 +23,8 @@ import { createStore } from './store.js';
  */
 
 /**
- * Creates an engine that draws in an element of the page and begins with a state. It knows neither the page's address
- * nor another engine, so that several can be on one page.
+ * Creates an engine that draws in an element of the page and begins with a state. It knows nothing of the page's
+ * address or of other engines, so that one page can have several.
  * @param {EngineOptions} options
  * @returns {Engine}
  */
@@ -38,7 +38,7 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
     columns,
     picture: viewer,
     onReady() {
-      // A state from outside brings its own camera.
+      // A given state brings its own camera.
       viewer.opening = link === '' && Object.keys(state).length === 0;
       void engine.openLink(link, { initial: true, patch: state });
       fetchExports().catch(() => {});
@@ -54,7 +54,7 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
     viewer.camera.set(camera);
     store.state.value = whole;
     if (camera.fit && scheduler.loader.ready()) viewer.fit(true);
-    // If the surface cannot be sampled, the camera fits the one that stays.
+    // If the new surface cannot be sampled, the camera fits the old one.
     framing.written({ typed: false });
     scheduler.choose(camera.fit ? 'new' : 'grow');
   }

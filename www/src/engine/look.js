@@ -1,5 +1,5 @@
 /**
- * Keeps the picture's appearance equal to what the state says: the effective theme and the options of the viewer.
+ * Keeps the picture's appearance in step with the state: the effective theme and the viewer's options.
  *
  * @module
  */
@@ -15,7 +15,7 @@ import { seenOf } from './view/style.js';
 
 /**
  * @param {{ store: Store, viewer: Viewer, scheduler: Scheduler }} parts
- * @returns ends it
+ * @returns a function that ends it
  */
 export function keepLook({ store, viewer, scheduler: { loader, sampling } }) {
   const system = matchMedia('(prefers-color-scheme: dark)');
@@ -25,16 +25,16 @@ export function keepLook({ store, viewer, scheduler: { loader, sampling } }) {
   };
   system.addEventListener('change', follow);
 
-  // A box that the surface misses is drawn, so that it can be moved; if there is no surface anywhere, it is not.
+  // If the surface misses the box, the box is drawn so that it can be moved; if no surface exists anywhere, it is not.
   const isMissed = computed(
     () =>
       store.empty.value && store.field.value?.reach !== 'nowhere' && store.progress.value.stop_reason !== 'constant',
   );
 
-  /** Returns the points of the model on the page, or null if they are not drawn. */
+  /** Returns the points of the current model, or null if they are not drawn. */
   function points() {
     const { view, pulls } = store.state.value;
-    // They are those of the surface before it is pulled, cut or joined.
+    // The points belong to the surface before it is pulled, cut or joined.
     if (!view.points || !isBareModel(store.field.value) || pulls.length > 0) return null;
     return loader.client.get(sampling.accepted?.field.points)?.centres ?? null;
   }

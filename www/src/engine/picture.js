@@ -69,11 +69,11 @@ export function createPicture({ host, store, columns, first }) {
     point(x, y, tapped) {
       if (!tapped && store.hover.value?.tapped) return;
       const held = tapped ? hand.take({ x, y }, false) : null;
-      // The key Enter presses the middle of the picture; of a pointer the press was taken already.
+      // Enter presses the middle of the picture. A pointer's press was taken already.
       if (held) return held.drop();
       const index = viewer.pick(x, y);
       const { measured } = store.state.value.view;
-      // While a distance is measured, a press chooses one of its ends.
+      // While a distance is measured, a press chooses an end of it.
       if (index !== null || tapped || store.hover.value) hover(index, x, y, tapped && !measured);
       if (tapped && index !== null && measured) changeView(store, { measured: withEnd(measured, index) });
       if (tapped) store.spot.value = null;
@@ -123,7 +123,7 @@ function deviceEvents(store, retry) {
     },
     onFallback(/** @type {string} */ kind, /** @type {string} */ message, isLate = false) {
       const isLast = kind === 'canvas2d';
-      // During the start a kind that the browser lacks is expected. A later one is reported to the user.
+      // At the start it is expected that the browser lacks some kinds. Later the user is told.
       if (store.backend.value === 'starting' && !isLast && !isLate) return;
       store.notice.value = {
         id: 'fallback',
@@ -139,7 +139,7 @@ function deviceEvents(store, retry) {
 }
 
 /**
- * Adds an end to a measured distance; a third one begins another distance.
+ * Adds an end to a measured distance; a third one begins a new distance.
  * @param {readonly number[]} measured
  * @param {number} index
  */

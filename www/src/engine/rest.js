@@ -1,5 +1,5 @@
 /**
- * Waits until the engine has done what it was asked for.
+ * Waits until the engine has done its work.
  *
  * @module
  */
@@ -8,16 +8,14 @@ import { effect } from '@preact/signals-core';
 /** @import { Engine, Report } from './types.js' */
 
 /**
- * Resolves with the report once `isOver` holds, or no sampler is there or coming. `isOver` reads
- * signals.
+ * Resolves with the report once `isOver` holds, or there is no sampler and none is coming. `isOver` reads signals.
  * @param {Engine} engine @param {() => boolean} isOver
  */
 export const once = (engine, isOver) =>
   new Promise((/** @type {(report: Report | null) => void} */ resolve) => {
     let stop = () => {};
     stop = effect(() => {
-      // The progress is written anew when the sampler ends. The notice about it may have been
-      // dismissed since.
+      // The progress changes when the sampler ends. The notice may already have been dismissed.
       const isOff = engine.progress.value && engine.debug.isOff();
       if (!isOff && !isOver()) return;
       resolve(engine.report.peek());
@@ -26,7 +24,7 @@ export const once = (engine, isOver) =>
   });
 
 /**
- * Returns whether no run is active and the report has arrived, if one is expected.
+ * Whether no run is active and an expected report has arrived.
  * @param {Engine} engine
  */
 export const atRest = (engine) =>
@@ -37,8 +35,8 @@ export const atRest = (engine) =>
   engine.progress.value.phase === 'done';
 
 /**
- * Resolves with the report once the sampler is at rest and the picture is up to date. A surface that follows a slider
- * has no report: it is waited for until the slider is let go.
+ * Resolves with the report once the sampler is at rest and the picture is up to date. While a surface follows a slider
+ * it has no report, so this waits until the slider is released.
  * @param {Engine} engine
  */
 export async function settled(engine) {

@@ -1,7 +1,7 @@
-/** Small images that are computed, for the gallery. */
+/** Small computed images for the gallery. */
 
 /**
- * `parameters`: what is chosen of an image at first.
+ * `parameters` are the initial choices for the image.
  * @typedef {{id: string, name: string, story: string, words: string, parameters: Record<string, number>}} Scan
  */
 

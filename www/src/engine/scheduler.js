@@ -1,5 +1,5 @@
 /**
- * Turns the state into requests for runs of the sampler and decides when they are made.
+ * Turns the state into requests to the sampler and decides when to send them.
  *
  * @module
  */
@@ -16,7 +16,7 @@ import { change, description } from './store.js';
  * @import { SampleKind } from './types.js'
  */
 
-/** Pause in a drag after which the full run starts, even if the control does not report its release. */
+/** Pause in a drag after which the full run starts, even if the control did not report its release. */
 const REST_MS = 250;
 /** @returns {any} */
 const spawnSolver = () =>
@@ -24,7 +24,7 @@ const spawnSolver = () =>
 
 export class Scheduler {
   /**
-   * Timer of the run that starts when a control or the typing pauses.
+   * Timer for the run that starts when a control or the typing pauses.
    * @type {ReturnType<typeof setTimeout> | undefined}
    */
   #timer;
@@ -53,7 +53,7 @@ export class Scheduler {
   }
 
   /**
-   * Returns the request that samples the present state, or the surface that is pulled.
+   * Returns the request that samples the current state, or the surface that is being pulled.
    * @param {RunOptions} [options]
    * @returns {SampleRequest}
    */
@@ -73,17 +73,17 @@ export class Scheduler {
     };
   }
 
-  /** Samples the present state. @param {RunOptions} [options] */
+  /** Samples the current state. @param {RunOptions} [options] */
   resample(options = {}) {
     if (!this.#begin(options.kind)) return;
     const request = this.#request(options);
-    // The end of a pull is known by its answer.
+    // The answer tells when a pull has ended.
     if (options.pulled) this.sampling.submit(request);
     else this.sampling.sample(request);
   }
 
   /**
-   * Samples the present state during a drag, coarsely if necessary, and fully once the drag pauses.
+   * Samples the current state during a drag, coarsely if necessary, and fully once the drag pauses.
    * @param {Pulled} [pulled]
    */
   resampleLive(pulled) {
@@ -93,7 +93,7 @@ export class Scheduler {
   }
 
   /**
-   * Samples another surface. A model that is still loading for another choice is given up.
+   * Samples another surface. A model that is loading for another choice is cancelled.
    * @param {SampleKind} [kind]
    */
   choose(kind) {
@@ -102,14 +102,14 @@ export class Scheduler {
     this.resample({ kind });
   }
 
-  /** Samples a formula that is being typed once the typing pauses, unless another request comes first. */
+  /** Samples a typed formula once the typing pauses, unless another request comes first. */
   chooseTyped() {
     this.forgetLater();
     this.store.typing.value = true;
     this.#timer = setTimeout(() => this.choose('trial'), TYPING_MS);
   }
 
-  /** Cancels the run that waits for a pause. */
+  /** Cancels a run that is waiting for a pause. */
   forgetLater() {
     clearTimeout(this.#timer);
     this.store.typing.value = false;
@@ -122,7 +122,7 @@ export class Scheduler {
   }
 
   /**
-   * Returns whether the state can be sampled now. If its model is not solved yet, the solution is started.
+   * Whether the state can be sampled now. If its model is not solved yet, solving begins.
    * @param {SampleKind} [kind]
    */
   #begin(kind) {
@@ -138,7 +138,7 @@ export class Scheduler {
     return true;
   }
 
-  /** Returns the diagonal of the present clip box. */
+  /** Returns the diagonal of the current clip box. */
   #diagonal() {
     const { state, field } = this.store;
     const bounds = state.value.bounds ?? field.value?.bounds;

@@ -1,5 +1,5 @@
 /**
- * The engine's signals in their writable form. The interface sees them as read-only.
+ * The engine's signals in writable form. The interface sees them read-only.
  *
  * @module
  */
@@ -30,7 +30,7 @@ export const idleProgress = () => ({
 });
 
 /**
- * The engine's signals, to be written.
+ * The engine's signals, writable.
  * @typedef {{[K in keyof EngineSignals as EngineSignals[K] extends ReadonlySignal<any> ? K : never]:
  *   EngineSignals[K] extends ReadonlySignal<infer T> ? Signal<T> : never}} Store
  */

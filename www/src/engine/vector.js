@@ -21,7 +21,7 @@ export const size = (v) => Math.hypot(v[0], v[1], v[2]);
 /** @param {ArrayLike<number>} p @param {ArrayLike<number>} q */
 export const distance = (p, q) => size(along(p, q, -1));
 /**
- * Returns the vector of a column that is nearest to a place, and its distance; null if there is none.
+ * Returns the vector of a column that is nearest to a point, and its distance; null for an empty column.
  * @param {ArrayLike<number>} column @param {number} count @param {ArrayLike<number>} place
  */
 export function nearest(column, count, place) {

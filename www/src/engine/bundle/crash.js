@@ -5,12 +5,12 @@
  */
 import { words } from './load.js';
 
-/** Most letters of a message or a stack. */
+/** Largest length of a message or a stack. */
 const MOST = 4000;
 
 /**
- * Listens to the panic hook of the worker's bundle, which writes to the console. Returns what tells of an error: by the
- * last message of the hook, or else by its own.
+ * Listens to the panic hook of the worker's bundle, which writes to the console. Returns a function that describes an
+ * error by the hook's last message, or else by the error's own.
  */
 export function crashWords() {
   let last = '';

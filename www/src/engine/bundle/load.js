@@ -7,22 +7,21 @@
 /** @import { LoadFault } from './types.js' */
 
 /**
- * Time in which a bundle has to come: a connection of 15 kB/s brings the largest in it. A request that a browser loses
- * never ends.
+ * Time allowed for loading a bundle: enough for the largest one at 15 kB/s. A request that the browser loses would
+ * never end.
  */
 export const LOADING_MS = 60_000;
 /**
- * Time without a message after which a worker at work counts as hung. A step takes some tens of milliseconds. On a
- * machine that is busy with other things it takes up to two seconds.
+ * Time without a message after which a busy worker counts as hung. A step takes some tens of milliseconds, and up to
+ * two seconds on a busy machine.
  */
 export const SILENCE_MS = 4000;
 /**
- * Delay after a silence before the worker counts as hung. A tab that was suspended first handles the messages that
- * wait.
+ * Delay between a silence and counting the worker as hung. A tab that was suspended first handles its waiting messages.
  */
 export const GRACE_MS = 120;
 
-/** A module that contains one 128-bit constant. It is valid exactly if the browser supports SIMD. */
+/** A module with one 128-bit constant, which is valid exactly if the browser supports SIMD. */
 const SIMD_PROBE = new Uint8Array([
   0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11,
 ]);

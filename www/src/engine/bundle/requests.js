@@ -1,5 +1,5 @@
 /**
- * Requests to a worker and their answers, which find each other by number.
+ * Requests to a worker and their answers, matched by number.
  *
  * @module
  */
@@ -18,7 +18,7 @@ export class Requests {
   }
 
   /**
-   * Makes a request under a number of its own. Resolves with what it is answered.
+   * Makes a request with a new number. Resolves with the answer.
    * @param {(id: number) => void} send
    * @returns {Promise<any>}
    */
@@ -57,7 +57,7 @@ export class Requests {
 }
 
 /**
- * A worker for requests. The first one starts it; after its end the next starts another.
+ * A worker for requests. The first request starts it; after its end the next one starts another.
  * @template Sent
  * @template Heard
  */
@@ -88,7 +88,7 @@ export class RequestWorker {
     this.#worker?.postMessage(message);
   }
 
-  /** Ends the worker, which frees its memory, and refuses what it was asked. @param {Error} error */
+  /** Ends the worker, which frees its memory, and rejects open requests. @param {Error} error */
   end(error) {
     if (this.#worker) {
       this.#worker.onmessage = null;

@@ -21,7 +21,7 @@ const MOST_STEPS = 1000;
 
 /** @param {Parts} parts @returns {RunCommands} */
 export function runCommands({ store, columns, scheduler, picture: { viewer } }) {
-  /** Whether the particles are those of a method. @param {Settings[string]} method */
+  /** Whether a method placed the particles. @param {Settings[string]} method */
   const isOf = (method) => columns.record?.settings.method === method;
   return {
     run() {
@@ -31,7 +31,7 @@ export function runCommands({ store, columns, scheduler, picture: { viewer } }) 
     makeMesh() {
       const { draw, level, step } = store.state.value.view;
       store.meshing.value ??= { draw, level, step };
-      // Before the picture asks for a mesh, so that the present particles are not joined to one.
+      // This comes before the picture asks for a mesh, so that no mesh is made of the current particles.
       if (!isOf('refined') || store.partial.value) scheduler.resample();
       changeView(store, { draw: 'mesh', level: null, step: null });
     },
@@ -40,7 +40,7 @@ export function runCommands({ store, columns, scheduler, picture: { viewer } }) 
       if (!before) return;
       store.meshing.value = null;
       const { view, settings } = store.state.value;
-      // Who has chosen another way of drawing meanwhile keeps it.
+      // If the user chose another way of drawing meanwhile, it stays.
       if (view.draw === 'mesh') changeView(store, before);
       if (!isOf(completeSettings(description(store), settings).method)) scheduler.resample();
     },

@@ -52,7 +52,7 @@ export function shareCommands({ store, columns, picture: { viewer }, scheduler, 
         store.notice.value = { id: 'link', kind: 'warn', text: `The link was read, except for: ${what}.` };
       }
       const whole = mergeState(state, { ...patch }, about, scheduler.loader.hasFile).state;
-      // A link that says nothing of the camera has the home one, whose distance is of no surface.
+      // A link without a camera gets the default camera, whose distance fits no particular surface.
       const { camera } = whole.view;
       viewer.linked = camera.distance === homeView().camera.distance ? null : camera;
       adopt(whole);

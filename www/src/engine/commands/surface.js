@@ -38,7 +38,7 @@ import { change, changeView, description, showAll } from '../store.js';
  */
 
 /**
- * Returns whether a text takes the place of another: less than half of the other stands.
+ * Whether a text replaces another one rather than editing it: less than half of the old text remains.
  * @param {string} old @param {string} text
  */
 export function replaces(old, text) {
@@ -50,7 +50,7 @@ export function replaces(old, text) {
   return 2 * (start + end) < old.length;
 }
 
-/** Returns what of a state is sampled, as a text to compare. @param {Shape} shape */
+/** The part of a state that is sampled, as a text for comparisons. @param {Shape} shape */
 const sampledOf = ({ surface, formula, parameters, declared, centres, bounds, pulls, settings }) =>
   JSON.stringify([surface, formula, parameters, declared, centres, bounds, pulls, settings]);
 
@@ -58,15 +58,15 @@ const sampledOf = ({ surface, formula, parameters, declared, centres, bounds, pu
 export function surfaceCommands({ store, scheduler, framing, picture: { viewer } }) {
   const { state } = store;
   /**
-   * The model that a typed formula has left, and the last formula typed since: a text that is
-   * changed letter by letter may lose the name of the model and gain it again.
+   * The model before a formula was typed that does not name it, and the last formula typed since. While a text is
+   * edited letter by letter, the model's name may disappear and return.
    * @type {{ shape: Shape, formula: string } | null}
    */
   let left = null;
   /**
-   * Returns what a typed formula makes of the state.
+   * Returns how a typed formula changes the state.
    * @param {string} text
-   * @param {boolean} whole  it was put in the place of the formula before, of which nothing stays
+   * @param {boolean} whole  whether it replaces the previous formula completely
    * @returns {{ shape: Partial<State>, another: boolean }}
    */
   function typed(text, whole) {
@@ -88,13 +88,12 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
       return { shape: { ...before, settings, formula: text }, another: true };
     }
     left = before && { shape: before, formula: text };
-    // The values of the gallery's parameters belong to its formula; in another one the same names
-    // begin afresh.
+    // Values of the gallery's parameters belong to its formula; in another formula these names start with defaults.
     const isOwn = surfaceOf(about, surface)?.formula === formula;
     const own = isOwn ? { parameters: {} } : {};
-    // So does an enlarged box, which nobody set for another formula.
+    // An enlarged box is also reset, since nobody set it for another formula.
     const next = { ...own, formula: text, bounds: bounds?.enlarged ? null : bounds };
-    // What is cut of a model stays where it was.
+    // Cuts of a model stay where they were.
     return { shape: next, another: !isModel && replaces(formula, text) };
   }
   return {
@@ -106,7 +105,7 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
       showAll(store);
       const fresh = freshShape(description(store), state.value.settings, id);
       change(store, { ...fresh, ...(id === FILE_SURFACE ? { parameters: scheduler.loader.beginning() } : {}) });
-      // Another surface is framed, wherever the hand or a link has left the camera.
+      // The camera fits another surface, even if a pointer or a link has moved it.
       viewer.linked = null;
       const { camera } = viewer;
       if (!camera.state.fit) {
@@ -116,7 +115,7 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
       scheduler.choose('new');
     },
     openFile(file, beside) {
-      // A formula still waiting for its pause would replace the file.
+      // A formula that is still waiting for a pause would replace the file.
       scheduler.forgetLater();
       return scheduler.loader.openFile(file, beside);
     },
@@ -163,7 +162,7 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
 export function inputCommands({ store, scheduler, framing }) {
   const { state } = store;
   /**
-   * Changes the state and says whether a drag is under way, as one, so that the history records the drag once.
+   * Changes the state and the dragging flag together, so that the history records a drag once.
    * @param {boolean} dragging @param {Partial<State>} patch
    */
   const take = (dragging, patch) =>
@@ -194,7 +193,7 @@ export function inputCommands({ store, scheduler, framing }) {
     },
     pull(parameters, pins, { live = false } = {}) {
       const pulled = { parameters, pins: [...pins] };
-      // A pull ends with the parameters that the core answers.
+      // A pull ends when the core returns its parameters.
       store.dragging.value = true;
       if (live) scheduler.resampleLive(pulled);
       else scheduler.resample({ kind: 'move', pulled });

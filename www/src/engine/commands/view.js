@@ -25,7 +25,7 @@ export function viewCommands({ store, picture }) {
       const view = validView(/** @type {Record<string, unknown>} */ (patch), store.state.value.view);
       if (patch.camera) viewer.camera.set(view.camera);
       change(store, { view });
-      // The box and the axes reach beyond the surface: the camera moves back to show them.
+      // The box and the axes extend beyond the surface, so the camera moves back to show them.
       if ((patch.box !== undefined || patch.axes !== undefined) && viewer.camera.state.fit) viewer.fit();
       if (store.hover.value && store.hover.value.level > (view.level ?? Infinity)) picture.hover(null, 0, 0);
     },
@@ -49,7 +49,7 @@ export function viewCommands({ store, picture }) {
       viewer.moved();
     },
     setInsets(insets) {
-      // The layout measures after every change of a part's size, which mostly leaves the free area as it was.
+      // The layout measures whenever a part's size changes, which usually leaves the free area as it was.
       if (JSON.stringify(insets) !== JSON.stringify(viewer.look.insets)) viewer.set({ insets });
     },
     dismissHover: () => picture.hover(null, 0, 0),

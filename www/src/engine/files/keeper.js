@@ -1,6 +1,6 @@
 /**
- * The file that the core in the worker has open. A job names the file it is of; if the core has another one, or has
- * been started anew, the file is opened again before the job begins.
+ * The file that the worker's core has open. Each job names its file. If the core has another one, or has been
+ * restarted, the file is opened again before the job begins.
  *
  * @module
  */
@@ -31,16 +31,16 @@ const refusalOf = ({ kind, message }) => ({
 export class FileKeeper {
   #mostBytes;
   #begins;
-  /** The key of the file that the core has open. */
+  /** The key of the core's open file. */
   #key = '';
-  /** The file that cannot be opened again, and why. @type {Refused & {key: string}} */
+  /** The file that cannot be opened again, and the reason. @type {Refused & {key: string}} */
   #refused = { key: '', kind: 'request', message: '' };
-  /** The key of the file that is being opened, and the number of that work. */
+  /** The key of the file that is being opened, and the number of that attempt. */
   #opening = { key: '', id: 0 };
 
   /**
    * @param {number} mostBytes  memory that a file may take
-   * @param {() => void} [begins]  says that the core begins work during which nothing is heard of it
+   * @param {() => void} [begins]  called before the core is silent for long
    */
   constructor(mostBytes, begins = () => {}) {
     this.#mostBytes = mostBytes;
@@ -48,7 +48,7 @@ export class FileKeeper {
   }
 
   /**
-   * Opens a file in the core. Another one that is being opened is given up.
+   * Opens a file in the core. If another one is being opened, that is cancelled.
    * @param {Core} core @param {KeyedFile} file @param {(label: string, fraction: number) => void} [tell]
    * @returns {Promise<Opened>}
    */
@@ -64,13 +64,13 @@ export class FileKeeper {
     return opened;
   }
 
-  /** Gives up the file that is being opened. */
+  /** Cancels the opening of a file. */
   stop() {
     this.#opening = { key: '', id: this.#opening.id + 1 };
   }
 
   /**
-   * Whether the field of a file can be set. If it cannot yet, the file is opened, and `then` is called.
+   * Whether the field of a file can be set now. If not, the file is opened and `then` is called.
    * @param {Core} core @param {KeyedFile} file @param {(error?: unknown) => void} then
    */
   isReady(core, file, then) {

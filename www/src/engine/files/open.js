@@ -1,6 +1,6 @@
 /**
- * Reads the file of an image or a triangle mesh and opens it in the core. What the header of an image promises is
- * known, and its memory is held to a limit, before the rest is read. For the sampler's worker and for the package.
+ * Reads the file of an image or a triangle mesh and opens it in the core, for the sampler's worker and for the package.
+ * The header of an image is read first, and its memory is checked against a limit before the rest is read.
  *
  * @module
  */
@@ -12,13 +12,13 @@ import { words } from '../bundle/load.js';
  * @import { GivenFile, Opened, OpenEnv } from './types.js'
  */
 
-/** Of a file so much is enough for its header. */
+/** This much of a file is enough for its header. */
 const START_BYTES = 1 << 20;
-/** Share of the work that is done once the file is read. The rest is the core's. */
+/** Share of the work that reading takes. The core does the rest. */
 const READ_SHARE = 0.7;
 /**
- * Memory that a mesh takes while it is read, mended and sampled, over that of its file: a triangle has 50 bytes in a
- * binary STL file and some 600 in the trees and tables of the core.
+ * Memory to read, repair and sample a mesh, divided by the size of its file: a triangle has 50 bytes in a binary STL
+ * file and about 600 in the core's trees and tables.
  */
 const MESH_FACTOR = 15;
 
@@ -34,7 +34,7 @@ class Refusal extends Error {
 const megabytes = (/** @type {number} */ bytes) => Math.max(1, Math.round(bytes / 1e6)).toLocaleString('en');
 
 /**
- * Says what the header of a file promises.
+ * Describes an image from its header.
  * @param {ImagePromise} promise
  */
 function promised({ size, voxel_type, memory }) {
@@ -43,7 +43,7 @@ function promised({ size, voxel_type, memory }) {
 }
 
 /**
- * Reads a file to its end, or returns null if that is to stop.
+ * Reads a whole file; returns null if it is cancelled.
  * @param {Blob} file @param {(share: number) => void} tell @param {() => boolean} isOver
  */
 async function bytesOf(file, tell, isOver) {
@@ -63,7 +63,7 @@ async function bytesOf(file, tell, isOver) {
 }
 
 /**
- * Opens a file in the core, whose file it is then. Returns null if that was to stop.
+ * Opens a file in the core, which then owns it. Returns null if it is cancelled.
  * @param {Core} core @param {GivenFile} given @param {OpenEnv} env
  * @returns {Promise<Opened>}
  */

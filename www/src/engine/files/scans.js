@@ -1,6 +1,6 @@
 /**
- * Computes the small images of the gallery, as files. Sums, products and roots alone give the same voxels in every
- * browser.
+ * Computes the small images of the gallery as files. Only sums, products and roots are used, so that the voxels are the
+ * same in every browser.
  *
  * @module
  */
@@ -8,7 +8,7 @@
 const SIDE = 64;
 const MIDDLE = (SIDE - 1) / 2;
 
-/** Numbers from −1 to 1, by a linear congruence (Numerical Recipes, 1992), the same each time. */
+/** Random numbers from −1 to 1, by a linear congruence (Numerical Recipes, 1992); the same sequence each time. */
 function noise() {
   let state = 1;
   return () => {
@@ -17,7 +17,7 @@ function noise() {
   };
 }
 
-/** A wave of the period 1 much like a sine, made of parabolas. @param {number} t */
+/** A wave of period 1, similar to a sine but made of parabolas. @param {number} t */
 function wave(t) {
   const u = 2 * (t - Math.floor(t)) - 1;
   return -4 * u * (1 - Math.abs(u));
@@ -31,7 +31,7 @@ function gyroid(x, y, z, period) {
 
 /** @typedef {(x: number, y: number, z: number, random: () => number) => number} Value */
 
-/** A network of struts, whose thickness changes from place to place. @type {Value} */
+/** A network of struts of varying thickness. @type {Value} */
 function bone(x, y, z, random) {
   const bend = 3 * wave(z / 47);
   const struts = gyroid(x + bend, y - bend, 0.8 * z, 26);
@@ -45,11 +45,11 @@ function bodies(x, y, z) {
   const outer = (a / 27) ** 2 + (b / 22) ** 2 + (c / 19) ** 2;
   const inner = Math.sqrt((a - 4) ** 2 + b ** 2 + c ** 2);
   if (inner < 9) return 2;
-  // A quarter is cut out, through which the ball is seen.
+  // A quarter is cut out to show the ball inside.
   return outer < 1 && inner > 12 && !(a > 0 && c > 2) ? 1 : 0;
 }
 
-/** The corners of a hexagon of the radius 1. */
+/** The corners of a hexagon of radius 1. */
 const HEXAGON = [0, 1, 2, 3, 4, 5].map((k) => {
   const [x, y] = [[1, 0.5, -0.5][k % 3], [0, 0.5 * Math.sqrt(3), 0.5 * Math.sqrt(3)][k % 3]];
   return k < 3 ? [x, y] : [-x, -y];

@@ -21,9 +21,9 @@ import { RequestWorker } from '../bundle/requests.js';
  */
 
 /**
- * The reason for which a promise of the client is rejected. `refused`: the formula or a setting is not accepted, with
- * the core's `fault`; `given_up`: another run has begun, or the client was closed; `crashed`: the bundle stopped on an
- * error; `bundle`: it did not load.
+ * Why the client rejects a promise. `refused`: the formula or a setting is not accepted, with the core's `fault`;
+ * `given_up`: another run has begun, or the client was closed; `crashed`: the bundle stopped on an error; `bundle`: it
+ * did not load.
  * @typedef {'refused' | 'given_up' | 'crashed' | 'bundle'} LessonErrorKind
  */
 
@@ -37,7 +37,7 @@ export class LessonError extends Error {
   }
 }
 
-/** Starts the worker of the lesson, which loads its bundle when it is first asked something. @returns {WorkerLike} */
+/** Starts the lesson's worker, which loads its bundle at the first request. @returns {WorkerLike} */
 const spawnLesson = () => new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'lesson' });
 
 export class LessonClient {
@@ -46,7 +46,7 @@ export class LessonClient {
   /** @type {RequestWorker<ToLesson, FromLesson>} */
   #worker;
 
-  /** Number of the present run. */
+  /** Number of the current run. */
   #run = 0;
 
   /** @param {LessonClientOptions} [options] */
@@ -60,10 +60,10 @@ export class LessonClient {
   }
 
   /**
-   * Begins a run and goes to its end, or to where it is stopped. The run before is given up. While it goes on,
-   * questions are answered about the part that there is.
+   * Begins a run, which continues until it ends or is stopped. The previous run is cancelled. Meanwhile questions can
+   * be asked about the part that exists.
    * @param {Surface} surface
-   * @param {Partial<LessonSettings>} settings  what is missing has its default; `radius` has none
+   * @param {Partial<LessonSettings>} settings  missing ones have defaults, except `radius`
    * @returns {Promise<LessonProgress>}
    */
   start(surface, settings) {
@@ -74,13 +74,13 @@ export class LessonClient {
     });
   }
 
-  /** Ends the present run where it is: its promise is then fulfilled. */
+  /** Stops the current run; its promise resolves. */
   stop() {
     this.#worker.post({ type: 'stop' });
   }
 
   /**
-   * Asks about the present run.
+   * Asks about the current run.
    * @template {keyof Questions} K
    * @param {K} about @param {Questions[K]['ask']} ask
    * @returns {Promise<Questions[K]['answer']>}
@@ -120,11 +120,11 @@ export class LessonClient {
     }
   }
 
-  /** A worker that failed is not asked again. @param {'crashed' | 'bundle'} kind @param {string} message */
+  /** Ends a worker that failed. @param {'crashed' | 'bundle'} kind @param {string} message */
   #fail(kind, message) {
     this.#worker.end(new LessonError(kind, message));
   }
 }
 
-/** The kind of an error, if it is one of a run. @param {unknown} error */
+/** The kind of a run's error, or null for other errors. @param {unknown} error */
 export const kindOf = (error) => (error instanceof LessonError ? error.kind : null);

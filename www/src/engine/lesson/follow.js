@@ -1,6 +1,6 @@
 /**
- * Follows runs in the worker: goes on with the present one in slices, and answers questions in between. The bundle's
- * class, the clock and the pause are parameters, so that tests can run it without a worker.
+ * Runs lessons in the worker: continues the current run in slices and answers questions in between. The bundle's class,
+ * the clock and the pause are parameters, so that tests can use it without a worker.
  *
  * @module
  */
@@ -12,7 +12,7 @@ import { nextBudget } from '../bundle/budget.js';
  * @import { FromLesson, Particles, ToLesson } from './types.js'
  */
 
-/** Target duration of a slice, so that a question does not wait long. */
+/** Target duration of a slice, so that questions are answered soon. */
 const SLICE_MS = 20;
 const FIRST_BUDGET = 64;
 
@@ -21,9 +21,9 @@ const FIRST_BUDGET = 64;
  * @param {WorkerEnv<FromLesson>} env
  */
 export function follow(lesson, env) {
-  /** Number of the present run; 0 for none. */
+  /** Number of the current run; 0 for none. */
   let present = 0;
-  /** Whether the present run is to end where it is. */
+  /** Whether the current run is to stop. */
   let stops = false;
 
   /** @param {Extract<ToLesson, {type: 'start'}>} order */
@@ -42,7 +42,7 @@ export function follow(lesson, env) {
       budget = nextBudget(budget, env.nowMs() - before, SLICE_MS);
       env.post({ type: 'progress', id, progress });
       await env.pause();
-      // Another run has begun in the meantime, which answers for itself.
+      // Another run has begun meanwhile and sends its own messages.
       if (present !== id) return;
       if (stops) return env.post({ type: 'ended', id, progress });
     }

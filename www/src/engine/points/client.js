@@ -1,6 +1,6 @@
 /**
- * Runs the worker that solves models from points, one order at a time. It keeps the results, so that a model chosen
- * again is available at once.
+ * Runs the worker that solves models from points, one order at a time. Keeps the results, so that a model is available
+ * at once when it is chosen again.
  *
  * @module
  */
@@ -48,13 +48,13 @@ export class PointsClient {
     });
   }
 
-  /** Returns the solved model under this key, if there is one. @param {string | undefined} key */
+  /** Returns the solved model for a key, if there is one. @param {string | undefined} key */
   get(key) {
     return key === undefined ? undefined : this.#solved.get(key);
   }
 
   /**
-   * Solves a model and keeps it under `key`. The current order is given up.
+   * Solves a model and keeps it under `key`. The current order is cancelled.
    * @param {string} key @param {Order} order
    * @returns {Promise<Ending>}
    */
@@ -107,7 +107,7 @@ export class PointsClient {
     this.#worker.end(new Error('the order has ended'));
   }
 
-  /** Waits so long for the next message before the worker counts as hung. @param {number} ms */
+  /** Allows this much time for the next message before the worker counts as hung. @param {number} ms */
   #listen(ms) {
     const silent = () => this.#refuse('silent', 'the solver stopped answering and was ended');
     this.#clock.clearTimeout(this.#timer);

@@ -1,7 +1,7 @@
 /**
- * Loads models and files and samples them once they are solved, or opened if they are images or meshes. The state may
- * name a built-in model before it is solved; if solving fails, the state returns to the previous surface. A file enters
- * the state only after that.
+ * Loads models and files, and samples them once models are solved and images or meshes opened. The state may name a
+ * built-in model before it is solved; if solving fails, the state returns to the previous surface. A file enters the
+ * state only once it is solved or opened.
  *
  * @module
  */
@@ -21,17 +21,17 @@ import { PointsClient } from './client.js';
 /** Key of a solved model. @param {string} points  of the model or the file @param {number | null} centres */
 const keyOf = (points, centres) => (centres === null ? points : `${points}, ${centres} centres`);
 
-/** Where there is no worker that opens files. @type {NonNullable<LoaderOptions['openGiven']>} */
+/** Used without a worker that opens files. @type {NonNullable<LoaderOptions['openGiven']>} */
 const NO_OPENER = () => Promise.resolve({ ok: false, kind: 'no_faces', message: 'there is no opener' });
 
-/** An image with more different values is taken for one of grey values at first. */
+/** An image with more different values is first treated as a grey-value image. */
 const MOST_BODIES = 32;
 
 /** Whether the name of a file ends with one of these types. @param {string} name @param {string} types */
 const isOf = (name, types) => types.split(',').some((type) => name.toLowerCase().endsWith(type));
 
 /**
- * The parameters with which the surface of a file begins: of labels in an image that of the largest body, else none.
+ * The initial parameters for a file's surface: for labels the one of the largest body, else none.
  * @param {ImageFacts | null} facts @returns {Shape['parameters']}
  */
 function beginningOf(facts) {
@@ -47,16 +47,16 @@ export class ModelLoader {
   #openGiven;
   #stopOpening;
 
-  /** The file opened last, and the beginning of the keys of its models. @type {{file: File, key: string} | null} */
+  /** The last opened file, and the prefix of its models' keys. @type {{file: File, key: string} | null} */
   #opened;
   /**
-   * The images and meshes that were opened, by their keys.
+   * Opened images and meshes by key.
    * @type {Map<string, {file: KeyedFile, facts: ImageFacts | null}>}
    */
   #given = new Map();
   #files;
 
-  /** The surface that was sampled last. @type {Shape | null} */
+  /** The last sampled surface. @type {Shape | null} */
   #last;
 
   /** Id of the current order. */
@@ -74,7 +74,7 @@ export class ModelLoader {
     });
     this.#opened = null;
     this.#files = 0;
-    /** Key of the model that is being solved; empty if none is. */
+    /** Key of the model that is being solved; else empty. */
     this.orderKey = '';
     this.#last = null;
     this.#orderId = 0;
@@ -92,31 +92,31 @@ export class ModelLoader {
     return this.#given.has(own) || scanOf(own) ? own : keyOf(own, centres);
   }
 
-  /** Returns whether the state's surface can be sampled now. */
+  /** Whether the state's surface can be sampled now. */
   ready() {
     const key = this.key();
     return key === undefined || this.solved(key) !== undefined;
   }
 
-  /** Returns the solved model under this key, or the opened file. @param {string} key */
+  /** Returns the solved model or opened file for a key. @param {string} key */
   solved(key) {
     return this.#given.get(key) ?? this.client.get(key);
   }
 
-  /** The parameters with which the file opened last begins. @returns {Shape['parameters']} */
+  /** The initial parameters for the last opened file. @returns {Shape['parameters']} */
   beginning() {
     const known = this.#given.get(this.#opened?.key ?? '');
     return known ? beginningOf(known.facts) : {};
   }
 
-  /** Records the state's surface, which is being sampled, as the one to return to. */
+  /** Records the state's surface, which is now being sampled, as the one to return to. */
   settled() {
     const { v: _, view: __, ...shape } = this.#store.state.value;
     this.#last = shape;
     this.#store.image.value = this.#given.get(this.key() ?? '')?.facts ?? null;
   }
 
-  /** Returns the state; while its model is loading, the state with the previous surface. */
+  /** Returns the state, but with the previous surface while its model is loading. */
   present() {
     const { state } = this.#store;
     return this.ready() ? state.value : { ...state.value, ...this.#before() };
@@ -147,7 +147,7 @@ export class ModelLoader {
   }
 
   /**
-   * Returns what is to be solved for the state; null for a formula.
+   * Returns what must be solved for the state; null for a formula.
    * @returns {Wanted | null}
    */
   #wanted() {
@@ -178,7 +178,7 @@ export class ModelLoader {
       };
   }
 
-  /** Takes the mesh file that was opened last for its surface, or for points. @param {'surface' | 'points'} what */
+  /** Uses the last opened mesh file as a surface or as points. @param {'surface' | 'points'} what */
   async takeFor(what) {
     const file = this.#opened?.file;
     if (!file || this.#store.taken.value === what) return;
@@ -188,7 +188,7 @@ export class ModelLoader {
 
   /** @param {File} file @param {'points' | null} taken  whether it could be taken for a surface, too */
   async #openPoints(file, taken) {
-    // Without a core the solver alone refuses what is too large.
+    // Without a core, only the solver can refuse a file that is too large.
     const most = this.#store.description.value?.limits.file_bytes ?? Number.POSITIVE_INFINITY;
     if (file.size > most) {
       const mb = (/** @type {number} */ bytes) => Math.round(bytes / 1e6).toLocaleString('en');
@@ -214,7 +214,7 @@ export class ModelLoader {
 
   /**
    * Opens a file as an image or a mesh and samples its surface. With `elsePoints` it returns why a mesh has no surface,
-   * and does not tell it.
+   * instead of showing the reason.
    * @param {KeyedFile['as']} as @param {File} file @param {{beside?: File[], elsePoints?: boolean}} [options]
    * @returns {Promise<Refusal | undefined>}
    */
@@ -268,8 +268,8 @@ export class ModelLoader {
 
   /**
    * @param {Pick<Wanted, 'id' | 'name'>} wanted @param {string} key
-   * @param {() => Promise<Ending | { opened: Opened } | { goesOn: true }>} load  may end with another order to follow
-   * @param {() => void} done  called once the model is solved, or the file is open
+   * @param {() => Promise<Ending | { opened: Opened } | { goesOn: true }>} load  `goesOn`: another order follows
+   * @param {() => void} done  called when the model is solved or the file is open
    * @returns whether it is
    */
   async #order({ id, name }, key, load, done) {
@@ -284,7 +284,7 @@ export class ModelLoader {
     const outcome = await load();
     if (this.#orderId !== mine) return false;
     this.orderKey = '';
-    // A batch, so that no effect runs between the end of the loading and the start of the run.
+    // A batch, so that no effect runs between the end of loading and the start of the run.
     batch(() => {
       if (!('goesOn' in outcome)) loading.value = null;
       if ('solved' in outcome || 'opened' in outcome) done();
@@ -300,7 +300,7 @@ export class ModelLoader {
     notice.value = { id: 'file', kind: 'error', text: `${name}: ${message}`, ...(details ? { details } : {}) };
   }
 
-  /** Gives up the current order. */
+  /** Cancels the current order. */
   cancel() {
     this.client.giveUp();
     this.#stopOpening();

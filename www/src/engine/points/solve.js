@@ -15,7 +15,7 @@ import { words } from '../bundle/load.js';
 /** Target duration of a step. A model of a thousand centres then reports its progress about a hundred times. */
 const STEP_MS = 30;
 const FIRST_BUDGET = 64;
-/** Stands for the core's default number of centres: of a built-in model all points. */
+/** Stands for the core's default number of centres; for a built-in model that is all points. */
 const USUAL_CENTRES = 0;
 
 /**

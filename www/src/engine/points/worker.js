@@ -19,7 +19,7 @@ const post = (message, transfer = []) => self.postMessage(message, { transfer })
 const crashOf = crashWords();
 
 self.onmessage = async (/** @type {MessageEvent<Order>} */ { data: order }) => {
-  // The bundle and the file may take long to come. The page sees that the worker is alive.
+  // The bundle and the file may take long to load; this shows the page that the worker is alive.
   setInterval(() => post({ type: 'beat' }), BEAT_MS);
   post({ type: 'progress', label: 'Starting', fraction: 0 });
   let points;

@@ -1,5 +1,5 @@
 /**
- * Tells who draws WebGL2 on a canvas.
+ * Finds out what draws WebGL2 on a canvas.
  *
  * @module
  */
@@ -11,7 +11,7 @@ import { isProgram } from './names.js';
 export function drawerOn(create) {
   const open = (/** @type {WebGLContextAttributes} */ how) =>
     /** @type {WebGL2RenderingContext | null} */ (create().getContext('webgl2', how));
-  // A browser that knows its renderer to be slow gives no context on this condition.
+  // With this condition a browser returns no context if it knows that its renderer is slow.
   const fast = open({ failIfMajorPerformanceCaveat: true });
   const context = fast ?? open({});
   if (!context) return 'none';

@@ -1,5 +1,5 @@
 /**
- * Finds out, once for all pictures of a page, what draws them best.
+ * Finds out, once for all pictures of a page, the best way of drawing.
  *
  * @module
  */
@@ -11,7 +11,7 @@ import { drawerOn } from './drawer.js';
  * @import { Drawer } from './types.js'
  */
 
-/** Time after which an answer counts as missing. Meanwhile a picture is painted. */
+/** Time after which an answer counts as missing. Until then the picture is painted. */
 const LONGEST_MS = 5000;
 
 /** @template T @param {Promise<T>} promise @returns {Promise<T | null>} */
@@ -29,14 +29,14 @@ let drawer = null;
 /** Returns the adapter of WebGPU; null without one. */
 export function askAdapter() {
   const gpu = /** @type {any} */ (navigator).gpu;
-  // The development server has one renderer, unless it is asked for both.
+  // The development server has one renderer by default.
   if (import.meta.env.VITE_WITHOUT_WEBGPU || !gpu) return Promise.resolve(null);
   adapter ??= within(gpu.requestAdapter());
   return adapter;
 }
 
 /**
- * Returns who draws WebGL2. In some browsers the page has it and a worker has not: there the page asks itself.
+ * Returns what draws WebGL2. In some browsers only the page has it, not a worker; then the page asks itself.
  */
 export function askDrawer() {
   drawer ??= within(
@@ -55,8 +55,7 @@ export function askDrawer() {
 }
 
 /**
- * Returns the best way of drawing: with a graphics card, else with the painter. If that cannot be told, it is as if
- * there was a card.
+ * Returns the best way of drawing: a graphics card if there is one, else the painter. If unknown, a card is assumed.
  * @returns {Promise<BackendKind>}
  */
 export async function bestKind() {

@@ -1,11 +1,11 @@
 /**
- * Tells by its name whether a renderer of WebGL is a program in place of a graphics card.
+ * Tells by a WebGL renderer's name whether it is software instead of a graphics card.
  *
  * @module
  */
 
 /**
- * Names of such programs: of Chromium, Mesa, Windows and macOS. `Software` is in those of macOS and of VMware.
+ * Names of software renderers in Chromium, Mesa, Windows and macOS. `Software` occurs in those of macOS and VMware.
  */
 const PROGRAMS = /swiftshader|llvmpipe|softpipe|lavapipe|swrast|basic render|software|paravirtual/i;
 

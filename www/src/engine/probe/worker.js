@@ -1,5 +1,5 @@
 /**
- * Finds out who draws WebGL2. This takes a worker: a graphics process that is busy keeps who asks for a context waiting
+ * Finds out what draws WebGL2. It runs in a worker, because a busy graphics process can block a request for a context
  * for seconds.
  */
 import { drawerOn } from './drawer.js';

@@ -1,6 +1,6 @@
 /**
- * Talks with the sampler's worker: sends it jobs and wishes, hands its messages on, and repeats to a new worker what
- * the page wants.
+ * Communicates with the sampler's worker: sends jobs and requests, passes its messages on, and tells a new worker what
+ * the page needs.
  *
  * @module
  */
@@ -20,15 +20,14 @@ export class SamplingClient {
   #onLoadFailed;
 
   /**
-   * Whether the page shows the curvature and a mesh, and the formula of the value that it shows. A new worker is told
-   * again.
+   * Whether the page shows the curvature and a mesh, and the formula of the value it shows. A new worker is told again.
    */
   #wishes = { curvature: false, mesh: false, value: '' };
-  /** The files that are being written. */
+  /** Files that are being written. */
   #files = new Requests();
-  /** The texts that are being read as numbers or checked, and the programs that are being written. */
+  /** Texts that are being read as numbers or checked, and programs that are being written. */
   #texts = new Requests();
-  /** The file that is being opened, and what hears of its progress. */
+  /** The file that is being opened, and the callback for its progress. */
   #opening = new Requests();
   /** @type {(label: string, fraction: number) => void} */
   #onOpening = () => {};
@@ -48,12 +47,12 @@ export class SamplingClient {
     });
   }
 
-  /** Whether there is a worker, which may still be loading. */
+  /** Whether there is a worker; it may still be loading. */
   get isThere() {
     return this.supervisor.worker !== null;
   }
 
-  /** Whether there is no worker, and none is loading. */
+  /** Whether there is no worker and none is loading. */
   get isOff() {
     return ['failed', 'safe'].includes(this.supervisor.state);
   }
@@ -62,7 +61,7 @@ export class SamplingClient {
     this.supervisor.start();
   }
 
-  /** Starts a worker at the user's request, after too many have failed. */
+  /** Starts a worker at the user's request, after several have failed. */
   revive() {
     this.supervisor.revive();
   }
@@ -77,7 +76,7 @@ export class SamplingClient {
   }
 
   /**
-   * Asks for the curvature or for the mesh while it is shown. The curvature costs second derivatives and the mesh a
+   * Requests the curvature or the mesh while it is shown. The curvature needs second derivatives and the mesh a
    * triangulation, so neither is sent otherwise.
    * @param {'curvature' | 'mesh'} what @param {boolean} on
    */
@@ -87,7 +86,7 @@ export class SamplingClient {
     this.post({ type: what, on });
   }
 
-  /** Asks for the value of a formula while it is shown; for none with an empty text. @param {string} text */
+  /** Requests the value of a formula while it is shown; an empty text ends it. @param {string} text */
   wishValue(text) {
     if (text === this.#wishes.value) return;
     this.#wishes.value = text;
@@ -111,7 +110,7 @@ export class SamplingClient {
 
   /**
    * Returns the number that a text without names stands for in the language of formulas, such as `pi/2`; null for any
-   * other text, and without a worker.
+   * other text, or without a worker.
    * @param {string} text
    * @returns {Promise<number | null>}
    */
@@ -121,7 +120,7 @@ export class SamplingClient {
   }
 
   /**
-   * Returns the program that makes the particles of the last run.
+   * Returns a program that makes the particles of the last run.
    * @param {Language} language
    * @returns {Promise<string>}
    * @throws if there is none, with the reason
@@ -134,7 +133,7 @@ export class SamplingClient {
   }
 
   /**
-   * Returns what is wrong with the formula of a thickness or a spacing on the present surface; null if nothing is, and
+   * Returns what is wrong with the formula of a thickness or a spacing on the current surface; null if nothing is, or
    * without a worker.
    * @param {'thickness' | 'spacing'} what @param {string} text
    * @returns {Promise<string | null>}
@@ -145,7 +144,7 @@ export class SamplingClient {
   }
 
   /**
-   * Opens the file of an image or a mesh in the worker. Resolves with null if that is stopped, or the worker is gone.
+   * Opens the file of an image or a mesh in the worker. Resolves with null if it is cancelled or the worker is gone.
    * @param {KeyedFile} file @param {(label: string, fraction: number) => void} onProgress
    * @returns {Promise<Opened>}
    */
@@ -155,14 +154,14 @@ export class SamplingClient {
     return this.#opening.make((request) => this.post({ type: 'open', request, file })).catch(() => null);
   }
 
-  /** Gives up the file that is being opened: at once here, and in the worker as soon as it listens. */
+  /** Cancels the opening of a file: immediately here, and in the worker as soon as it reads messages. */
   stopOpening() {
     if (this.#opening.count === 0) return;
     this.post({ type: 'open_stop' });
     this.#opening.refuseAll(lost());
   }
 
-  /** Gives up all files and texts, because the worker is gone. */
+  /** Cancels all files and texts, because the worker is gone. */
   forgetFiles() {
     this.#texts.refuseAll(lost());
     this.#opening.refuseAll(lost());
@@ -170,13 +169,13 @@ export class SamplingClient {
     this.#attend();
   }
 
-  /** Says whether the worker has a run or a report to make. @param {boolean} isBusy */
+  /** Sets whether the worker has a run or a report to make. @param {boolean} isBusy */
   setBusy(isBusy) {
     this.#isBusy = isBusy;
     this.#attend();
   }
 
-  /** A silent worker is replaced only while it has work. */
+  /** A silent worker is replaced only if it has work. */
   #attend() {
     this.supervisor.setBusy(this.#isBusy || this.#files.count > 0);
   }

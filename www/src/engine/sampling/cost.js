@@ -1,25 +1,23 @@
 /**
- * A model of the cost of a run on this machine, learnt from earlier runs. It says how many particles a run may have
- * during a drag.
+ * Models the cost of a run on this machine from earlier runs. It tells how many particles a run may have during a drag.
  *
  * @module
  */
 
 /** @import { FieldRequest, Seconds, Settings } from '../types.js' */
 
-/** Largest latency at which the picture still seems to follow the slider. */
+/** Largest latency at which the picture still seems to follow a slider. */
 export const LIVE_MS = 60;
 /** Relaxation steps of a coarse run: enough to even out the seams, at about a third of the cost. */
 const COARSE_RELAX_STEPS = 3;
-/** Latency of two frames of the screen, which is not counted as drawing time. */
+/** Latency of two screen frames, which does not count as drawing time. */
 const FRAME_MS = 34;
-/** Smallest number of particles that still show the shape of a surface. */
+/** Fewest particles that still show the shape of a surface. */
 const FEWEST = 500;
 
 /**
- * Returns a key that groups runs of similar cost. Points and formulas differ by an order of magnitude, and so do
- * adaptive and uniform runs, and the two methods. Each radius law relates the number of particles to a length of its
- * own.
+ * Returns a key that groups runs of similar cost. Points and formulas differ by an order of magnitude; so do adaptive
+ * and uniform runs, and the two methods. Each radius law relates the number of particles to a different length.
  * @param {FieldRequest} field @param {Settings} settings
  */
 export const costKey = (field, settings) =>
@@ -31,9 +29,8 @@ export const costKey = (field, settings) =>
   ].join(' ');
 
 /**
- * Returns the length to whose square the number of particles is inversely proportional: the radius, or the length that
- * scales all radii of an adaptive run. It is NaN if the settings give a count.
- * @param {Settings} settings @param {number} diagonal  of the clip box
+ * Returns the length whose square is inversely proportional to the number of particles: the radius, or the length that
+ * scales all radii of an adaptive run. NaN if the settings give a count.
  */
 export function sizeOf(settings, diagonal) {
   if (settings.size_mode === 'count') return NaN;
@@ -46,20 +43,20 @@ export function sizeOf(settings, diagonal) {
 
 /**
  * Estimates the cost of a run on this machine from earlier runs: milliseconds for seeding, microseconds per particle
- * for the front, for a relaxation step and for drawing, and the number of particles for a size on the present surface.
+ * for the front, a relaxation step and drawing, and the number of particles for a size on the current surface.
  */
 export class CostModel {
   #frontUs;
   #relaxUs;
 
   constructor() {
-    // Initial values of a slow laptop, until the first run is measured.
+    // Initial values are those of a slow laptop, until a run has been measured.
     this.fixedMs = 5;
     this.#frontUs = 1.5;
     this.#relaxUs = 0.25;
-    /** Drawing time per particle. It is zero if the graphics card keeps up with the screen. */
+    /** Drawing time per particle; zero if the graphics card keeps up with the screen. */
     this.drawUs = 0;
-    /** count · size², which is nearly constant for one surface; 0 while unknown. */
+    /** count · size², nearly constant for a surface; 0 while unknown. */
     this.area = 0;
     this.known = false;
   }
@@ -80,7 +77,7 @@ export class CostModel {
   }
 
   /**
-   * Records by how much a live run took longer than its sampling.
+   * Records how much longer a live run took than its sampling.
    * @param {number} particles
    * @param {number} waitedMs
    */
@@ -108,11 +105,11 @@ export class CostModel {
 }
 
 /**
- * Returns the settings of a run during a drag: the full ones if they take at most {@link LIVE_MS}, else settings for as
- * many particles as fit. The caller limits them to their ranges. A refined run keeps its settings, as it can end at its
- * coarse level, which is what the full run refines.
+ * Returns the settings of a run during a drag: the full ones if they take at most {@link LIVE_MS}, else settings for
+ * the affordable number of particles. The caller limits them to their ranges. A refined run keeps its settings, since
+ * it can end at its coarse level, from which the full run continues.
  * @param {Settings} settings  complete, with the defaults filled in
- * @param {number} diagonal  of the clip box, of which the radius is a share
+ * @param {number} diagonal  of the clip box; the radius is a share of it
  * @param {CostModel} cost
  * @param {number} [budgetMs]
  * @returns {{settings: Settings, coarse: boolean}}
@@ -125,7 +122,7 @@ export function planLive(settings, diagonal, cost, budgetMs = LIVE_MS) {
   if (settings.method === 'refined') return { settings, coarse: true };
   const coarseRelax = Math.min(relaxSteps, COARSE_RELAX_STEPS);
   const perParticleMs = cost.perParticle(coarseRelax) / 1e3;
-  // If seeding takes most of the budget, fewer particles do not help. They keep half of the budget.
+  // If seeding takes most of the time, fewer particles do not help; they get half of it.
   const affordable = Math.max(FEWEST, Math.max(budgetMs - cost.fixedMs, budgetMs / 2) / perParticleMs);
   const particles = Math.min(expected, affordable);
   return {
@@ -139,7 +136,7 @@ export function planLive(settings, diagonal, cost, budgetMs = LIVE_MS) {
 }
 
 /**
- * Returns the size settings for a number of particles, which is `fewer` times smaller than the present one.
+ * Returns the size settings for a number of particles, `fewer` times smaller than the current one.
  * @param {Settings} settings
  * @param {number} diagonal
  * @param {CostModel} cost
@@ -149,7 +146,7 @@ export function planLive(settings, diagonal, cost, budgetMs = LIVE_MS) {
  */
 function coarser(settings, diagonal, cost, particles, fewer) {
   if (settings.sampling !== 'adaptive') {
-    // A radius avoids the pilot run that a count needs.
+    // A radius avoids the pilot run that a count requires.
     if (cost.area > 0) return { size_mode: 'radius', radius_share: Math.sqrt(cost.area / particles) / diagonal };
     return { count: Math.round(particles) };
   }

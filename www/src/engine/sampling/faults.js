@@ -10,7 +10,7 @@
  */
 
 /**
- * Returns the notice after the worker was replaced. Its run is repeated or given up.
+ * Returns the notice after the worker was replaced. Its run is repeated or abandoned.
  * @param {Crash} crash @param {RunRequest | null} lost @param {{again: boolean, version: string}} context
  * @returns {Notice}
  */
@@ -50,7 +50,7 @@ export const loadNotice = (text, run) => ({
   action: { label: 'Try again', run },
 });
 
-/** Returns the notice after the core has refused the settings. @param {string} words @returns {Notice} */
+/** Returns the notice after the core refused the settings. @param {string} words @returns {Notice} */
 export const refusalNotice = (words) => ({
   id: 'size',
   kind: 'error',

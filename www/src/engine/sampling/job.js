@@ -1,7 +1,7 @@
 /**
  * Runs one job in the worker, on the field that is set in the core: the steps of the sampling, the measurement, and the
- * messages about both. The clock, the pause between steps and the way to post are parameters, so that tests can run the
- * loop on a scripted core.
+ * messages about both. The clock, the pause and the function that posts are parameters, so that tests can use a
+ * scripted core.
  *
  * @module
  */
@@ -23,13 +23,13 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
  * takes more than a third of a millisecond, so a Stop takes effect within 100 ms.
  */
 const FIRST_BUDGET = 256;
-/** First budget of a measurement or of what precedes a start, in slices, which take up to a tenth of a millisecond. */
+/** First budget of a measurement or of the work before a start, in slices of up to a tenth of a millisecond. */
 const FIRST_SLICES = 32;
-/** Shortest interval between column messages: about a frame at 60 Hz. */
+/** Shortest interval between column messages: about one frame at 60 Hz. */
 const PICTURE_MS = 15;
 
 /**
- * Returns the entry of the times to which a phase of the core counts.
+ * Returns the entry of the times that a phase of the core belongs to.
  * @param {CoreProgress['phase']} phase
  * @returns {keyof Seconds}
  */
@@ -80,7 +80,7 @@ export function curvatureColumn(core, id) {
 export const meshColumn = (core, id, mesh) => [{ ...bare(core, id), mesh }, [mesh.triangles.buffer]];
 
 /**
- * Runs a job to its end, or until it is interrupted.
+ * Runs a job until it ends or is interrupted.
  * @param {Core} core
  * @param {Job} job
  * @param {Env} env
@@ -110,7 +110,7 @@ class Execution {
   #isLive;
   #grows;
 
-  /** Time of the last message that the supervisor counts as a sign of life. */
+  /** Time of the last message, a sign of life for the supervisor. */
   #beatMs;
 
   /** @param {Core} core @param {Job} job @param {Env} env */
@@ -126,12 +126,12 @@ class Execution {
     /** @type {CoreProgress | null} */
     this.progress = null;
     this.predicted = 0;
-    /** Whether the particles of the run before follow the surface. */
+    /** Whether the particles of the previous run followed the surface. */
     this.followed = false;
     /** Positions before each relaxation step. @type {Float32Array[]} */
     this.past = [];
     this.#beatMs = 0;
-    /** The page has columns of `count` particles, and the final fates of all slots if `settled`. */
+    /** What the page has: columns of `count` particles, and all final slot fates if `settled`. */
     this.sent = { count: 0, onCreases: 0, stale: false, slotsFrom: 0, settled: false, curved: 0, pictureMs: -Infinity };
   }
 
@@ -152,15 +152,14 @@ class Execution {
     });
   }
 
-  /** Sends what the particles were made from. It goes after the end, since the digest of a million takes 0.1 s. */
+  /** Sends the record of the particles. It follows the end, since the digest of a million takes 0.1 s. */
   record() {
     const record = this.core.record();
     if (record) this.env.post({ type: 'record', id: this.job.id, record });
   }
 
   /**
-   * Finds the box of a sampling and the creases in it, slice by slice, so that the next key is not kept waiting by a
-   * formula that takes long.
+   * Finds the box of a sampling and the creases in it, in slices, so that a slow formula does not delay the next key.
    * @param {{held: number}} memory
    * @returns false if the job has ended already
    */
@@ -189,7 +188,7 @@ class Execution {
     }
   }
 
-  /** Shows the supervisor from time to time that the worker is alive. */
+  /** Regularly shows the supervisor that the worker is alive. */
   #beat() {
     const { env } = this;
     if (env.nowMs() - this.#beatMs <= BEAT_MS) return;
@@ -198,7 +197,7 @@ class Execution {
   }
 
   /**
-   * Tells the page from time to time how far the work after the run is.
+   * Regularly reports the progress of the work after the run.
    * @param {'mesh' | 'quality'} phase
    */
   #tellAfter(phase) {
@@ -213,8 +212,8 @@ class Execution {
   }
 
   /**
-   * Whether the job ends before it starts. One that was stopped while it waited leaves the particles where they are: a
-   * few steps after its surface they would lie on none.
+   * Whether the job ends before it starts. A job that was stopped while waiting leaves the particles where they are:
+   * after a few steps towards its surface they would lie on no surface.
    */
   isOver() {
     const why = this.env.interrupt();
@@ -230,7 +229,7 @@ class Execution {
   start(memory) {
     const { core, job, env } = this;
     if (job.kind !== 'relax') {
-      // The core looks for the surface here; for a model, this is most of the seeding.
+      // Here the core looks for the surface; for a model that is most of the seeding.
       const before = env.nowMs();
       this.followed = job.following.some((settings) => core.follow(settings, job.isClosed ?? false));
       if (this.followed) {
@@ -266,7 +265,7 @@ class Execution {
 
   /**
    * Steps the core until it is done or the job is stopped.
-   * @returns the last progress; null if another job replaces this one, or it has ended without particles
+   * @returns the last progress; null if another job replaces this one, or it ended without particles
    */
   async sample() {
     const { core, job, env, sent } = this;
@@ -282,7 +281,7 @@ class Execution {
       if (why === 'replace') return null;
       if (why === 'stop') {
         const last = core.cancel();
-        // Particles that follow lie on no surface until they have come to the new one.
+        // Particles that follow lie on no surface until they have reached the new one.
         if (this.followed && sent.count === 0) {
           this.progress = null;
           this.done('stopped');
@@ -301,7 +300,7 @@ class Execution {
       sent.stale ||= progress.moved;
       if (progress.phase === 'done') return progress;
       this.#remember(progress);
-      // A refinement moves the particles while it hands a level on, the coarse one first, and then goes on below them.
+      // A refinement moves particles while it passes a level on, the coarse one first, and then works below them.
       const isHanding = progress.phase === 'refinement' && progress.moved;
       if (job.kind === 'sketch' && job.settings.method === 'refined' && wasHanding && !isHanding) {
         this.progress = { ...core.cancel(), stop_reason: 'complete' };
@@ -314,19 +313,19 @@ class Execution {
     }
   }
 
-  /** Keeps the positions before every relaxation step. @param {CoreProgress} progress */
+  /** Keeps the positions before each relaxation step. @param {CoreProgress} progress */
   #remember(progress) {
     const { core, past } = this;
     if (this.#isLive || progress.phase !== 'relaxation' || this.#stepsOf(progress) !== past.length) return;
     if (past.length === 0 || core.count() <= MOST_STEPPED) past.push(core.positions(0));
   }
 
-  /** Returns the relaxation steps of this run so far. @param {CoreProgress} progress */
+  /** Returns the number of relaxation steps of this run so far. @param {CoreProgress} progress */
   #stepsOf({ relax_step, relax_steps }) {
     return this.job.kind === 'relax' ? relax_step - (relax_steps - this.job.steps) : relax_step;
   }
 
-  /** Sends columns if they are due, or else the progress from time to time. @param {CoreProgress} progress */
+  /** Sends columns if they are due, else the progress from time to time. @param {CoreProgress} progress */
   #tell(progress) {
     const { env } = this;
     if (this.#isDue(progress)) this.#sendColumns(progress);
@@ -340,7 +339,7 @@ class Execution {
     const { core, env, sent } = this;
     if (!env.room() || env.nowMs() - sent.pictureMs < PICTURE_MS) return false;
     if (this.#isLive || (!this.#grows && phase !== 'relaxation' && phase !== 'refinement')) return false;
-    // A mesh on the page stays until the next one is there, unless the surface is to be seen growing.
+    // A mesh on the page stays until the next one is complete, unless the surface should be seen growing.
     if (env.mesh() && (this.job.kind === 'relax' || !this.#grows)) return false;
     return sent.stale || core.count() > sent.count;
   }
@@ -351,7 +350,7 @@ class Execution {
     const total = core.count();
     const first = sent.stale ? 0 : Math.min(sent.count, total);
     const slotsFrom = sent.stale ? 0 : Math.min(sent.slotsFrom, first);
-    // Relaxation moves a particle only a little, so its curvature is updated once, at the end.
+    // Relaxation moves particles only slightly, so their curvature is updated once, at the end.
     const curvatureFrom = sent.curved;
     const curvature = env.curvature() ? core.curvature(curvatureFrom) : new Float32Array(0);
     sent.curved += curvature.length / 2;
@@ -375,7 +374,7 @@ class Execution {
         (c) => c.buffer,
       ),
     );
-    // The fates of a particle's slots are decided after the particle is sent, so the next message repeats them.
+    // Fates of a particle's slots are decided after the particle is sent, so the next message sends them again.
     sent.slotsFrom = first;
     sent.settled = slotsFrom === 0;
     sent.count = total;
@@ -384,10 +383,9 @@ class Execution {
   }
 
   /**
-   * Sends what the page lacks after the last step: particles, final fates of slots, curvature, and the mesh if it is
-   * drawn.
+   * Sends what the page lacks after the last step: particles, final slot fates, curvature, and the mesh if it is drawn.
    * @param {CoreProgress} last @param {Memory} memory
-   * @returns false if another job replaces this one meanwhile
+   * @returns false if another job replaces this one
    */
   async complete(last, memory) {
     const { core, env, job, sent } = this;
@@ -395,7 +393,7 @@ class Execution {
     const wanted = env.mesh() && core.count() > 0;
     const mesh = wanted ? await join(core, env, () => this.#tellAfter('mesh')) : null;
     if (wanted && !mesh && env.interrupt() === 'replace') return false;
-    // One that was stopped is not begun again before it is asked for again.
+    // A mesh that was stopped is made again only when it is requested again.
     if (wanted) [memory.meshed, memory.gaveUp] = [job.id, !mesh];
     if (core.count() > sent.count || sent.stale) this.#sendColumns(last, mesh);
     else if (mesh) env.post(...meshColumn(core, job.id, mesh));
@@ -403,7 +401,7 @@ class Execution {
       const slots = core.slots(0);
       env.post({ ...bare(core, job.id), slotsFrom: 0, slots, progress: last }, [slots.buffer]);
     }
-    // The positions kept last are the present ones if no step was made since; those are not sent again.
+    // Without another step the last stored positions are the current ones, which are not sent again.
     const positions = this.past.slice(0, this.#stepsOf(last));
     if (positions.length > 0) {
       env.post(

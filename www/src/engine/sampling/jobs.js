@@ -1,7 +1,7 @@
 /**
- * The one queue of jobs, in the worker: one runs, and the latest one waits. A job replaces the running one only after
- * the core has accepted its field. A refused field changes nothing in the core, so the running job continues and the
- * surface that stays on the page is completed and measured.
+ * The only queue of jobs in the worker: one job runs, and the latest one waits. A job replaces the running one only
+ * once the core has accepted its field. A refused field changes nothing in the core, so the running job continues, and
+ * the surface on the page is completed and measured.
  *
  * @module
  */
@@ -16,16 +16,16 @@ import { KINDS } from './kinds.js';
  */
 
 /**
- * Time after which a live job is replaced by one with newer values. Until then it continues; otherwise no job would
- * finish. So does the run of a control that rests, since the particles that it leaves can follow the surface again.
+ * Time after which a live job is replaced by one with newer values. Before that it continues, since otherwise no job
+ * would finish. So does the run of a control that rests, since the surface can be followed from its particles again.
  */
 const PATIENCE_MS = 150;
 
 /**
- * What opens files in the core. `isReady` opens the one of a job if need be, and has the worker ask again.
+ * Opens files in the core. `isReady` opens a job's file if necessary, and the worker then asks again.
  * @typedef {{isReady: (core: Core, file: KeyedFile) => boolean, setField: FileKeeper['setField']}} Files
  */
-/** Where no job is of a file. @type {Files} */
+/** Used if no job has a file. @type {Files} */
 const NO_FILES = {
   isReady: () => true,
   setField: () => {
@@ -36,8 +36,8 @@ const NO_FILES = {
 /** A job that has not started. @typedef {{job: Job, stopped: boolean}} Pending */
 
 /**
- * Sets the field of a job in the core. A model is passed again for every job: it has a few kilobytes, and tracking
- * which model the core holds would cost more.
+ * Sets a job's field in the core. A model is passed again with every job: it has a few kilobytes, and keeping track of
+ * the core's model would cost more.
  * @param {Core} core @param {SampleJob} job @param {Files} files
  * @returns {FieldAnswer}
  */
@@ -48,8 +48,7 @@ function setField(core, { field, points, file }, files) {
 }
 
 /**
- * Measures particles that something else has placed. The core takes their field, so it must be one that samples
- * nothing.
+ * Measures particles that were placed elsewhere. The core takes their field, so it must not be sampling anything.
  * @param {Core} core @param {Extract<ToWorker, {type: 'measure'}>} question
  * @returns {FromWorker}
  */
@@ -65,11 +64,11 @@ export class Jobs {
   #nowMs;
   #files;
 
-  /** The latest job; its field has not been passed to the core. @type {Pending | null} */
+  /** The latest job, whose field the core does not have yet. @type {Pending | null} */
   #waiting;
 
   /**
-   * The job whose field the core has accepted. It runs as soon as the running job has ended.
+   * The job whose field the core has accepted. It starts when the running job has ended.
    * @type {Pending | null}
    */
   #accepted;
@@ -77,7 +76,7 @@ export class Jobs {
   /** Whether the running job must stop. */
   #stopped;
 
-  /** When it began, and whether all its particles are on their way to the page. */
+  /** When the running job began, and whether all its particles have been sent to the page. */
   #running = { sinceMs: 0, isSampled: false };
 
   /** @param {(message: FromWorker) => void} post @param {() => number} nowMs @param {Files} [files] */
@@ -87,7 +86,7 @@ export class Jobs {
     this.#files = files;
     this.#waiting = null;
     this.#accepted = null;
-    /** The job that runs. @type {Job | null} */
+    /** The running job. @type {Job | null} */
     this.running = null;
     this.#stopped = false;
   }
@@ -98,8 +97,8 @@ export class Jobs {
   }
 
   /**
-   * Stops all jobs added so far. A waiting one whose particles would follow those of the running one is dropped: on its
-   * surface there are none yet, and the running one is to keep its field, to which its particles belong.
+   * Stops all jobs so far. A waiting job that would follow the running one's particles is dropped: its surface has none
+   * yet, and the running job must keep its field, to which the particles belong.
    */
   stop() {
     this.#stopped = true;
@@ -112,7 +111,7 @@ export class Jobs {
     if (this.#accepted) this.#accepted.stopped = true;
   }
 
-  /** Begins and returns the next job, with its field set in the core. @param {Core} core */
+  /** Sets the next job's field in the core, and begins and returns the job. @param {Core} core */
   take(core) {
     this.running = null;
     this.#ask(core);
@@ -125,7 +124,7 @@ export class Jobs {
   }
 
   /**
-   * Returns what the running job must do. The job calls this between two steps.
+   * Returns what the running job must do. The job calls this between steps.
    * @param {Core} core
    */
   interrupt(core) {
@@ -134,13 +133,13 @@ export class Jobs {
     return this.#stopped ? 'stop' : null;
   }
 
-  /** Notes that the running job has its particles: what is left is its report, for which no other waits. */
+  /** Records that the running job has its particles. Only its report is left, for which no other job waits. */
   sampled() {
     this.#running.isSampled = true;
   }
 
   /**
-   * Whether a job waits until the running one has ended, which would otherwise be replaced time and again.
+   * Whether a job waits for the end of the running one, which would otherwise be replaced again and again.
    * @param {Job} job
    */
   #isPatient({ kind }) {

@@ -1,5 +1,5 @@
 /**
- * Joins the particles that the core holds to a mesh, slice by slice, and writes the mesh as a file.
+ * Joins the core's particles to a mesh in slices, and writes the mesh as a file.
  *
  * @module
  */
@@ -16,14 +16,11 @@ import { BEAT_MS } from './protocol.js';
 const FIRST_BUDGET = 32;
 
 /**
- * Returns what the slices lead to, or null if they are stopped, or another job replaces the
- * particles, before they are done.
+ * Returns the result of the slices; null if they are stopped, or another job replaces the particles, before the end.
  * @template T
- * @param {(budget: number) => T | undefined} step  does so many slices; undefined before the last
- *   one
+ * @param {(budget: number) => T | undefined} step  does this many slices; undefined before the end
  * @param {SliceEnv} env
- * @param {() => void} [tell]  called after each step; by itself it shows the supervisor that the
- *   worker is alive
+ * @param {() => void} [tell]  called after each step; by default it shows that the worker is alive
  * @returns {Promise<T | null>}
  */
 async function inSlices(step, env, tell = beats(env)) {
@@ -41,7 +38,7 @@ async function inSlices(step, env, tell = beats(env)) {
 }
 
 /**
- * Returns a function that shows the supervisor, when it is due, that the worker is alive.
+ * Returns a function that regularly shows the supervisor that the worker is alive.
  * @param {SliceEnv} env
  */
 function beats({ nowMs, post }) {
@@ -54,7 +51,7 @@ function beats({ nowMs, post }) {
 }
 
 /**
- * Returns the mesh, or null if it is stopped, or another job replaces the particles, before it is complete.
+ * Returns the mesh; null if it is stopped, or another job replaces the particles, before the mesh is complete.
  * @param {Pick<Core, 'join' | 'triangles'>} core
  * @param {SliceEnv} env
  * @param {() => void} [tell]  called after each step
@@ -66,8 +63,8 @@ export async function join(core, env, tell) {
 }
 
 /**
- * Returns how far the complete mesh is from the one that was opened, null inside where none was; or null if that is
- * stopped, or another job replaces the particles, before it is known.
+ * Returns the distance of the complete mesh from the opened one, null inside if no mesh was opened; or null if it is
+ * stopped, or another job replaces the particles, before the end.
  * @param {Pick<Core, 'compare'>} core
  * @param {SliceEnv} env
  */
@@ -77,12 +74,12 @@ export const compared = (core, env) =>
     return change === undefined ? undefined : { change };
   }, env);
 
-/** Name of the column of the value that the page shows, in files. */
+/** Column name, in files, of the value that the page shows. */
 const VALUE = 'value';
 
 /**
- * Returns the values of a formula at the particles, or what is wrong with it; or null if that is stopped, or another
- * job replaces the particles, before they are known.
+ * Returns the values of a formula at the particles, or its error; or null if it is stopped, or another job replaces the
+ * particles, before the end.
  * @param {Pick<Core, 'add_value' | 'added_value'>} core
  * @param {string} formula
  * @param {SliceEnv} env
@@ -98,8 +95,8 @@ export async function valued(core, formula, env) {
 }
 
 /**
- * Returns the complete mesh as a file: its bytes, null inside if it cannot be written; or null if it is stopped, or
- * another job replaces the particles, before it is.
+ * Returns the complete mesh as a file, null inside if it cannot be written; or null if it is stopped, or another job
+ * replaces the particles, before the end.
  * @param {Pick<Core, 'mesh_file'>} core
  * @param {Partial<FileRequest>} request
  * @param {SliceEnv} env

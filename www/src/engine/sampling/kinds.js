@@ -1,5 +1,5 @@
 /**
- * The kinds of runs, and what each means for the picture, for the user and for the worker.
+ * The kinds of runs, and what each means for the picture, the user and the worker.
  *
  * @module
  */
@@ -7,39 +7,39 @@
 /** @import { RunKind } from '../types.js' */
 
 /**
- * `grows`: the particles are sent while the front grows; otherwise the present picture stays until the front is
- * complete. `fits`: the camera fits the surface. `isLive`: a run of a drag, whose columns are sent once, at its end. It
- * has no report unless it is stopped. `isUnasked`: nobody is asked about a large number of particles. `restores`: the
- * run is of the surface on the page or of the one before it, while the state names another.
+ * `grows`: the particles are sent while the front grows; otherwise the current picture stays until the front is
+ * complete. `fits`: the camera fits the surface. `isLive`: a run during a drag. Its columns are sent once, at the end,
+ * and it has a report only if it is stopped. `isUnasked`: the user is not asked about a large number of particles.
+ * `restores`: the run is for the surface on the page or the one before it, while the state names another.
  * @typedef {Partial<Record<'grows' | 'fits' | 'isLive' | 'isUnasked' | 'restores', boolean>>} Traits
  */
 
 /** @type {Readonly<Record<RunKind, Traits>>} */
 export const KINDS = {
-  // A new surface: it is seen to grow, and the camera fits it.
+  // A new surface, shown while it grows; the camera fits it.
   new: { grows: true, fits: true },
-  // The same under the camera as it is.
+  // The same, but the camera stays.
   grow: { grows: true },
   // The same after the user has agreed to a large number of particles.
   agreed: { grows: true, isUnasked: true },
-  // It takes the place of the picture.
+  // It replaces the picture.
   change: {},
-  // The same after a control has changed the surface, so that the particles may follow it.
+  // The same after a control has changed the surface; the particles may follow it.
   move: {},
-  // The same while the control rests and is still held: the next change waits for its particles.
+  // The same while the control rests but is still held; the next change waits for the particles.
   rest: {},
-  // Of a formula that is still being typed. The surface before it can come back.
+  // A formula that is still being typed. The previous surface can come back.
   trial: {},
   // During a drag.
   live: { isLive: true, isUnasked: true },
-  // The same with fewer particles than the state asks for, or of the coarse level of a refinement alone.
+  // The same with fewer particles than requested, or only the coarse level of a refinement.
   sketch: { isLive: true, isUnasked: true },
-  // What is on the page, once more, with as many particles as there were.
+  // The surface on the page again, with the same number of particles.
   again: { isUnasked: true },
-  // Completes the surface on the page, or brings back the one before a trial.
+  // Completes the surface on the page, or restores the one before a trial.
   restore: { isUnasked: true, restores: true },
-  // Brings back the one before a trial that has no surface, to be seen and no more.
+  // Restores the surface before a trial that has no surface, only to be seen.
   backdrop: { isLive: true, isUnasked: true, restores: true },
-  // Relaxation steps on the particles that the worker holds.
+  // Relaxation steps for the worker's particles.
   relax: { grows: true },
 };

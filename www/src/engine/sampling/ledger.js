@@ -1,6 +1,6 @@
 /**
- * What the page knows of the jobs that it has sent, as a record that only {@link reduce} replaces, and functions of it.
- * All functions are pure: the sampler passes the events and acts on the result.
+ * What the page knows about the jobs it has sent: a record that only {@link reduce} replaces, and functions of it. All
+ * functions are pure: the sampler passes events and acts on the result.
  *
  * @module
  */
@@ -43,7 +43,7 @@ export function reduce(state, event) {
       const ticket = askedFor(state, event.id);
       if (!ticket || ticket.request.kind === 'relax') return state;
       const { request } = ticket;
-      // That it has waited for the job before it says nothing of its own cost.
+      // The time it waited for the previous job is no part of its own cost.
       const sinceMs = Math.max(ticket.sinceMs, state.endedMs);
       return {
         ...state,
@@ -103,10 +103,10 @@ function done(state, { outcome, particles, reportFollows, nowMs }) {
   if (tookPlace(outcome, particles)) {
     if (particles > 0) return { ...next, held: current.id };
     if (!state.stood || !shown) return { ...next, held: 0, shown: null, stood: state.stood ?? shown };
-    // The surface of a trial stays until the one before it is back.
+    // The surface of a trial stays until the previous one is back.
     return { ...next, held: 0 };
   }
-  // The previous surface stays. It still counts as the requested one if a run of the same field was stopped.
+  // The previous surface stays. It counts as the requested one if the stopped run had the same field.
   const wanted = current.request.kind === 'relax' ? accepted : current.request;
   const same = JSON.stringify(shown?.request.field) === JSON.stringify(wanted?.field);
   return { ...next, astray: KINDS[kind].restores === true || outcome !== 'stopped' || !same };
@@ -127,21 +127,21 @@ function committed(state) {
   };
 }
 
-/** Returns what has become of the last trial. @param {Ledger} state @returns {Trial} */
+/** Returns the result of the last trial. @param {Ledger} state @returns {Trial} */
 export function trialOf({ stood, shown, current }) {
   if (stood && shown) return 'shown';
   return current && KINDS[current.request.kind].restores ? 'back' : 'none';
 }
 
-/** Returns the run that makes a surface again. @param {Shown} shown @returns {SampleRequest} */
+/** Returns the run that restores a surface. @param {Shown} shown @returns {SampleRequest} */
 const restored = ({ request }) => ({ ...request, kind: 'restore' });
 
-/** Returns whether nothing was asked for since the last stop. No run starts then. @param {Ledger} state */
+/** Whether nothing was requested since the last stop. Then no run starts. @param {Ledger} state */
 const isStopped = ({ lastId, stoppedUpTo }) => lastId === stoppedUpTo;
 
 /**
- * Returns the run after a trial that has no surface, which brings the one before it back as a backdrop. Null after any
- * other, after a stop, or if a later request is on its way.
+ * Returns the run after a trial without a surface: it restores the previous surface as a backdrop. Null in any other
+ * case, after a stop, or if a later request has been sent.
  * @param {Ledger} state
  * @returns {SampleRequest | null}
  */
@@ -151,8 +151,8 @@ export function backdropOf(state) {
 }
 
 /**
- * Returns the run after a request that has failed: it completes the surface that stays, or brings back the one before a
- * trial. Null if that surface is there, after a stop, or if a later request is on its way.
+ * Returns the run after a failed request: it completes the surface that stays, or restores the one before a trial. Null
+ * if that surface is already there, after a stop, or if a later request has been sent.
  * @param {Ledger} state
  * @returns {SampleRequest | null}
  */
@@ -170,7 +170,7 @@ export function restoringOf(state) {
 const atStage = (state, stage) => ({ ...state, current: state.current && { ...state.current, stage } });
 
 /**
- * Returns the jobs sent after `id`. The worker answers in order, so earlier jobs without an answer were skipped.
+ * Returns the jobs sent after `id`. The worker answers in order, so it skipped earlier jobs without an answer.
  * @param {readonly Ticket[]} asked
  * @param {number} id
  */
@@ -180,8 +180,8 @@ const after = (asked, id) => asked.filter((ticket) => ticket.id > id);
 export const askedFor = ({ asked }, id) => asked.find((ticket) => ticket.id === id);
 
 /**
- * Returns the job that the worker has or is about to have: the one sent last, or the one that goes on because its field
- * was refused. It ends before its report.
+ * Returns the job that the worker has or will have next: the last one sent, or the one that continues because the later
+ * field was refused. A job ends before its report.
  * @param {Ledger} state
  */
 export function runningOf({ asked, current }) {
@@ -196,18 +196,18 @@ export const awaitsParticles = (state) => runningOf(state) !== null;
 export const awaitsWorker = ({ asked, current }) => asked.length > 0 || (current !== null && current.stage !== 'over');
 
 /**
- * Returns whether a run with this outcome has made a surface or found none.
+ * Whether a run with this outcome has made a surface.
  * @param {Outcome} outcome
  * @param {number} particles
  */
 export const tookPlace = (outcome, particles) => outcome === 'complete' || (outcome === 'stopped' && particles > 0);
 
-/** Returns the key by which the inputs of runs are compared. @param {RunRequest} request */
+/** Returns a key to compare the inputs of runs. @param {RunRequest} request */
 export const inputOf = (request) =>
   JSON.stringify(request.kind === 'relax' ? ['relax', request.steps] : [request.field, request.settings]);
 
 /**
- * Returns the run that repeats the surface on the page with that many more relaxation steps.
+ * Returns the run that makes the surface on the page again, with this many more relaxation steps.
  * @param {Shown} shown @param {number} steps
  * @param {Description | null} description  with the ranges of the settings
  * @returns {SampleRequest}
@@ -223,7 +223,7 @@ export function relaxed({ request }, steps, description) {
 }
 
 /**
- * Returns the run that is lost with the worker: its current run, or, for a pending report or a relaxation, the run that
+ * Returns the run that is lost with the worker: the current run, or, for a pending report or a relaxation, the run that
  * leads to the same particles again. Null after a stop.
  * @param {Ledger} state @param {Description | null} description
  * @returns {SampleRequest | null}

@@ -1,6 +1,6 @@
 /**
- * Measures particles that the sampler has not placed by the meter of its reports, in a worker that samples nothing and
- * ends with the last answer.
+ * Measures particles that the sampler has not placed, as the sampler's report would, in a worker that samples nothing
+ * and ends after the last answer.
  *
  * ```js
  * const meter = new Meter();
@@ -22,12 +22,12 @@ export class Meter {
   #worker;
 
   /**
-   * The surfaces of the gallery, once a worker has told them: it begins with that.
+   * The surfaces of the gallery, which a worker sends first.
    * @type {SurfaceInfo[] | null}
    */
   #surfaces = null;
 
-  /** Requests for them. @type {number[]} */
+  /** Pending requests for the surfaces. @type {number[]} */
   #asked = [];
 
   /** @param {{ spawn?: () => WorkerLike }} [options] */
@@ -49,9 +49,9 @@ export class Meter {
   }
 
   /**
-   * Measures particles on a surface, in the box that is sampled.
+   * Measures particles on a surface within the sampled box.
    * @param {Partial<FieldRequest>} field @param {PlacedColumns} placed
-   * @param {boolean} isAdaptive  whether they differ in size
+   * @param {boolean} isAdaptive  whether their sizes differ
    * @returns {Promise<PlacedMeasures>}
    */
   measure(field, { positions, normals, radii }, isAdaptive) {

@@ -11,7 +11,7 @@ import { KINDS } from './kinds.js';
  * @import { Measured, SampleRequest, Ticket } from './types.js'
  */
 
-/** Pause between live requests after which the next one belongs to another drag. */
+/** Pause between live requests after which the next one counts as another drag. */
 const NEXT_DRAG_MS = 1000;
 
 export class Pace {
@@ -61,7 +61,7 @@ export class Pace {
     const { particles } = measured;
     const { drag } = this;
     const cost = this.#costOf(sampled);
-    // A run that ended at its coarse level does not tell what the whole one costs, nor do particles that followed.
+    // A run that ended at its coarse level, or whose particles followed, does not tell the cost of a whole run.
     const isWhole = !measured.followed && !(request.kind === 'sketch' && request.settings.method === 'refined');
     if (request.kind !== 'relax' && isWhole) cost.record(measured);
     if (!KINDS[request.kind].isLive || !drag) return null;
@@ -99,8 +99,8 @@ export const timingOf = (seconds, particles, steps) => ({
 });
 
 /**
- * Returns the length to which the cost of a run is related (see {@link sizeOf}), or NaN if it is unknown. A uniform run
- * that is set by a count reports the radius it has found.
+ * Returns the length that determines the cost of a run (see {@link sizeOf}), or NaN if it is unknown. A uniform run
+ * with a count reports the radius that it found.
  * @param {Settings} settings @param {number} radius @param {Bounds | undefined} bounds
  */
 export function sizeOfRun(settings, radius, bounds) {

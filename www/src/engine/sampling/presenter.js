@@ -1,5 +1,5 @@
 /**
- * Shows the runs on the page: writes the columns, the signals and the picture. The client makes the decisions.
+ * Shows the runs on the page: writes the columns, the signals and the picture. The sampler makes the decisions.
  *
  * @module
  */
@@ -19,14 +19,14 @@ import { timingOf } from './pace.js';
  * } from './types.js'
  */
 
-/** The figures of the report that are those of the mesh. @param {Mesh} mesh */
+/** The figures in the report that come from the mesh. @param {Mesh} mesh */
 const figuresOfMesh = ({ about: { volume, smallest_angle } }) => ({ volume, smallest_angle });
 
 export class Presenter {
   /** Whether the particles on the page have followed the surface. */
   #followed;
 
-  /** Whether the particles on the page are those of a run that has not ended. */
+  /** Whether the particles on the page belong to a run that has not ended. */
   #isUnfinished;
 
   /** @param {{store: Store, columns: Columns, picture: PictureLike}} page */
@@ -39,8 +39,8 @@ export class Presenter {
   }
 
   /**
-   * Shows that the worker has started another job. That the last one found no surface says nothing of this one. Runs of
-   * a drag are so short that the words would flicker; they stand until particles are counted.
+   * Shows that the worker has started another job; whether the last one found a surface no longer matters. Runs during
+   * a drag are so short that a text would flicker, so the old text stays until particles are counted.
    * @param {number} id @param {RunRequest} request
    */
   begin(id, request) {
@@ -60,8 +60,8 @@ export class Presenter {
   }
 
   /**
-   * Shows that no run is active. The progress then describes the particles on the page, unless they are those of a
-   * surface after which a run has found none. Those of a run that was broken off are partial.
+   * Shows that no run is active. The progress then describes the particles on the page, unless a later run found no
+   * surface. Particles of an interrupted run are partial.
    * @param {Partial<Progress>} [more]
    */
   idle(more = {}) {
@@ -74,7 +74,7 @@ export class Presenter {
    * Shows a field that the core has accepted.
    * @param {FieldRequest} field
    * @param {Extract<FieldAnswer, {ok: true}>} answer
-   * @param {boolean} [restoring]  another field was asked for, and its error stays
+   * @param {boolean} [restoring]  whether another field was requested, whose error stays
    */
   field(field, answer, restoring = false) {
     const { store } = this;
@@ -83,7 +83,7 @@ export class Presenter {
     store.field.value = field.points !== undefined ? { ...answer, surface: field.surface ?? null } : answer;
     store.model.value = answer.model ?? null;
     const { grip } = answer;
-    // The sliders follow the surface that is pulled.
+    // The sliders follow a surface that is pulled.
     if (grip) change(store, { parameters: { ...field.parameters, ...grip.changed } });
     store.grip.value = grip;
     if (!restoring) store.fieldError.value = null;
@@ -122,7 +122,7 @@ export class Presenter {
     const { grows = false, fits = false, isLive = false } = KINDS[request.kind];
     this.columns.clear(request.settings.sampling === 'adaptive');
     this.columns.stale = request.kind === 'backdrop';
-    // The particles of a run take the places of those that have followed the surface there.
+    // The new particles replace those that followed the surface there.
     this.picture.begin({ grow: grows, fit: fits, bounds, meets: this.#followed && !isLive });
     batch(() => {
       store.hover.value = null;
@@ -140,7 +140,7 @@ export class Presenter {
       picture.meshed();
     }
     store.mesh.value = columns.mesh?.about ?? null;
-    // The mesh may have been asked for after the report.
+    // The mesh may have been requested after the report.
     if (store.report.value && columns.mesh)
       store.report.value = { ...store.report.value, ...figuresOfMesh(columns.mesh) };
     if (message.curvature.length > 0) {
@@ -155,10 +155,10 @@ export class Presenter {
     store.revision.value += 1;
   }
 
-  /** Takes the positions before the relaxation steps of a run. @param {PastMessage} message @param {Ticket} run */
+  /** Receives the positions before a run's relaxation steps. @param {PastMessage} message @param {Ticket} run */
   past({ positions }, { request }) {
     const { columns } = this;
-    // Steps that are made afterwards go on from the earlier ones, if those were all kept.
+    // Later steps continue the earlier ones if all of those were kept.
     const earlier = request.kind === 'relax' ? columns.past : [];
     const isWhole = earlier.length === 0 || columns.count <= MOST_STEPPED;
     columns.past = isWhole ? [...earlier, ...positions] : earlier;
@@ -167,7 +167,7 @@ export class Presenter {
   }
 
   /**
-   * Shows the end of a run that has made a surface or found none.
+   * Shows the end of a run, with or without a surface.
    * @param {DoneMessage} message
    * @param {Ticket} run
    * @param {number} particles
@@ -200,7 +200,7 @@ export class Presenter {
     if (outcome === 'refused') this.store.notice.value = refusalNotice(message);
   }
 
-  /** Takes what the particles on the page were made from. @param {RecordMessage} message */
+  /** Receives the record of the particles on the page. @param {RecordMessage} message */
   record({ record }) {
     const { columns } = this;
     if (columns.count > 0 && !columns.stale) columns.record = record;

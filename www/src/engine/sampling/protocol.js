@@ -2,8 +2,8 @@
  * Messages between the page and the sampler's worker.
  *
  * Every message about a job carries the job's id, and the page drops messages of older jobs. Columns are sent as
- * transferred buffers. The page acknowledges them after the next frame, and the worker sends more only after that, so
- * that messages do not pile up before a slow graphics device.
+ * transferred buffers. The page acknowledges them after the next frame, and only then the worker sends more, so that
+ * messages do not pile up if the graphics device is slow.
  *
  * @module
  */

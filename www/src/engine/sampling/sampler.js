@@ -1,5 +1,5 @@
 /**
- * Decides which runs the worker makes: turns requests into jobs, follows the jobs by the worker's messages, and updates
+ * Decides which runs the worker makes: turns requests into jobs, tracks the jobs by the worker's messages, and updates
  * the signals.
  *
  * @module
@@ -63,7 +63,7 @@ export class Sampler {
       onLoadFailed: (text) => this.#loadFailed(text),
     });
     this.ledger = IDLE;
-    /** Number of messages received from runs that are over. */
+    /** Number of messages from runs that are over. */
     this.stale = 0;
   }
 
@@ -86,9 +86,9 @@ export class Sampler {
   /** @param {SampleRequest} request */
   sample(request) {
     const running = runningOf(this.ledger);
-    // A second request with the same input during the first run is ignored, because it would only restart the run. It
-    // is accepted after a fault, to clear it, and if the run only restores a surface, so that this surface becomes the
-    // requested one.
+    // A second request with the same input would only restart the run, so it is ignored while the first one runs. It is
+    // accepted after a fault, to clear the fault, and if the run only restores a surface, so that this surface becomes
+    // the requested one.
     const same =
       running &&
       running.id > this.ledger.stoppedUpTo &&
@@ -99,13 +99,13 @@ export class Sampler {
     else if (request.kind !== 'trial') this.commit();
   }
 
-  /** Keeps the formula that was on trial. */
+  /** Ends the trial of a formula, which stays. */
   commit() {
     this.#happened({ type: 'committed' });
   }
 
   /**
-   * Has the particles follow the surface of a control that is being dragged. Where they cannot, a run starts, coarse if
+   * Lets the particles follow the surface while a control is dragged. If they cannot, a run starts, coarse if
    * necessary.
    * @param {SampleRequest} request @param {number} diagonal  of the clip box
    */
@@ -118,7 +118,7 @@ export class Sampler {
   }
 
   /**
-   * Relaxes the particles that the worker holds. If they are gone, the whole run is repeated with that many more steps.
+   * Relaxes the worker's particles. If they are gone, the whole run is repeated with this many more steps.
    * @param {number} steps
    */
   relax(steps) {
@@ -133,21 +133,21 @@ export class Sampler {
     }
   }
 
-  /** Stops what was asked for so far. Nothing starts until something else is asked for. */
+  /** Stops everything requested so far. Nothing starts until the next request. */
   stop() {
     if (this.store.busy.value) this.client.post({ type: 'stop' });
     this.#happened({ type: 'stopped' });
   }
 
-  /** Completes the surface that stays on the page, with its report, after a request has failed. */
+  /** Completes the surface that stays on the page, with its report, after a failed request. */
   #settle() {
     const request = restoringOf(this.ledger);
     if (request) this.submit(request);
   }
 
-  /** Sends a request to the worker, where the latest one waits for the job that runs. @param {RunRequest} request */
+  /** Sends a request to the worker, where the latest one waits for the running job. @param {RunRequest} request */
   submit(request) {
-    // In safe mode nothing is sent. The state holds the request, which is sent when the sampler is restarted.
+    // In safe mode nothing is sent. The state keeps the request, which is sent when the sampler is restarted.
     if (!this.client.isThere) return this.#happened({ type: 'lost' });
     const id = this.ledger.lastId + 1;
     this.client.post({ type: 'job', job: this.#jobOf(id, request) });
@@ -269,7 +269,7 @@ export class Sampler {
   }
 
   /**
-   * Takes the box in which a run samples, which is found after its field was accepted.
+   * Receives the box of a run, which is found after its field was accepted.
    * @param {FieldOk} answer
    * @param {Ticket} run
    */
@@ -296,7 +296,7 @@ export class Sampler {
   /** @param {ColumnsMessage} message @param {Ticket} run */
   #takeColumns(message, run) {
     const drawn = () => this.client.post({ type: 'drawn', id: message.id });
-    // An empty range does not replace the previous surface. Whether there is a new one is known at the end of the run.
+    // An empty range does not replace the previous surface. The end of the run shows whether there is a new one.
     if (message.total === 0) return drawn();
     if (run.stage === 'seeding') {
       this.#happened({ type: 'particles', description: this.store.description.value });
@@ -326,7 +326,7 @@ export class Sampler {
     const behind = surface && particles === 0 && request.kind !== 'backdrop' ? backdropOf(this.ledger) : null;
     if (behind) this.submit(behind);
     if (outcome === 'ask') this.#onAsk(message.predicted, request);
-    // If an error ended a drag, no full run follows it.
+    // After a drag that ended with an error no full run follows.
     const { isLive, restores } = KINDS[request.kind];
     if ((!surface && !restores) || (isLive && this.store.fieldError.value)) this.#settle();
   }
@@ -368,14 +368,14 @@ export class Sampler {
     this.client.forgetFiles();
     batch(() => {
       this.#happened({ type: 'lost' });
-      // Before the core has described itself there has been no run that could be over.
+      // Before the core has described itself no run can have ended.
       this.#presenter.idle({ phase: this.store.description.value ? 'done' : 'idle' });
     });
     return lost;
   }
 
   /**
-   * Makes the lost run again, in one step with the end of the old one: nothing on the page sees a sampler at rest in
+   * Repeats the lost run in the same step as the end of the old one, so that the page never sees an idle sampler in
    * between.
    * @param {Crash} crash
    */

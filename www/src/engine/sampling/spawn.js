@@ -1,6 +1,6 @@
 /**
  * Starts the sampler's workers and passes the core to each. The page fetches the core, not the worker: the built page
- * preloads it in parallel with the scripts, and a replacement worker does not fetch it again.
+ * preloads it in parallel with the scripts, and a replacement worker need not fetch it again.
  *
  * @module
  */

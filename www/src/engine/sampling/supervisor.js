@@ -34,7 +34,7 @@ export class Supervisor {
   #clock;
   #busy;
 
-  /** Time until which the worker may be silent. */
+  /** Until this time the worker may be silent. */
   #deadline;
 
   /** @type {Timer | undefined} */
@@ -68,7 +68,7 @@ export class Supervisor {
     this.#heard();
     this.#watch();
     worker.onmessage = ({ data }) => {
-      // The last messages of a terminated worker may still arrive. They are ignored.
+      // Late messages of a terminated worker are ignored.
       if (this.worker === worker) this.receive(data);
     };
     worker.onerror = (event) => {
@@ -104,11 +104,11 @@ export class Supervisor {
   receive(message) {
     if (message.type === 'ready') {
       this.state = 'up';
-      // The timer waits for the end of loading, which is later than the end of the next silence.
+      // The timer still waits for the end of loading, which would be later than the end of the next silence.
       this.#rest();
     }
     this.#heard();
-    // The core reads and filters an image in one go, which takes seconds for a large one.
+    // The core reads and filters an image in one go, which takes seconds if the image is large.
     if (message.type === 'filtering' || message.type === 'open_progress')
       this.#deadline = this.#clock.now() + LOADING_MS;
     if (message.type === 'failed') {
@@ -123,7 +123,7 @@ export class Supervisor {
     this.#onMessage(message);
   }
 
-  /** Time that the worker may be silent. No input can hang it while it loads, but a browser may compile for long. */
+  /** How long the worker may be silent. No input can hang it while it loads, but a browser may compile for long. */
   get #patience() {
     return this.state === 'loading' ? LOADING_MS : SILENCE_MS;
   }
@@ -150,7 +150,7 @@ export class Supervisor {
     else this.#replace('hang', `no word from the sampler for ${SILENCE_MS / 1000} s`, '');
   }
 
-  /** Gives up a worker that did not load. @param {string} message */
+  /** Gives up on a worker that did not load. @param {string} message */
   #fail(message) {
     this.#drop();
     this.state = 'failed';

@@ -16,9 +16,9 @@ import { BEAT_MS } from './protocol.js';
  * @import { Env, FromWorker, LoadFault, ToWorker } from './types.js'
  */
 
-/** Largest memory of a run and its report. Browsers end pages that use much more, on phones much earlier. */
+/** Largest memory of a run and its report. Browsers close pages that use much more, phones much earlier. */
 const MEMORY_MB = { desk: 512, phone: 256 };
-/** Largest memory of a file while it is read and made to a field. */
+/** Largest memory of a file while it is read and becomes a field. */
 const FILE_MB = { desk: 1600, phone: 400 };
 
 /** @param {Navigator & {userAgentData?: {mobile: boolean}, deviceMemory?: number}} device */
@@ -30,7 +30,7 @@ const post = (message, transfer = []) => self.postMessage(message, { transfer })
 
 const device = onPhone(navigator) ? 'phone' : 'desk';
 const opener = new FileKeeper(FILE_MB[device] * 1e6, () => post({ type: 'filtering' }));
-/** Continues once the file of a job is open. @param {unknown} [error] */
+/** Continues once a job's file is open. @param {unknown} [error] */
 const opened = (error) => {
   if (error) crashed(0, error);
   else void pump();
@@ -39,23 +39,23 @@ const jobs = new Jobs(post, () => performance.now(), {
   isReady: (ours, file) => opener.isReady(ours, file, opened),
   setField: (ours, file, field) => opener.setField(ours, file, field),
 });
-/** Number of column messages that the page has not drawn yet. */
+/** Number of column messages that the page has not yet drawn. */
 let undrawn = 0;
 /** Whether the page shows the curvature, and whether it draws a mesh. */
 let curvature = false;
 let mesh = false;
-/** The formula of the value that the page shows, and of which run it has been sent, with which formula. */
+/** The formula of the value that the page shows; then the run and the formula of the last value sent. */
 let value = '';
 let sentValue = '';
-/** Files that the page waits for. @type {Extract<ToWorker, {type: 'export'}>[]} */
+/** Requested files. @type {Extract<ToWorker, {type: 'export'}>[]} */
 const files = [];
-/** Particles of others that wait to be measured. @type {Extract<ToWorker, {type: 'measure'}>[]} */
+/** Particles placed elsewhere that are to be measured. @type {Extract<ToWorker, {type: 'measure'}>[]} */
 const placed = [];
 let pumping = false;
 let dead = false;
 const crashOf = crashWords();
 
-// A message to the worker itself ends the task, so that waiting messages are handled. Browsers delay timers by 4 ms.
+// A message to itself ends the worker's task, so that waiting messages are handled. Browsers delay timers by 4 ms.
 const selfChannel = new MessageChannel();
 /** @type {(() => void) | null} */
 let resume = null;
@@ -74,7 +74,7 @@ const pause = () =>
 /** @type {Core | null} */
 let core = null;
 const memory = { held: 0, meshed: 0, gaveUp: false };
-/** Whether the particles are of a mesh that was opened, and of which run they have been compared with it. */
+/** Whether the field is an opened mesh, and the last run that was compared with it. */
 const remesh = { isIt: false, compared: 0 };
 
 /** @param {Core} ours @returns {Env} */
@@ -92,7 +92,7 @@ const surroundings = (ours) => ({
   room: () => undrawn < 2,
 });
 
-/** Does what there is to do, jobs first. */
+/** Does all pending work, jobs first. */
 async function pump() {
   if (pumping) return;
   pumping = true;
@@ -116,8 +116,8 @@ async function pump() {
 }
 
 /**
- * Measures what others have placed, makes the value, the mesh or a file that the page has asked for since the last job,
- * or compares the mesh with the one that was opened.
+ * Does one piece of other work: measures particles placed elsewhere, makes a value, a mesh or a file that the page
+ * requested since the last job, or compares the mesh with the opened one.
  * @param {Core} ours
  * @returns whether there was anything to do
  */
@@ -140,7 +140,7 @@ async function serve(ours) {
   const isCompared = remesh.isIt && held > 0 && remesh.compared !== held;
   if (!isDrawn && !isCompared && files.length === 0) return false;
   const made = held > 0 ? await join(ours, surroundings(ours)) : null;
-  // A job that has come meanwhile goes first.
+  // A new job has priority.
   if (held > 0 && !made) return true;
   if (made && isDrawn) {
     memory.meshed = held;

@@ -1,4 +1,4 @@
-/** Bytes as text for an address, and back. */
+/** Converts bytes to text for an address, and back. */
 
 /** @param {Uint8Array} bytes */
 export function toBase64url(bytes) {

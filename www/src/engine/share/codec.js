@@ -58,7 +58,7 @@ export function difference(state, description) {
     pitch: short(camera.pitch, 5),
     fit: camera.fit,
   };
-  // A camera that fits the surface automatically is stored only if it was turned.
+  // A camera that fits the surface automatically is stored only if it was rotated.
   const turned =
     Math.abs(camera.yaw - home.view.camera.yaw) > 1e-3 || Math.abs(camera.pitch - home.view.camera.pitch) > 1e-3;
   if (!camera.fit || turned) look.camera = rounded;

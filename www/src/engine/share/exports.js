@@ -1,6 +1,6 @@
 /**
- * Writes the particles as PLY (binary, little endian) or CSV, what they were made from as JSON, and the picture as PNG.
- * Columns that are not known yet are omitted.
+ * Writes the particles as PLY (binary, little endian) or CSV, their record as JSON, and the picture as PNG. Columns
+ * that are not known yet are omitted.
  *
  * @module
  */
@@ -9,11 +9,11 @@ import { NO_PARENT, SINGULAR } from '../core-numbers.js';
 
 /** @import { Columns, Description, FileRecord } from '../types.js' */
 
-/** The word before a record, and the most characters of a line of a comment, as src/export/record.rs has them. */
+/** The word before a record, and the longest line of a comment, as in src/export/record.rs. */
 const MARK = 'marching_particles';
 const LONGEST_LINE = 200;
 
-/** Number of CSV rows that are joined at a time. */
+/** Number of CSV rows joined at a time. */
 const ROWS = 8192;
 
 /**
@@ -21,14 +21,14 @@ const ROWS = 8192;
  * @typedef {Columns & {values?: Record<string, Float32Array>}} Exported  with columns that a program has added
  */
 
-/** Returns the positions as exactly as they are known. @param {Columns} columns */
+/** Returns the positions in the best known precision. @param {Columns} columns */
 const placesOf = ({ exact, positions }) => (exact.length > 0 ? exact : positions);
 
 /** Returns the type of the values of a column, by its name in PLY. @param {Columns} columns @param {Column} column */
 const typeOf = ({ exact }, { kind }) => (kind === 'coordinate' ? (exact.length > 0 ? 'double' : 'float') : kind);
 
 /**
- * Value of each column for a particle, by the name of the column.
+ * For each column name, the value of a particle.
  * @type {Record<string, (columns: Columns, i: number) => number | undefined>}
  */
 const READ = {
@@ -51,22 +51,22 @@ const READ = {
 };
 
 /**
- * Returns what reads a column.
+ * Returns a function that reads a column.
  * @param {{name: string}} column
  * @returns {(columns: Exported, i: number) => number | undefined}
  */
 const readerOf = ({ name }) => READ[name] ?? (({ values }, i) => values?.[name][i]);
 
 /**
- * Columns whose values are known; some are known only after the particles were measured, and some only where there are
- * creases or opposite faces are the same.
+ * Columns with known values. Some are known only after the particles were measured, others only with creases or if
+ * opposite faces are equal.
  * @param {Columns} columns
  * @param {readonly Column[]} all
  */
 const known = (columns, all) =>
   all.filter(({ name }) => MEASURED.every((column) => column !== name || columns[column]));
 
-/** Size of a value in bytes, and the method that writes it, by the type of the column. */
+/** Size of a value in bytes and the method that writes it, by type. */
 const BINARY = {
   double: { bytes: 8, write: DataView.prototype.setFloat64 },
   float: { bytes: 4, write: DataView.prototype.setFloat32 },
@@ -107,8 +107,8 @@ export function ply(columns, all, record) {
 }
 
 /**
- * Returns the same data as CSV text, one line per particle after the names of the columns, which spreadsheets and data
- * frames expect in the first line. Reading a number back gives the same value.
+ * Returns the same data as CSV text: the names of the columns in the first line, as spreadsheets and data frames
+ * expect, then one line per particle. Reading a number back gives the same value.
  * @param {Exported} columns
  * @param {readonly Column[]} all  all columns, as the core describes them
  */
@@ -143,12 +143,12 @@ function jsonOf(record) {
   return JSON.stringify(record).replace(/[^ -%'-;=?-~]/g, escaped);
 }
 
-/** Returns what the particles were made from as a file of JSON. @param {FileRecord} record */
+/** Returns the record of the particles as a JSON file. @param {FileRecord} record */
 export const json = (record) => new Blob([`{"${MARK}":${jsonOf(record)}}\n`], { type: 'application/json' });
 
 /**
- * The comments with what the particles were made from, as src/export/record.rs has them: short lines, each of which
- * continues the one before.
+ * The comments with the record of the particles, as in src/export/record.rs: short lines, each continuing the one
+ * before.
  * @param {string} begin @param {FileRecord | null} record
  */
 function commentsOf(begin, record) {
@@ -158,7 +158,7 @@ function commentsOf(begin, record) {
   while (rest) {
     const most = Math.min(LONGEST_LINE - start.length, rest.length);
     let at = most;
-    // Programs that write the comments again may drop spaces at the ends of lines.
+    // Programs that rewrite the comments may drop spaces at the ends of lines.
     while (at > 0 && (rest[at - 1] === ' ' || rest[at] === ' ')) at -= 1;
     at ||= most;
     lines.push(start + rest.slice(0, at));

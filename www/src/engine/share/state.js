@@ -18,7 +18,7 @@ import { homeView, validView } from './view.js';
  * } from '../types.js'
  */
 
-/** Largest number of a plane, which the graphics card reads in single precision. */
+/** Largest number in a plane, since the graphics card uses single precision. */
 const LARGEST_SINGLE = 3e38;
 
 /** Returns the state before the core has described its surfaces. @returns {State} */
@@ -46,14 +46,14 @@ export function defaultState(description) {
 export const surfaceOf = (description, id) => description?.surfaces.find((s) => s.id === id);
 
 /**
- * The formula with which a surface begins: of one from points it is the model.
+ * A surface's initial formula; for a surface from points it is the model.
  * @param {Description | null} description @param {string} id
  */
 export const ownFormula = (description, id) =>
   fromPoints(description, id) ? MODEL : (surfaceOf(description, id)?.formula ?? '');
 
 /**
- * Whether a formula has the model as an operand: its name stands in it, outside of comments.
+ * Whether a formula uses the model as an operand: contains its name outside of comments.
  * @param {string} formula
  */
 export function namesModel(formula) {
@@ -75,7 +75,7 @@ export function completeSettings(description, settings) {
 }
 
 /**
- * Returns the settings that stay when another surface is chosen: those of the box and formulas are of one surface.
+ * Returns the settings that stay when another surface is chosen; those of the box and formulas belong to one surface.
  * @param {Description} description
  * @param {Settings} settings
  * @returns {Settings}
@@ -87,11 +87,11 @@ export function lastingSettings({ settings: known }, settings) {
 }
 
 /**
- * Returns the shape that begins with another surface.
+ * Returns the initial shape for another surface.
  * @param {Description | null} description
- * @param {Settings} settings  up to now
+ * @param {Settings} settings  the current ones
  * @param {string} surface
- * @param {string} [formula]  its own one by default
+ * @param {string} [formula]  by default the surface's own
  * @returns {Shape}
  */
 export function freshShape(description, settings, surface, formula = ownFormula(description, surface)) {
@@ -117,14 +117,14 @@ export function clampSettings(description, settings) {
 export const modelOf = (description, id) => description?.models.find((model) => model.id === id);
 
 /**
- * Returns whether a surface is made from points or voxels: a built-in model, a computed image or a file.
+ * Whether a surface is made from points or voxels: a built-in model, a computed image or a file.
  * @param {Description | null} description
  * @param {string} id
  */
 export const fromPoints = (description, id) =>
   id === FILE_SURFACE || scanOf(id) !== undefined || modelOf(description, id) !== undefined;
 
-/** The box alone. @param {Bounds} bounds @returns {Bounds} */
+/** Only the box. @param {Bounds} bounds @returns {Bounds} */
 const boxOf = ({ min, max }) => ({ min, max });
 
 /**
@@ -140,9 +140,9 @@ export function fieldRequest(state, description, points) {
   if (points !== undefined) {
     request.points = points;
     if (state.pulls.length) request.pulls = state.pulls;
-    // A model by itself needs no formula.
+    // A model alone needs no formula.
     if (state.formula.trim() === MODEL) {
-      // What is chosen of an image are parameters.
+      // Choices for an image are parameters.
       if (Object.keys(state.parameters).length > 0) request.parameters = { ...state.parameters };
       return request;
     }
@@ -153,7 +153,7 @@ export function fieldRequest(state, description, points) {
   return request;
 }
 
-/** A box that the core takes. @param {unknown} v @param {Limits} limits @returns {ChosenBounds | undefined} */
+/** A box that the core accepts. @param {unknown} v @param {Limits} limits @returns {ChosenBounds | undefined} */
 export function validBounds(v, limits) {
   if (!isRecord(v)) return undefined;
   const [min, max] = [vec3(v.min), vec3(v.max)];
@@ -176,21 +176,21 @@ export function validPlane(v) {
   return { normal: vec((k) => normal[k] / length + 0), offset: offset / length + 0 };
 }
 
-/** A pull that tears nothing. @param {unknown} v @returns {Pull | undefined} */
+/** A pull that does not tear the surface. @param {unknown} v @returns {Pull | undefined} */
 export function validPull(v) {
   if (!isRecord(v)) return undefined;
   const [at, by, reach] = [vec3(v.at), vec3(v.by), within(v.reach, 0, Number.MAX_VALUE)];
   return at && by && reach && size(by) <= LONGEST_PULL * reach ? { at, by, reach } : undefined;
 }
 
-/** Up to so many pulls, each of which begins where those before it end. @param {unknown} v @param {number} most */
+/** At most this many pulls; each begins where those before it end. @param {unknown} v @param {number} most */
 function validPulls(v, most) {
   const pulls = Array.isArray(v) && v.length <= most ? v.map(validPull) : [undefined];
   return pulls.every((pull) => pull !== undefined) ? pulls : undefined;
 }
 
 /**
- * Numbers of points that can be fitted of a model or a file; null for a surface from a formula. How many a file has is
+ * Range of the number of centres for a model or a file; null for a formula's surface. The number of a file's points is
  * not known here.
  * @param {Description} description @param {string} id
  */
@@ -202,7 +202,7 @@ function centresOf({ limits, models }, id) {
 }
 
 /**
- * Returns the valid number of centres that is nearest; null for the default number, undefined where there can be none.
+ * Returns the nearest valid number of centres; null for the default, undefined if the surface has none.
  * @param {unknown} v @param {Description} description @param {string} id  of the surface
  */
 export function validCentres(v, description, id) {
@@ -213,7 +213,7 @@ export function validCentres(v, description, id) {
 }
 
 /**
- * The parameter of this name as the core would begin it.
+ * A parameter with this name and the core's initial values.
  * @param {Description} description
  * @param {string} name
  * @returns {Parameter}
@@ -242,11 +242,11 @@ function validParameter(v, description) {
 }
 
 /**
- * Makes a valid state from any input. An unusable value gets its default and is named in `reset`, in words for the
- * user.
+ * Makes a valid state from any input. An unusable value is replaced by its default and named in `reset`, in words for
+ * the user.
  * @param {unknown} raw
  * @param {Description} description
- * @param {boolean} [hasFile]  whether there is a file for a state that needs one
+ * @param {boolean} [hasFile]  whether a file is open that a state may need
  * @returns {{state: State, reset: string[]}}
  */
 export function sanitize(raw, description, hasFile = false) {
@@ -273,7 +273,7 @@ export function sanitize(raw, description, hasFile = false) {
   if (raw.formula !== undefined && !(points && raw.formula === '')) {
     const { formula } = raw;
     const isText = typeof formula === 'string' && formula.length <= description.limits.formula_bytes;
-    // Without its name a formula is none of the model.
+    // A formula without the model's name is not a formula of the model.
     if (isText && (!points || namesModel(formula))) state.formula = formula;
     else reset.push('formula');
   }
@@ -299,7 +299,7 @@ export function sanitize(raw, description, hasFile = false) {
     } else reset.push('declared parameters');
   }
   /**
-   * Takes a part that may be absent, if it is valid.
+   * Reads an optional part of a state, if it is valid.
    * @template T
    * @param {unknown} part @param {(part: unknown) => T | undefined} valid @param {string} words
    * @returns {T | null}
@@ -330,12 +330,12 @@ export function sanitize(raw, description, hasFile = false) {
   return { state, reset };
 }
 
-/** What is chosen of a computed image at first. @param {unknown} surface */
+/** The initial choices for a computed image. @param {unknown} surface */
 const beginningOf = (surface) => ({ parameters: { ...scanOf(String(surface))?.parameters } });
 
 /**
- * Applies a patch to a state. Another surface, or a formula in the place of a model that it does
- * not name, brings its own parameters and box. The surface null is the one that a state begins with.
+ * Applies a patch to a state. Another surface, or a formula without a model's name instead of the model, brings its own
+ * parameters and box. The surface null means the default one.
  * @param {State} now
  * @param {Record<string, unknown>} given
  * @param {Description} description
@@ -358,7 +358,7 @@ export function mergeState(now, given, description, hasFile) {
     : now;
   const raw = {
     ...base,
-    // A surface named in the patch brings its own formula.
+    // A surface in the patch brings its own formula.
     formula: patch.surface ? undefined : now.formula,
     ...patch,
     view: { ...now.view, .../** @type {object} */ (patch.view ?? {}) },
@@ -367,8 +367,7 @@ export function mergeState(now, given, description, hasFile) {
 }
 
 /**
- * Returns the valid value of a setting that is nearest to `value`; undefined if the setting or the value is not
- * recognised.
+ * Returns the valid value of a setting that is nearest to `value`; undefined if the setting or the value is unknown.
  * @param {Description} description @param {string} name @param {unknown} value
  * @returns {number | string | undefined}
  */

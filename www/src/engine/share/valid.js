@@ -1,5 +1,5 @@
 /**
- * Checks of untyped input: each gives the nearest valid value, or undefined where there is none.
+ * Checks of untyped input: each returns the nearest valid value, or undefined if there is none.
  *
  * @module
  */

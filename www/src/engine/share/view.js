@@ -1,6 +1,6 @@
 /**
- * The options of the view: for each what it is before it is chosen, what may be chosen, and its name in words. State,
- * links, validation and the menu follow from this table.
+ * The options of the view: for each its default, its valid values, and its name in words. State, links, validation and
+ * the menu follow from this table.
  *
  * @module
  */
@@ -14,7 +14,7 @@ import { integers, isRecord, vec3, within } from './valid.js';
  * @import { Option } from './types.js'
  */
 
-/** Largest number of a camera, which the graphics card reads in single precision. */
+/** Largest number in a camera, since the graphics card uses single precision. */
 const LARGEST_SINGLE = 3e38;
 /** Upper limit for generation levels, relaxation steps and events in a state; no run reaches it. */
 const LAST_LEVEL = 1e6;
@@ -31,7 +31,7 @@ const flag = (home, words) => ({
 });
 
 /**
- * An option with one of several values, of which the first is taken before one is chosen.
+ * An option with one of several values; the first is the default.
  * @template {string} T
  * @param {string} words @param {readonly T[]} values @returns {Option<T>}
  */
@@ -41,7 +41,7 @@ const choice = (words, values) => ({
   valid: (raw) => values.find((value) => value === raw),
 });
 
-/** A number on the timeline; null for all of it. @param {string} words @returns {Option<number | null>} */
+/** A position on the timeline; null for its whole length. @param {string} words @returns {Option<number | null>} */
 const place = (words) => ({
   home: () => null,
   words,
@@ -78,7 +78,7 @@ export const VIEW = {
     valid: (raw) => within(raw, DISC_SIZE.min, DISC_SIZE.max),
     exact: true,
   },
-  /** Whether what is farther away looks smaller. */
+  /** Whether distant parts look smaller. */
   projection: choice('projection', ['perspective', 'orthographic']),
   /** The way of drawing the particles. */
   draw: choice('way of drawing', ['discs', 'spheres', 'mesh']),
@@ -88,7 +88,7 @@ export const VIEW = {
   edges: flag(true, 'edges of the mesh'),
   /** Whether vertices of a mesh without six neighbours are marked. */
   marks: flag(true, 'marks on the mesh'),
-  /** Whether lines are drawn along the creases of a surface. */
+  /** Whether lines are drawn along creases. */
   creases: flag(true, 'creases'),
   theme: choice('theme', ['auto', 'light', 'dark']),
   /** Whether a body beneath the discs closes the gaps between them. */
@@ -100,7 +100,7 @@ export const VIEW = {
   /** Whether a scale bar is drawn. */
   bar: flag(false, 'scale bar'),
   /**
-   * Indices of up to two particles whose distance is measured; null while nothing is.
+   * Indices of up to two particles whose distance is measured; null if nothing is measured.
    * @type {Option<number[] | null>}
    */
   measured: {
@@ -114,11 +114,11 @@ export const VIEW = {
   },
   /** Whether the centres of a model are drawn. */
   points: flag(true, 'points of the model'),
-  /** Whether particles that have followed a moving surface stay at rest. */
+  /** Whether particles that have followed a moving surface stay where they are. */
   flow: flag(false, 'particles at rest'),
-  /** The newest generation level drawn, null for all of them; a level beyond the last counts as the last. */
+  /** The newest generation level drawn, null for all levels; beyond the last one it means the last. */
   level: place('generation level'),
-  /** The relaxation step after which the particles are drawn, null for the last one. */
+  /** The relaxation step after which the particles are drawn, null for the last step. */
   step: place('relaxation step'),
   /** @type {Option<CameraState>} */
   camera: { home: homeCamera, words: 'camera', valid: validCamera },
@@ -132,7 +132,7 @@ export const homeView = () =>
   /** @type {ViewState} */ (Object.fromEntries(OPTIONS.map(([key, { home }]) => [key, home()])));
 
 /**
- * Returns a view with what can be used of a patch. What cannot is named in `reset`, in words for the user.
+ * Returns a view with the usable parts of a patch. The unusable ones are named in `reset`, in words for the user.
  * @param {Record<string, unknown>} raw
  * @param {ViewState} view
  * @param {string[]} reset

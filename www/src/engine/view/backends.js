@@ -18,7 +18,7 @@ import { askAdapter, askDrawer } from '../probe/index.js';
 /** @type {readonly BackendKind[]} */
 export const BACKENDS = ['webgpu', 'webgl2', 'canvas2d'];
 
-/** A device was lost while it opened: a browser takes the context of one picture for another at any time. */
+/** A device was lost while opening: a browser may take the context from one picture for another at any time. */
 export class DeviceLost extends Error {}
 
 /** Returns whether the browser supports a back end, so that its bundle is worth fetching. @param {BackendKind} kind */
@@ -57,16 +57,16 @@ export async function openDevice(kind, host, events) {
   canvas.setAttribute('aria-hidden', 'true');
   let closed = false;
   const lost = (/** @type {string} */ reason, /** @type {string} */ message) => {
-    // A loss that the page caused itself is not reported. The report is deferred, because the renderer may be in the
+    // A loss caused by the page itself is not reported. The report is deferred, because the renderer may be in the
     // middle of a call.
     queueMicrotask(() => {
       if (!closed && reason !== 'destroyed') events.onLost(reason, message);
     });
   };
   host.append(canvas);
-  /** Whether the renderer was asked for a context of the canvas. */
+  /** Whether the renderer has requested a context of the canvas. */
   let isAsked = false;
-  // What fails on a context that was taken away is no fault of the device.
+  // Failures on a context that was taken away are not the device's fault.
   const isTaken = () => isAsked && canvas.getContext('webgl2')?.isContextLost();
   try {
     /** @type {Renderer | Painter} */
@@ -96,7 +96,7 @@ export async function openDevice(kind, host, events) {
           renderer.destroy();
           renderer.free();
         } catch {
-          // A trapped instance cannot be freed. Removing the canvas releases its resources.
+          // A trapped instance cannot be freed; removing the canvas releases its resources.
         }
         canvas.remove();
       },

@@ -1,5 +1,5 @@
 /**
- * An orbit camera: the eye is on a sphere around a target, with z up. The functions are pure; the caller passes the
+ * An orbit camera: the eye lies on a sphere around a target, with z up. The functions are pure; the caller passes the
  * time step.
  *
  * A rotation slows down gradually after its release, and a fit is animated. With `calm` (reduced motion) both are
@@ -14,13 +14,13 @@ import { clamp, dot, vec } from '../vector.js';
  * @import { Ball, Insets, View } from './types.js'
  */
 
-/** Angle of view across the shorter side of the free part of the picture. A narrow angle keeps the distortion small. */
+/** Angle of view across the shorter side of the picture's free part. A narrow angle keeps the distortion small. */
 export const FIELD_OF_VIEW_RAD = (30 * Math.PI) / 180;
 /** Largest pitch. Beyond the poles the up direction would flip. */
 export const PITCH_LIMIT_RAD = Math.PI / 2;
 /**
- * Times the distance at which the eye of a parallel projection is. Its matrix is exactly parallel; rays and the size of
- * pixels are those of this eye, which are off by less than half a pixel.
+ * In a parallel projection the eye is this many distances away. The matrix is exactly parallel; rays and pixel sizes
+ * belong to this eye, and are off by less than half a pixel.
  */
 const PARALLEL_DISTANCES = 1000;
 /** The directions of the named views, with z up. @type {Record<'front' | 'right' | 'top' | 'isometric', Angles>} */
@@ -28,7 +28,7 @@ export const STANDARD_VIEWS = {
   front: { yaw: -Math.PI / 2, pitch: 0 },
   right: { yaw: 0, pitch: 0 },
   top: { yaw: -Math.PI / 2, pitch: Math.PI / 2 },
-  // The three axes are equally long in the picture.
+  // The three axes have equal length in the picture.
   isometric: { yaw: -Math.PI / 4, pitch: Math.atan(Math.SQRT1_2) },
 };
 /** Time constant in which a released rotation loses 63 % of its speed and a fit covers 63 % of its distance. */
@@ -124,8 +124,8 @@ export function viewOf(camera, widthPx, heightPx, scene, insets = NO_INSETS, par
 }
 
 /**
- * Returns the size of the part of a picture that no panel covers, and twice the way from the middle
- * of the picture to its middle, to the right and down.
+ * Returns the size of the picture's free part, which no panel covers, and twice the offset of its middle from the
+ * picture's middle, to the right and down.
  * @param {number} widthPx @param {number} heightPx @param {Insets} insets
  */
 export function freePart(widthPx, heightPx, insets) {
@@ -163,7 +163,7 @@ export function rayThrough(view, xPx, yPx) {
 }
 
 /**
- * Returns where a place is in the picture; null behind the eye.
+ * Returns the position of a point in the picture; null behind the eye.
  * @param {View} view @param {ArrayLike<number>} place
  * @returns {Spot | null}
  */
@@ -181,21 +181,21 @@ export function projected({ clipFromWorld: m, worldPerPx, widthPx, heightPx, spa
  */
 export const fitDistance = (radius) => (radius * 1.05) / Math.sin(FIELD_OF_VIEW_RAD / 2);
 
-/** Share of a side of the free part that a surface takes at most where it is fitted by its outline. */
+/** Largest share of the free part's side that a surface takes when it is fitted by its outline. */
 const OUTLINE_SHARE = 0.93;
-/** Least distance of that fit, over the one that shows the whole ball: turned, the surface may reach beyond a side. */
+/** Least distance of that fit, relative to the fit of the ball: when rotated, the surface may extend beyond a side. */
 const NEAREST_FIT = 0.8;
-/** Largest distance of that fit, over the same: so much smaller a surface may be that leaves a corner free. */
+/** Largest distance of that fit, relative to the fit of the ball, to leave a corner free. */
 const FARTHEST_FIT = 1.25;
 
 /**
- * Returns the distance at which the outline of discs fills the free part of the picture, seen from
- * these angles: at most that at which the ball around them does, unless the outline would reach into a corner.
+ * Returns the distance at which the outline of discs, seen from these angles, fills the free part of the picture: at
+ * most the distance for the ball around them, unless the outline would reach into a corner.
  * @param {Angles} angles
  * @param {Ball} ball
  * @param {{width: number, height: number, corner?: Insets['corner']}} free  that part
  * @param {{positions: ArrayLike<number>, radii: ArrayLike<number>, count: number}} discs
- * @param {(disc: number) => boolean} [isShown]  the discs that are drawn, if not all are
+ * @param {(disc: number) => boolean} [isShown]  the discs that are drawn; by default all
  */
 export function outlineDistance(
   angles,
@@ -222,7 +222,7 @@ export function outlineDistance(
       near + (Math.abs(across) + radii[i]) / tanX,
       near + (Math.abs(high) + radii[i]) / tanY,
     );
-    // Beside the corner or below it is enough.
+    // It is enough to clear the corner at the side or below.
     if (corner)
       clear = Math.max(clear, near + Math.min(beyond(radii[i] - across, besideX), beyond(high + radii[i], belowY)));
   }
@@ -230,7 +230,7 @@ export function outlineDistance(
   return Math.max(clamp(distance, NEAREST_FIT * whole, whole), Math.min(clear, FARTHEST_FIT * whole));
 }
 
-/** The distance from which a length has an angle of this tangent. @param {number} length @param {number} tan */
+/** The distance from which a length subtends an angle with this tangent. @param {number} length @param {number} tan */
 const beyond = (length, tan) => (length <= 0 ? -Infinity : tan > 0 ? length / tan : Infinity);
 
 /** Returns the ball around a box. @param {{min: ArrayLike<number>, max: ArrayLike<number>}} bounds */
