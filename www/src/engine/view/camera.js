@@ -285,7 +285,7 @@ export class Camera {
   }
 
   /**
-   * Turns the camera by two angles. A positive dx moves the near side of the surface to the right.
+   * Rotates the camera by two angles. A positive dx moves the near side of the surface to the right.
    * @param {number} dxRad
    * @param {number} dyRad
    */
@@ -293,7 +293,7 @@ export class Camera {
     const { yaw, pitch } = this.state;
     this.state = {
       ...this.state,
-      // The yaw stays within a turn, so that links stay short and no precision is lost.
+      // The yaw stays within one turn, so that links stay short and no precision is lost.
       yaw: (yaw - dxRad) % (2 * Math.PI),
       pitch: clamp(pitch + dyRad, -PITCH_LIMIT_RAD, PITCH_LIMIT_RAD),
     };
@@ -338,15 +338,14 @@ export class Camera {
     this.#glide = null;
   }
 
-  /** The angles at which a motion under way ends, else the present ones. @returns {Angles} */
+  /** The angles at which the current motion ends, or the current angles. @returns {Angles} */
   get end() {
     const { yaw = this.state.yaw, pitch = this.state.pitch } = this.#glide ?? {};
     return { yaw, pitch };
   }
 
   /**
-   * Moves the camera so that the whole ball is visible, or from a distance, with an animation
-   * unless `jump` is set.
+   * Moves the camera so that the whole ball is visible, or to a given distance; animated unless `jump` is set.
    * @param {Ball} ball
    * @param {{jump?: boolean, distance?: number}} [how]
    */
@@ -363,7 +362,7 @@ export class Camera {
   }
 
   /**
-   * Eases to a distance from the centre of a ball.
+   * Moves gradually to a distance from the centre of a ball.
    * @param {Ball} ball @param {number} distance
    */
   glideTo({ centre }, distance) {
@@ -372,7 +371,7 @@ export class Camera {
     else this.#glide = { ...this.#glide, ...goal };
   }
 
-  /** Eases to these angles, the shorter way around, and goes on with a fit under way. @param {Angles} to */
+  /** Rotates gradually to these angles, the shorter way, and continues a fit in progress. @param {Angles} to */
   turnTo({ yaw, pitch }) {
     const { state } = this;
     const way = Math.atan2(Math.sin(yaw - state.yaw), Math.cos(yaw - state.yaw));
@@ -384,7 +383,7 @@ export class Camera {
   }
 
   /**
-   * Moves the camera so that a ball is seen along a normal, at most from as far as now, with an animation.
+   * Moves the camera so that a ball is seen along a normal, animated; the distance does not grow.
    * @param {Ball} ball
    * @param {Vec3} normal  towards the camera
    */
@@ -394,7 +393,7 @@ export class Camera {
     const goal = {
       target: centre,
       distance,
-      // The shorter way around.
+      // The shorter way.
       yaw: this.state.yaw + Math.atan2(Math.sin(turn), Math.cos(turn)),
       pitch: clamp(Math.atan2(z, Math.hypot(x, y)), -PITCH_LIMIT_RAD, PITCH_LIMIT_RAD),
     };
@@ -427,7 +426,7 @@ export class Camera {
   }
 
   /**
-   * Advances an animation, of which the share `keep` of the way stays.
+   * Advances an animation until the share `keep` of its way remains.
    * @param {number} keep
    * @returns whether it continues
    */

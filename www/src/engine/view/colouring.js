@@ -17,8 +17,8 @@ import { COMPONENT_COLOURS, PALETTES } from './palettes.js';
 const SLOTS = 6;
 
 /**
- * Class of a particle by its slots, with the worst fate first: a slot that failed, one that met the limit on particles,
- * one outside the clip box, one still open, or all filled.
+ * Class of a particle by the worst fate of its slots: a slot failed, met the limit on particles, is outside the clip
+ * box, is still open, or all are filled.
  * @typedef {'trouble' | 'capped' | 'border' | 'front' | 'interior'} SlotsClass
  */
 
@@ -26,8 +26,8 @@ const SLOTS = 6;
 export function classOfSlots(slots, adaptive) {
   let seen = 0;
   for (let k = 0; k < (adaptive ? MOST_SLOTS : SLOTS); k += 1) seen |= 1 << fateOf(slots, k);
-  // The number of slots of an adaptive particle is known once the front has processed it. Slots still open then are
-  // unused.
+  // The number of slots of an adaptive particle is known once the front has processed it; slots that are still open
+  // then are unused.
   if (adaptive && slots >>> SLOT_BITS !== 0) seen &= ~(1 << FATE.open);
   if (seen & ((1 << FATE.not_converged) | (1 << FATE.undefined))) return 'trouble';
   if (seen & (1 << FATE.capped)) return 'capped';
@@ -46,14 +46,14 @@ export function classOfValence(valence) {
 /** Range of nearest distances that the ramp covers, as shares of the ideal distance 2r. */
 const NEAREST_SHARE = /** @type {const} */ ([0.6, 1.2]);
 
-/** Range of energies that the ramp covers; 1 is that of a perfect lattice. */
+/** Range of energies that the ramp covers; a perfect lattice has 1. */
 const ENERGY_RANGE = /** @type {const} */ ([0.6, 1.4]);
 
-/** Range of residuals over the radius that the ramp covers, by powers of ten. */
+/** Range of residuals divided by the radius that the ramp covers, on a logarithmic scale. */
 const RESIDUAL_SHARE = /** @type {const} */ ([1e-8, 1e-2]);
 
 /**
- * Share of the curvatures within the diverging ramp. Without it, a few sharp features would make the rest look flat.
+ * Share of the curvatures that the diverging ramp covers; sharp features would make the rest look flat.
  */
 const CURVATURE_QUANTILE = 0.95;
 /** Number of curvatures sampled for that quantile. */
@@ -128,7 +128,7 @@ function radiusRange({ count, radii }) {
 }
 
 /**
- * ± the 95 % quantile of absolute values.
+ * ± the 95 % quantile of the absolute values.
  * @param {number} count @param {(i: number) => number} valueAt @returns {[number, number] | null}
  */
 function evenRange(count, valueAt) {
@@ -148,7 +148,7 @@ function evenRange(count, valueAt) {
 const curvatureRange = (columns) => evenRange(columns.curved, (i) => meanCurvature(columns, i));
 
 /**
- * The smallest and the largest value; of values of both signs an even range around 0.
+ * The smallest and the largest value; for values of both signs a range symmetric around 0.
  * @param {Columns} columns @returns {[number, number] | null}
  */
 function valueRange({ value }) {
@@ -163,12 +163,12 @@ function valueRange({ value }) {
   return low < 0 && high > 0 ? evenRange(value.length, (i) => value[i]) : [low, high];
 }
 
-/** The labels of that class where the surface has edges, and where it has seams. */
+/** Labels for the border class if the surface has edges, and if it has seams. */
 const BESIDE_EDGES = 'at an edge or the box';
 const BESIDE_SEAMS = 'at an edge, a seam or the box';
 
 /**
- * A colouring by classes. `classOf` returns the class of a particle, or is null while the classes are not known.
+ * A colouring by classes. `classOf` returns the class of a particle; it is null until the classes are known.
  * @template {string} K
  * @param {string} title @param {readonly (readonly [K, string])[]} labels
  * @param {(palette: Palette) => Record<K, number>} coloursOf
@@ -190,7 +190,7 @@ const classes = (title, labels, coloursOf, classesOf) => ({
 });
 
 /**
- * A legend of entries, pending while they are not known.
+ * A legend of entries, pending until they are known.
  * @param {string} title @param {Palette} palette @param {LegendEntry[] | null} entries
  */
 const byEntries = (title, palette, entries) => ({
@@ -201,12 +201,11 @@ const byEntries = (title, palette, entries) => ({
 });
 
 /**
- * A colouring by a sequential ramp. `valuesIn` returns the value of a particle, or is null while the values are not
- * known.
+ * A colouring by a sequential ramp. `valuesIn` returns the value of a particle; it is null until the values are known.
  * @param {Pick<Legend, 'title' | 'mark'> & {unit?: string}} legend
  * @param {readonly [number, number] | ((columns: Columns) => [number, number] | null)} span
  * @param {(columns: Columns) => ((i: number) => number) | null} valuesIn
- * @param {(value: number) => number} [scale]  what is linear along the ramp
+ * @param {(value: number) => number} [scale]  gives the quantity that is linear along the ramp
  * @returns {Colouring}
  */
 const ramp = (legend, span, valuesIn, scale = (value) => value) => ({
@@ -226,7 +225,7 @@ const ramp = (legend, span, valuesIn, scale = (value) => value) => ({
   }),
 });
 
-/** Where the rings begin. Pinned particles that no curve joins are at tips. @param {Columns} columns */
+/** Where the rings begin. Pinned particles without a curve are at tips. @param {Columns} columns */
 const unitOfLevels = ({ curves, twins }) => {
   if (curves.length > 0) return `rings from the ${curves.join(' and ')}`;
   return twins.length > 0 ? 'rings from the tips' : 'rings around the seed';
@@ -350,15 +349,15 @@ export const COLOURINGS = {
 };
 
 /**
- * Returns the values at both ends of a ramp whose range depends on the particles; null for other modes and before there
- * is a value.
+ * Returns the values at both ends of a ramp whose range depends on the particles; null for other modes and before
+ * values are known.
  * @param {ColourMode} mode @param {Columns} columns
  */
 export const rangeOf = (mode, columns) => COLOURINGS[mode].range?.(columns) ?? null;
 
 /**
- * Returns the colours of particles `first … last`, as `0xAABBGGRR`. While what a mode shows is missing, it is the plain
- * one.
+ * Returns the colours of particles `first … last`, as `0xAABBGGRR`. Until a mode's values are known, the colour is
+ * plain.
  * @param {ColourMode} mode
  * @param {Theme} theme
  * @param {Columns} columns
@@ -423,8 +422,8 @@ function componentEntries(component, palette) {
 }
 
 /**
- * Returns the colour of a unit vector. The range of a channel is 0.15 … 0.9 instead of 0 … 1, so that no direction is
- * black or too bright.
+ * Returns the colour of a unit vector. Channels range over 0.15 … 0.9 instead of 0 … 1, so that no direction is black
+ * or too bright.
  * @param {number} x @param {number} y @param {number} z
  */
 function colourOfDirection(x, y, z) {

@@ -1,6 +1,6 @@
 /**
- * Handles input on the picture: mouse, pen, touch, trackpad and keys move the camera; hover and tap select a particle.
- * Only the canvas captures touches; the rest of the page scrolls as usual.
+ * Handles input on the picture: mouse, pen, touch, trackpad and keys move the camera; hovering and tapping select a
+ * particle. Only the canvas captures touches; the rest of the page scrolls as usual.
  *
  * @module
  */
@@ -25,7 +25,7 @@ const KEY_PAN_PX = 40;
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 /**
- * Returns the pixels of a wheel event, whatever its unit.
+ * Returns a wheel event's distance in pixels, whatever its unit.
  * @param {{deltaY: number, deltaMode: number}} event
  * @param {number} pagePx
  */
@@ -33,7 +33,7 @@ const wheelPixels = ({ deltaY, deltaMode }, pagePx) => deltaY * (deltaMode === 1
 
 /**
  * @param {Stage} stage
- * @returns removes all listeners
+ * @returns a function that removes all listeners
  */
 export function attachControls(stage) {
   const { host, moved } = stage;
@@ -57,7 +57,7 @@ export function attachControls(stage) {
   on('pointercancel', (event) => pointers.end(event, false));
   on('lostpointercapture', (event) => pointers.end(event, false));
   on('pointerleave', (event) => {
-    // A finger also leaves when it is lifted. The particle that it tapped stays selected.
+    // A finger also leaves when it is lifted; the particle that it tapped stays selected.
     if (event.pointerType === 'touch') return;
     hover.cancel();
     stage.leave(false);

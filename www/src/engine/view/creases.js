@@ -1,7 +1,7 @@
 /**
- * Uploads the creases of a surface to the graphics device: thin lines along them. The particles on them are drawn as
- * dots on the lines, because a disc on either side would stick out beyond the edge. Those on a seam without an edge are
- * discs like others.
+ * Uploads the creases of a surface to the graphics device as thin lines. Particles on creases are drawn as dots on the
+ * lines, because a disc on either side would stick out beyond the edge. Particles on a seam without an edge are
+ * ordinary discs.
  *
  * @module
  */
@@ -12,12 +12,12 @@ import { PALETTES } from './palettes.js';
  * @import { Device, Look, Theme } from './types.js'
  */
 
-/** Numbers of the record of an end: its position and the radius of its particle. */
+/** Numbers per end: its position and the radius of its particle. */
 export const END = 4;
 
 /**
- * Returns the radii of rows from `first` to `last` as the renderers take them. Of the rows of a particle where patches
- * meet the first is drawn alone, the others are 0; it is a dot, with a negative radius, on a crease and at a tip.
+ * Returns the radii of rows `first` to `last` for the renderers. If a particle has several rows, only the first is
+ * drawn, the others are 0. On a crease or at a tip it is a dot, with a negative radius.
  * @param {Columns} columns @param {number} first @param {number} last
  */
 export function radiiOf({ radii, twins, segments, seams }, first, last) {
@@ -32,7 +32,7 @@ export function radiiOf({ radii, twins, segments, seams }, first, last) {
   });
 }
 
-/** Returns the ends of the pieces of creases as the renderers take them. @param {Columns} columns */
+/** Returns the ends of the crease segments for the renderers. @param {Columns} columns */
 export function endsOf({ segments, positions, radii }) {
   const ends = new Float32Array(END * segments.length);
   segments.forEach((row, k) => {
@@ -44,7 +44,7 @@ export function endsOf({ segments, positions, radii }) {
 
 export class CreaseUpload {
   /**
-   * The segments that the device holds, and the theme of their colours.
+   * The segments on the device, and the theme of their colours.
    * @type {{segments: Uint32Array, theme: Theme}}
    */
   #held;
@@ -60,7 +60,7 @@ export class CreaseUpload {
     this.#held = { segments: new Uint32Array(0), theme: 'light' };
   }
 
-  /** Uploads what has changed. @param {Device['renderer']} renderer @param {Look} look */
+  /** Uploads the changes. @param {Device['renderer']} renderer @param {Look} look */
   write(renderer, { creases, theme }) {
     const { columns } = this;
     const segments = creases ? columns.segments : new Uint32Array(0);

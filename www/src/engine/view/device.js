@@ -1,11 +1,11 @@
 /**
  * Keeps a graphics device open: opens the best one, reopens it after a loss, and falls back to the next kind after
- * repeated losses. Where a program draws in place of a graphics card, the painter is the best: it takes a fraction of
- * the time for nearly the same picture.
+ * repeated losses. If WebGL is software instead of a graphics card, the painter is best: it takes a fraction of the
+ * time for nearly the same picture.
  *
- * Browsers keep some 16 contexts alive on all frames of a page together, and take the oldest one away for the next. A
- * picture out of sight that loses its device therefore does not take another frame's: it is drawn as dots until it is
- * seen again.
+ * Browsers keep about 16 contexts alive across all frames of a page, and take the oldest away for a new one. A picture
+ * out of sight that loses its device therefore does not take another frame's: it is drawn as dots until it is visible
+ * again.
  *
  * @module
  */
@@ -15,7 +15,7 @@ import { BACKENDS, DeviceLost, openDevice } from './backends.js';
 
 /** @import { Device, DeviceOptions } from './types.js' */
 
-/** The rank of the painter. */
+/** The painter's rank. */
 const PAINTER = BACKENDS.indexOf('canvas2d');
 /** Time window in which losses of one kind of device are counted. */
 const WINDOW_MS = 60_000;
@@ -35,17 +35,17 @@ export class DeviceKeeper {
   #rank;
 
   /**
-   * Whether the picture is known to be in sight. The browser tells of it with its first frame. Until then a device that
-   * is lost is not opened again, or the pictures of a page that opens would take the contexts from one another.
+   * Whether the picture is known to be visible. The browser reports it with its first frame. Until then a lost device
+   * is not reopened; otherwise the pictures of an opening page would take contexts from one another.
    */
   #inSight;
 
-  /** Whether dots stand for a device that was lost out of sight. */
+  /** Whether dots replace a device that was lost out of sight. */
   #resting;
 
-  /** What is drawn on until the first device has opened and drawn. @type {Device | null} */
+  /** A substitute to draw on until the first device has opened and drawn. @type {Device | null} */
   #standIn;
-  /** Ends once the stand-in is there, or is not to be. @type {Promise<void> | null} */
+  /** Resolves once the substitute is open, or is not needed. @type {Promise<void> | null} */
   #standing = null;
   #probe;
 
@@ -60,12 +60,12 @@ export class DeviceKeeper {
       now: () => performance.now(),
       wait: (ms) => new Promise((resolve) => setTimeout(resolve, ms)),
     };
-    /** The rank of the kind to begin with; null before the machine was asked. @type {number | null} */
+    /** The rank of the first kind to try; null before the machine was probed. @type {number | null} */
     this.#first = first ? BACKENDS.indexOf(first) : null;
     this.#rank = this.#first ?? 0;
     /** @type {Device | null} */
     this.device = null;
-    /** Counter of device changes, by which late answers are recognised. */
+    /** Counter of device changes, to recognise late answers. */
     this.epoch = 0;
     /** @type {number[]} */
     this.losses = [];
@@ -75,11 +75,11 @@ export class DeviceKeeper {
     this.#resting = false;
     this.#standIn = null;
     this.#probe = probe;
-    /** Rejects the promises that wait for an answer of the device. @type {Set<(error: Error) => void>} */
+    /** Reject functions of the promises that wait for the device. @type {Set<(error: Error) => void>} */
     this.waiting = new Set();
   }
 
-  /** Opens the first working device, starting from the present rank. */
+  /** Opens the first working device, beginning with the current rank. */
   async start() {
     this.epoch += 1;
     const { epoch } = this;
@@ -103,7 +103,7 @@ export class DeviceKeeper {
             if (this.epoch === epoch) this.lost(`${reason}: ${message}`);
           },
           onError: (/** @type {string} */ message) => {
-            // The device reports an error. Reopening the same kind would not help.
+            // The device reports an error; reopening the same kind would not help.
             if (this.epoch === epoch) this.giveUp(message);
           },
         };
@@ -113,7 +113,7 @@ export class DeviceKeeper {
           this.#take(device);
           return;
         }
-        // A device that opens too late is closed again.
+        // A device that opens too late is closed.
         opening.then(
           (late) => late.dispose(),
           () => {},
@@ -138,7 +138,7 @@ export class DeviceKeeper {
     this.#onOpen(device, false);
   }
 
-  /** Draws on a 2-D canvas until the first device is there, whose bundle takes as long to come as the core. */
+  /** Draws on a 2-D canvas until the first device is open; its bundle loads as long as the core. */
   standIn() {
     this.#standing = this.#stand();
     return this.#standing;
@@ -154,14 +154,14 @@ export class DeviceKeeper {
     this.#onOpen(device, true);
   }
 
-  /** Notes that the present device has drawn: what stood for it is no longer seen. */
+  /** Records that the current device has drawn, so that its substitute is no longer seen. */
   drew() {
     if (this.#standIn === this.device) return;
     this.#standIn?.dispose();
     this.#standIn = null;
   }
 
-  /** Draws dots on a 2-D canvas, which needs no context of the graphics device, until the picture is in sight. */
+  /** Draws dots on a 2-D canvas, which needs no graphics context, until the picture is visible. */
   async #rest() {
     this.#resting = true;
     const { epoch } = this;
@@ -171,7 +171,7 @@ export class DeviceKeeper {
   }
 
   /**
-   * Notes whether the picture is in sight. A device that was lost out of sight is opened again.
+   * Records whether the picture is visible. A device that was lost out of sight is opened again.
    * @param {boolean} inSight
    */
   seen(inSight) {
@@ -181,7 +181,7 @@ export class DeviceKeeper {
     void this.start();
   }
 
-  /** Begins anew with the best kind, at the user's request. */
+  /** Starts again with the best kind, at the user's request. */
   retry() {
     this.close();
     this.losses = [];
@@ -199,7 +199,7 @@ export class DeviceKeeper {
   }
 
   /**
-   * Returns what the device answers, unless it is closed before: one that has trapped never answers.
+   * Returns the device's answer, or rejects when the device is closed: a trapped one never answers.
    * @template T @param {Promise<T>} answer @returns {Promise<T>}
    */
   answered(answer) {

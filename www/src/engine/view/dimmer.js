@@ -1,11 +1,10 @@
 /**
- * Computes how far the picture is dimmed. It is dimmed gradually while the surface on the page is not the requested
- * one.
+ * Computes how far the picture is dimmed. It fades gradually while the surface on the page is not the requested one.
  *
  * @module
  */
 
-/** Duration of dimming and of its reversal. */
+/** Duration of the fade in either direction. */
 const DIM_S = 0.15;
 const DIM = 0.62;
 

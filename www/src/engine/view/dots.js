@@ -1,9 +1,9 @@
 /**
  * Draws the centres of a model as dots on the picture.
  *
- * A dot is a pair of discs that face the eye, ink on a casing, of a fixed size on the screen. They follow the particles
- * in the same buffer, so that no back end needs code for them. Because they face the eye, they are rewritten for every
- * frame, which is cheap for the few hundred points of a model.
+ * A dot is a pair of discs that face the eye, ink on a casing, with a fixed size on the screen. They follow the
+ * particles in the same buffer, so that back ends need no code for them. Because they face the eye, they are written
+ * again for every frame, which is cheap for the few hundred points of a model.
  *
  * @module
  */
@@ -15,8 +15,7 @@ import { NO_LEVEL } from '../columns.js';
 const INK_PX = 1.7;
 const CASING_PX = 0.9;
 /**
- * Smallest radius of the ink in canvas pixels. The renderers draw smaller discs as soft points, in which the ink would
- * disappear.
+ * Smallest radius of the ink in canvas pixels. Renderers draw smaller discs as soft points, which would hide the ink.
  */
 const LEAST_INK = 2.4;
 
@@ -43,7 +42,7 @@ export function dotsOf(points, view, { px, size, lift, palette }) {
       [2 * i + 1, inkPx, palette.ink],
     ]) {
       const radius = radiusPx * worldPerPx;
-      // The ink is in front of its casing by more than the resolution of the depth buffer.
+      // The ink lies in front of its casing by more than the resolution of the depth buffer.
       const forth = Math.min(lift + (j & 1 ? radius : 0), 0.5 * distance) / distance;
       for (let k = 0; k < 3; k += 1) {
         positions[3 * j + k] = points[3 * i + k] + toEye[k] * forth;

@@ -1,6 +1,6 @@
 /**
- * Decides how much of a picture is drawn while it moves, by the time that its frames take on this machine. A picture
- * that stands still is whole.
+ * Decides how much of a moving picture is drawn, by the time that frames take on this machine. A still picture is drawn
+ * completely.
  *
  * @module
  */
@@ -8,19 +8,19 @@
 /** @import { BackendKind } from '../types.js' */
 /** @import { Quality } from './types.js' */
 
-/** Time of a painted frame that is aimed at: the rest of 60 ms is the browser's and the sampler's. */
+/** Target time of a painted frame; the browser and the sampler use the rest of 60 ms. */
 const TARGET_MS = 40;
-/** Smallest share of the pixels of a side that is painted. Below it a disc is hardly a disc. */
+/** Smallest share of the pixels along a side that is painted; with fewer, discs are hard to recognise. */
 const LEAST_SHARE = 0.4;
-/** Most particles in whose place one is painted. */
+/** Most particles that one painted particle may stand for. */
 const MOST_STRIDE = 64;
-/** Frames by which a graphics card is judged, after the first, and the median time above which it is slow. */
+/** Frames by which a graphics card is judged, after the first one, and the median time above which it is slow. */
 const JUDGED = 10;
 const SLOW_MS = 50;
 
 /** @type {Quality} */
 export const WHOLE = { share: 1, body: true, stride: 1 };
-/** What a slow graphics card draws of a picture that moves. @type {Quality} */
+/** How a slow graphics card draws a moving picture. @type {Quality} */
 const LIGHT = { share: 0.5, body: false, stride: 1 };
 
 /** @param {number[]} values */
@@ -30,11 +30,11 @@ export class Effort {
   #isPainted = false;
   #share = 1;
   #stride = 1;
-  /** Times of the frames of a card that is not judged yet; null afterwards. @type {number[] | null} */
+  /** Frame times of a card that is not judged yet; null afterwards. @type {number[] | null} */
   #times = null;
   #isSlow = false;
 
-  /** Begins anew with a device. @param {BackendKind} kind @param {number} ratio  canvas pixels per page pixel */
+  /** Starts with a device. @param {BackendKind} kind @param {number} ratio canvas pixels per page pixel */
   begin(kind, ratio) {
     this.#isPainted = kind === 'canvas2d';
     this.#share = 1 / Math.max(1, ratio);
@@ -43,20 +43,20 @@ export class Effort {
     this.#isSlow = false;
   }
 
-  /** Whether a picture that moves may be less than whole. */
+  /** Whether a moving picture may be drawn incompletely. */
   get isReduced() {
     return this.#isPainted || this.#isSlow;
   }
 
-  /** What is drawn of a picture that moves, or that stands still. @param {boolean} isMoving @returns {Quality} */
+  /** How a moving or a still picture is drawn. @param {boolean} isMoving @returns {Quality} */
   of(isMoving) {
     if (!isMoving || !this.isReduced) return WHOLE;
     return this.#isPainted ? { share: this.#share, body: true, stride: this.#stride } : LIGHT;
   }
 
   /**
-   * Notes how long a frame that moved has taken to be painted. Its time goes with its pixels, and where even the
-   * fewest take too long, with its particles.
+   * Records the painting time of a moving frame. The time depends on the pixels and, if even the fewest take too long,
+   * on the particles.
    * @param {number} ms
    */
   painted(ms) {
@@ -70,7 +70,7 @@ export class Effort {
     }
   }
 
-  /** Notes the time between two frames of a motion in sight, by which a card is judged once. @param {number} ms */
+  /** Records the time between two visible moving frames; a card is judged by these once. @param {number} ms */
   passed(ms) {
     if (!this.#times) return;
     this.#times.push(ms);

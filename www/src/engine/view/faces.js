@@ -1,6 +1,6 @@
 /**
- * Uploads a mesh to the graphics device: its faces, each with what it needs of its three corners, their colours, and
- * marks on the vertices that do not have six neighbours.
+ * Uploads a mesh to the graphics device: faces with the data of their three corners, their colours, and marks on
+ * vertices that do not have six neighbours.
  *
  * @module
  */
@@ -19,13 +19,13 @@ import { PALETTES } from './palettes.js';
 const SLICE = 65_536;
 
 /**
- * Returns the number of neighbours of every vertex inside the mesh, 0 for others.
+ * Returns the number of neighbours of every vertex inside the mesh; 0 for others.
  * @param {Uint32Array} triangles @param {number} count  of vertices
  */
 export function valencesOf(triangles, count) {
   const valence = new Uint8Array(count);
-  // Inside the mesh every neighbour follows the vertex in one triangle and precedes it in another, so that the sum of
-  // the followers less that of the predecessors is 0. At a border the first and the last one remain.
+  // Inside the mesh every neighbour follows the vertex in one triangle and precedes it in another, so the sum of
+  // followers minus the sum of predecessors is 0. At a border the first and the last neighbour remain.
   const rest = new Int32Array(count);
   for (let i = 0; i < triangles.length; i += 3) {
     for (let k = 0; k < 3; k += 1) {
@@ -39,7 +39,7 @@ export function valencesOf(triangles, count) {
 }
 
 /**
- * Returns the colour of the mark on every vertex, as in the colouring by neighbours; 0 for none.
+ * Returns the colour of the mark on every vertex, as in the colouring by neighbours; 0 for no mark.
  * @param {Uint32Array} triangles @param {number} count @param {Theme} theme
  */
 export function marksOf(triangles, count, theme) {
@@ -65,10 +65,10 @@ function gather(column, width, corners) {
 }
 
 export class FaceUpload {
-  /** The mesh that the device holds. @type {Mesh | null} */
+  /** The mesh on the device. @type {Mesh | null} */
   #mesh;
 
-  /** Whether colours may have changed since they were uploaded. */
+  /** Whether colours may have changed since their upload. */
   #faded;
 
   /** Number of uploads. */
@@ -92,7 +92,7 @@ export class FaceUpload {
   }
 
   /**
-   * Uploads what has changed.
+   * Uploads the changes.
    * @param {Renderer | Painter} renderer
    * @param {Look} look
    * @param {{drawn: boolean, range: [number, number] | null}} present  whether faces are drawn now, and the ends of the
@@ -128,7 +128,7 @@ export class FaceUpload {
 }
 
 /**
- * Returns whether a device can draw a mesh over all particles.
+ * Whether a device can draw a mesh over all particles.
  * @param {Renderer | Painter} renderer
  * @param {Mesh} mesh
  * @param {Columns} columns

@@ -9,17 +9,16 @@ import { axes } from './camera.js';
 
 /** @import { Angles } from '../types.js' */
 
-/** Yaws that are compared, over half a turn: from the other side the outline is the same. */
+/** Yaws that are compared, over half a turn; the outline is the same from the opposite side. */
 const YAWS = 12;
-/** Cells of the picture along each side, in which the outline is measured, and the most particles looked at. */
+/** Cells along each side of the picture in which the outline is measured, and the most particles to be used. */
 const CELLS = 24;
 const MOST_SEEN = 20_000;
-/** Times by which another outline must be larger to be worth a turn. */
+/** Another outline must be this many times larger to be worth a rotation. */
 const WORTH_A_TURN = 1.1;
 
 /**
- * Returns the yaw from which the outline of the particles has the largest area, or the present one if that is nearly as
- * good.
+ * Returns the yaw from which the outline of the particles is largest, or the current one if that is nearly as good.
  * @param {Angles} camera
  * @param {{positions: ArrayLike<number>, count: number}} particles
  * @param {import('./types.js').Ball} ball  around them
@@ -38,7 +37,7 @@ export function widestYaw({ yaw, pitch }, { positions, count }, { centre, radius
   };
   let best = { yaw, area: WORTH_A_TURN * area(yaw) };
   for (let k = 1; k < YAWS; k += 1) {
-    // The nearest ones first, to either side in turn.
+    // The nearest yaws first, on alternate sides.
     const turned = yaw + ((k % 2 ? 1 : -1) * Math.ceil(k / 2) * Math.PI) / YAWS;
     const seen = area(turned);
     if (seen > best.area) best = { yaw: turned, area: seen };
@@ -48,7 +47,7 @@ export function widestYaw({ yaw, pitch }, { positions, count }, { centre, radius
 
 /** Cosine of the angle to the normal below which a point counts as hidden. */
 const FACING = 0.3;
-/** Largest pitch. From straight above or below, the up direction would be unclear. */
+/** Largest pitch; from straight above or below the up direction would be unclear. */
 const STEEPEST_RAD = 0.9;
 
 /**
@@ -64,7 +63,7 @@ export function facing({ yaw, pitch }, [x, y, z]) {
 /**
  * Returns the camera angles that face a normal.
  * @param {Iterable<number>} normal  of length 1
- * @param {number} [yaw]  present one: the rotation takes the shorter way, and from straight above none
+ * @param {number} [yaw]  the current one: the rotation takes the shorter way, and none from straight above
  * @returns {Angles}
  */
 export function anglesOf([x, y, z], yaw = 0) {

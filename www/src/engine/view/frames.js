@@ -1,15 +1,15 @@
 /**
- * Schedules frames: on demand, at most one per frame of the browser, and none while the picture is out of sight.
+ * Schedules frames: on demand, at most one per browser frame, and none while the picture is out of sight.
  *
  * @module
  */
 
 /** @import { FrameResult } from './types.js' */
 
-/** Delay before a frame that the screen did not accept is drawn again, and the largest number of such attempts. */
+/** Delay before a frame that the screen did not accept is drawn again, and the most such attempts. */
 const RETRY_MS = 60;
 const MOST_SKIPS = 20;
-/** Largest time step. It prevents a jump in the first frame after a pause. */
+/** Largest time step; prevents a jump in the first frame after a pause. */
 const LONGEST_STEP_S = 1 / 20;
 
 /** Returns the time for all animations, in seconds. */
@@ -26,10 +26,10 @@ export class FrameLoop {
   #retry;
   #onVisible;
 
-  /** Whether the picture is in sight, as far as is known. */
+  /** Whether the picture is visible, as far as is known. */
   #isSeen = true;
 
-  /** Whether the last frame was a part of one, and whether another was asked for since the first part. */
+  /** Whether the last frame was partial, and whether another was requested since its first part. */
   #isPart = false;
   #isLate = false;
 
@@ -45,7 +45,7 @@ export class FrameLoop {
     this.#retry = undefined;
     /** Callbacks to run after the next frame. @type {(() => void)[]} */
     this.waiting = [];
-    // On some systems a tab loses its picture while it is hidden.
+    // On some systems a hidden tab loses its picture.
     this.#onVisible = () => {
       if (this.isHidden) this.#flush();
       else this.ask();
@@ -53,13 +53,13 @@ export class FrameLoop {
     document.addEventListener('visibilitychange', this.#onVisible);
   }
 
-  /** Requests a frame. What changes while one is drawn in parts is seen in the next. */
+  /** Requests a frame. Changes during a partial frame appear in the next frame. */
   ask() {
     this.#isLate ||= this.#isPart;
     this.#request();
   }
 
-  /** Whether nobody sees the picture: its tab is hidden, or it is in another part of the page. */
+  /** Whether the picture is out of sight: its tab is hidden, or another part of the page is shown. */
   get isHidden() {
     return document.hidden || !this.#isSeen;
   }
@@ -93,7 +93,7 @@ export class FrameLoop {
     const step = Math.min(now - this.#lastS, LONGEST_STEP_S);
     this.#lastS = now;
     const result = this.#draw(now, step);
-    // Who waits for the frame waits for the whole of it.
+    // Callbacks wait for the complete frame.
     this.#isPart = result === 'part';
     if (this.#isPart) return this.#request();
     if (this.#isLate) this.#request();

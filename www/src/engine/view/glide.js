@@ -1,12 +1,11 @@
 /**
- * Animates particles from the positions last drawn to the present ones, so that a relaxation step
- * appears as a motion.
+ * Animates particles from the positions last drawn to the current ones, so that a relaxation step appears as motion.
  *
  * @module
  */
 import { MOST_STEPPED } from '../constants.js';
 
-/** Duration of the motion: long enough to be seen, and shorter than the usual interval between relaxation steps. */
+/** Duration of the animation: long enough to be seen, but shorter than the usual interval between relaxation steps. */
 const GLIDE_S = 0.1;
 
 export class Glide {
@@ -23,13 +22,13 @@ export class Glide {
     this.active = false;
   }
 
-  /** Drops the positions, because another surface follows. */
+  /** Forgets the positions, because another surface follows. */
   forget() {
     this.count = 0;
     this.active = false;
   }
 
-  /** Starts a motion of particles that are already drawn. @param {number} nowS */
+  /** Starts an animation of particles that are already drawn. @param {number} nowS */
   begin(nowS) {
     this.#from = this.#shown.slice(0, 3 * this.count);
     this.#startS = nowS;
@@ -37,7 +36,7 @@ export class Glide {
   }
 
   /**
-   * Returns the positions at which the particles are drawn at this time.
+   * Returns the positions of the particles at this time.
    * @param {Float32Array} positions  the present positions
    * @param {number} count
    * @param {number} nowS

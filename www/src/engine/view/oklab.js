@@ -43,7 +43,7 @@ export function oklabFromLinear([r, g, b]) {
   ];
 }
 
-/** Returns whether a linear colour is in the sRGB gamut, to half a byte. @param {Triple} rgb */
+/** Whether a linear colour is in the sRGB gamut, to half a byte. @param {Triple} rgb */
 const inGamut = (rgb) => rgb.every((v) => v >= -0.0015 && v <= 1.0015);
 
 /**

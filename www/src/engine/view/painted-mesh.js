@@ -1,5 +1,5 @@
 /**
- * The faces of a mesh, painted: with their edges and the marks on their vertices, as shaders/faces.wgsl does.
+ * Paints the faces of a mesh, with their edges and the marks on vertices, like shaders/faces.wgsl.
  *
  * @module
  */
@@ -16,11 +16,11 @@ const MARK_RADIUS = 0.36;
 const MARK_LEAST_PX = 2;
 const MARK_MOST = 0.9;
 const MARK_CASING_PX = 1;
-/** Radius of marks in page pixels from which on they have a casing. */
+/** Marks with a larger radius, in page pixels, have a casing. */
 const MARK_CASED_PX = 3.5;
-/** Radii by which a mark is drawn nearer to the eye than its vertex, so that no face cuts it. */
+/** Distance, in radii, by which a mark is moved towards the eye, so that no face cuts it. */
 const MARK_LIFT = 0.25;
-/** Share by which a surface of earlier levels fades to the ground, as in src/render/style.rs. */
+/** Share by which faces of earlier levels fade to the background, as in src/render/style.rs. */
 const MUTE = 0.35;
 
 const NORMAL = new Float64Array(3);
@@ -33,7 +33,7 @@ const HEIGHTS = new Float64Array(3);
 const DRAWN = new Float64Array(3);
 
 export class PaintedMesh {
-  /** Number of faces, and of the particles for which they stand. */
+  /** Number of faces, and of the particles that they replace. */
   count = 0;
   particles = 0;
 
@@ -45,7 +45,7 @@ export class PaintedMesh {
   #marks = new Uint32Array(0);
 
   /**
-   * Writes faces from `first` on: three corners of each, counter-clockwise seen from outside.
+   * Writes faces from `first` on, each with three corners, counter-clockwise seen from outside.
    * @param {number} first @param {CornerColumns} corners @param {Uint32Array} colours @param {Uint32Array} marks
    */
   write(first, { positions, normals, radii, levels }, colours, marks) {
@@ -84,7 +84,7 @@ export class PaintedMesh {
     this.#marks = new Uint32Array(0);
   }
 
-  /** The newest level of the corners of a face; `NO_LEVEL` where none has one. @param {number} face */
+  /** The newest level among the corners of a face; `NO_LEVEL` if no corner has one. @param {number} face */
   #level(face) {
     let newest = -1;
     for (let k = 3 * face; k < 3 * face + 3; k += 1)
@@ -93,7 +93,7 @@ export class PaintedMesh {
   }
 
   /**
-   * Writes the corners of a face on the screen. Returns whether it is drawn at all.
+   * Computes the screen positions of a face's corners. Returns whether the face is drawn at all.
    * @param {number} face @param {PaintedScene} scene @param {Float32Array} m  view @param {Style} style
    */
   #place(face, { target: { width, height } }, m, { plane = null }) {
@@ -127,7 +127,7 @@ export class PaintedMesh {
     const isOlder = style.level !== null && style.level !== undefined && level !== NO_LEVEL && level < style.level;
     const away = isOlder ? Math.max(style.dim, MUTE) : style.dim;
     const area = (X[1] - X[0]) * (Y[2] - Y[0]) - (X[2] - X[0]) * (Y[1] - Y[0]);
-    // Screen coordinates go down, so a face seen from outside is clockwise in them.
+    // Screen coordinates point down, so a face seen from outside is clockwise in them.
     const isBehind = area > 0;
     const behind = isBehind ? style.dim_backfaces : 0;
     const inkPx = edge_px * ratio;
@@ -171,7 +171,7 @@ export class PaintedMesh {
   }
 
   /**
-   * Writes the light on a corner of a face, or on all of it, and its normal, turned to the eye.
+   * Writes the light at a corner of a face, or on the whole face, and its normal, turned towards the eye.
    * @param {number} face @param {number} k  the corner; −1 for the face itself
    * @param {boolean} isBehind @param {PaintedScene} scene @param {Float32Array} m @param {Style} style
    */

@@ -1,11 +1,11 @@
 /**
- * Draws the surface on a 2-D canvas without a graphics API, where there is no graphics card or none that is ready. Each
- * disc is an ellipse on the screen, filled pixel by pixel with the depth of its plane; spheres and the faces of a mesh
- * are filled likewise. Creases and the clip box are lines one pixel wide. A picture of several samples is painted as
- * often, each time moved by a part of a pixel, and shows their mean, which smooths all edges. The picture is like that
- * of a graphics card, but without domes, fading in, shade of a surface on itself, and an edge of the body at the box.
+ * Draws the surface on a 2-D canvas without a graphics API, if there is no graphics card or none is ready. Each disc is
+ * an ellipse on the screen, filled pixel by pixel with the depth of its plane; spheres and faces are filled in the same
+ * way. Creases and the clip box are lines one pixel wide. A picture with several samples is painted several times, each
+ * time shifted by a fraction of a pixel, and shows their mean, which smooths all edges. Compared with a graphics card
+ * it lacks domes, fading in, ambient occlusion, and the body's edge at the box.
  *
- * The class has the methods of the WebAssembly renderers, so that the viewer treats them alike.
+ * The class has the methods of the WebAssembly renderers, so that the viewer can treat them alike.
  *
  * @module
  */
@@ -24,23 +24,23 @@ import { COLOUR, LIGHT, LINEAR, lightOn, lit, packed, rimOn, smoothstep, takeCol
  * @import { PaintedDisc, PaintedScene, Pass, Style, Target } from './types.js'
  */
 
-/** Radius of the dot of a particle on a crease, as a share of that of a disc. */
+/** Radius of a dot for a particle on a crease, as a share of a disc's radius. */
 const DOT = 0.5;
-/** Distance in radii by which a crease is drawn nearer to the eye, as in shaders/lines.wgsl. */
+/** Distance, in radii, by which a crease is moved towards the eye, as in shaders/lines.wgsl. */
 const CREASE_LIFT = 0.3;
 
 /**
- * Work of one call of {@link Painter.draw}, in pixels that are looked at: some 20 ms, so that a press is answered
- * between two. What is done once for a disc or a face takes as long as so many pixels.
+ * Work of one call of {@link Painter.draw}, in visited pixels: about 20 ms, so that a press is answered between calls.
+ * The fixed work for a disc or a face counts as `WORK_OF_ONE` pixels.
  */
 export const MOST_WORK = 2.5e6;
 const WORK_OF_ONE = 20;
 
 /** Radius on the screen above which a disc has a darker rim. */
 const RIM_FROM_PX = 4;
-/** Light that the rim loses. */
+/** Light that a rim loses. */
 const RIM_SHADE = 0.14;
-/** Share by which discs of earlier levels fade towards the background, as in src/render/style.rs. */
+/** Share by which discs of earlier levels fade to the background, as in src/render/style.rs. */
 const MUTE = 0.35;
 // As in shaders/discs.wgsl.
 const BED_RADIUS = 1.75;
@@ -53,16 +53,15 @@ const TO_COME = 0.72;
 const TO_COME_BEHIND = 0.2;
 const LEAST_BED_PX = 0.8;
 /**
- * Cosine of the viewing angle below which a bed is so small that it needs no more depth along the
- * line of sight.
+ * Cosine of the viewing angle below which a bed is so small that it needs no extra depth along the line of sight.
  */
 const LEAST_FACING = 0.5;
-/** SWELL_PX there. */
+/** SWELL_PX in that shader. */
 const GAPS_PX = /** @type {const} */ ([0.8, 2.4]);
 
 /**
- * Returns the unit axes of the eye and the screen displacement of a unit step to the right. The rows of clip_from_world
- * give them up to scale and up to the component along the view that shifts the picture.
+ * Returns the unit axes of the eye, and the screen displacement of a unit step to the right. The rows of
+ * clip_from_world give them up to scale and up to the component along the view, which shifts the picture.
  * @param {Float32Array} m  a packed view
  */
 function eyeAxes(m) {
@@ -79,15 +78,15 @@ function eyeAxes(m) {
 }
 
 /**
- * Returns the view of an eye far away in the place of one with parallel rays, whose divisor w is 1 everywhere and so
- * tells no depth. Other views are returned as they are.
+ * Replaces a view with parallel rays, whose divisor w is 1 everywhere and carries no depth, by the view of a distant
+ * eye. Returns other views unchanged.
  * @param {Float32Array} m  a packed view
  */
 function seenFromFar(m) {
   if (m[3] !== 0 || m[7] !== 0 || m[11] !== 0) return m;
   const eye = m.subarray(16, 19);
   const forward = m.subarray(19, 22);
-  // Clip coordinates have the depth 0 at the near plane, 1 at the far plane, and it is linear between them.
+  // In clip coordinates the depth is 0 at the near plane, 1 at the far plane, and linear between them.
   const depthAtEye = m[2] * eye[0] + m[6] * eye[1] + m[10] * eye[2] + m[14];
   const middle = (0.5 - depthAtEye) / Math.hypot(m[2], m[6], m[10]);
   const far = m.map((value, k) => (k < 16 && k % 4 < 2 ? middle * value : value));
@@ -96,12 +95,12 @@ function seenFromFar(m) {
   return far;
 }
 
-// As in shade.js, what is found of a disc is written to the same places every time.
+// As in shade.js, the results for a disc are always written to the same arrays.
 const PLACE = new Float64Array(3);
 const NORMAL = new Float64Array(3);
 
 /**
- * Returns a view that shows a picture of this size moved by a part of a pixel.
+ * Returns a view that shifts a picture of this size by a fraction of a pixel.
  * @param {Float32Array} view @param {readonly [number, number]} by @param {number} width @param {number} height
  */
 function moved(view, [x, y], width, height) {
@@ -117,13 +116,13 @@ export class Painter {
   #canvas;
 
   /**
-   * By how many radii the bed of each particle lies farther behind than usual; null where particles
-   * are so small that the usual depth is enough.
+   * How many radii the bed of each particle lies behind its usual depth; null if particles are so small that the usual
+   * depth is enough.
    * @type {Float32Array | null}
    */
   bedDepths;
 
-  /** Numbers of discs, and of particles of the body. */
+  /** Number of discs, and of particles in the body. */
   #count;
   #body;
 
@@ -135,13 +134,13 @@ export class Painter {
   #image;
   #depth;
 
-  /** The picture that is painted over several calls, null between two. @type {Pass | null} */
+  /** The picture that is being painted over several calls; else null. @type {Pass | null} */
   #pass;
 
   #mesh;
   #samples;
 
-  /** The view of the sample that is being painted. */
+  /** The view of the current sample. */
   #seen;
 
   /** @param {HTMLCanvasElement} canvas */
@@ -164,7 +163,7 @@ export class Painter {
     this.levels = new Uint32Array(0);
     this.colours = new Uint32Array(0);
     this.#births = new Float64Array(0);
-    /** The ends of the pieces of creases, as `endsOf` returns them, and the colour of each piece. */
+    /** The ends of the crease segments, as `endsOf` returns them, and the colour of each segment. */
     this.ends = new Float32Array(0);
     this.lineColours = new Uint32Array(0);
     /** @type {Float32Array} */
@@ -184,9 +183,9 @@ export class Painter {
     this.#mesh = new PaintedMesh();
     this.#samples = new Samples();
     this.#seen = this.view;
-    /** Work of all pictures so far, in pixels. */
+    /** Work for all pictures so far, in pixels. */
     this.work = 0;
-    /** Number of samples of a picture, 1 or all; one of so many particles is drawn, larger, in place of all. */
+    /** Samples per picture, 1 or all; and the stride: one of this many particles is drawn, enlarged. */
     this.samples = 1;
     this.stride = 1;
     this.width = 0;
@@ -278,9 +277,9 @@ export class Painter {
   }
 
   /**
-   * Paints a picture, or a part of it: then it returns 'part', and the next calls go on with it. What is painted must
-   * not change before the last one.
-   * @param {number} timeS @param {boolean} [transparent]  leaves the ground out @param {number} [most]  work
+   * Paints a picture or a part of it. After a part it returns 'part', and the next calls continue it. The painted data
+   * must not change before the last call.
+   * @param {number} timeS @param {boolean} [transparent]  leaves the background out @param {number} [most]  work
    */
   draw(timeS, transparent = false, most = MOST_WORK) {
     const { width, height } = this;
@@ -292,7 +291,7 @@ export class Painter {
     this.#pass ??= this.#begin(this.#image, this.#depth, { transparent, timeS, samples: this.samples });
     if (!this.#advance(this.#pass, most)) return 'part';
     this.#pass = null;
-    // A canvas that changes its size loses its picture, so it does only with the next one.
+    // Resizing a canvas erases its picture, so the size changes only with the next picture.
     if (this.#canvas.width !== width || this.#canvas.height !== height) Object.assign(this.#canvas, { width, height });
     this.context.putImageData(this.#image, 0, 0);
     return 'drawn';
@@ -319,13 +318,13 @@ export class Painter {
     const image = new ImageData(widthPx, heightPx);
     const [onScreen, { stride }] = [this.view.slice(), this];
     this.stride = 1;
-    // A picture of another aspect ratio keeps everything that the canvas shows, without distortion.
+    // A picture with another aspect ratio keeps everything that the canvas shows, without distortion.
     const wider = widthPx / heightPx / (Math.max(1, this.width) / Math.max(1, this.height));
     for (let k = 0; k < 4; k += 1) {
       if (wider > 1) this.view[4 * k] /= wider;
       else this.view[4 * k + 1] *= wider;
     }
-    // One that is being painted for the screen begins anew: its view and style have changed.
+    // A picture being painted for the screen starts again, since its view and style have changed.
     this.#pass = null;
     const how = { transparent, timeS: Infinity, samples: PLACES.length };
     this.#advance(this.#begin(image, new Float32Array(widthPx * heightPx), how), Infinity);
@@ -381,7 +380,7 @@ export class Painter {
   #sampled({ target, ground, value, sample, samples }) {
     const { width, height } = target;
     target.out.fill(value);
-    // The depth buffer holds 1/w, which is linear in screen coordinates on a plane. Larger values are nearer.
+    // The depth buffer holds 1/w, which is linear in screen coordinates on a plane; larger values are nearer.
     target.depth.fill(0);
     this.#seen = samples > 1 ? moved(this.view, PLACES[sample], width, height) : this.view;
     const axes = eyeAxes(this.#seen);
@@ -394,7 +393,7 @@ export class Painter {
     return this.#style.spheres ? { ...scene, lights: this.#lightsOf(scene) } : scene;
   }
 
-  /** Returns the light on a ball, as {@link fillBall} takes it. @param {PaintedScene} scene */
+  /** Returns the light on a ball for {@link fillBall}. @param {PaintedScene} scene */
   #lightsOf({ axes: { right, up, forward }, key, rim }) {
     const lights = new Float32Array(3 * BALL_SIDE * BALL_SIDE);
     const along = (/** @type {number[]} */ axis) => dot(key, axis);
@@ -408,7 +407,7 @@ export class Painter {
   }
 
   /**
-   * Goes on with a picture: in each sample come the faces, the body, the particles, and after the last one the lines.
+   * Continues a picture: in each sample the faces, the body, the particles; after the last sample the lines.
    * @param {Pass} pass @param {number} most  work
    * @returns whether the picture is complete
    */
@@ -448,7 +447,7 @@ export class Painter {
     }
   }
 
-  /** Returns a position as {@link paintLine} takes it. @param {ArrayLike<number>} p */
+  /** Returns a position for {@link paintLine}. @param {ArrayLike<number>} p */
   #clip(p) {
     const m = this.#seen;
     return [0, 1, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
@@ -470,7 +469,7 @@ export class Painter {
       });
       const [p, q] = places;
       if (!(p[2] > 1e-9 && q[2] > 1e-9)) continue;
-      // Two parts for each pixel, but no more than the box has, where an end is close to the eye.
+      // Two parts per pixel, but if an end is close to the eye no more than the picture can show.
       const most = 2 * Math.max(target.width, target.height);
       const share = 0.5 * Math.max(...[0, 1].map((r) => Math.abs(p[r] / p[2] - q[r] / q[2])));
       const steps = Math.ceil(most * Math.min(1, share)) || 1;
@@ -482,7 +481,7 @@ export class Painter {
   }
 
   /**
-   * Returns where a place is in the picture; null behind the eye.
+   * Returns the position of a point in the picture; null behind the eye.
    * @param {number} x @param {number} y @param {number} z @param {PaintedScene} scene
    */
   #project(x, y, z, { target: { width, height }, axes }) {
@@ -494,7 +493,7 @@ export class Painter {
     return { sx, sy, w, pxPerWorld: (axes.clipXPerWorld * 0.5 * width) / w };
   }
 
-  /** Turns NORMAL to the eye, and returns its cosine with the way there, negative if it was turned round. */
+  /** Turns NORMAL towards the eye. Returns the cosine between them, negative if NORMAL was reversed. */
   #face() {
     const m = this.#seen;
     const x = m[16] - PLACE[0];
@@ -523,7 +522,7 @@ export class Painter {
     return level !== null && this.levels[i] < level ? Math.max(dim, MUTE) : dim;
   }
 
-  /** Writes PLACE and NORMAL of a particle. Returns whether the cutting plane leaves it. @param {number} i */
+  /** Writes PLACE and NORMAL of a particle. Returns whether the cutting plane keeps it. @param {number} i */
   #take(i) {
     const { positions: p, normals: n } = this;
     const { plane } = this.#style;
@@ -536,7 +535,7 @@ export class Painter {
   }
 
   /**
-   * Draws a particle's part of the body, as `bed_vertex` in shaders/discs.wgsl describes it.
+   * Draws a particle's part of the body, as `bed_vertex` in shaders/discs.wgsl does.
    * @param {number} i @param {PaintedScene} scene
    */
   #paintBed(i, scene) {
@@ -559,7 +558,7 @@ export class Painter {
     const px = at.pxPerWorld * share * radius;
     if (isHidden(scene.target, at, px, near)) return 0;
     this.#light(facing, scene);
-    // As in the shader, it has the colour of its disc where the gaps fall between pixels.
+    // As in the shader, a bed has its disc's colour if the gaps fall between pixels.
     const hasGaps = isToCome ? 1 : smoothstep(GAPS_PX, at.pxPerWorld * radius * Math.abs(facing));
     const colour = this.colours[i];
     for (let k = 0; k < 3; k += 1) {
@@ -572,20 +571,20 @@ export class Painter {
   }
 
   /**
-   * Draws a particle, unless the style hides it or it is out of sight.
+   * Draws a particle, unless the style hides it or it lies outside the picture.
    * @param {number} i @param {PaintedScene} scene
    */
   #paintDisc(i, scene) {
     const { dim_backfaces, disc_scale, outline } = this.#style;
     const { axes, ground } = scene;
     if (!this.#isShown(i) || !this.#take(i)) return 0;
-    // A negative radius is that of a dot that faces the eye, as in shaders/discs.wgsl.
+    // A negative radius means a dot that faces the eye, as in shaders/discs.wgsl.
     const isBall = scene.lights !== null && this.levels[i] !== NO_LEVEL;
     const isDot = this.radii[i] < 0 && !isBall;
     const radius = Math.abs(this.radii[i]) * disc_scale * scene.swell * (isDot ? DOT : 1);
     const at = this.#project(PLACE[0], PLACE[1], PLACE[2], scene);
     if (!at || radius === 0) return 0;
-    // A dot is drawn nearer to the eye by its radius, so that the discs beside it do not cut it.
+    // A dot is moved towards the eye by its radius, so that neighbouring discs do not cut it.
     const near = 1 / (isDot ? at.w - radius : at.w);
     const px = at.pxPerWorld * radius;
     if (isHidden(scene.target, at, px, near)) return 0;
@@ -618,7 +617,7 @@ export class Painter {
   }
 
   /**
-   * Fills a disc that is not hidden in its plane, to which NORMAL is normal.
+   * Fills a visible disc in its plane, whose normal is NORMAL.
    * @param {PaintedScene} scene
    * @param {{at: {sx: number, sy: number, w: number, pxPerWorld: number}} & Pick<PaintedDisc, 'px' | 'near' | 'value' |
    *   'rim' | 'coreSq'>} disc
@@ -634,14 +633,14 @@ export class Painter {
     // order in the size of the disc, it is the ellipse dx² + dy² + dz² ≤ px² with dz = −(a·dx + b·dy)/c.
     const a = dot(NORMAL, axes.right);
     const b = -dot(NORMAL, axes.up);
-    // Seen edge on, a disc keeps a width of at least a twelfth of its length, so that it never vanishes.
+    // Seen edge on, a disc keeps a twelfth of its length as width, so that it never vanishes.
     const c = Math.max(1 / 12, -dot(NORMAL, axes.forward));
     const depthPerPx = 1 / (pxPerWorld * w * w);
     return fillDisc(target, { sx, sy, px, ka: a / c, kb: b / c, near, depthPerPx, value, rim, coreSq });
   }
 
   /**
-   * Draws the twelve edges of the clip box, one pixel wide, where no disc hides them.
+   * Draws the twelve edges of the clip box, one pixel wide, except where discs hide them.
    * @param {Target} target @param {NonNullable<Style['box']>} box
    */
   #paintBox(target, box) {

@@ -8,17 +8,16 @@ import { oklch, packedFromOklab } from './oklab.js';
 
 /** @import { Palette, Theme } from './types.js' */
 
-/** Number of levels from one light ring to the next. */
+/** Number of levels between two light rings. */
 export const RING = 8;
 /**
- * Exponents of the way from blue to sand. Around a seed most particles are on later levels; from
- * creases, where rings begin everywhere, on early ones. So the middle of the surface is teal either
- * way.
+ * Exponents for the way from blue to sand. Around a seed most particles are on later levels; with creases, where rings
+ * begin everywhere, on early ones. So the middle of the surface is teal in both cases.
  */
 const WAY = { seed: 1.4, creases: 0.7 };
 /**
- * Lightness, chroma and hue in degrees at the seed, and how they change: lightness and chroma up to
- * a ring, hue up to the last level. Rings differ by lightness, which every kind of sight has.
+ * Lightness, chroma and hue in degrees at the seed, and their changes: lightness and chroma within a ring, hue up to
+ * the last level. Rings differ in lightness, which every kind of vision distinguishes.
  * @type {Record<Theme, {L: [number, number], C: [number, number], h: [number, number]}>}
  */
 const SEA = {
@@ -27,9 +26,8 @@ const SEA = {
 };
 
 /**
- * Returns what gives the colours of the levels 0 to `last`: blue where the rings begin, then teal,
- * green and sand at the end, with a soft light ring every {@link RING} levels. The table asked for
- * last is kept.
+ * Returns a function for the colours of the levels 0 to `last`: blue where the rings begin, then teal, green and sand
+ * at the end, with a soft light ring every {@link RING} levels. It keeps the last table.
  * @param {Theme} theme
  */
 function seaOf(theme) {
@@ -159,10 +157,9 @@ function palette(theme) {
       front: packedFromOklab(oklch(light ? 0.52 : 0.58, 0.16, 310)),
     },
     plain: packedFromOklab(oklch(light ? 0.78 : 0.74, 0.025, 235)),
-    // The body beneath the discs: darker than they are, and so grey that it is no colour of the
-    // data.
+    // The body beneath the discs: darker than the discs, and so grey that it does not look like a colour of the data.
     body: packedFromOklab(light ? oklch(0.71, 0.025, 240) : oklch(0.5, 0.03, 245)),
-    // Share of the ambient occlusion. All of it looks sooty on a light ground.
+    // Share of the ambient occlusion; with all of it a light picture looks sooty.
     occlusion: light ? 0.65 : 0.8,
     // The background is nearly neutral and equals that of the page.
     ground: packedFromOklab(oklch(light ? 0.975 : 0.185, light ? 0.002 : 0.006, 260)),

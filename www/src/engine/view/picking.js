@@ -1,6 +1,6 @@
 /**
  * Finds the particle under a point of the picture by intersecting a ray with every disc or sphere on the CPU. For
- * 200,000 particles this is one pass over two columns, about a millisecond, and no id buffer has to be drawn and read
+ * 200,000 particles this is one pass over two columns, about a millisecond, and needs no id buffer to be drawn and read
  * back.
  *
  * @module
@@ -13,16 +13,15 @@
 
 /**
  * Disc radius, relative to the particle's, at which three discs of a hexagonal packing meet in the gap between them.
- * Within it, a gap belongs to the nearest of them, not to a disc on the far side that is visible through it.
+ * Within it, a gap belongs to the nearest disc, not to a disc on the far side that is visible through the gap.
  */
 const GAP = 2 / Math.sqrt(3);
 /** Disc scale below which gaps are transparent, because the user wants to see through them. */
 const DENSE = 0.8;
 
 /**
- * Returns the index of the nearest disc that the ray meets; in a gap between dense discs, the nearest of them;
- * otherwise, for discs too small to hit, the particle nearest to the ray within the angle `toleranceRad`. It is null if
- * there is none.
+ * Returns the index of the nearest disc on the ray; in a gap between dense discs, the nearest of them; for discs too
+ * small to hit, the particle nearest to the ray within the angle `toleranceRad`; else null.
  * @param {Columns} columns @param {Ray} ray @param {PickOptions} options
  */
 export function pick(columns, { eye, direction }, options) {
@@ -55,7 +54,7 @@ export function pick(columns, { eye, direction }, options) {
     const nz = normals[j + 2];
     const facing = nx * dx + ny * dy + nz * dz;
     if (spheres) {
-      // Not a number where the ray passes the sphere.
+      // NaN if the ray misses the sphere.
       const t = along - Math.sqrt(r * r - offSq);
       if (t < hitT) {
         hitT = t;
@@ -97,7 +96,7 @@ export function pick(columns, { eye, direction }, options) {
 }
 
 /**
- * Returns whether a plane hides a place, of which the coordinates begin at index `at`.
+ * Whether a plane hides the point whose coordinates begin at index `at`.
  * @param {CuttingPlane} plane
  * @param {ArrayLike<number>} positions
  * @param {number} at
@@ -106,7 +105,7 @@ export const isBeyond = ({ normal, offset }, positions, at) =>
   normal[0] * positions[at] + normal[1] * positions[at + 1] + normal[2] * positions[at + 2] > offset;
 
 /**
- * Returns whether two particles are at most second neighbours by their distance.
+ * Whether two particles are so near that they are at most second neighbours.
  * @param {Columns} columns
  * @param {number} i
  * @param {number} j

@@ -1,6 +1,6 @@
 /**
- * Tracks the pointers pressed on the picture: one rotates or pans, two pan and zoom, a short press is a tap. A press
- * may take hold of something in the picture instead, and the others wait until it is let go.
+ * Tracks the pointers pressed on the picture: one rotates or pans, two pan and zoom, a short press is a tap. Instead, a
+ * press may grab something in the picture; then other pointers wait until it is released.
  *
  * A drag ends with the release, the cancellation or the lost capture of its pointer.
  *
@@ -12,7 +12,7 @@
  * @import { Place, Stage } from './types.js'
  */
 
-/** Rotation of a drag across the whole shorter side. */
+/** Rotation for a drag across the whole shorter side. */
 const TURN_PER_SIDE_RAD = Math.PI * 0.9;
 /** Largest motion and duration of a tap. */
 const TAP_PX = 4;
@@ -20,7 +20,7 @@ const TAP_MS = 400;
 /** Duration at the end of a drag over which the release speed is measured, and the largest number of its steps. */
 const THROW_MS = 80;
 const MOST_STEPS = 64;
-/** Smallest duration from which a speed is computed, and smallest distance between fingers from which a scale is. */
+/** Shortest duration for computing a speed, and smallest distance between fingers for computing a scale. */
 const LEAST_THROW_MS = 8;
 const LEAST_SPAN_PX = 8;
 
@@ -30,7 +30,7 @@ export function placeOn(host, event) {
   return { x: event.clientX - box.left, y: event.clientY - box.top };
 }
 
-/** Zooms by a factor towards a place. @param {Stage} stage @param {number} factor @param {Place} at */
+/** Zooms by a factor towards a point. @param {Stage} stage @param {number} factor @param {Place} at */
 export function zoomAt({ camera, currentView }, factor, at) {
   camera.zoom(factor, { view: currentView(), xPx: at.x, yPx: at.y });
 }
@@ -46,7 +46,7 @@ export class Pointers {
     this.#panning = false;
     /** The press that may still become a tap. @type {(Place & {atMs: number, still: boolean}) | null} */
     this.press = null;
-    /** What the first pointer holds. @type {Hold | null} */
+    /** What the first pointer has grabbed. @type {Hold | null} */
     this.hold = null;
     /** The last steps of a rotation. @type {{dx: number, dy: number, atMs: number}[]} */
     this.trail = [];
@@ -62,7 +62,7 @@ export class Pointers {
     try {
       host.setPointerCapture(event.pointerId);
     } catch {
-      // The pointer is already gone. Its end event still follows.
+      // The pointer is already gone; its end event still follows.
     }
     this.#panning = event.button !== 0 || event.shiftKey;
     this.trail = [];
@@ -120,7 +120,7 @@ export class Pointers {
 
   /**
    * @param {PointerEvent} event
-   * @param {boolean} released  whether the user released it, rather than the browser cancelled it
+   * @param {boolean} released  true if the user released it, false if the browser cancelled it
    */
   end(event, released) {
     const { held, press, stage } = this;

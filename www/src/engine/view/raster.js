@@ -1,6 +1,6 @@
 /**
- * Fills pixels for the painter: discs, balls, triangles and lines, each with a test of depth. What fills returns how
- * many pixels it has looked at, by which the painter counts its work.
+ * Fills pixels for the painter: discs, balls, triangles and lines, each with a depth test. The functions return the
+ * number of pixels visited, which the painter counts as work.
  *
  * @module
  */
@@ -10,15 +10,15 @@ import { COLOUR, packed } from './shade.js';
 
 /** Radius on the screen below which a disc is drawn as one pixel. */
 export const POINT_PX = 0.7;
-/** Pixels from the middle to the rim of a table of the light on a ball, and on a side of it. */
+/** Pixels from the middle of the table of a ball's light to its rim; then the table's side. */
 const BALL_STEPS = 32;
 export const BALL_SIDE = 2 * BALL_STEPS + 1;
-/** Share of the way to the ink that the colour of a face goes on its edges, as in shaders/faces.wgsl; and its ink. */
+/** How far the colour of a face moves towards the ink on its edges, as in shaders/faces.wgsl; then the ink. */
 const EDGE_INK = 0.62;
 const INK = 1 - Math.sqrt(0.08);
 
 /**
- * Whether nothing of a disc would be seen: it is beside the picture, or a pixel behind what is there.
+ * Whether nothing of a disc can be seen: it is outside the picture, or a single pixel behind another surface.
  * @param {Target} target @param {{sx: number, sy: number}} at @param {number} px  its radius @param {number} near
  */
 export function isHidden({ depth, width, height }, { sx, sy }, px, near) {
@@ -60,8 +60,7 @@ export function fillDisc({ out, depth, width, height }, { sx, sy, px, ka, kb, ne
 }
 
 /**
- * Fills a ball that faces the eye. `lights` has the light on it at the places of a grid over its outline; COLOUR is its
- * colour.
+ * Fills a ball that faces the eye. `lights` holds its light on a grid over its outline; COLOUR is its colour.
  * @param {Target} target @param {PaintedBall} ball
  */
 export function fillBall({ out, depth, width, height }, { sx, sy, px, near, depthPerPx, lights, ground, away }) {
@@ -95,8 +94,8 @@ export function fillBall({ out, depth, width, height }, { sx, sy, px, near, dept
 }
 
 /**
- * Calls a function with the place on a ball, towards the right, upward and towards the eye, of each place of such a
- * grid. Those outside of the outline have that of the rim.
+ * Calls a function for each point of such a grid, with the point's position on the ball: right, up, towards the eye.
+ * Points outside the outline get the position of the rim.
  * @param {(at: number, x: number, y: number, z: number) => void} each
  */
 export function overBall(each) {
@@ -111,8 +110,8 @@ export function overBall(each) {
 }
 
 /**
- * Fills a triangle whose corners have a place on the screen, a depth and a colour in linear light. Its sides have lines
- * `linePx` wide, each by its share `drawn`. `beyond` is positive where nothing is drawn.
+ * Fills a triangle whose corners have a screen position, a depth and a colour in linear light. Its sides have lines
+ * `linePx` wide, each drawn by its share `drawn`. Nothing is drawn where `beyond` is positive.
  * @param {Target} target @param {PaintedTriangle} triangle
  */
 export function fillTriangle({ out, depth, width, height }, { x, y, near, colours, linePx, drawn, heights, beyond }) {
@@ -162,7 +161,7 @@ export function fillTriangle({ out, depth, width, height }, { x, y, near, colour
 }
 
 /**
- * Draws a line, one pixel wide, where nothing hides it.
+ * Draws a line one pixel wide, except where something hides it.
  * @param {Target} target
  * @param {{ ends: number[][], steps: number, value: number }} line  `ends`: horizontal and vertical clip coordinates
  *   and w of each; `steps`: number of equal parts between them, with a pixel at each end of a part

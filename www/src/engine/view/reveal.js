@@ -1,9 +1,9 @@
 /**
  * Sets the times at which the generation levels of a new surface appear. A fast sampler would finish before its front
- * can be seen, so the levels appear one after another. A slow run is shown as it progresses.
+ * could be seen, so the levels appear one after another. A slow run is shown as it progresses.
  *
- * The first surface of a visit waits for its front, so that the body of all of it is there from the first picture on,
- * in the place of the poster, and the levels grow on it.
+ * The first surface of a visit waits for its whole front. So its complete body replaces the poster in the first
+ * picture, and the levels grow on it.
  *
  * @module
  */
@@ -12,7 +12,7 @@
 const STEP_S = 1.1 / 90;
 /** The same on a first visit: the 55 levels of the first surface appear in 2.6 s. */
 const OPENING_STEP_S = 2.6 / 55;
-/** Levels that a frame may add, and the longest time that a reveal waits for frames that take longer. */
+/** Most levels that a frame may add, and the longest total time that a reveal waits for slow frames. */
 const LEVELS_A_FRAME = 2;
 const MOST_WAIT_S = 2;
 
@@ -20,15 +20,15 @@ export class Reveal {
   #startS;
   #stepS;
 
-  /** Time that it has waited for frames. */
+  /** Total time that it has waited for frames. */
   #waitedS;
 
   constructor() {
     this.active = false;
-    /** Whether it is the first surface of a visit, and whether that still waits. */
+    /** Whether this is the first surface of a visit, and whether it is still waiting. */
     this.isOpening = false;
     this.isHeld = false;
-    /** Of each level of the first surface the end of its particles. @type {number[]} */
+    /** For each level of the first surface, the end of its particles. @type {number[]} */
     this.ends = [];
     this.#startS = 0;
     this.#stepS = STEP_S;
@@ -50,8 +50,8 @@ export class Reveal {
   }
 
   /**
-   * Has the levels of the first surface grow from now on. Those before the first one that is seen, on the far side, are
-   * there at once.
+   * Lets the levels of the first surface grow from now on. Levels before the first visible one, on the far side, appear
+   * at once.
    * @param {number} nowS @param {Uint32Array} levels  of its particles
    * @param {(particle: number) => boolean} [isSeen]
    */
@@ -59,7 +59,7 @@ export class Reveal {
     this.isHeld = false;
     this.#startS = nowS;
     let first = Infinity;
-    // What fills holes afterwards comes last, whatever its level.
+    // Particles that fill holes come last, whatever their level.
     for (let i = 0, newest = 0; i < levels.length; i += 1) {
       newest = Math.max(newest, levels[i]);
       this.ends[newest] = i + 1;
@@ -72,7 +72,7 @@ export class Reveal {
   }
 
   /**
-   * Returns how many particles of the first surface have appeared: those of a level one by one.
+   * Returns how many particles of the first surface have appeared; within a level they appear one by one.
    * @param {number} nowS
    */
   appeared(nowS) {
@@ -84,7 +84,7 @@ export class Reveal {
   }
 
   /**
-   * Returns the time for which the reveal waits, so that a frame adds few levels.
+   * Returns how long the reveal waits, so that a frame adds few levels.
    * @param {number} passedS  since the last frame
    */
   wait(passedS) {
@@ -116,7 +116,7 @@ export class Reveal {
   }
 
   /**
-   * Returns the ranges of particles that appear together: one range without a reveal, otherwise one for each level.
+   * Returns the ranges of particles that appear together: one without a reveal, else one per level.
    * @param {Uint32Array} levels @param {number} first @param {number} last
    * @param {{nowS: number, birthS?: number}} when  `birthS`: the time of appearance without a
    *   reveal

@@ -1,13 +1,13 @@
 /**
- * The mean of several samples of a picture, in linear light: how edges are smoothed without a graphics card.
+ * Averages several samples of a picture in linear light, which smooths edges without a graphics card.
  *
  * @module
  */
 import { encoded, linear } from './oklab.js';
 
 /**
- * How far in pixels each sample lies from the middle of its pixel, to the right and upward: each has a column and a row
- * of its own, so that steep and flat edges are smoothed alike. It is the usual pattern of graphics cards.
+ * Offset of each sample from the middle of its pixel, in pixels, to the right and up. Each has its own column and row,
+ * so that steep and flat edges are smoothed alike, as in the usual pattern of graphics cards.
  */
 export const PLACES = /** @type {const} */ ([
   [-0.125, -0.375],
@@ -15,15 +15,15 @@ export const PLACES = /** @type {const} */ ([
   [-0.375, 0.125],
   [0.125, 0.375],
 ]);
-/** Linear light of a sample at most: the sum of all has 16 bits. */
+/** Largest linear light of a sample, so that the sum of all fits in 16 bits. */
 const SCALE = Math.floor(65_535 / PLACES.length);
 const TO_LINEAR = Uint16Array.from({ length: 256 }, (_, v) => Math.round(SCALE * linear(v / 255)));
-/** From linear light in steps of {@link SCALE} to a byte. */
+/** Converts linear light in steps of {@link SCALE} to a byte. */
 const TO_BYTE = Uint8Array.from({ length: SCALE + 1 }, (_, v) => Math.round(255 * encoded(v / SCALE)));
 
 export class Samples {
   #sums = new Uint16Array(0);
-  /** Samples of each pixel that are not left out. */
+  /** Number of samples in which each pixel is not left out. */
   #counts = new Uint8Array(0);
   #samples = 0;
 
@@ -39,7 +39,7 @@ export class Samples {
     this.#samples = 0;
   }
 
-  /** Adds a sample, which leaves pixels out that are 0. @param {Uint32Array} pixels */
+  /** Adds a sample; pixels that are 0 are left out. @param {Uint32Array} pixels */
   add(pixels) {
     const [sums, counts] = [this.#sums, this.#counts];
     for (let i = 0, k = 0; i < pixels.length; i += 1, k += 3) {
@@ -68,7 +68,7 @@ export class Samples {
     }
   }
 
-  /** Gives its memory back. */
+  /** Releases its memory. */
   free() {
     this.#sums = new Uint16Array(0);
     this.#counts = new Uint8Array(0);

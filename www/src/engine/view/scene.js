@@ -8,8 +8,8 @@ import { ballOf } from './camera.js';
 /** @import { Bounds, Columns, Vec3 } from '../types.js' */
 
 /**
- * Radius of the ball in which a surface probably lies, as a share of the box's circumscribed ball. Surfaces seldom
- * reach the corners of their box.
+ * Radius of the ball in which a surface probably lies, as a share of the ball around the box. Surfaces seldom reach the
+ * corners of their box.
  */
 const LIKELY_SHARE = 0.72;
 
@@ -33,7 +33,7 @@ export class Scene {
   }
 
   /**
-   * Returns the ball to show before there are particles. It encloses the whole clip box if the box is drawn.
+   * Returns the ball to show before there are particles; if the box is drawn, it encloses the whole clip box.
    * @param {boolean} boxDrawn
    */
   boxBall(boxDrawn) {
@@ -42,12 +42,12 @@ export class Scene {
   }
 
   /**
-   * Returns the ball that a fit shows: around the particles, or the clip box where there are none. Where the particles
-   * are those of an earlier field, the clip box is shown with them if it is drawn.
+   * Returns the ball for a fit: around the particles, or around the clip box without particles. If the particles belong
+   * to an earlier field, a drawn clip box is included.
    * @param {Columns} columns
    * @param {boolean} boxDrawn  the ball encloses the clip box
    * @param {boolean} [axesDrawn]  the ball encloses the axes around the particles
-   * @param {(particle: number) => boolean} [isShown]  the particles that are drawn, if not all are
+   * @param {(particle: number) => boolean} [isShown]  the particles that are drawn; by default all
    */
   fitBall(columns, boxDrawn, axesDrawn = false, isShown = undefined) {
     const front = isShown && frontBall(columns, isShown);
@@ -59,11 +59,11 @@ export class Scene {
   }
 }
 
-/** Least radius around a front that is shown, in radii of its first particle: a seed alone would fill the picture. */
+/** Least radius around a visible front, in radii of its first particle: a lone seed would fill the picture. */
 const LEAST_FRONT = 9;
 
 /**
- * Returns the ball around the discs that are drawn; null without any.
+ * Returns the ball around the visible discs; null without any.
  * @param {Columns} columns @param {(particle: number) => boolean} isShown
  */
 function frontBall({ placed, radii, count }, isShown) {
@@ -87,14 +87,14 @@ function frontBall({ placed, radii, count }, isShown) {
 }
 
 /**
- * Returns the smallest ball around this centre that encloses the discs of all particles, or of some.
+ * Returns the smallest ball with this centre that encloses the discs of all particles, or of some.
  * @param {{positions: ArrayLike<number>, radii: ArrayLike<number>, count: number}} columns
  * @param {Vec3} centre
  * @param {(particle: number) => boolean} [isShown]
  */
 function ballAround({ positions, radii, count }, centre, isShown = () => true) {
   const [cx, cy, cz] = centre;
-  // Above 0 without particles, and below the particles of the smallest box.
+  // Above 0 even without particles, but smaller than the particles of the smallest box.
   let radius = 1e-30;
   for (let i = 0; i < count; i += 1) {
     if (!isShown(i)) continue;

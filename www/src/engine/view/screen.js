@@ -4,7 +4,7 @@
  * @module
  */
 
-/** Largest pixel ratio. Finer pixels are not visible but cost drawing time. */
+/** Largest pixel ratio; finer pixels cost drawing time and are not visible. */
 const LARGEST_PIXEL_RATIO = 2;
 
 export class Screen {

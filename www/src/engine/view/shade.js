@@ -1,21 +1,21 @@
 /**
- * The light on what the painter draws, and its colours: what shaders/common.wgsl does for the other renderers.
+ * The light and the colours of the painter, like shaders/common.wgsl for the other renderers.
  *
  * @module
  */
 import { clamp } from '../vector.js';
 import { encoded, linear } from './oklab.js';
 
-/** Steps of linear light, as many as tell the darkest bytes of sRGB apart. */
+/** Steps of linear light, enough to distinguish the darkest bytes of sRGB. */
 const STEPS = 4095;
 /** Tables from a byte to linear light, and from a step of linear light to a byte. */
 export const LINEAR = Float32Array.from({ length: 256 }, (_, v) => linear(v / 255));
 const ENCODED = Uint8Array.from({ length: STEPS + 1 }, (_, v) => Math.round(255 * encoded(v / STEPS)));
 
-/** Luminance of a ground above which it is light, and the light along the outline on a dark one, as there. */
+/** Luminance above which a background is light, and the outline's light on a dark one, as there. */
 const LIGHT_GROUND = 0.179;
 const RIM_LIGHT = 0.1;
-/** Shares of its light and of its chroma that the inside of a surface keeps. */
+/** Shares of light and chroma that the inside of a surface keeps. */
 const INSIDE_LIGHT = 0.6;
 const INSIDE_CHROMA = 0.75;
 const GROUND_LIGHT = 0.32;
@@ -34,7 +34,7 @@ export function smoothstep([from, to], x) {
 /** @param {number[]} linear */
 const luminanceOf = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
 
-/** Returns the light along the outline on a ground, which is in linear light. @param {number[]} ground */
+/** Returns the light along the outline for a background in linear light. @param {number[]} ground */
 export const rimOn = (ground) => (luminanceOf(ground) > LIGHT_GROUND ? 0 : RIM_LIGHT);
 
 /** Packs three linear components into a pixel. @param {number} r @param {number} g @param {number} b */
@@ -42,11 +42,11 @@ export const packed = (r, g, b) => (255 << 24) | (encodedOf(b) << 16) | (encoded
 /** @param {number} value  in linear light, 0 … 1 */
 const encodedOf = (value) => ENCODED[(value * STEPS + 0.5) | 0];
 
-// A frame draws up to some million discs, so that what is found of one is written to the same places every time: arrays
-// of its own would take most of the frame.
+// A frame draws up to some million discs, so results are always written to the same arrays; allocating new ones would
+// take most of the frame.
 export const LIGHT = new Float64Array(3);
 export const COLOUR = new Float64Array(3);
-/** What {@link shade} has found. */
+/** The result of {@link shade}. */
 export const SHADE = new Float64Array(3);
 
 /** Writes a packed colour to COLOUR, in linear light. @param {number} colour */
@@ -55,7 +55,7 @@ export function takeColour(colour) {
 }
 
 /**
- * Writes the light on a surface for each component of its colour to LIGHT, as `light_on` in shaders/common.wgsl does.
+ * Writes the light on a surface to LIGHT, for each component of its colour, like `light_on` in shaders/common.wgsl.
  * @param {{keyward: number, skyward: number, edgeOn: number}} cosines  of its normal with the
  *   directions to the key light and to the sky; `edgeOn`: 1 at the outline
  * @param {{rim: number, warmth: number}} how
@@ -73,8 +73,8 @@ export function lightOn({ keyward, skyward, edgeOn }, { rim, warmth }) {
 }
 
 /**
- * Writes COLOUR, in linear light, under a share of LIGHT to SHADE, as an inside by the share `behind`, faded to the
- * ground by the share `away`.
+ * Writes COLOUR, in linear light, under a share of LIGHT to SHADE: as an inside by the share `behind`, faded to the
+ * background by the share `away`.
  * @param {number} share @param {number} behind @param {number} away @param {number[]} ground
  */
 export function shade(share, behind, away, ground) {

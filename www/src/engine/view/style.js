@@ -1,5 +1,5 @@
 /**
- * The appearance of the picture: the user's options, and the renderer's style derived from them.
+ * The appearance of the picture: the user's options, and the renderer's style that follows from them.
  *
  * @module
  */
@@ -12,23 +12,22 @@ import { PALETTES } from './palettes.js';
  * @import { Look } from './types.js'
  */
 
-/** Radius of the discs in repulsion radii; spheres have that of their particles and touch. @param {Look} look */
+/** Radius of the discs in repulsion radii; spheres have the radius of their particles and touch. @param {Look} look */
 export const scaleOf = ({ draw, size }) => (draw === 'spheres' ? 1 : size);
 
-/** Duration in which a new particle fades in. */
+/** Duration of a new particle's fade-in. */
 export const FADE_S = 0.12;
-/** Difference in warmth between lit and shaded places, where light may tint the colours. */
+/** Difference in warmth between lit and shaded places, if light may tint the colours. */
 const WARMTH = 0.12;
 /** Width of the edges of faces, in page pixels. */
 const EDGE_PX = 1;
 /**
- * Share by which what is seen from behind is drawn as an inside, darker and greyer: all of a disc; of a sphere so much
- * that the far side stays back in the gaps; of a mesh enough to tell its sides apart, as one looks into it where it is
- * cut.
+ * Share by which back sides are drawn as an inside, darker and greyer: fully for discs; for spheres enough to keep the
+ * far side subdued in the gaps; for a mesh enough to tell its sides apart where it is cut.
  */
 const DIM_BEHIND = { discs: 1, spheres: 0.5, mesh: 0.25 };
 
-/** Returns what the picture shows of the view. @param {ViewState} view */
+/** Returns the parts of the view that the picture shows. @param {ViewState} view */
 export function seenOf({ theme, box, bar, measured, points, camera, ...seen }) {
   return seen;
 }
@@ -52,8 +51,8 @@ export const firstLook = (view) => ({
 export const shownLevel = ({ level }, lastLevel) => (level === null ? null : Math.min(level, lastLevel));
 
 /**
- * Returns the number of the relaxation step after which the particles are drawn, null for the last one. Generation
- * levels are drawn as they were placed. A mesh has one place only.
+ * Returns the relaxation step after which the particles are drawn, null for the last one. Generation levels are drawn
+ * as they were placed. A mesh exists only for the last step.
  * @param {Look} look
  */
 export function shownStep({ level, step, draw }) {

@@ -20,10 +20,10 @@ import { FADE_S, scaleOf } from './style.js';
 
 /** @typedef {Device['renderer']} Renderer */
 
-/** Largest invisible change of a ramp's end, as a share of the ramp: half of one of its 64 steps. */
+/** Largest change of a ramp's end that is not visible, as a share of the ramp: half of one of its 64 steps. */
 const RANGE_SLACK = 1 / 128;
 
-/** Most particles that one frame uploads, so that a press is answered between two frames. A glide moves fewer. */
+/** Most particles that one frame uploads, so that a press is answered between frames. An animation moves fewer. */
 export const MOST_UPLOADED = 2 ** 18;
 
 /** A range of particles from `first`, inclusive, to `last`, exclusive. */
@@ -41,7 +41,7 @@ class Span {
     this.last = Math.max(this.last, last);
   }
 
-  /** Takes a range away that reaches over an end of this one. @param {number} first @param {number} last */
+  /** Removes a range that covers an end of this one. @param {number} first @param {number} last */
   exclude(first, last) {
     if (first <= this.first) this.first = Math.max(this.first, last);
     if (last >= this.last) this.last = Math.min(this.last, first);
@@ -49,7 +49,7 @@ class Span {
 }
 
 export class ParticleUpload {
-  /** Particles whose colours have not been uploaded. */
+  /** Particles whose colours are not uploaded yet. */
   #recoloured;
 
   /** @param {Columns} columns */
@@ -57,15 +57,14 @@ export class ParticleUpload {
     this.columns = columns;
     this.glide = new Glide();
     /**
-     * Whether the next particles take the places of others of the same surface, and the time from
-     * which on those that did are drawn.
+     * Whether the next particles replace others on the same surface, and from which time the replacements are drawn.
      */
     this.meets = false;
     this.metS = -Infinity;
-    /** Particles that have not been uploaded. */
+    /** Particles that are not uploaded yet. */
     this.dirty = new Span();
     this.#recoloured = new Span();
-    /** Values at the ends of the present colour ramp. @type {[number, number] | null} */
+    /** Values at the ends of the current colour ramp. @type {[number, number] | null} */
     this.range = null;
     /** Number of uploads of particles. */
     this.writes = 0;
@@ -73,7 +72,7 @@ export class ParticleUpload {
     this.held = 0;
   }
 
-  /** Returns whether particles fade in at this time. @param {number} nowS */
+  /** Whether particles fade in at this time. @param {number} nowS */
   fading(nowS) {
     return nowS < this.metS + FADE_S;
   }
@@ -83,7 +82,7 @@ export class ParticleUpload {
     this.dirty.include(first, last);
   }
 
-  /** Marks colours as possibly changed. @param {number} first @param {number} last */
+  /** Marks colours that may have changed. @param {number} first @param {number} last */
   recolour(first, last) {
     this.#recoloured.include(first, last);
   }
@@ -94,9 +93,8 @@ export class ParticleUpload {
   }
 
   /**
-   * Starts over for another surface or a new device, without an animation from the earlier
-   * positions. Particles that are to take the places of others fade in over the body, which is
-   * there at once.
+   * Starts over for another surface or a new device, without an animation from the earlier positions. Particles that
+   * replace others fade in over the body, which is visible at once.
    * @param {boolean} [meets]
    */
   restart(meets = false) {
@@ -108,13 +106,13 @@ export class ParticleUpload {
     this.all();
   }
 
-  /** Whether the device has all that has changed. */
+  /** Whether all changes are on the device. */
   get isWhole() {
     return this.dirty.empty && this.#recoloured.empty;
   }
 
   /**
-   * Uploads what has changed, or the first part of it.
+   * Uploads the changes, or the first part of them.
    * @param {Renderer} renderer
    * @param {Look} look
    * @param {{reveal: Reveal, calm: boolean, nowS: number}} present
@@ -171,7 +169,7 @@ export class ParticleUpload {
   }
 
   /**
-   * Updates the ends of the ramp from the particles. If they change visibly, all colours are uploaded again.
+   * Updates the ends of the ramp from the particles. After a visible change all colours are uploaded again.
    * @param {Look} look
    */
   #followRange({ colour }) {
@@ -184,7 +182,7 @@ export class ParticleUpload {
   }
 
   /**
-   * Writes the model's points after the particles, as discs that face the eye, and therefore again for every frame.
+   * Writes the model's points after the particles, as discs that face the eye; therefore again for every frame.
    * @param {Renderer} renderer
    * @param {Look} look
    * @param {View} view
@@ -195,7 +193,7 @@ export class ParticleUpload {
     const { points, theme } = look;
     if (!points) return 0;
     const { columns } = this;
-    // A dot is moved forward by this distance, so that the discs around it do not cut it.
+    // A dot is moved forward by this distance, so that discs around it do not cut it.
     const lift = columns.count > 0 ? columns.radii[columns.count >> 1] : 0;
     const dots = dotsOf(points, view, { px: ratio, size: scaleOf(look), lift, palette: PALETTES[theme] });
     if (count + dots.radii.length > renderer.max_particles()) return 0;

@@ -38,13 +38,13 @@ import { ParticleUpload } from './upload.js';
 /** Picking tolerance around small discs, in page pixels. */
 const PICK_PX = 6;
 
-/** Time without a motion after which the whole picture is drawn. */
+/** Time without motion after which the complete picture is drawn. */
 const REST_MS = 150;
 
-/** Interval of the frames that are drawn while a picture is read back. */
+/** Interval of the frames drawn while a picture is read back. */
 const LOOK_MS = 1000;
 
-/** Radius around a place that is pointed out, in radii of its rings, that the picture shows. */
+/** Radius around a highlighted point that the picture shows, in radii of its rings. */
 const LOOK_RADII = 14;
 
 export class Viewer {
@@ -53,31 +53,31 @@ export class Viewer {
   #faces;
   #creases;
 
-  /** Whether the system requests reduced motion. */
+  /** Whether the system asks for reduced motion. */
   #calm;
 
-  /** Time by which the picture is behind the clock, since reveals wait for frames; and the time of the last frame. */
+  /** How far the picture is behind the clock, since reveals wait for frames; and the time of the last frame. */
   #lagS;
   #lastS;
   #sight;
 
-  /** Whether the last frame was a part of one. What the device has does not change before the picture is complete. */
+  /** Whether the last frame was partial. Until the picture is complete, the data on the device does not change. */
   #isPart = false;
 
-  /** The camera of the last picture; what of it was drawn, and since when it is being drawn. */
+  /** The camera and the quality of the last picture, and the judge of the drawing time. */
   /** @type {CameraState | null} */
   #drawnCamera = null;
   #quality = WHOLE;
   #effort = new Effort();
   #isMoving = false;
   #sinceMs = 0;
-  /** Whether the last frame moved and asked for the next. */
+  /** Whether the last frame moved and requested the next one. */
   #isMotion = false;
 
-  /** Wait for the whole picture after a motion. @type {ReturnType<typeof setTimeout> | undefined} */
+  /** Timer for the complete picture after a motion. @type {ReturnType<typeof setTimeout> | undefined} */
   #rest;
 
-  /** Distance from which the last fit would have shown the whole ball. */
+  /** Distance at which the last fit would have shown the whole ball. */
   #wholeDistance = 0;
 
   /**
@@ -94,9 +94,9 @@ export class Viewer {
     this.reveal = new Reveal();
     this.#lagS = 0;
     this.#lastS = 0;
-    /** Whether the next surface that grows is the first one of a visit. */
+    /** Whether the next growing surface is the first one of a visit. */
     this.opening = false;
-    /** The camera of the link that was opened last, until the surface is fitted by hand. @type {CameraState | null} */
+    /** The camera of the last opened link, until the user fits the surface. @type {CameraState | null} */
     this.linked = null;
     /** Whether the front is still placing particles. A reveal does not end before the front. */
     this.growing = false;
@@ -104,7 +104,7 @@ export class Viewer {
     this.upload = new ParticleUpload(columns);
     this.#faces = new FaceUpload(columns);
     this.#creases = new CreaseUpload(columns);
-    /** The parts that have changed since the last frame. */
+    /** Which parts have changed since the last frame. */
     this.due = { size: true, style: true, legend: true };
     this.frames = new FrameLoop((nowS, dtS) => this.#frame(nowS, dtS));
     this.screen = new Screen(host, () => this.#resized());
@@ -141,13 +141,12 @@ export class Viewer {
   // ------------------------------------------------------------------------------------------------
 
   /**
-   * Replaces the old surface by a new one. If it `meets` the old one, its particles fade in over
-   * the body.
+   * Replaces the old surface by a new one. If it `meets` the old one, its particles fade in over the body.
    * @param {{grow: boolean, fit: boolean, bounds: Bounds | null, meets?: boolean}} options
    */
   begin({ grow, fit, bounds, meets = false }) {
     this.#scene.shown = bounds ?? this.#scene.bounds;
-    // A surface of another size could otherwise grow around the camera or far from it.
+    // Otherwise a surface of another size might grow around the camera or far from it.
     if (fit) this.fit(true);
     if (grow && this.look.level === null && !this.#calm.matches && !this.frames.isHidden) {
       this.#lastS = nowS();
@@ -162,7 +161,7 @@ export class Viewer {
     this.#restyle();
   }
 
-  /** Draws the particles as they were after the chosen relaxation step, or on their way there. */
+  /** Draws the particles after the chosen relaxation step, or on their way there. */
   remembered() {
     const { columns } = this;
     const before = columns.shown;
@@ -185,7 +184,7 @@ export class Viewer {
     this.frames.ask();
   }
 
-  /** Handles a mesh that has come or gone without particles. */
+  /** Handles a mesh that was added or removed without particles. */
   meshed() {
     this.due.legend = true;
     this.frames.ask();
@@ -215,7 +214,7 @@ export class Viewer {
     if (marks !== before.marks || this.look.draw !== before.draw) this.due.legend = true;
     this.remembered();
     if (level !== before.level || this.look.insets !== before.insets) this.#frameFront();
-    // A running reveal would continue behind the levels that are stepped through.
+    // A running reveal would continue behind the levels that the user steps through.
     if (level !== null && this.reveal.active) {
       this.#endReveal();
       this.upload.all();
@@ -244,7 +243,7 @@ export class Viewer {
   #seen(isSeen) {
     this.keeper.seen(isSeen);
     this.frames.see(isSeen);
-    // What grew goes on without an eye on it.
+    // A surface that grows out of sight is completed at once.
     if (isSeen || !this.reveal.active) return;
     this.#endReveal();
     this.upload.all();
@@ -253,7 +252,7 @@ export class Viewer {
   #endReveal() {
     this.reveal.end();
     this.#events.onReveal(null);
-    // A mesh is drawn from now on, and a closed surface from outside alone.
+    // Now a mesh is drawn, and a closed surface only from outside.
     this.#restyle();
   }
 
@@ -261,7 +260,7 @@ export class Viewer {
   // ----------------------------------------------------------------------------------------------
 
   /**
-   * Sets the clip box, which determines the near and far planes and a fit before there are particles.
+   * Sets the clip box, which determines the near and far planes, and the fit before there are particles.
    * @param {Bounds} bounds
    */
   setBounds(bounds) {
@@ -283,14 +282,14 @@ export class Viewer {
     this.moved();
   }
 
-  /** Turns to where most of the surface is seen, about the vertical from these angles. @param {Angles} from */
+  /** Rotates about the vertical, from these angles, to where the outline is largest. @param {Angles} from */
   turnWide(from) {
     const { columns, camera } = this;
     camera.turnTo({ yaw: widestYaw(from, columns, this.#fitBall()), pitch: from.pitch });
     this.moved();
   }
 
-  /** Turns to a side of the surface, or stays if it is seen already. @param {Vec3} normal */
+  /** Rotates to a side of the surface, unless it is already visible. @param {Vec3} normal */
   turnTo(normal) {
     const to = facing(this.camera.state, normal);
     if (to) this.camera.turnTo(to);
@@ -303,7 +302,7 @@ export class Viewer {
     this.moved();
   }
 
-  /** Frames the surface, or the part of the front that is drawn, unless the hand has taken the camera. */
+  /** Fits the surface, or the visible part of the front, unless the user has moved the camera. */
   #frameFront() {
     const { camera, columns } = this;
     if (!camera.state.fit || columns.count === 0 || columns.stale || this.reveal.active) return;
@@ -312,7 +311,7 @@ export class Viewer {
     this.moved();
   }
 
-  /** Returns the ball that a fit shows. */
+  /** Returns the ball for a fit. */
   #fitBall() {
     const { columns, look } = this;
     return this.#scene.fitBall(columns, look.box !== null, look.axes, this.#shownOnly());
@@ -327,8 +326,8 @@ export class Viewer {
   }
 
   /**
-   * Returns the ball that a fit shows, and the distance for it: of a surface without box and axes
-   * the outline fills the picture, else the ball does.
+   * Returns the ball and the distance for a fit. Without box and axes the outline of the surface fills the picture,
+   * else the ball does.
    */
   #fit() {
     const { columns, look, screen } = this;
@@ -342,15 +341,15 @@ export class Viewer {
     return { ball, distance: this.#asLinked(distance) };
   }
 
-  /** Returns the size of the part of the picture that no panel covers, and the corner of it that stays free. */
+  /** Returns the size of the picture's free part, which no panel covers, and its corner that must stay free. */
   #free() {
     const { insets } = this.look;
     return { ...freePart(this.screen.cssWidth, this.screen.cssHeight, insets), corner: insets.corner };
   }
 
   /**
-   * Returns the distance of the camera of a link, at its angles and where the whole surface is seen from there. So a
-   * page that is opened again shows what it showed.
+   * Returns the distance of a link's camera, if the angles are the link's and the whole surface is visible from there.
+   * So a page that is opened again shows the same picture.
    * @param {number} distance  of a fit
    */
   #asLinked(distance) {
@@ -359,7 +358,7 @@ export class Viewer {
     return clamp(linked.distance, distance, Math.max(distance, this.#wholeDistance));
   }
 
-  /** Brings a place before the camera, seen along its normal. @param {Place} place */
+  /** Moves the camera to look at a point along its normal. @param {Place} place */
   lookAt({ places, radius, normal }) {
     const centre = vec((k) => places.reduce((sum, place) => sum + place[k], 0) / places.length);
     this.camera.lookAt({ centre, radius: LOOK_RADII * radius }, normal);
@@ -404,7 +403,7 @@ export class Viewer {
   }
 
   /**
-   * Returns where a place is in the picture, in CSS pixels of the host; null behind the eye.
+   * Returns the position of a point in the picture, in CSS pixels of the host; null behind the eye.
    * @param {ArrayLike<number>} place
    */
   project(place) {
@@ -456,7 +455,7 @@ export class Viewer {
       if (!this.#isPart || !this.upload.isWhole) this.#tell(device, nowS);
       outcome = this.upload.isWhole ? device.renderer.draw(nowS) : 'part';
     } catch (error) {
-      // The renderer has trapped. Its instance must not be called again.
+      // The renderer has trapped; its instance must not be called again.
       this.keeper.giveUp(error instanceof Error ? error.message : String(error));
       return 'none';
     }
@@ -466,7 +465,7 @@ export class Viewer {
       if (this.camera.state !== before) this.frames.ask();
       return 'part';
     }
-    // Without particles the colours have no range; the legend before stays.
+    // Without particles the colours have no range; the previous legend stays.
     if (this.due.legend && this.columns.count > 0) this.#tellLegend();
     const revealing = this.#tellReveal(nowS);
     const dimming = this.dimmer.moving(nowS);
@@ -490,7 +489,7 @@ export class Viewer {
   }
 
   /**
-   * Returns whether the first surface is still waited for. Once it is there, it is framed for good.
+   * Whether the first surface is still awaited. Once it is there, the camera fits it.
    * @param {number} clockS
    */
   #holds(clockS) {
@@ -509,7 +508,7 @@ export class Viewer {
   }
 
   /**
-   * Chooses how much of the next picture is drawn. A picture that is being painted whole gives way to a motion.
+   * Chooses how the next picture is drawn. A motion interrupts a complete picture that is being painted.
    * @param {Device} device
    */
   #choose({ renderer }) {
@@ -529,7 +528,7 @@ export class Viewer {
   }
 
   /**
-   * Learns from a picture, and has the whole of it drawn once it stands still.
+   * Learns from a picture, and schedules the complete one for when it stands still.
    * @param {number} passedS  since the last frame
    */
   #judge(passedS) {
@@ -542,7 +541,7 @@ export class Viewer {
     this.#rest = setTimeout(() => this.frames.ask(), REST_MS);
   }
 
-  /** Whether the whole picture is still to come. */
+  /** Whether the complete picture is still to come. */
   get isWaiting() {
     return this.#rest !== undefined;
   }
@@ -609,7 +608,7 @@ export class Viewer {
     const look = body ? this.look : { ...this.look, body: false };
     return styleOf(look, {
       lastLevel: columns.lastLevel,
-      // What has not closed yet can be looked into.
+      // A surface that has not closed yet shows its inside.
       isOpen: columns.isOpen || (reveal.active && !reveal.isOpening),
       bounds: this.#scene.shown,
       dim: this.dimmer.at(nowS, calm),
@@ -619,8 +618,8 @@ export class Viewer {
   }
 
   /**
-   * Returns the camera of a picture of this size: as on the screen, or, where the outline was fitted
-   * to a longer side, from where the whole surface is in the picture.
+   * Returns the camera for a picture of this size: the one on the screen, or, if the outline was fitted to a longer
+   * side, one that shows the whole surface.
    * @param {{width: number, height: number}} size
    */
   #cameraOf(size) {
@@ -660,7 +659,7 @@ export class Viewer {
     renderer.set_style(JSON.stringify({ ...this.#style(now), dim: 0, outline: -1 }));
     const picture = renderer.read_pixels(width, height, transparent);
     this.#restyle();
-    // A frame finds out whether the renderer has trapped meanwhile.
+    // A frame would find out whether the renderer has trapped meanwhile.
     const look = setInterval(() => this.frames.ask(), LOOK_MS);
     const pixels = await this.keeper.answered(picture).finally(() => clearInterval(look));
     return { width, height, pixels };
@@ -668,8 +667,8 @@ export class Viewer {
 }
 
 /**
- * Enlarges a view so that the surface fills the shorter side of a picture as it fills that of the window. A renderer
- * shows in a picture all that the window shows, so that in one of another aspect ratio the surface would be smaller.
+ * Enlarges a view so that the surface fills the shorter side of a picture as it fills the window's. A renderer shows
+ * everything that the window shows, so with another aspect ratio the surface would be smaller.
  * @param {View} view @param {number} aspect  of the picture @param {number} windowAspect
  */
 function fillFrame({ packed }, aspect, windowAspect) {
