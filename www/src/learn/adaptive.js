@@ -1,4 +1,4 @@
-/** Runs of adaptive sampling, scaled so that they have about as many particles as the others. */
+/** Runs of adaptive sampling, scaled to about as many particles as the other runs have. */
 import { PARTICLES } from './lab.js';
 
 /**
@@ -6,13 +6,13 @@ import { PARTICLES } from './lab.js';
  * @import { Lab, LabRun, Law } from './types.js'
  */
 
-/** The laws in words. @type {readonly { value: Law, label: string }[]} */
+/** The laws, with their labels. @type {readonly { value: Law, label: string }[]} */
 export const LAWS = [
   { value: 'sum_of_curvatures', label: 'Sum of the curvatures, as in the paper' },
   { value: 'max_curvature', label: 'The stronger curvature' },
   { value: 'chord_error', label: 'Gap between surface and mesh' },
 ];
-/** Least and largest radius, over that of even sampling with as many particles. */
+/** Smallest and largest radius, divided by that of uniform sampling with as many particles. */
 const [LEAST, LARGEST] = [0.5, 2.2];
 const MOST_TRIALS = 4;
 const CLOSE = 0.15;
@@ -21,7 +21,7 @@ const CLOSE = 0.15;
 const found = new WeakMap();
 
 /**
- * Returns an adaptive run by a law, scaled so that it has about as many particles as the others.
+ * Returns an adaptive run for a law, scaled to about as many particles as the other runs have.
  * @param {Lab} lab @param {Law} law @param {Partial<LessonSettings>} [change]
  * @param {number} [particles]
  */
@@ -37,7 +37,7 @@ export function adaptiveRun(lab, law, change = {}, particles = PARTICLES) {
 /** @param {Lab} lab @param {Law} law @param {Partial<LessonSettings>} change @param {number} particles */
 async function scaled(lab, law, change, particles) {
   const radius = await lab.radiusFor(particles);
-  // The gap is a length, of the second order in the radius; the other laws scale with a pure number.
+  // The gap is a length of second order in the radius; the other laws scale with a pure number.
   const coarseness = Math.sqrt(PARTICLES / particles);
   let scale = law === 'chord_error' ? 0.3 * radius * LEAST : 0.12 * coarseness;
   const power = law === 'chord_error' ? 1 : 0.5;

@@ -1,16 +1,15 @@
 /**
- * The fragment of the lesson's address: the stop, then what is carried along, such as
- * `#rings&surface=…&task=…`.
- * A stop alone is an ordinary anchor, which works without scripts.
+ * The fragment of the lesson's address: the stop, then further parts, such as `#rings&surface=…&task=…`. A stop alone
+ * is an ordinary anchor, which works without scripts.
  */
 
-/** Parts that a fragment may have beside the stop. */
+/** Parts that may follow the stop in a fragment. */
 const PARTS = ['surface', 'task', 'on', 'left', 'right', 'particle'];
-/** The stops of comparisons begin with this; only theirs have a surface and the values of the two sides. */
+/** Names of stops for comparisons begin with this; only these stops have a surface and two values. */
 export const BENCH = 'what-if';
 const OF_BENCH = ['on', 'left', 'right'];
 /**
- * Stops that the lesson once had, and what is nearest to them by its content.
+ * Stops that the lesson once had, and the stops that replace them.
  * @type {Record<string, string>}
  */
 const GONE = {
@@ -56,14 +55,13 @@ export function writeAddress({ stop, parts }) {
   return pieces.length > 0 ? `#${pieces.join('&')}` : '';
 }
 
-/** The title of a stop, or its question. @param {Element | null} stop */
+/** The title or the question of a stop. @param {Element | null} stop */
 export const titleOf = (stop) =>
   stop?.querySelector(':is(.predict-question, .challenge-title, h2, caption)')?.textContent ?? '';
 
 /**
- * Returns the stop that a name means: the one of this name, else the one that has taken its place,
- * else the one whose
- * name is nearest to it by the letters that have to be changed; null for an empty name.
+ * Returns the stop for a name: the stop with this name, else the one that replaced it, else the one whose name differs
+ * in the fewest letters; null for an empty name.
  * @param {string} name @param {readonly string[]} stops  at least one
  */
 export function nearestStop(name, stops) {
@@ -76,7 +74,7 @@ export function nearestStop(name, stops) {
 
 const LONGEST_NAME = 64;
 
-/** Letters to insert, to drop or to change (Levenshtein). @param {string} a @param {string} b */
+/** Number of letters to insert, delete or change (Levenshtein). @param {string} a @param {string} b */
 function editDistance(a, b) {
   let row = Array.from({ length: b.length + 1 }, (_, j) => j);
   for (let i = 1; i <= a.length; i += 1) {

@@ -1,4 +1,4 @@
-/** The learner's answers, which the browser keeps. */
+/** The learner's answers, which are stored in the browser. */
 import { signal } from '@preact/signals-core';
 
 /**
@@ -6,12 +6,12 @@ import { signal } from '@preact/signals-core';
  * @import { Guessed } from './types.js'
  */
 
-/** The name of the text from which pairs are drawn, among what the browser keeps. */
+/** The name under which the text is stored from which pairs are drawn. */
 const SERIES = 'series';
-/** The names of what is no answer. */
+/** Names of stored values that are not answers. */
 const NO_ANSWERS = [SERIES, 'judge-at', 'judge-count'];
 
-/** The predictions that were made. A figure shows what would give an answer away only after its prediction. */
+/** The predictions made so far. A figure that would give an answer away waits for its prediction. */
 export class Stops {
   /** @type {Map<string, Signal<boolean>>} */
   #open = new Map();
@@ -19,7 +19,7 @@ export class Stops {
   /** @type {Map<string, Signal<number | null>>} */
   #picks = new Map();
 
-  /** What the browser keeps beside the outcomes: guesses before their answers, and the slots that were decided. */
+  /** Other stored values: guesses before their answers, and the decided slots. */
   #more;
   #keep;
 
@@ -27,7 +27,7 @@ export class Stops {
   outcomes;
 
   /**
-   * The guesses that stand in the page, by the stop.
+   * The guesses entered in the page, by stop.
    * @type {Map<string, { question: string, get: () => string | number | null }>}
    */
   entries = new Map();
@@ -41,12 +41,12 @@ export class Stops {
     for (const stop of this.outcomes.keys()) this.open(stop);
   }
 
-  /** Whether there is something to forget. */
+  /** Whether there are stored answers to delete. */
   isBegun() {
     return this.outcomes.size > 0 || Object.keys(this.#more).some((name) => !NO_ANSWERS.includes(name));
   }
 
-  /** What the pairs that are drawn follow from: the same as before, in this browser. */
+  /** The text from which pairs are drawn; it stays the same in this browser. */
   series() {
     if (!this.#more[SERIES]) this.keepMore(SERIES, Math.random().toString(36).slice(2));
     return this.#more[SERIES];
@@ -68,7 +68,7 @@ export class Stops {
     this.#write();
   }
 
-  /** What is kept by a name; undefined for nothing. @param {string} name @returns {any} */
+  /** The stored value with a name; undefined if there is none. @param {string} name @returns {any} */
   more(name) {
     return this.#more[name];
   }
@@ -79,7 +79,7 @@ export class Stops {
     this.#write();
   }
 
-  /** Returns the guesses, with their answers where these are out. */
+  /** Returns the guesses, with those answers that are known. */
   predictions() {
     const open = [...this.entries].filter(([stop]) => !this.outcomes.has(stop));
     const waiting = open.map(([stop, { question, get }]) => ({ stop, question, guess: get(), answer: '' }));
@@ -105,12 +105,12 @@ export class Stops {
     return known;
   }
 
-  /** Whether a prediction was made. An effect that asks runs again once it is. @param {string} stop */
+  /** Whether a prediction was made. An effect that calls this runs again when it is. @param {string} stop */
   isOpen(stop) {
     return this.state(stop).value;
   }
 
-  /** The particle that was pressed, once there is one. @param {string} stop */
+  /** The particle that was pressed, or null. @param {string} stop */
   picked(stop) {
     return this.pickOf(stop).value;
   }
@@ -123,7 +123,7 @@ export class Stops {
   }
 }
 
-/** What was kept; nothing if it cannot be read. @param {string} text @returns {any} */
+/** Parses the stored text; returns nothing if it is not valid. @param {string} text @returns {any} */
 function read(text) {
   try {
     return JSON.parse(text) ?? {};

@@ -1,7 +1,6 @@
 /**
- * Asks a question: takes a guess for each of its parts, round by round, and shows what the run
- * says. Nothing is scored
- * or sent, and every question may be skipped.
+ * Asks a question: takes a guess for each of its parts, round by round, and shows the answer from the run. Nothing is
+ * scored or sent, and every question may be skipped.
  */
 import { button } from '../ui/button.js';
 import { fill, h, uniqueId } from '../ui/dom.js';
@@ -15,22 +14,21 @@ import { HEAD_PX } from './stops.js';
  * @import { Lab, Part, Question, Stops } from './types.js'
  */
 
-/** A guess within this share of a number is close. */
+/** A guess counts as close within this share of the number. */
 const CLOSE = 0.1;
 
-/** The name by which figures ask whether the first round of a question is over. @param {string} id */
+/** The name under which figures find out whether the first round of a question is over. @param {string} id */
 export const seenOf = (id) => `${id}-seen`;
 
 /**
- * Puts a question before what an element holds, and its form behind that. An answer that was kept
- * stands there at once,
- * and is asked for again when the question comes near.
+ * Puts a question before the content of an element, and its form after it. A stored answer is shown at once, and
+ * computed again when the question comes near the window.
  * @param {HTMLElement} host @param {string} id @param {Question<any>} about
  * @param {{ lab: Promise<Lab>, stops: Stops }} context
  */
 export function mountQuestion(host, id, about, { lab, stops }) {
   const { question, ask, words, rounds } = about;
-  /** Whether the last round has come. */
+  /** Whether the last round has begun. */
   const isSeen = rounds.length > 1 ? stops.state(seenOf(id)) : null;
   const isLast = () => isSeen === null || isSeen.value;
   if (isSeen && stops.more(seenOf(id))) isSeen.value = true;
@@ -63,7 +61,7 @@ export function mountQuestion(host, id, about, { lab, stops }) {
   );
 
   /**
-   * Writes what the run says: what is right comes first.
+   * Writes the answer, beginning with the right value.
    * @param {readonly (string | number | undefined)[]} right @param {string} said
    */
   function write(right, said) {
@@ -84,7 +82,7 @@ export function mountQuestion(host, id, about, { lab, stops }) {
     form.querySelector('.controls')?.remove();
   }
 
-  /** Asks the run. @param {readonly (string | number | null)[]} guesses  of the parts */
+  /** Gets the answer from the run. @param {readonly (string | number | null)[]} guesses of the parts */
   async function asked(guesses) {
     const facts = await ask(await lab);
     const right = parts.map(({ part }) => part.right(facts));
@@ -99,12 +97,12 @@ export function mountQuestion(host, id, about, { lab, stops }) {
     const isFocused = form.contains(document.activeElement);
     reveal.disabled = true;
     skip.disabled = true;
-    // What was guessed in a round that is over stays.
+    // Guesses from a completed round stay.
     const guesses = parts.map(({ input, isFirst }) => (isSkipped && !(isFirst && isSeen?.peek()) ? null : input.get()));
     fill(result, h('p', null, 'The run is asked.'));
     try {
       await asked(guesses);
-      // The button that was pressed is gone.
+      // The pressed button no longer exists.
       if (isFocused) result.focus({ preventScroll: true });
       if (isSeen) isSeen.value = true;
       stops.open(id);
@@ -127,12 +125,12 @@ export function mountQuestion(host, id, about, { lab, stops }) {
     old.map((one) => one?.right),
     old[0].answer,
   );
-  // The program may have changed since; without a run, what was kept stays.
+  // The program may have changed since. If the run fails, the stored answer stays.
   whenNear(host, () => asked(old.map((one) => one?.guess ?? null)).catch(() => {}));
 }
 
 /**
- * The parts of a question with their inputs, which are part of what a learner hands in.
+ * The parts of a question with their inputs, which are saved with a learner's work.
  * @param {string} id @param {Question<any>} about @param {Stops} stops
  */
 const enter = (id, about, stops) =>
@@ -145,7 +143,7 @@ const enter = (id, about, stops) =>
   });
 
 /**
- * What is said of a guess.
+ * The comment on a guess.
  * @param {Part<any>} part
  * @param {string | number} guess
  * @param {string | number} right
@@ -159,7 +157,7 @@ function judge({ kind }, guess, right) {
 }
 
 /**
- * Brings the figure of a question into view, and as much of the answer as there is room for.
+ * Scrolls the figure of a question into view, and as much of the answer as fits.
  * @param {HTMLElement} host
  */
 function showFigure(host) {
@@ -178,7 +176,7 @@ function showFigure(host) {
 }
 
 /**
- * The input of a part. `lock` shows what is right; null only ends it.
+ * The input of a part. `lock` ends the input and shows the right answer, unless it is null.
  * @param {Part<any>} part @param {string} question @param {Signal<number | null>} picked
  */
 function inputOf({ kind, legend, choices = [], label = 'Your guess', most = 9999 }, question, picked) {

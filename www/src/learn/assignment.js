@@ -1,6 +1,6 @@
 /**
- * Assignments: a link that fixes the surface and a comparison, locks chosen controls and asks questions. What a learner
- * answers is saved with both runs as one file; nothing is sent.
+ * Assignments: a link that fixes the surface and a comparison, locks chosen controls and asks questions. A learner's
+ * answers are saved with both runs in one file; nothing is sent.
  */
 import { button } from '../ui/button.js';
 import { fill, h, uniqueId } from '../ui/dom.js';
@@ -14,7 +14,7 @@ import { USUAL, whatIfOf } from './whatifs.js';
 
 /** @import { Control, Lab, LabRun, Score, Setup, Stops, Task, Work } from './types.js' */
 
-/** A run as plain numbers. @param {string} label @param {LabRun} run @param {Score} [score] */
+/** A run as plain numbers, for the file. @param {string} label @param {LabRun} run @param {Score} [score] */
 const recordOf = (label, run, score) => ({
   label,
   settings: run.settings,
@@ -27,11 +27,11 @@ const recordOf = (label, run, score) => ({
   energy_per_step: run.chapters.filter(({ kind }) => kind === 'relaxation').map(({ energy }) => energy),
 });
 
-/** A name of a file from some words: their letters and digits. @param {readonly string[]} words */
+/** A file name made of the letters and digits of some words. @param {readonly string[]} words */
 const fileName = (words) => words.flatMap((word) => word.match(/[\p{L}\p{N}]+/gu) ?? []).join('-') || 'assignment';
 
 /**
- * Puts the assignment before the first chapter.
+ * Puts an assignment before the first chapter.
  * @param {HTMLElement} host @param {Task} task @param {{ lab: Lab, surface: string, stops: Stops }} context
  */
 export async function mountAssignment(host, task, { lab, surface, stops }) {
@@ -45,7 +45,7 @@ export async function mountAssignment(host, task, { lab, surface, stops }) {
     label,
     box: h('input', { class: 'box wide', id: uniqueId('learner'), autocomplete: 'off' }),
   }));
-  // What is typed is there again after the page was closed, for this assignment in this browser.
+  // The text that was typed for this assignment is restored when the page is opened again in this browser.
   const boxes = [name.box, group.box, ...answers.map(({ box }) => box)];
   const { text, keep } = kept(`assignment.${packTask(task)}`);
   for (const [k, value] of text.split('\0').entries()) if (boxes[k]) boxes[k].value = value;
@@ -95,7 +95,7 @@ export async function mountAssignment(host, task, { lab, surface, stops }) {
 }
 
 /**
- * The dialog in which a teacher makes an assignment.
+ * The dialog for a teacher to create an assignment.
  * @param {{ setup: () => Setup, linkOf: (task: string) => string }} about
  */
 export function createMaker({ setup, linkOf }) {
@@ -110,7 +110,7 @@ export function createMaker({ setup, linkOf }) {
   const told = h('p', { class: 'quiet', role: 'status' });
   const write = () => {
     const whatIf = whatIfOf(setup().what);
-    // Where learners are to find the best and the worst, the teacher's own tries would solve it.
+    // If learners are to find the best and the worst, the teacher's own tries would give the solution away.
     const { what: id, on, left, right } = { ...setup(), ...(whatIf.knobs ? { left: USUAL, right: USUAL } : {}) };
     what.textContent = `It compares what stands under “What if”: ${whatIf.name}.${whatIf.knobs ? ' Learners begin with the sampling of the lesson; your own tries stay here.' : ''}`;
     const task = {
@@ -161,7 +161,7 @@ export function createMaker({ setup, linkOf }) {
   document.body.append(dialog);
   return {
     open() {
-      // Who is to turn several choices at once has them open.
+      // If several choices are to be changed at once, they are not locked.
       for (const { box } of locks) if (box.value === 'right' && whatIfOf(setup().what).knobs) box.checked = false;
       write();
       dialog.showModal();

@@ -1,5 +1,5 @@
 /**
- * How deep the body has to lie under the discs of a picture, so that it cuts through none of them.
+ * How deep the body must lie beneath the discs of a picture, so that it does not cut through them.
  */
 import { createGrid } from '../ui/neighbours.js';
 
@@ -8,21 +8,20 @@ import { createGrid } from '../ui/neighbours.js';
 
 /** Radius of a bed in radii of its particle, as the painter draws it. */
 const BED_RADIUS = 1.75;
-/** Number of particles above which a picture shows them so small that the usual depth is enough. */
+/** Pictures with more particles show them so small that the usual depth is enough. */
 const MOST = 5000;
 
 /**
- * The largest gap between the plane of a bed and a disc that overlaps it, over the distance of the
- * disc's centre from that plane. It is less than 1 because the disc is tilted, too.
+ * The largest gap between the plane of a bed and an overlapping disc, divided by the distance of the disc's centre from
+ * that plane. It is less than 1 because the disc is tilted, too.
  */
 const TILT = 0.75;
 
 /**
- * Returns by how many radii each bed has to lie deeper, so that it cuts through no disc that it
- * reaches: the beds of all particles, then those of `body`. Discs may be seen from both sides.
- * Where only the first `shown` particles have discs, their beds lie below those of the others, so
- * that the front ends at its discs. Null for more than {@link MOST} particles, whose beds need no
- * more depth.
+ * Returns for each bed how many radii deeper it must lie to cut through none of the discs that it reaches: first the
+ * beds of all particles, then those of `body`. Discs may be visible from both sides. If only the first `shown`
+ * particles have discs, their beds lie below the beds of the others, so that the front ends at its discs. Returns null
+ * for more than {@link MOST} particles, whose beds need no extra depth.
  * @param {Bedded} particles
  * @param {number} shown  number of those that have discs
  * @param {Bedded | null} [body]
@@ -36,7 +35,7 @@ export function bedDepths(particles, shown, body = null) {
   const radii = Float32Array.from(parts.flatMap((part) => [...part.radii]));
   const widest = radii.reduce((most, radius) => Math.max(most, radius), 0);
   const discs = Array.from({ length: Math.min(shown, own) }, (_, j) => j);
-  // A bed reaches the discs of the cells beside its own.
+  // A bed reaches only discs in neighbouring cells.
   const grid = createGrid(p, discs, (BED_RADIUS + 1) * widest);
   return radii.map((radius, i) => {
     let most = 0;

@@ -1,4 +1,4 @@
-/** The bench on which two runs are compared. */
+/** The bench for comparing two runs. */
 import { signal } from '@preact/signals-core';
 import { fill, h } from '../ui/dom.js';
 import { offerNumber, toleranceNumber } from './drag.js';
@@ -13,7 +13,7 @@ import { COMMON, FAIL, partsOf, setupOf, sidesOf, TOLERANCE, turned, USUAL, what
  * @param {HTMLElement} host
  * @param {Lab} lab
  * @param {{ setup?: Setup, locks?: readonly Control[], onChoice?: (setup: Setup) => void }} [how]
- *   `locks`: controls that stay as they are; `onChoice` is told what the learner chooses
+ * `locks`: controls that cannot be changed; `onChoice` receives the learner's choices
  */
 export async function createBench(
   host,
@@ -27,13 +27,13 @@ export async function createBench(
   const [above, below] = [h('div', { class: 'beside' }), h('div', { class: 'beside' })];
   let setup = first;
   let shown = Promise.resolve();
-  /** The knobs on the right; those of the lesson where there are none. */
+  /** The knob values on the right; the lesson's values if the choice has no knobs. */
   const knobs = signal(USUAL);
-  /** The choice whose controls stand there. */
+  /** The choice whose controls are shown. */
   let standing = '';
-  /** Shows the values of the controls. */
+  /** Updates the controls to show a setup. */
   let follow = (/** @type {Setup} */ _next) => {};
-  /** What is kept of several choices at once. @type {ReturnType<typeof import('./fail.js').createFail> | null} */
+  /** The knobs and the stored tries. @type {ReturnType<typeof import('./fail.js').createFail> | null} */
   let fail = null;
   const what = createSelectRow({
     name: 'What changes',
@@ -56,7 +56,7 @@ export async function createBench(
   }
 
   /**
-   * Shows a choice with the values that are given. Without any, several at once are shown as they are kept.
+   * Shows a choice with the given values. Without values, a choice with knobs shows its stored tries.
    * @param {string} id @param {{ on?: unknown, left?: unknown, right?: unknown }} given
    * @param {(next: Setup) => unknown} [act]
    */
@@ -65,7 +65,7 @@ export async function createBench(
     await act(setupOf(id, { ...values, ...given }));
   }
 
-  /** Makes the controls of a choice. @param {WhatIf} whatIf */
+  /** Creates the controls of a choice. @param {WhatIf} whatIf */
   async function stand({ id, values, knobs, look: words }) {
     const { on } = setup;
     const own = `${id} ${on}`;
@@ -73,7 +73,7 @@ export async function createBench(
     const module = knobs ? await import('./fail.js') : null;
     if (`${setup.what} ${setup.on}` !== own || standing === own) return;
     standing = own;
-    // What is taken off the page ends, so it is made anew.
+    // Elements removed from the page are disposed of, so they are created again.
     fail = module?.createFail(labOn(on), { choose, isLocked: locks.includes('right'), on }) ?? null;
     look.textContent = words;
     fill(above, fail?.kept, fail?.said);
@@ -117,9 +117,9 @@ export async function createBench(
     show,
     open,
     setup: () => setup,
-    /** Fulfilled once what is shown is measured. */
+    /** Resolves once the runs shown are measured. */
     settled: () => shown,
-    /** The runs that are shown and those that are kept, each once and with its name, once they are measured. */
+    /** The runs shown and the stored runs, each once, with names, once they are measured. */
     runs() {
       const { runs, scores } = pair;
       const whatIf = whatIfOf(setup.what);
@@ -132,7 +132,7 @@ export async function createBench(
 }
 
 /**
- * Makes the tolerance of the text that of the sampling on the right.
+ * Links the tolerance in the text to the sampling on the right.
  * @param {HTMLElement} host @param {ReadonlySignal<string>} knobs @param {(knobs: string) => void} turn
  */
 function offerTolerance(host, knobs, turn) {
@@ -145,8 +145,7 @@ function offerTolerance(host, knobs, turn) {
 }
 
 /**
- * The surfaces on which runs may be compared, and the lab of each: that of the lesson, and those of
- * the gallery.
+ * The surfaces on which runs can be compared, and a lab for each: the lesson's surface, and those of the gallery.
  * @param {Lab} lab
  */
 async function surfacesOf(lab) {
@@ -167,7 +166,7 @@ async function surfacesOf(lab) {
 }
 
 /**
- * The controls of one choice, whose values are on the left and on the right.
+ * The controls for one choice, with a value on the left and one on the right.
  * @param {WhatIf['values']} choices @param {readonly Control[]} locks
  * @param {(side: 'left' | 'right', value: string) => void} change
  */

@@ -1,6 +1,6 @@
 /**
- * A slot from the side: where the child lands on the circle, and how near to the parent Newton's method does. Lengths
- * are those of the surface's box; a place in the plane of the slot is (along V, along N).
+ * A slot from the side: where the child lands on the circle, and how near its parent Newton's method lands. Lengths are
+ * in the units of the surface's box; a point in the plane of the slot is (along V, along N).
  */
 import { inPlane } from '../figures/geometry.js';
 import { RESIDUAL } from '../figures/particle.js';
@@ -12,13 +12,13 @@ import { NoSurface } from './lab.js';
  */
 
 const MOST_NEWTON = 30;
-/** Half size of the curve that is drawn, in radii, and its parts. */
+/** Half size of the drawn curve, in radii, and its number of parts. */
 const HALF = 3.2;
 const PARTS = 96;
 
 /**
- * How far from its parent Newton's method lands on a surface of constant bend, over 2r. It follows a gradient that
- * points to one centre: a sphere's.
+ * Distance at which Newton's method lands from its parent on a surface of constant curvature, divided by 2r. It follows
+ * a gradient that points to one centre, as on a sphere.
  * @param {number} bend  times r
  */
 export function newtonShare(bend) {
@@ -27,7 +27,7 @@ export function newtonShare(bend) {
 }
 
 /**
- * A slot on a surface of constant bend: a sphere through p, whose f has the slope 1 there.
+ * A slot on a surface of constant curvature: a sphere through p, where f has slope 1.
  * @param {number} bend @param {number} radius  of the particle
  * @returns {SlotCase}
  */
@@ -48,7 +48,7 @@ export function slotOn(bend, radius) {
   return {
     bend,
     radius,
-    // Where the circle meets the sphere, sin θ is −bend · r.
+    // The circle meets the sphere where sin θ = −bend · r.
     child: [reach * Math.sqrt(1 - high * high), -reach * high],
     newton: newton.slice(1),
     landing: Math.hypot(landing[0], landing[1]),
@@ -57,9 +57,9 @@ export function slotOn(bend, radius) {
   };
 }
 
-/** The curve of constant bend as segments, out to a distance from p. @param {number} bend @param {number} half */
+/** A curve of constant curvature as segments, up to a distance from p. @param {number} bend @param {number} half */
 function sectionOn(bend, half) {
-  // Every point at the angle t around the centre; without a bend, a line.
+  // Points at the angle t around the centre; a line if the curvature is 0.
   const most = bend * half < 1 ? half * 1.5 : Math.PI / bend;
   const at = (/** @type {number} */ s) =>
     bend > 0 ? [Math.sin(s * bend) / bend, (Math.cos(s * bend) - 1) / bend] : [s, 0];
@@ -70,7 +70,7 @@ function sectionOn(bend, half) {
 }
 
 /**
- * The slot of a run.
+ * A slot of a run.
  * @param {Awaited<ReturnType<typeof import('./measure.js').openBend>>} at  @returns {Promise<SlotCase>}
  */
 export async function slotOf({ opened, whole, slot, profile }) {
@@ -93,7 +93,7 @@ export async function slotOf({ opened, whole, slot, profile }) {
 }
 
 /**
- * The bend of the circle that touches the tangent plane in p and goes through a place.
+ * The curvature of the circle that touches the tangent plane at p and passes through a point.
  * @param {number} x @param {number} y
  */
 export const bendThrough = (x, y) => (-2 * y) / (x * x + y * y);

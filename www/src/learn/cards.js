@@ -1,4 +1,4 @@
-/** Entry point of the lesson's page of cards: what the paper says and what the program does, side by side. */
+/** Entry point of the lesson's page of cards, which compare the paper with the program. */
 import '../ui/trusted.js';
 import { signal } from '@preact/signals-core';
 import { button } from '../ui/button.js';
@@ -10,7 +10,7 @@ import { setupOf, sidesOf, whatIfOf } from './whatifs.js';
 
 const { lab } = openSubject();
 
-/** Gives a card a button that shows both. @param {HTMLElement} card @param {string} id  of the choice */
+/** Adds a button to a card that shows both variants. @param {HTMLElement} card @param {string} id of the choice */
 function mountCard(card, id) {
   const title = card.querySelector('h3')?.textContent ?? '';
   const isOpen = signal(false);

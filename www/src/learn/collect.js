@@ -1,7 +1,6 @@
 /**
  * Collect: a lecturer drops the files that learners saved, and sees how often each answer was guessed, with the right
- * one marked.
- * The files are read in this page and go nowhere.
+ * one marked. The files are read in this page and sent nowhere.
  */
 import { button } from '../ui/button.js';
 import { fill, h, uniqueId } from '../ui/dom.js';
@@ -15,7 +14,7 @@ import { readWork, tableOfAll } from './task.js';
 
 /** @import { Guessed, Work } from './types.js' */
 
-/** A file that is larger, in bytes, is not read. */
+/** Larger files, in bytes, are not read. */
 const LARGEST = 8e6;
 
 /** @param {HTMLElement} host */
@@ -23,7 +22,7 @@ export async function mountCollect(host) {
   await loadSheet(sheet);
   host.hidden = false;
   if (host.childElementCount > 0) return;
-  /** What was read, by its text, so that a file counts once. @type {Map<string, Work>} */
+  /** The works read, by their text, so that a file counts once. @type {Map<string, Work>} */
   const works = new Map();
   const id = uniqueId('files');
   const input = h('input', {
@@ -120,11 +119,11 @@ export async function mountCollect(host) {
   });
 }
 
-/** A table that is wider than the page is scrolled by itself. @param {string} name @param {Node} table */
+/** A table that scrolls by itself if it is wider than the page. @param {string} name @param {Node} table */
 const scrolled = (name, table) =>
   h('div', { class: 'collect-table', role: 'region', 'aria-label': name, tabindex: 0 }, table);
 
-/** The questions of works in the order of their first appearance. @param {readonly { question: string }[]} all */
+/** The questions in works, in order of first appearance. @param {readonly { question: string }[]} all */
 const questionsOf = (all) => [...new Set(all.map(({ question }) => question))];
 
 /** A guess in the words of the page. @param {Guessed | undefined} guessed */
@@ -133,11 +132,11 @@ function guessWords(guessed) {
   return choicesOf(guessed.stop).find(({ value }) => value === guessed.guess)?.label ?? String(guessed.guess);
 }
 
-/** The questions that have one right answer, and not one for each place or learner. @param {Guessed} guessed */
+/** Whether a question has a single right answer, the same for all learners. @param {Guessed} guessed */
 const hasBars = ({ stop }) => choicesOf(stop).length > 0 || (Object.hasOwn(QUESTIONS, stop) && stop !== 'predict-hole');
 
 /**
- * How often each answer of a question was guessed, as bars, with the right one marked.
+ * How often each answer to a question was guessed, as bars, with the right one marked.
  * @param {string} question @param {readonly Guessed[]} all  of this question
  */
 function barsOf(question, all) {
@@ -172,7 +171,7 @@ function barsOf(question, all) {
 }
 
 /**
- * What learners guessed, question by question, and below it what each of them wrote.
+ * The learners' guesses, question by question, then everything that each of them wrote.
  * @param {string} title @param {readonly Work[]} works
  */
 function answersOf(title, works) {
@@ -221,18 +220,18 @@ function answersOf(title, works) {
   ];
 }
 
-/** Numbers in names and labels are ordered by their values. */
+/** Orders numbers in names and labels by value. */
 const order = new Intl.Collator('en', { numeric: true });
 
-/** What tells a run from another. @param {any} run */
+/** A key that distinguishes runs. @param {any} run */
 const keyOf = ({ label, figures }) => JSON.stringify([label, figures]);
 
-/** The figures of the runs that learners made, each with the number of its learners. @param {readonly Work[]} works */
+/** The figures of the learners' runs, each with the number of learners. @param {readonly Work[]} works */
 function runTable(works) {
   /** @type {Map<string, { run: any, count: number }>} */
   const found = new Map();
   for (const { runs } of works) {
-    // A learner counts once, however often a file lists a run.
+    // A learner counts once per run, even if a file lists it several times.
     const own = new Map(runs.map((run) => [keyOf(run), run]));
     for (const [key, run] of own) found.set(key, { run, count: (found.get(key)?.count ?? 0) + 1 });
   }

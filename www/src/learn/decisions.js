@@ -1,6 +1,6 @@
 /**
- * The patches on which a learner is the algorithm: what it decides there at the slots of a particle, and what is wrong
- * with another decision.
+ * The patches on which a learner plays the algorithm: the decisions at the slots of a particle, and objections to other
+ * decisions.
  */
 
 import { distance, triple } from '../engine/vector.js';
@@ -43,7 +43,7 @@ export const PATCHES = [
 export const runOn = (lab, { surface, radius, seed }) =>
   lab.beside(surface).run({ relax_steps: 0, radius, seeds: [seed] }, { keep: true });
 
-/** What became of the children of the seed's first child. @param {Lab} lab */
+/** The fates of the children of the seed's first child. @param {Lab} lab */
 export async function childrenOf(lab) {
   const run = await runOn(lab, PATCHES[0]);
   try {
@@ -56,12 +56,12 @@ export async function childrenOf(lab) {
   }
 }
 
-/** A particle's name: a letter, so that it is no slot's. @param {number} particle @returns {string} */
+/** A particle's name: a letter, unlike a slot's number. @param {number} particle @returns {string} */
 export const letterOf = (particle) =>
   (particle < 26 ? '' : letterOf(Math.floor(particle / 26) - 1)) + String.fromCharCode(65 + (particle % 26));
 
 /**
- * A particle of a patch with its events, named by letters.
+ * A particle of a patch with its events; particles are named by letters.
  * @param {LabRun} run @param {number} particle @returns {Promise<Opened>}
  */
 export async function openNamed(run, particle) {
@@ -69,12 +69,12 @@ export async function openNamed(run, particle) {
   return { ...opened, subject: { ...opened.subject, nameOf: letterOf } };
 }
 
-/** Particles of a plane that the learner treats: the seed and its first child. */
+/** Number of particles of a plane that the learner treats: the seed and its first child. */
 const TREATED = 2;
-/** Particles that are looked through for the first meeting of a front. */
+/** Number of particles that are searched for the first meeting of a front. */
 const MOST_BEFORE = 60;
 
-/** The particles that the learner treats: the first ones, or the one at which the front meets itself. */
+/** The particles that the learner treats: the first ones, or the one where the front meets itself. */
 export async function treatedOf(/** @type {LabRun} */ run, /** @type {Patch} */ { isAtSeam }) {
   const all = [...Array(Math.min(isAtSeam ? MOST_BEFORE : TREATED, run.placed.radii.length)).keys()];
   if (!isAtSeam) return all;
@@ -86,11 +86,11 @@ export async function treatedOf(/** @type {LabRun} */ run, /** @type {Patch} */ 
 }
 
 /**
- * The fates that are decided by comparing. Slot 0 always holds the parent; the others are found on the way to the
+ * The fates that a comparison decides. Slot 0 always holds the parent; other fates follow from the search for the
  * surface.
  */
 const DECIDED = ['matched', 'added'];
-/** Events that stand between a comparison and the fate that follows from it. */
+/** Events between a comparison and its fate. */
 const BETWEEN = ['added', 'fronts_meet'];
 
 /** Returns the decisions of a particle, in the order of the run. @param {readonly LessonEvent[]} events */
@@ -109,7 +109,7 @@ export function decisionsOf(events) {
 }
 
 /**
- * Returns why a verdict is not that of the run; empty if it is.
+ * Returns why a verdict differs from the run's; empty if it does not.
  * @param {Opened} opened @param {Decision} decision @param {Verdict} said
  */
 export function objection({ subject, positions }, { compared, verdict }, said) {
@@ -117,7 +117,7 @@ export function objection({ subject, positions }, { compared, verdict }, said) {
   if (isSame) return '';
   if (!compared) return '';
   const name = (/** @type {number | null} */ particle) => `Particle ${letterOf(particle ?? 0)}`;
-  // Rounded first, since a distance of rounding errors would be written as a power of ten.
+  // Rounded first, so that a rounding error is not written as a power of ten.
   const far = (/** @type {number} */ particle) => {
     const radii = distance(triple(positions, particle), compared.position) / subject.radius;
     return inRadii(Math.round(100 * radii) / 100, 1, 2);

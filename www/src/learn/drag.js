@@ -1,4 +1,4 @@
-/** What is dragged beside the ranges: a number in a sentence, and a drawing. */
+/** Dragging apart from ranges: a number in a sentence, and a drawing. */
 import { clamp } from '../engine/vector.js';
 import { h, queryAll } from '../ui/dom.js';
 import { afterKey, toPlace, toValue } from '../ui/scale.js';
@@ -8,15 +8,15 @@ import { TOLERANCES, toleranceWords } from './whatifs.js';
 /** @import { Point } from '../figures/types.js' */
 /** @import { NumberOptions } from './types.js' */
 
-/** A number goes through its whole range on so many pixels. */
+/** Pixels over which a number goes through its whole range. */
 const RANGE_PX = 240;
 
 /**
- * A number in a sentence: a slider that is dragged sideways, or turned by its keys.
+ * A number in a sentence that acts as a slider: dragged sideways, or changed by keys.
  * @param {NumberOptions} about
  */
 export function createNumber({ name, scale, value, say, change, stage }) {
-  /** Where the drag is; null without one. @type {{ place: number, x: number } | null} */
+  /** State of the drag; null without one. @type {{ place: number, x: number } | null} */
   let drag = null;
   const end = () => {
     drag = null;
@@ -71,7 +71,7 @@ export function createNumber({ name, scale, value, say, change, stage }) {
 }
 
 /**
- * What the tolerance is as a number in a sentence.
+ * The options of the tolerance as a number in a sentence.
  * @param {Pick<NumberOptions, 'value' | 'change' | 'stage'>} about  @returns {NumberOptions}
  */
 export const toleranceNumber = ({ change, ...about }) => ({
@@ -83,8 +83,8 @@ export const toleranceNumber = ({ change, ...about }) => ({
 });
 
 /**
- * Makes the numbers of the text that name it in `data-number` handles of a number of a figure. One with `data-times` is
- * so many times that number.
+ * Turns numbers of the text with this name in `data-number` into handles for a number of a figure. With `data-times`,
+ * the number in the text is a multiple of it.
  * @param {string} name @param {NumberOptions} about  its accessible name is the title of the number in the text, if any
  */
 export function offerNumber(name, { scale, value, change, ...about }) {
@@ -103,9 +103,9 @@ export function offerNumber(name, { scale, value, change, ...about }) {
 }
 
 /**
- * Has a drawing dragged. It may be drawn anew meanwhile.
+ * Makes a drawing draggable. It may be redrawn meanwhile.
  * @param {HTMLElement} host  holds the drawing
- * @param {(at: Point, isFirst: boolean) => void} take  a place in the units of the drawing, y upwards
+ * @param {(at: Point, isFirst: boolean) => void} take  gets a point in the drawing's units, y upwards
  */
 export function dragIn(host, take) {
   let isOn = false;

@@ -1,4 +1,4 @@
-/** Make it fail: the learner turns several choices at once, and the best and the worst sampling so far are kept. */
+/** Make it fail: the learner changes several choices at once; the best and the worst sampling so far are stored. */
 import { signal } from '@preact/signals-core';
 import { button } from '../ui/button.js';
 import { fill, h } from '../ui/dom.js';
@@ -19,13 +19,13 @@ const ENDS = ['Best so far', 'Worst so far'];
 
 const nameOf = (/** @type {Lab} */ lab) => `fail.${packed(lab.surface)}`;
 
-/** The best and the worst that this browser has kept of a surface, as the two sides. @param {Lab} lab */
+/** The best and the worst value stored for a surface, as the two sides. @param {Lab} lab */
 export function keptSides(lab) {
   const [left, right] = kept(nameOf(lab)).text.split('\n');
   return { left, right };
 }
 
-/** The best and the worst try on the surface of a lab. */
+/** The best and the worst try on a lab's surface. */
 class Tries {
   /** @type {import('../engine/types.js').Signal<readonly Try[]>} */
   ends = signal([]);
@@ -36,7 +36,7 @@ class Tries {
     this.#lab = lab;
   }
 
-  /** Keeps a try if it is the best or the worst so far. @param {string} value */
+  /** Stores a try if it is the best or the worst so far. @param {string} value */
   async take(value) {
     const one = await tryOut(this.#lab, value);
     if (one.score.six === null) return one;
@@ -52,7 +52,7 @@ class Tries {
   }
 }
 
-/** Both benches of a page keep the same. @type {WeakMap<Lab, Tries>} */
+/** Shared by both benches of a page. @type {WeakMap<Lab, Tries>} */
 const all = new WeakMap();
 
 /** @param {Lab} lab */
@@ -63,14 +63,14 @@ function triesOf(lab) {
 }
 
 /**
- * The controls of the choices, and what is kept and said of them.
+ * The controls of the choices, with the stored tries and the comments.
  * @param {Lab} lab
  * @param {{ choose: (setup: Setup) => void, isLocked: boolean, on: string }} how  `on`: the name of the surface
  */
 export function createFail(lab, { choose, isLocked, on }) {
   const tries = triesOf(lab);
   const own = signal(USUAL);
-  /** The try on the right, and beside it the best so far; beside the best, the worst. @param {string} right */
+  /** Shows a try on the right, and the best so far on the left; next to the best, the worst. @param {string} right */
   const setTo = (right) => {
     if (right === own.peek() || isLocked) return;
     const [best, worst] = tries.ends.peek();
@@ -106,11 +106,11 @@ export function createFail(lab, { choose, isLocked, on }) {
       ),
     ),
   );
-  /** What is worse, beside the controls, and below the pictures why. */
+  /** The comparison, next to the controls, and the reasons, below the pictures. */
   const said = h('div', { class: 'said', role: 'status' });
   const verdict = h('div', { class: 'verdict' });
   return {
-    /** The two that are kept, with names. */
+    /** The two stored runs, with names. */
     runs: () =>
       tries.ends.peek().map(({ value, run, score }, k) => ({ label: `${ENDS[k]}: ${knobWords(value)}`, run, score })),
     controls: [
@@ -127,9 +127,9 @@ export function createFail(lab, { choose, isLocked, on }) {
       fill(said);
       fill(verdict);
     },
-    /** The seed of a place that is pressed. @param {readonly number[]} place */
+    /** Chooses the seed at a pressed point. @param {readonly number[]} place */
     seed: (place) => turn(SEED, seedAt(place)),
-    /** Measures what is shown, and says why it is as it is. @param {Setup} setup */
+    /** Measures the setup shown, and explains its result. @param {Setup} setup */
     async tell({ left, right }) {
       fill(said, h('p', { class: 'figure-status' }, 'Each choice is tried with the others put back'));
       try {
@@ -155,7 +155,7 @@ export function createFail(lab, { choose, isLocked, on }) {
   };
 }
 
-/** The figures that decide, in a sentence. */
+/** The deciding figures as parts of sentences. */
 const SAID = {
   six: (/** @type {string} */ value) => `${value} have six neighbours`,
   hole: (/** @type {string} */ value) => `the largest hole is ${value}`,

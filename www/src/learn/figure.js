@@ -1,11 +1,11 @@
 /**
- * Puts a live figure in the place of its still, once it comes near the window, and says what is missing if it cannot be
+ * Replaces a still by a live figure once it comes near the window, and says what is missing if the figure cannot be
  * made.
  */
 import { h } from '../ui/dom.js';
 import { NoSurface } from './lab.js';
 
-/** A figure is made once it is this near to the window, in pixels. */
+/** Distance from the window, in pixels, at which a figure is made. */
 const AHEAD_PX = 500;
 
 /** @param {HTMLElement} stage  holds the still @param {() => Promise<(Node | null)[]>} build */
@@ -28,7 +28,7 @@ export function mountFigure(stage, build) {
   whenNear(stage, make);
 }
 
-/** Does something once an element comes near the window. @param {Element} element @param {() => Promise<void>} act */
+/** Acts once an element comes near the window. @param {Element} element @param {() => Promise<void>} act */
 export function whenNear(element, act) {
   const observer = new IntersectionObserver(
     (entries) => {

@@ -1,4 +1,4 @@
-/** How near the eye comes so that bodies fill a picture, from whichever side they are seen. */
+/** The distance of the eye at which bodies fill a picture, from any side. */
 import { FIELD_OF_VIEW_RAD } from '../engine/view/camera.js';
 
 /**
@@ -11,12 +11,12 @@ import { FIELD_OF_VIEW_RAD } from '../engine/view/camera.js';
 const MARGIN = 1.04;
 
 /**
- * The room that bodies take in a picture with parallel rays when they turn around the vertical. It depends on the pitch
- * alone, so that a body keeps its size while it turns.
+ * The room that bodies need in a picture with parallel rays while they turn about the vertical. It depends only on the
+ * pitch, so that a body keeps its size as it turns.
  */
 export class Fit {
   /**
-   * Distances from the axis and from the middle along it, and the radius of each disc.
+   * For each disc its distance from the axis, its height above the middle, and its radius.
    * @type {[number, number, number][]}
    */
   #discs;
@@ -45,7 +45,7 @@ export class Fit {
   }
 
   /**
-   * The ball around the bodies, and the distance from which they fill a picture.
+   * The ball around the bodies, and the distance at which they fill a picture.
    * @param {number} pitch @param {{ width: number, height: number }} size
    */
   in(pitch, { width, height }) {

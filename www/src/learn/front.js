@@ -1,4 +1,4 @@
-/** Where the front is, for the camera. */
+/** Finds the front for the camera. */
 
 import { along, dot, size, triple, unit } from '../engine/vector.js';
 import { axes } from '../engine/view/camera.js';
@@ -8,9 +8,9 @@ import { anglesOf } from '../engine/view/facing.js';
  * @import { LessonParticles } from '../engine/types.js'
  */
 
-/** The first view shows the discs of so many levels around the seed. */
+/** Levels around the seed whose discs the first view shows. */
 export const FIRST_LEVELS = 5;
-/** So many directions are 5° apart. */
+/** This many directions are 5° apart. */
 const DIRECTIONS = 1500;
 
 /**
@@ -20,7 +20,7 @@ const DIRECTIONS = 1500;
 const onLevels = ({ levels, fronts }, from, to) =>
   [...levels.keys()].filter((i) => fronts[i] === 0 && levels[i] >= from && levels[i] <= to);
 
-/** Directions all around, as even as a spiral is. @type {readonly (readonly number[])[]} */
+/** Directions spread evenly by a spiral. @type {readonly (readonly number[])[]} */
 const AROUND = Array.from({ length: DIRECTIONS }, (_, k) => {
   const z = 1 - (2 * k + 1) / DIRECTIONS;
   const turn = k * Math.PI * (3 - Math.sqrt(5));
@@ -29,8 +29,8 @@ const AROUND = Array.from({ length: DIRECTIONS }, (_, k) => {
 });
 
 /**
- * The direction from which most discs of some levels of the first front are seen: that of their mean normal, unless
- * another is better.
+ * The direction from which most discs on some levels of the first front are visible: their mean normal, unless another
+ * direction is better.
  * @param {LessonParticles} particles @param {number} [from] @param {number} [to]
  * @returns {readonly number[]}
  */
@@ -38,7 +38,7 @@ export function frontNormal(particles, from = 0, to = FIRST_LEVELS) {
   const chosen = onLevels(particles, from, to);
   const sum = chosen.reduce((total, i) => along(total, triple(particles.normals, i), 1), [0, 0, 0]);
   const mean = size(sum) > 0 ? unit(sum) : AROUND[0];
-  // The camera does not look from straight above or below.
+  // The camera never looks from straight above or below.
   const seen = (/** @type {readonly number[]} */ way) => facingOf(particles, axes(anglesOf(way)).forward, chosen);
   const first = { way: mean, count: seen(mean) };
   if (first.count === chosen.length) return mean;
@@ -49,14 +49,14 @@ export function frontNormal(particles, from = 0, to = FIRST_LEVELS) {
 }
 
 /**
- * The number of some discs that face the eye.
+ * How many of some discs face the eye.
  * @param {LessonParticles} particles @param {readonly number[]} forward  direction of the view
  * @param {readonly number[]} chosen
  */
 const facingOf = ({ normals }, forward, chosen) => chosen.filter((i) => dot(forward, triple(normals, i)) < 0).length;
 
 /**
- * The share of the discs on some levels of the first front that face the eye; 1 if there are none.
+ * The share of the discs on some levels of the first front that face the eye; 1 without discs.
  * @param {LessonParticles} particles @param {readonly number[]} forward  direction of the view
  * @param {number} from @param {number} to
  */

@@ -1,7 +1,6 @@
 /**
- * Runs the paper's algorithms for the figures. Runs with different settings are kept apart: each has a worker of its
- * own while its events may still be asked for, and a run that is only looked at leaves its particles and frees the
- * worker.
+ * Runs the paper's algorithms for the figures. Each run has its own worker while its events may still be requested; a
+ * run that is only shown keeps its particles and frees the worker.
  */
 import { RESIDUAL } from '../figures/particle.js';
 
@@ -13,18 +12,18 @@ import { RESIDUAL } from '../figures/particle.js';
  * @import { LabRun } from './types.js'
  */
 
-/** Particles that the figures have: many enough for rings, few enough to tell them apart. */
+/** Particles in the figures: enough for rings, few enough to tell them apart. */
 export const PARTICLES = 1500;
-/** Particles where single ones are looked at, and the surface bends much within 2r. */
+/** Particles in figures of single particles; the surface then bends much within 2r. */
 const COARSE_PARTICLES = 180;
-/** Seeds that are tried for one with six children. */
+/** Number of seeds tried to find one with six children. */
 const SEED_TRIALS = 6;
 const SLOTS = 6;
-/** The radius of the first trial is this share of the box's diagonal. */
+/** Radius of the first trial, as a share of the box's diagonal. */
 const TRIAL = 1 / 30;
-/** A count this close to the wanted one is taken. */
+/** Relative difference within which a count is accepted. */
 const CLOSE = 0.12;
-/** Two counts this close are alike. */
+/** Relative difference within which two counts are equal. */
 const ALIKE = 0.004;
 const MOST_TRIALS = 4;
 
@@ -34,7 +33,7 @@ const MOST_TRIALS = 4;
  */
 export const USUAL = { placing: 'one_by_one', matched: 'stay', gaps: 'leave', relax_steps: 10, residual: RESIDUAL };
 
-/** The error of a surface that has no figures. */
+/** The surface has no particles for the figures. */
 export class NoSurface extends Error {}
 
 export class Lab {
@@ -54,7 +53,7 @@ export class Lab {
   #radii;
 
   /**
-   * Runs follow one another, so that a page of figures keeps one processor busy and not all.
+   * Runs follow one another, so that a page of figures keeps only one processor busy.
    * @type {Promise<unknown>}
    */
   #last;
@@ -74,12 +73,12 @@ export class Lab {
     return this.#meter.surfaces();
   }
 
-  /** Another one, on another surface. @param {FormulaSurface} surface */
+  /** A new lab on another surface. @param {FormulaSurface} surface */
   beside(surface) {
     return new Lab(surface, this.#open, this.#meter);
   }
 
-  /** The one on another surface, whose runs are made once. @param {FormulaSurface} surface */
+  /** The lab on another surface, which makes each run once. @param {FormulaSurface} surface */
   on(surface) {
     const key = JSON.stringify(surface);
     const known = this.#others.get(key) ?? this.beside(surface);
@@ -88,8 +87,8 @@ export class Lab {
   }
 
   /**
-   * A run with as many particles as another one, which keeps a different distance with the same radius: the radius is
-   * scaled until the counts agree.
+   * A run with as many particles as another run, although its particles keep a different distance with the same radius:
+   * the radius is scaled until the counts agree.
    * @param {Partial<LessonSettings>} change @param {LabRun} other
    */
   async runAsMany(change, other) {
@@ -110,7 +109,7 @@ export class Lab {
   }
 
   /**
-   * The radius with which the surface has about so many particles.
+   * The radius with which the surface has about this number of particles.
    * @param {number} particles
    */
   radiusFor(particles) {
@@ -133,7 +132,7 @@ export class Lab {
         const { particles: count } = await client.start(this.surface, settings);
         if (count === 0 && trial > 0) throw new NoSurface('The formula has no surface in its box.');
         if (Math.abs(count / particles - 1) < CLOSE) break;
-        // A count of nothing says that the trial was too coarse, or that there is nothing.
+        // No particles: the trial was too coarse, or there is no surface.
         radius *= count === 0 ? 0.25 : Math.sqrt(count / particles);
       }
     } finally {
@@ -143,7 +142,7 @@ export class Lab {
   }
 
   /**
-   * Measures particles by the meter of the sampler's report. `isAdaptive`: each against its own size.
+   * Measures particles as the sampler's report does. `isAdaptive`: each relative to its own size.
    * @param {LessonParticles} particles @param {boolean} isAdaptive
    */
   measure(particles, isAdaptive) {
@@ -157,7 +156,7 @@ export class Lab {
   }
 
   /**
-   * Returns a run, which is made once for the same settings.
+   * Returns a run, made once for the same settings.
    * @param {Partial<LessonSettings>} change  of the usual settings
    * @param {{ particles?: number, keep?: boolean }} [how]  `particles`: how many there should be about, unless a radius
    *   is given; `keep`: events will be asked for
@@ -175,15 +174,15 @@ export class Lab {
     return made;
   }
 
-  /** Ends a run that was kept, and forgets it. @param {LabRun} run */
+  /** Ends a run that was kept, and removes it. @param {LabRun} run */
   drop({ client, settings }) {
     client.close();
     this.#runs.delete(JSON.stringify([settings, true]));
   }
 
   /**
-   * Returns a run with few and large particles, before any relaxation, whose seed has six children if there is such a
-   * seed: where the surface ends beside it, it has fewer.
+   * Returns a run with few, large particles and no relaxation. If possible its seed has six children; near the end of
+   * the surface a seed has fewer.
    * @returns {Promise<LabRun>}
    */
   async coarse() {

@@ -1,7 +1,7 @@
-/** Work of which the last that is asked for counts, as while a number is dragged. */
+/** Work of which only the last request counts, such as while a number is dragged. */
 
 /**
- * Returns what asks for a job, and is fulfilled once nothing waits. While one is under way only the newest waits.
+ * Returns a function that requests a job and resolves once nothing waits. During a job only the newest request waits.
  * @template T
  * @param {(about: T, isOld: () => boolean) => Promise<void>} job  `isOld`: whether a newer one waits
  */

@@ -1,4 +1,4 @@
-/** The surface of a page of the lesson: the learner's own, or the ellipsoid that stands in. */
+/** The surface of a lesson page: the learner's own, or the ellipsoid instead. */
 import { kindOf, LessonClient } from '../engine/lesson/client.js';
 import { Meter } from '../engine/sampling/meter.js';
 import { byId } from '../ui/dom.js';
@@ -10,7 +10,7 @@ import { subjectOf } from './surface.js';
 
 const open = async () => new LessonClient();
 
-/** Reads the surface from the address, says in the page which one it is, and opens its lab. */
+/** Reads the surface from the address, names it in the page, and opens its lab. */
 export function openSubject() {
   const { parts } = readAddress(location.hash);
   const subject = subjectOf(parts.surface);
@@ -23,13 +23,13 @@ export function openSubject() {
   if (subject.isOwn) name(`your surface, ${surfaceWords(subject.surface)}`);
   for (const link of document.querySelectorAll('#back, #back-end'))
     if (link instanceof HTMLAnchorElement) link.href += subject.from;
-  // The surface goes along to the other page of the lesson.
+  // Links to the lesson's other page keep the surface.
   for (const link of document.querySelectorAll('.to-cards, .to-lesson'))
     if (link instanceof HTMLAnchorElement && parts.surface)
       link.hash = writeAddress({ stop: link.hash.slice(1), parts: { surface: parts.surface } });
 
   const meter = new Meter();
-  /** Tries the learner's surface; where it has no particles, the ellipsoid stands in. */
+  /** Tries the learner's surface; if it has no particles, the ellipsoid is used. */
   async function openLab() {
     const own = new Lab(subject.surface, open, meter);
     if (!subject.isOwn) return own;

@@ -17,10 +17,10 @@ import { mountTerms } from './terms.js';
 import { stopsOfBench } from './whatifs.js';
 
 const { subject, notice, parts, lab } = openSubject();
-// The pairs of an assignment are others than those that a reader draws alone, and so are the answers.
+// An assignment has other pairs, and therefore other answers, than a reader alone.
 const own = kept(['lesson', packed(subject.surface), ...(parts.task ? [parts.task] : [])].join('.'));
 const stops = new Stops(own.text, own.keep);
-/** The part for teachers, which is loaded when it is asked for. */
+/** The part for teachers, loaded on demand. */
 const teach = () => import('./teach.js');
 
 if (stops.isBegun()) {
@@ -33,7 +33,7 @@ if (stops.isBegun()) {
   place.hidden = false;
 }
 
-/** Those of one class judge the same pairs. */
+/** All learners of a class judge the same pairs. */
 const context = { lab, stops, series: parts.task ?? stops.series() };
 for (const host of queryAll(document, '[data-figure]'))
   mountFigure(host, () => FIGURES[host.dataset.figure ?? ''](context));
@@ -61,10 +61,10 @@ mountStops({
   },
 });
 
-/** What is said when a part of the page did not come: browsers may not ask for it again. */
+/** Said when a part of the page failed to load: browsers may not request it again. */
 const LOST = 'A part of this page could not be loaded. Load the page again.';
 
-/** The dialog for teachers, once it is asked for. @type {{ open: () => void } | null} */
+/** The dialog for teachers, once it was requested. @type {{ open: () => void } | null} */
 let maker = null;
 async function makeAssignment() {
   try {
@@ -76,7 +76,7 @@ async function makeAssignment() {
   maker.open();
 }
 
-/** Prints the questions, without a guess and without an answer. */
+/** Prints the questions without guesses or answers. */
 async function print() {
   try {
     (await teach()).printQuestions(byId('questions'));
@@ -89,7 +89,7 @@ const tool = (/** @type {string} */ label, /** @type {() => unknown} */ press) =
   button({ class: 'plain', press: () => void press() }, label);
 const teachers = h(
   'details',
-  // What is chosen takes the place of the list.
+  // A chosen tool replaces the list.
   {
     class: 'teachers',
     on: { click: ({ target }) => target instanceof Element && !target.closest('summary') && close() },

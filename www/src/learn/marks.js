@@ -1,16 +1,15 @@
 /**
- * Marks of particles with five and with seven neighbours. One switch shows them in all pictures
- * that are judged.
+ * Marks of particles with five and seven neighbours. One switch controls them in all pictures to be judged.
  */
 import { signal } from '@preact/signals-core';
 import { h } from '../ui/dom.js';
 
 const isOn = signal(false);
 
-/** Whether the pictures have the marks. An effect that asks runs again once it changes. */
+/** Whether the pictures have marks. An effect that calls this runs again when it changes. */
 export const isMarked = () => isOn.value;
 
-/** What the marks mean. @param {{ hidden?: () => boolean }} [how] */
+/** The key of the marks. @param {{ hidden?: () => boolean }} [how] */
 export const createMarkKey = ({ hidden = () => false } = {}) =>
   h(
     'ul',
@@ -19,7 +18,7 @@ export const createMarkKey = ({ hidden = () => false } = {}) =>
     h('li', null, h('span', { class: 'dot seven' }), 'seven or more'),
   );
 
-/** The switch, with what the marks mean. */
+/** The switch, with the key of the marks. */
 export function createMarkSwitch() {
   const box = h('input', {
     type: 'checkbox',

@@ -1,4 +1,4 @@
-/** Measurements of a run for the figures, worked out from its particles. */
+/** Measurements of a run for the figures, computed from its particles. */
 import { NO_PARENT } from '../engine/core-numbers.js';
 import { momentAt } from '../figures/moment.js';
 import { openParticle } from '../figures/particle.js';
@@ -12,8 +12,8 @@ import { placesOf, scoreOf } from './score.js';
  */
 
 /**
- * Distance of each particle to its nearest one, over the sum of their radii: 1 where two discs touch. Infinite if there
- * is none within two and a half of the largest radius.
+ * Distance of each particle to its nearest one, divided by the sum of their radii: 1 if two discs touch. Infinite if
+ * there is none within 2.5 times the largest radius.
  * @param {LessonParticles} particles
  */
 export function nearestDistances({ positions, radii }) {
@@ -28,7 +28,7 @@ export function nearestDistances({ positions, radii }) {
 }
 
 /**
- * Distance of each particle to its parent over 2r, as placed; 1 for a seed.
+ * Distance of each particle to its parent divided by 2r, as placed; 1 for a seed.
  * @param {LessonParticles} placed
  * @param {number} radius
  */
@@ -36,8 +36,8 @@ export const parentDistances = ({ positions, parents }, radius) =>
   Float32Array.from(parents, (parent, i) => (parent === NO_PARENT ? 1 : between(positions, i, parent) / (2 * radius)));
 
 /**
- * Whether the surface of a run is closed, as far as its particles tell: none is so near to the box
- * that the surface could end there.
+ * Whether a run's surface is closed, judging by its particles: none is so near the box that the surface could end
+ * there.
  * @param {LabRun} run
  */
 export function isClosed({ lab: { surface }, placed: { positions, radii } }) {
@@ -47,10 +47,10 @@ export function isClosed({ lab: { surface }, placed: { positions, radii } }) {
   );
 }
 
-/** The ring that is asked for. */
+/** The ring in the question. */
 export const RING = 12;
 
-/** Number of particles of each level of the first front. @param {LessonParticles} particles */
+/** Number of particles on each level of the first front. @param {LessonParticles} particles */
 export function ringsOf({ levels, fronts }) {
   /** @type {number[]} */
   const rings = [];
@@ -59,7 +59,7 @@ export function ringsOf({ levels, fronts }) {
 }
 
 /**
- * The scores of a run before its first step and after its last.
+ * The scores of a run before its first relaxation step and after its last.
  * @param {Lab} lab
  */
 export async function scoresOfRest(lab) {
@@ -69,7 +69,7 @@ export async function scoresOfRest(lab) {
 }
 
 /**
- * The child and its parent between which the surface bends most; null if there is no child.
+ * The child and parent between which the surface bends most; null without a child.
  * @param {LessonParticles} placed
  */
 export function sharpestBend({ normals, parents }) {
@@ -107,7 +107,7 @@ export async function openBend(lab) {
 }
 
 /**
- * Particles of one size that would cover the same area as these with the least of their radii.
+ * Number of particles of one size, the smallest of these radii, that would cover the same area.
  * @param {ArrayLike<number>} radii
  */
 export function asFineEverywhere(radii) {
@@ -117,13 +117,12 @@ export function asFineEverywhere(radii) {
 }
 
 /**
- * Whether a place that is pressed, by the particle that will lie there, is bare: the front has not
- * come so far.
- * @param {number} count  the first so many particles are there @param {number} particle
+ * Whether a pressed point is bare, given the particle that will lie there: the front has not reached it.
+ * @param {number} count  so many particles have been placed @param {number} particle
  */
 export const isBare = (count, particle) => particle >= count;
 
-/** The widest hole that the fronts leave, and the particle beside it; null where none is measured. @param {Lab} lab */
+/** The widest hole that the fronts leave, and the particle next to it; null if none is measured. @param {Lab} lab */
 export async function widestHole(lab) {
   const run = await lab.run({}, { keep: true });
   const { places } = await lab.measure(run.placed, false);
@@ -132,7 +131,7 @@ export async function widestHole(lab) {
 }
 
 /**
- * What this page counts: placing, ten steps, and the whole run of the other method.
+ * The counts on this page: placing, ten relaxation steps, and the whole run of the other method.
  * @param {Lab} lab
  * @returns {Promise<Cost>}
  */

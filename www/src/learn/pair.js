@@ -1,4 +1,4 @@
-/** Two runs side by side, seen by one camera. */
+/** Two runs side by side, with one camera. */
 import { signal } from '@preact/signals-core';
 import { triple } from '../engine/vector.js';
 import { fill, h, live } from '../ui/dom.js';
@@ -14,7 +14,7 @@ import { createScorecard } from './scorecard.js';
 
 /** @import { Colouring, Lab, LabRun, Scene, Score, Side, WhatIf } from './types.js' */
 
-/** Distances over the ideal one span this range of colours. */
+/** The colours span this range of distances, relative to the ideal one. */
 const [LOW, HIGH] = [0.7, 1.15];
 
 /**
@@ -28,7 +28,7 @@ function sceneOf(run, colouring, radii) {
 
 /** @param {LabRun} run @param {Colouring} colouring @param {[number, number]} radii */
 function colouredBy(run, colouring, [least, most]) {
-  // The distance to the parent is what placing gave; the others are as the run ended.
+  // Distances to the parent are as placed; other values are those at the end of the run.
   const particles = colouring === 'parent' ? run.placed : run.end;
   switch (colouring) {
     case 'parent':
@@ -42,7 +42,7 @@ function colouredBy(run, colouring, [least, most]) {
   }
 }
 
-/** The colours in words. @param {Colouring} colouring @param {[number, number]} radii */
+/** The legend in words. @param {Colouring} colouring @param {[number, number]} radii */
 function legendOf(colouring, [least, most]) {
   const [low, high] = [formatFixed(LOW, 2), formatFixed(HIGH, 2)];
   switch (colouring) {
@@ -82,9 +82,9 @@ export function createPair() {
     createMarkSwitch(),
     scorecard.element,
   );
-  /** The scenes of both without marks. @type {import('../engine/types.js').Signal<readonly Scene[]>} */
+  /** Both scenes without marks. @type {import('../engine/types.js').Signal<readonly Scene[]>} */
   const scenes = signal([]);
-  /** Once they are measured. @type {import('../engine/types.js').Signal<readonly Score[] | null>} */
+  /** Null until the runs are measured. @type {import('../engine/types.js').Signal<readonly Score[] | null>} */
   const scores = signal(null);
   live(element, () => {
     for (const [k, scene] of scenes.value.entries()) {
@@ -93,14 +93,14 @@ export function createPair() {
       pictures[k].show(score && end ? { ...scene, particles: end, colours: byNeighbours(score.valence) } : scene);
     }
   });
-  /** That of the runs that are shown. @type {Lab | null} */
+  /** The lab of the runs shown. @type {Lab | null} */
   let seen = null;
   const shown = {
     element,
     runs: /** @type {readonly [LabRun, LabRun] | null} */ (null),
-    /** The scores of the runs, once they are measured. */
+    /** The scores of the runs, once measured. */
     scores: () => scores.peek(),
-    /** Tells where a particle is pressed; null for no one. */
+    /** Sets the function that receives pressed points; null for none. */
     pickWith(/** @type {((place: number[]) => void) | null} */ onPick) {
       for (const [k, picture] of pictures.entries())
         picture.pickWith(onPick && ((particle) => onPick(particlePlace(k, particle))));

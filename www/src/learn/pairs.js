@@ -1,9 +1,6 @@
 /**
- * Pairs of samplings that the learner judges: the one at the beginning, and those that are drawn at
- * random, each for a
- * purpose that a story tells. A figure that differs by no more than chance is a tie. A pair whose
- * difference is near
- * chance is not asked about.
+ * Pairs of samplings for the learner to judge: the one at the beginning, and random ones, each with a purpose told by a
+ * story. A figure that differs by no more than chance is a tie. Pairs whose difference is near chance are not used.
  */
 import { adaptiveRun } from './adaptive.js';
 import { bestOf, chanceOf, ROWS, rowOf, scoreOf, written } from './score.js';
@@ -14,25 +11,25 @@ import { bestOf, chanceOf, ROWS, rowOf, scoreOf, written } from './score.js';
  * @import { Judged, JudgedSide, Lab, LabRun, Question, Score, ScoreFigures } from './types.js'
  */
 
-/** A torus, on which the eye prefers the sampling with less order. @type {FormulaSurface} */
+/** A torus on which the eye prefers the sampling with less order. @type {FormulaSurface} */
 export const TORUS = {
   formula: '(sqrt(x^2 + y^2) - 0.7)^2 + z^2 = 0.09',
   parameters: [],
   bounds: { min: [-1.2, -1.2, -0.5], max: [1.2, 1.2, 0.5] },
 };
 
-/** The answers to the question which of two is better. */
+/** Answers to the question of which sampling is better. */
 export const SIDES = [
   { value: 'a', label: 'Sampling A' },
   { value: 'b', label: 'Sampling B' },
   { value: 'alike', label: 'Neither: they differ by chance at most' },
 ];
 
-/** The same before chance is named. */
+/** The same answers before chance has been introduced. */
 export const PLAIN_SIDES = SIDES.with(2, { value: 'alike', label: 'Neither: they are alike' });
 
 /**
- * What a sampling is for, and the figure that says how good it is for that.
+ * The purpose of a sampling, and the figure that measures how well it serves that.
  * @type {readonly { key: keyof ScoreFigures, story: string, why: string }[]}
  */
 export const PURPOSES = [
@@ -61,14 +58,14 @@ export const PURPOSES = [
   },
 ];
 
-/** The answers to the question which figure decides. */
+/** Answers to the question of which figure decides. */
 export const FIGURES = ROWS.filter(({ key }) => PURPOSES.some((purpose) => purpose.key === key)).map(
   ({ key, name }) => ({ value: key, label: name }),
 );
 
 /** @param {string} name @param {JudgedSide['settings']} settings */
 const side = (name, settings) => ({ name, settings });
-/** In a pair, one of these against the other. @type {readonly (readonly [JudgedSide, JudgedSide])[]} */
+/** A pair compares one of these with the other. @type {readonly (readonly [JudgedSide, JudgedSide])[]} */
 const RIVALS = [
   [side('a queue, relaxed', {}), side('a stack, relaxed', { order: 'stack' })],
   [side('a stack, relaxed', { order: 'stack' }), side('a queue, not relaxed', { relax_steps: 0 })],
@@ -82,20 +79,20 @@ export const SIZES = [side('one size', {}), { name: 'sizes that follow the bends
 /** The pair at the beginning. @type {Judged} */
 export const OPENING = { surface: TORUS, name: 'Torus', sides: RIVALS[1], particles: 1500 };
 
-/** Runs of its sampling B from seeds of their own, which show what chance is. */
+/** Runs of sampling B with different seeds, which show what chance is. */
 export const SEEDS = 5;
 
-/** Its sampling B, from a seed. @param {Lab} lab @param {number} seed */
+/** Sampling B with a seed. @param {Lab} lab @param {number} seed */
 export function fromSeed(lab, seed) {
   const { surface, sides, particles } = OPENING;
   return lab.on(surface).run({ ...sides[1].settings, ...(seed > 0 ? { seed } : {}) }, { particles });
 }
 
-/** Particles of a pair that is drawn: enough for the figures, few enough to wait for. */
+/** Particles in a random pair: enough for the figures, few enough to wait for. */
 const DRAWN = 600;
-/** Pairs that are tried until one is clear. */
+/** Number of pairs tried until one is clear. */
 const MOST_TRIALS = 6;
-/** A difference between these shares of chance is neither clear nor clearly a tie. */
+/** A difference within these multiples of chance is neither clear nor clearly a tie. */
 const UNCLEAR = [0.75, 1.25];
 
 /**
@@ -113,7 +110,7 @@ function runOf(lab, { surface, particles }, { settings, isAdaptive = false }) {
 /** @param {Lab} lab @param {Judged} pair */
 export const runsOf = (lab, pair) => Promise.all(pair.sides.map((of) => runOf(lab, pair, of)));
 
-/** The scores of both, against the ideal of one size. @param {Lab} lab @param {Judged} pair */
+/** Both scores, relative to the ideal of one size. @param {Lab} lab @param {Judged} pair */
 export const scoresOf = async (lab, pair) =>
   Promise.all(
     (await runsOf(lab, pair)).map((run) =>
@@ -122,19 +119,19 @@ export const scoresOf = async (lab, pair) =>
   );
 
 /**
- * The value of {@link SIDES} that is right by a figure.
+ * The right value of {@link SIDES} according to a figure.
  * @param {readonly Score[]} scores @param {keyof ScoreFigures} key
  */
 export const winnerOf = (scores, key) => ['alike', 'a', 'b'][bestOf(scores, rowOf(key)) + 1];
 
 /**
- * Where so few have six neighbours in both, the surface bends too much within 2r for the figures to
- * say anything.
+ * If fewer particles than this share have six neighbours in both, the surface bends too much within 2r for the figures
+ * to mean anything.
  */
 const LEAST_ORDER = 0.6;
 
 /**
- * Whether a figure clearly differs or clearly does not.
+ * Whether a figure clearly differs, or clearly does not.
  * @param {readonly Score[]} scores @param {keyof ScoreFigures} key
  */
 export function isClear(scores, key) {
@@ -144,7 +141,7 @@ export function isClear(scores, key) {
   return share < UNCLEAR[0] || share > UNCLEAR[1];
 }
 
-/** Numbers from 0 to 1 that follow from a text (FNV-1a, then mulberry32). @param {string} text */
+/** Random numbers from 0 to 1 determined by a text (FNV-1a, then mulberry32). @param {string} text */
 function randomOf(text) {
   let state = 0x811c9dc5;
   for (const letter of text) state = Math.imul(state ^ (letter.codePointAt(0) ?? 0), 0x01000193);
@@ -156,23 +153,22 @@ function randomOf(text) {
   };
 }
 
-/** With more holes than this a surface bends too much within 2r, and a run takes long. */
+/** A surface of higher genus bends too much within 2r, and its run takes long. */
 const MOST_GENUS = 3;
 
 /**
- * The surfaces of the gallery that pairs are drawn from: closed, in one piece and without self-intersections.
+ * The gallery surfaces for random pairs: closed, in one piece and without self-intersections.
  * @param {readonly SurfaceInfo[]} gallery
  */
 export const drawable = (gallery) =>
   gallery.filter(({ genus, formula }) => formula && genus !== null && genus <= MOST_GENUS);
 
-/** So often neither is to be better. */
+/** The share of pairs that are meant to be ties. */
 const TIES = 0.3;
 
 /**
- * The pair with a number of a series, which begins with a text. Every third compares one size with
- * many, and asks for
- * the widest gap to a mesh, too. The purposes take turns, as far as they are clear.
+ * The pair with a number in a series, which a text determines. Every third pair compares one size with many, and also
+ * asks for the widest gap to a mesh. Purposes alternate as far as they are clear.
  * @param {Lab} lab @param {readonly SurfaceInfo[]} surfaces @param {string} series @param {number} number  from 0
  */
 export async function drawn(lab, surfaces, series, number) {
@@ -203,7 +199,7 @@ export async function drawn(lab, surfaces, series, number) {
 }
 
 /**
- * The question about a pair that was drawn: by eye first, then by its figures.
+ * The question about a random pair: first by eye, then by its figures.
  * @param {Awaited<ReturnType<typeof drawn>>} of @returns {Question<readonly Score[]>}
  */
 export function questionOf({ pair, purpose: { key, story, why } }) {

@@ -1,11 +1,11 @@
-/** The questions on two pages to print: without a guess, without an answer, and with room to write. */
+/** Prints the questions on two pages, without guesses or answers, with space to write. */
 import { fill, h } from '../ui/dom.js';
 import { PURPOSES } from './pairs.js';
 import { partsOf, QUESTIONS } from './questions.js';
 
 /** @import { Part } from './types.js' */
 
-/** What is there to tick or to write on. @param {Part<any>} part */
+/** The blanks to tick or to fill in. @param {Part<any>} part */
 const blankOf = ({ kind, choices = [], label }) =>
   kind === 'choice'
     ? h(
@@ -15,7 +15,7 @@ const blankOf = ({ kind, choices = [], label }) =>
       )
     : h('p', { class: 'blank' }, kind === 'number' ? `${label}:` : 'Say where, and why there:');
 
-/** The questions in the order of the page, then the purposes for which pairs are judged. */
+/** The questions in page order, then the purposes for which pairs are judged. */
 const questions = () => {
   const why = () => h('p', { class: 'blank' }, 'Why:');
   const ids = Array.from(document.querySelectorAll('.chapter .predict'), ({ id }) => id);

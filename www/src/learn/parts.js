@@ -1,4 +1,4 @@
-/** Controls and charts that several figures have. */
+/** Controls and charts shared by several figures. */
 
 import { signal } from '@preact/signals-core';
 import { clamp } from '../engine/vector.js';
@@ -15,7 +15,7 @@ import { createSelect } from '../ui/select.js';
 /** @import { RangeRowOptions, SelectRowOptions } from './types.js' */
 
 /**
- * A range with its name and its value in words.
+ * A range with a name and its value in words.
  * @param {RangeRowOptions} about
  */
 export function createRangeRow({ name, max, value = 0, say, change }) {
@@ -44,7 +44,7 @@ export function createRangeRow({ name, max, value = 0, say, change }) {
 }
 
 /**
- * A button that moves a range from its beginning to its end. Under reduced motion it goes there at once.
+ * A button that moves a range from beginning to end; with reduced motion, at once.
  * @param {ReturnType<typeof createRangeRow>} range @param {{ label: string, totalMs: number | (() => number) }} about
  */
 export function createPlay(range, { label, totalMs }) {
@@ -73,10 +73,9 @@ export function createPlay(range, { label, totalMs }) {
 }
 
 /**
- * A chart with what it says below it. It is drawn anew after every change of the signals that `chart` reads.
+ * A chart with a caption. It is redrawn when a signal that `chart` reads changes.
  * @param {{ hidden: () => boolean, chart: () => Drawn, label: string, words: Children,
- *   press: (at: number) => void }} about  `label`: the chart for those who do not see it; `press`:
- *   called with the place that is pressed
+ * press: (at: number) => void }} about  `label`: for screen readers; `press`: gets the pressed position
  */
 export function createChart({ hidden, chart, label, words, press }) {
   /** @param {MouseEvent & { currentTarget: Element }} event */
@@ -101,7 +100,7 @@ export function createChart({ hidden, chart, label, words, press }) {
 }
 
 /**
- * A select with its name.
+ * A select with a name.
  * @template {string} T
  * @param {SelectRowOptions<T>} about
  */
@@ -110,7 +109,7 @@ export function createSelectRow({ name, choices, value = choices[0]?.value, chan
   /** @type {Signal<string>} */
   const chosen = signal(value);
   /**
-   * With the value that is shown and is none of the choices.
+   * Includes the value shown, even if it is not one of the choices.
    * @type {Signal<readonly { value: string, label: string }[]>}
    */
   const all = signal(choices);
@@ -126,7 +125,7 @@ export function createSelectRow({ name, choices, value = choices[0]?.value, chan
   return {
     element: h('div', { class: 'select-row' }, h('label', { for: id }, name), select),
     select,
-    /** Shows a value, which need not be one of the choices. @param {string} own @param {string} [words] */
+    /** Shows a value, even if it is not one of the choices. @param {string} own @param {string} [words] */
     set(own, words = own) {
       if (!all.peek().some((choice) => choice.value === own)) all.value = [...choices, { value: own, label: words }];
       chosen.value = own;
@@ -142,7 +141,7 @@ export const facts = (rows) =>
     rows.flatMap(([name, value]) => [h('dt', null, name), h('dd', null, value)]),
   );
 
-/** A scale of colours with its ends in words. @param {string} name @param {string} low @param {string} high */
+/** A colour scale with labelled ends. @param {string} name @param {string} low @param {string} high */
 export const createScale = (name, low, high) =>
   h(
     'p',

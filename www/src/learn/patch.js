@@ -6,13 +6,13 @@ import { unrolled } from '../figures/geometry.js';
 /** @import { LabRun, Score } from './types.js' */
 
 /**
- * Half the width and half the height of a patch in r, and how far around it particles are taken in.
+ * Half the width and half the height of a patch in r, and the margin in which particles are included.
  */
 export const HALF = { width: 5, height: 4 };
 const BEYOND = 4;
 
 /**
- * The corners of the cell of a place: what is nearer to it than to any of the others.
+ * The corners of a point's Voronoi cell: everything nearer to it than to any of the others.
  * @param {Point} place @param {readonly Point[]} others @param {number} reach  of the corners, along each axis
  */
 export function cellOf(place, others, reach) {
@@ -43,9 +43,8 @@ export function cellOf(place, others, reach) {
 }
 
 /**
- * The patch around the largest hole of a run: its particles with their cells and
- * neighbours, the hole, and the closest pair of the patch. Null where no hole is measured. Lengths
- * are in r.
+ * The patch around the largest hole of a run: its particles with cells and neighbours, the hole, and the closest pair
+ * in the patch. Null if no hole is measured. Lengths are in r.
  * @param {LabRun} run @param {Score} score  at its end
  */
 export function patchOf({ end, radius }, { places: { hole }, valence }) {

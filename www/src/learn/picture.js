@@ -1,6 +1,6 @@
 /**
  * A picture of particles, drawn by the page's own 2-D painter at twice its size, so that the browser smooths the edges.
- * A page of figures would run out of contexts of the graphics card.
+ * A page of figures would run out of graphics contexts.
  */
 import { signal } from '@preact/signals-core';
 import { clamp, distance } from '../engine/vector.js';
@@ -23,23 +23,23 @@ import { frontNormal, shareFacing } from './front.js';
 
 const KEY_STEP_RAD = 0.14;
 const KEY_ZOOM = 1.2;
-/** Times by which the eye may come nearer than a fit. @type {readonly [number, number]} */
+/** How many times nearer or farther than a fit the eye may be. @type {readonly [number, number]} */
 const ZOOMS = [0.1, 30];
-/** Radians for a drag over a picture's whole height. */
+/** Radians per drag over a picture's whole height. */
 const DRAG_RAD = 3.4;
-/** A press that moves by less, in pixels, points at something. */
+/** A press that moves by less, in pixels, chooses something. */
 const PRESS_PX = 5;
-/** The camera follows a level of which a smaller share faces it. */
+/** The camera follows a level if a smaller share of it faces the camera. */
 const IN_SIGHT = 0.35;
-/** Height of a picture on paper, over its width. */
+/** Height of a printed picture, divided by its width. */
 const PAPER = 0.6;
-/** Radius of the ring around a particle, over its own. */
+/** Radius of the ring around a particle, divided by its own. */
 const AROUND = 1.6;
-/** Canvas pixels for a page pixel. */
+/** Canvas pixels per page pixel. */
 const FINENESS = 2;
 
 const dark = matchMedia('(prefers-color-scheme: dark)');
-/** Paper is white whatever the screen is. */
+/** Paper is white in either theme. */
 const printing = signal(false);
 const isDark = signal(false);
 const followTheme = () => {
@@ -55,15 +55,15 @@ addEventListener('afterprint', () => {
   printing.value = false;
 });
 
-/** A camera that one or several pictures share. Its rays are parallel, so that a disc is as large wherever it is. */
+/** A camera shared by one or more pictures. Its rays are parallel, so that discs have the same size everywhere. */
 export class Orbit {
   #camera = new Camera();
   #home = { yaw: 0, pitch: 0 };
   #fit = new Fit([{ positions: new Float32Array(3), radii: Float32Array.of(1) }]);
-  /** So many times nearer than where the bodies fill the picture. */
+  /** How many times nearer the eye is than for a fit. */
   #zoom = 1;
   #frame = 0;
-  /** Counts the changes. */
+  /** Number of changes. */
   turned = signal(0);
 
   /** @param {number} yawRad @param {number} pitchRad */
@@ -73,18 +73,18 @@ export class Orbit {
     this.#hasTurned();
   }
 
-  /** Comes nearer by a factor, within limits. @param {number} factor */
+  /** Moves nearer by a factor, within limits. @param {number} factor */
   zoom(factor) {
     this.#zoom = clamp(this.#zoom * factor, ...ZOOMS);
     this.#hasTurned();
   }
 
-  /** An effect that turns the camera does not wait for it to turn. */
+  /** `peek`, so that an effect that turns the camera does not depend on its turning. */
   #hasTurned() {
     this.turned.value = this.turned.peek() + 1;
   }
 
-  /** Turns to a side of the surface. @param {readonly number[]} normal  of that side */
+  /** Rotates to a side of the surface. @param {readonly number[]} normal of that side */
   turnTo(normal) {
     const camera = this.#camera;
     camera.calm = reducedMotion();
@@ -100,14 +100,14 @@ export class Orbit {
     frame(lastMs);
   }
 
-  /** Looks at the side on which the front begins, also after a reset. @param {LessonParticles} particles */
+  /** Looks at the side where the front begins, also after a reset. @param {LessonParticles} particles */
   faceFront(particles) {
     this.#home = anglesOf(frontNormal(particles));
     this.reset();
   }
 
   /**
-   * Follows the front: turns to the discs of a level that face away.
+   * Follows the front: rotates if the discs of a level face away.
    * @param {LessonParticles} particles @param {number} level
    */
   follow(particles, level) {
@@ -115,7 +115,7 @@ export class Orbit {
     if (shareFacing(particles, forward, level, level) < IN_SIGHT) this.turnTo(frontNormal(particles, level, level));
   }
 
-  /** Lets bodies fill the pictures, once they are known. @param {readonly Discs[]} bodies */
+  /** Fits the pictures to bodies once these are known. @param {readonly Discs[]} bodies */
   fitTo(...bodies) {
     const drawn = bodies.filter(({ radii }) => radii.length > 0);
     if (drawn.length === 0) return;
@@ -130,7 +130,7 @@ export class Orbit {
     this.#hasTurned();
   }
 
-  /** What a picture of a size shows. @param {{ width: number, height: number }} size */
+  /** The view for a picture of this size. @param {{ width: number, height: number }} size */
   view({ width, height }) {
     const { yaw, pitch } = this.#camera.state;
     const { ball, distance } = this.#fit.in(pitch, { width, height });
@@ -148,15 +148,14 @@ export class Picture {
   #size;
   #frame;
   /**
-   * The scene whose beds have these depths.
+   * The last scene with computed depths of its beds.
    * @type {{ scene: Scene, depths: Float32Array | null } | null}
    */
   #bedded = null;
 
   /**
    * @param {Orbit} orbit
-   * @param {{ name: string, onPick?: (particle: number) => void }} about  `name`: what the picture shows, for those who
-   *   do not see it
+   * @param {{ name: string, onPick?: (particle: number) => void }} about  `name`: of the picture, for screen readers
    */
   constructor(orbit, { name, onPick }) {
     this.orbit = orbit;
@@ -164,7 +163,7 @@ export class Picture {
     this.#onPick = null;
     /** @type {Signal<Scene | null>} */
     this.scene = signal(null);
-    /** What is ringed. @type {Signal<ScorePlace | null>} */
+    /** The place with a ring around it. @type {Signal<ScorePlace | null>} */
     this.ringed = signal(null);
     this.#canvas = h('canvas', { class: 'picture-canvas' });
     this.element = h('div', { class: 'picture', role: 'application', tabindex: 0 }, this.#canvas);
@@ -178,7 +177,7 @@ export class Picture {
     endsWith(this.element, () => observer.disconnect());
     live(this.element, () => {
       void [this.scene.value, this.ringed.value, this.#size.value, this.orbit.turned.value, isDark.value];
-      // Printing does not wait for a frame.
+      // Printing cannot wait for a frame.
       if (printing.value) this.#draw();
       else this.#ask();
     });
@@ -210,7 +209,7 @@ export class Picture {
     this.scene.value = scene;
   }
 
-  /** The size that is drawn. On paper pictures have one shape. */
+  /** The size to draw. Printed pictures all have the same shape. */
   #room() {
     const { width, height } = this.#size.peek();
     return { width, height: printing.peek() && height > 0 ? PAPER * width : height };
@@ -245,21 +244,21 @@ export class Picture {
     painter.set_style(JSON.stringify({ background, dim_backfaces: 1, body: { colour, is_open: !scene.isClosed } }));
     const view = this.#view();
     painter.set_view(view.packed);
-    // The ground is left out, so that the picture stands on that of the page or of the paper.
+    // The background is left out, so that the page or the paper shows through.
     painter.draw(0, true, Infinity);
     const { places = [], normal = [], radius = 0 } = this.ringed.peek() ?? {};
-    // The largest hole has the circle that is empty; of a pair both particles are ringed.
+    // The largest hole gets its empty circle; of a pair both particles are ringed.
     const isHole = places.length === 1;
     const rings = places.map((place) => ({ place, normal, radius, isHole, kind: /** @type {const} */ ('ring') }));
     this.#drawMarks(painter.context, [...(scene.marks ?? []), ...rings], view);
     this.element.dataset.drawn = String(scene.count ?? radii.length);
   }
 
-  /** The depths of the beds of a scene, worked out once. @param {Scene} scene */
+  /** The depths of a scene's beds, computed once. @param {Scene} scene */
   #depths(scene) {
     const { particles, count = particles.radii.length, body = null } = scene;
     if (this.#bedded?.scene !== scene) {
-      // The body begins after the discs, in the place of the particles that have none.
+      // The body follows the discs, replacing the particles without discs.
       const own = body ? firstOf(particles, count) : particles;
       this.#bedded = { scene, depths: bedDepths(own, count, body) };
     }
@@ -301,7 +300,7 @@ export class Picture {
     this.element.dataset.rings = String(rings);
   }
 
-  /** The particle under a point of the picture; null if there is none. @param {number} xPx @param {number} yPx */
+  /** The particle under a point of the picture; null without one. @param {number} xPx @param {number} yPx */
   #pick(xPx, yPx) {
     const scene = this.scene.peek();
     if (!scene) return null;
@@ -314,7 +313,7 @@ export class Picture {
       const at = projected(view, place);
       if (!at || !isFacing(view.eye, place, normals.subarray(3 * i, 3 * i + 3))) continue;
       const far = Math.hypot(at.x - xPx, at.y - yPx) * at.perPx;
-      // Several particles may lie under the point: the one in front is chosen, and of its sheet the nearest.
+      // Of several particles under the point the frontmost is chosen, and on its sheet the nearest.
       const cost = distance(view.eye, place) + 2 * far;
       if (far < 2 * radii[i] && cost < least) [best, least] = [i, cost];
     }
@@ -378,7 +377,7 @@ export class Picture {
 }
 
 /**
- * Pictures beside each other, under one camera.
+ * Pictures side by side with one camera.
  * @param {Orbit} orbit @param {readonly string[]} names
  */
 export function sideBySide(orbit, names) {
@@ -389,7 +388,7 @@ export function sideBySide(orbit, names) {
     captions,
     figures: pictures.map((picture, k) => h('figure', null, picture.element, captions[k])),
     /**
-     * Turns all to a place, and rings it in the picture that has it.
+     * Rotates all pictures to a place, and rings it in the picture of its side.
      * @param {ScorePlace | null} place @param {number} side
      */
     point(place, side) {
@@ -399,7 +398,7 @@ export function sideBySide(orbit, names) {
   };
 }
 
-/** Sides of an arrow's head, over its length. */
+/** Length and width of an arrow's head, divided by the arrow's length. */
 const HEAD = [0.28, 0.16];
 
 /** @param {CanvasRenderingContext2D} context @param {readonly number[]} from @param {readonly number[]} to */
@@ -438,7 +437,7 @@ export const byLevel = ({ levels }, last = levels.reduce((most, level) => Math.m
   });
 
 /**
- * Colours by a number for each particle, from `low` to `high`.
+ * Colours by a number per particle, from `low` to `high`.
  * @param {ArrayLike<number>} values
  * @param {number} low
  * @param {number} high
@@ -451,13 +450,13 @@ export const byValue = (values, low, high) =>
     }),
   );
 
-/** Marks the particles that have fewer or more than six neighbours. @param {Uint8Array} valence */
+/** Marks particles with fewer or more than six neighbours. @param {Uint8Array} valence */
 export const byNeighbours = (valence) =>
   once(({ valence: { five, six, seven } }) =>
     Uint32Array.from(valence, (count) => (count === 6 || count === 0 ? six : count < 6 ? five : seven)),
   );
 
-/** Works out the colours of a palette once. @param {(palette: Palette) => Uint32Array} colours */
+/** Computes the colours of each palette once. @param {(palette: Palette) => Uint32Array} colours */
 function once(colours) {
   /** @type {Map<Palette, Uint32Array>} */
   const known = new Map();

@@ -1,19 +1,19 @@
-/** Keeps the picture of a figure in view while a number that changes it is turned elsewhere in the text. */
+/** Keeps the picture of a figure in view while a number elsewhere in the text changes it. */
 import { queryAll } from '../ui/dom.js';
 
-/** Room around a pinned picture, and the least height of one, in pixels. */
+/** Margin around a pinned picture, and its least height, in pixels. */
 const MARGIN_PX = 8;
 const LEAST_PX = 120;
-/** After the last key a picture stays for so long. */
+/** Time for which a picture stays after the last key. */
 const STAYS_MS = 1500;
 
-/** Ends what is pinned now. */
+/** Unpins the current picture. */
 let unpin = () => {};
-/** Ends a picture that keys have pinned. @type {ReturnType<typeof setTimeout> | undefined} */
+/** Unpins a picture that keys have pinned. @type {ReturnType<typeof setTimeout> | undefined} */
 let timer;
 
 /**
- * The highest part of the window that holds none of some elements, as its upper and its lower end.
+ * The tallest part of the window without any of these elements, as its upper and lower end.
  * @param {number} top @param {readonly Element[]} taken
  */
 function freeRoom(top, taken) {
@@ -30,11 +30,11 @@ function freeRoom(top, taken) {
 }
 
 /**
- * Shows the picture of a figure where neither the number that is turned nor a question stands, unless all of it is in
- * view where it is. It stays there until the number is let go, the page is scrolled, or Escape is pressed.
- * @param {HTMLElement} number  is turned
+ * Shows the picture of a figure away from the changing number and from questions, unless all of it is already in view.
+ * It stays until the number is released, the page is scrolled, or Escape is pressed.
+ * @param {HTMLElement} number  the number that changes
  * @param {HTMLElement} stage  holds the figure
- * @param {boolean} isDragged  or else turned by a key
+ * @param {boolean} isDragged  otherwise changed by a key
  */
 export function pin(number, stage, isDragged) {
   const shown = stage.querySelector('.picture, .drawing-box')?.getBoundingClientRect();
@@ -61,7 +61,7 @@ export function pin(number, stage, isDragged) {
       stage.classList.remove('pinned');
     };
     for (const kind of ['blur', 'pointerup', 'pointercancel']) number.addEventListener(kind, unpin, { signal });
-    // What changes its height above is scrolled past by the browser itself, and leaves the number where it is.
+    // If content above changes its height, the browser scrolls by itself and the number stays in place.
     const { top: place } = number.getBoundingClientRect();
     const scrolled = () => Math.abs(number.getBoundingClientRect().top - place) > 1 && unpin();
     addEventListener('scroll', scrolled, { signal });

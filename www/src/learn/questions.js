@@ -1,7 +1,6 @@
 /**
- * The questions of the lesson as data: what is asked, what is measured for the answer, what is
- * right, and what is said.
- * `ask.js` reads them.
+ * The questions of the lesson as data: the question, the measurement for the answer, the right answer, and the words
+ * about it. `ask.js` uses them.
  */
 import { distance, triple } from '../engine/vector.js';
 import { inRadii } from '../figures/words.js';
@@ -14,11 +13,11 @@ import { verdictOf, written } from './score.js';
 
 /** @import { Part, Question, Score } from './types.js' */
 
-/** Two amounts that differ by less than this factor are called alike. */
+/** Amounts that differ by less than this factor are called alike. */
 const ALIKE = 1.25;
 /** Distances below this share of 2r are called nearer. */
 const NEARER = 0.999;
-/** The lower ends of the answers to the question of sizes; below the first, all sizes are called alike. */
+/** Lower ends of the answers to the question about sizes; below the first, all sizes are called alike. */
 const FACTORS = [1.05, 1.3, 2, 4];
 
 /** @param {Record<string, string>} labels  by their values */
@@ -188,11 +187,11 @@ export const QUESTIONS = {
 /** The parts of a question. @param {Question<any>} question */
 export const partsOf = ({ rounds }) => rounds.flat();
 
-/** The name under which the answer of a part is kept. @param {string} id @param {{ name: string }} part */
+/** The name under which the answer to a part is stored. @param {string} id @param {{ name: string }} part */
 export const stopOf = (id, { name }) => (name ? `${id}-${name}` : id);
 
 /**
- * The choices of a guess that a learner has saved, by the name under which it is kept.
+ * The choices of a guess that a learner saved, by the name under which it is stored.
  * @param {string} stop
  */
 export function choicesOf(stop) {

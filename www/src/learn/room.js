@@ -1,6 +1,6 @@
 /**
- * A particle in a plane among others of another size: the events in which its children find room, as §5 of the paper
- * has them and `src/paper/adaptive.rs` does.
+ * A particle in a plane among particles of another size: the events in which its children find room, following §5 of
+ * the paper and `src/paper/adaptive.rs`.
  */
 import { distance } from '../engine/vector.js';
 import { polar } from '../figures/geometry.js';
@@ -8,14 +8,14 @@ import { polar } from '../figures/geometry.js';
 /** @import { LessonEvent, Vec3 } from '../engine/types.js' */
 /** @import { Point } from '../figures/types.js' */
 
-/** A child stays if this share of its angle is free, as in the runs of the lesson. */
+/** A child stays if this share of its angle is free, as in the lesson's runs. */
 export const FIT = 0.5;
-/** The particle itself, and the one that touches it at first. */
+/** The particle itself, and the one that initially touches it. */
 const [PARENT, FIRST] = [0, 1];
 const MOST_CHILDREN = 12;
 
 /**
- * The angle φ that a disc of radius b takes around one of radius a that it touches.
+ * The angle φ that a disc of radius b occupies around a disc of radius a that it touches.
  * @param {number} a @param {number} b
  */
 export const takenAngle = (a, b) => 2 * Math.asin(b / (a + b));
@@ -24,7 +24,7 @@ export const takenAngle = (a, b) => 2 * Math.asin(b / (a + b));
 const inSpace = ([x, y]) => [x, y, 0];
 
 /**
- * The events around a particle of radius a, which others of radius b surround.
+ * The events around a particle of radius a, surrounded by particles of radius b.
  * @param {number} a @param {number} b @returns {LessonEvent[]}
  */
 export function roomEvents(a, b) {
@@ -40,7 +40,7 @@ export function roomEvents(a, b) {
   let angle = 0;
   for (let slot = 0; slot < MOST_CHILDREN; slot += 1) {
     const last = polar(angle, a + b);
-    // I lies on the circle of the last one, across the way there.
+    // I lies on the circle of the last one, at right angles to its direction.
     const tangent = /** @type {Point} */ ([last[0] - b * Math.sin(angle), last[1] + b * Math.cos(angle)]);
     const way = Math.atan2(tangent[1], tangent[0]);
     const of = { parent, slot, radius: b };
@@ -49,12 +49,12 @@ export function roomEvents(a, b) {
     events.push({ type: 'start', ...of, tangent: inSpace(tangent), position: start });
     events.push({ type: 'push', ...of, position: pushed });
     const tau = 2 * Math.PI - angle - phi;
-    // Along the circle, to where it touches the last one, or half-way to the first where it overlaps both.
+    // Along the circle until it touches the last one, or halfway to the first if it overlaps both.
     angle += tau < phi ? (tau + phi) / 2 : phi;
     const position = inSpace(polar(angle, a + b));
     const overlap = tau < phi ? 1 - distance(position, inSpace(first)) / (2 * b) : 0;
     events.push({ type: 'push_on_circle', ...of, position, overlap: Math.max(0, overlap) });
-    // Rounding does not decide.
+    // The tolerance keeps rounding from deciding.
     const fits = tau >= FIT * phi - 1e-9;
     events.push({ type: 'room', parent, slot, phi_rad: phi, tau_rad: Math.max(0, tau), fits });
     const fate = fits ? 'added' : 'matched';

@@ -1,6 +1,5 @@
 /**
- * The figures that decide between two runs, or two moments of one: those of the sampler's own
- * report.
+ * The figures that decide between two runs, or two moments of one run; they come from the sampler's own report.
  */
 import { clamp, distance, dot, triple } from '../engine/vector.js';
 import { formatCount, formatFixed, formatSignificant, MISSING } from '../ui/format.js';
@@ -20,10 +19,9 @@ const ratio = (value) => formatFixed(value, 2);
 const points = (share) => `${formatFixed(100 * share, 1)} points`;
 
 /**
- * The figures in their order. A press on one that has a place shows the place. The chances are the
- * largest differences among ten seeds of one method with particles of one size, of several methods
- * and surfaces. The share with six neighbours is a mean over all particles, so its chance falls
- * with the root of their number.
+ * The figures in order. Pressing a figure with a place shows the place. Its chance is the largest difference among ten
+ * seeds of one method with particles of one size, over several methods and surfaces. The share with six neighbours is a
+ * mean over all particles, so its chance falls with the square root of their number.
  * @type {readonly ScoreRow[]}
  */
 export const ROWS = [
@@ -97,7 +95,7 @@ export const ROWS = [
 export const rowOf = (key) => /** @type {ScoreRow} */ (ROWS.find((row) => row.key === key));
 
 /**
- * Measures particles. Those of many sizes are measured each against its own.
+ * Measures particles; particles of many sizes each relative to their own size.
  * @param {Lab} lab @param {LessonParticles} particles
  * @param {{ evaluations: number, isAdaptive: boolean }} how  `evaluations`: of f in the whole run
  * @returns {Promise<Score>}
@@ -119,15 +117,13 @@ export async function scoreOf(lab, particles, { evaluations, isAdaptive }) {
 }
 
 /**
- * Two particles are beside each other where they are no farther apart than this, over the sum of
- * their radii.
+ * Two particles are adjacent if their distance, divided by the sum of their radii, is at most this.
  */
 const BESIDE = 1.4;
 
 /**
- * The widest gap between the surface and the edges of a mesh of its particles, over the longest
- * side of their box. Over
- * an edge the surface is an arc, which turns by as much as the normals at its ends; null without an edge.
+ * The widest gap between the surface and the edges of a mesh of its particles, divided by the longest side of their
+ * box. Over an edge the surface is an arc that turns like the normals at its ends. Null without an edge.
  * @param {LessonParticles} particles
  */
 export function gapOf({ positions, normals, radii }) {
@@ -139,7 +135,7 @@ export function gapOf({ positions, normals, radii }) {
         const far = between(positions, i, j);
         if (j <= i || far > BESIDE * (radii[i] + radii[j])) continue;
         const turn = Math.acos(clamp(dot(triple(normals, i), triple(normals, j)), -1, 1));
-        // Where the normals differ by more than a right angle, the two lie on sheets of their own.
+        // If the normals differ by more than a right angle, the particles are on different sheets.
         if (turn < Math.PI / 2) widest = Math.max(widest, (far / 2) * Math.tan(turn / 4));
       }
   const side = (/** @type {number} */ axis) => {
@@ -154,7 +150,7 @@ export const scoreAtEnd = ({ lab, end, progress, settings }) =>
   scoreOf(lab, end, { evaluations: progress.evaluations, isAdaptive: settings.sampling === 'adaptive' });
 
 /**
- * The largest hole, with the particle beside it, and the closest pair.
+ * The largest hole, with the particle next to it, and the closest pair.
  * @param {LessonParticles} particles @param {Measures['places']} places
  */
 export function placesOf({ positions, normals, radii }, { holes, pairs }) {
@@ -181,11 +177,11 @@ function nearestTo(positions, place) {
   return best;
 }
 
-/** A figure of a score as it is written. @param {keyof ScoreFigures} key @param {Score} score */
+/** A figure of a score, formatted. @param {keyof ScoreFigures} key @param {Score} score */
 export const written = (key, score) => (score[key] === null ? MISSING : rowOf(key).write(Number(score[key])));
 
 /**
- * By how much a figure differs among scores.
+ * How much a figure varies among scores.
  * @param {keyof ScoreFigures} key
  * @param {readonly Score[]} scores
  */
@@ -194,11 +190,11 @@ export function widthOf(key, scores) {
   return Math.max(...values) - Math.min(...values);
 }
 
-/** The figures of a score by their names, as numbers. @param {Score} score */
+/** The figures of a score by name, as numbers. @param {Score} score */
 export const namedFigures = (score) => Object.fromEntries(ROWS.map(({ key, name }) => [name, score[key]]));
 
 /**
- * What chance does to a figure of two scores, as it is written; null if the figure is not judged.
+ * The chance of a figure for two scores, rounded as shown; null if the figure is not judged.
  * @param {ScoreRow} row @param {readonly Score[]} scores
  */
 export const chanceOf = ({ chance, digits }, scores) =>
@@ -208,8 +204,7 @@ export const chanceOf = ({ chance, digits }, scores) =>
 const rounded = (value, digits) => Number(value.toFixed(digits));
 
 /**
- * Which of two scores has the better figure: −1 where chance alone may make the difference, as it
- * is written.
+ * Which of two scores has the better figure; −1 if the difference, as shown, may be chance.
  * @param {readonly Score[]} scores @param {ScoreRow} row
  */
 export function bestOf(scores, row) {
@@ -222,13 +217,12 @@ export function bestOf(scores, row) {
 }
 
 /**
- * The figures that decide which sampling is better: the first of them that differs by more than
- * chance.
+ * The figures that decide which sampling is better: the first one that differs by more than chance.
  */
 export const DECIDING = /** @type {const} */ (['six', 'hole', 'pair']);
 
 /**
- * Which of two scores is better, and by which figure; null where they cannot be told apart.
+ * Which of two scores is better, and by which figure; null if they cannot be distinguished.
  * @param {readonly Score[]} scores @param {readonly (keyof ScoreFigures)[]} [keys]
  */
 export function verdictOf(scores, keys = DECIDING) {

@@ -1,6 +1,5 @@
 /**
- * The scorecard: two scores side by side between the ideal and what chance does to each figure, and
- * which one decides.
+ * The scorecard: two scores side by side, with the ideal and the chance of each figure, and the deciding figure.
  */
 import { signal } from '@preact/signals-core';
 import { fill, h } from '../ui/dom.js';
@@ -42,7 +41,7 @@ export function createScorecard(show) {
   }
   return {
     element,
-    /** Shows that its figures are those of an earlier moment, until it is told others. */
+    /** Marks its figures as outdated until new ones are given. */
     wait() {
       element.ariaBusy = 'true';
     },
@@ -52,7 +51,7 @@ export function createScorecard(show) {
       element.ariaBusy = 'false';
       const verdict = isMarked ? verdictOf(scores, keys) : null;
       const rows = ROWS.filter(({ key, isRare }) => !isRare || also.includes(key)).map((row) => {
-        // What a sampling costs is marked only where that is what decides, or may be.
+        // Costs are marked only if they decide, or may decide.
         const isJudged = row.ideal !== null || [...keys, ...also].includes(row.key);
         const chance = isJudged ? chanceOf(row, scores) : null;
         const best = isMarked && isJudged ? bestOf(scores, row) : -1;
@@ -86,7 +85,7 @@ export function createScorecard(show) {
   };
 }
 
-/** What the figures say. @param {readonly string[]} names @param {ReturnType<typeof verdictOf>} verdict */
+/** The conclusion from the figures. @param {readonly string[]} names @param {ReturnType<typeof verdictOf>} verdict */
 const outcomeOf = (names, verdict) =>
   verdict
     ? `Better: ${names[verdict.side]}, by the row “${rowOf(verdict.key).name}”.`

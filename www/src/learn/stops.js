@@ -1,15 +1,15 @@
-/** Stops in the address: each chapter, question and comparison has its own. */
+/** Stops in the address: every chapter, question and comparison has one. */
 import { byId } from '../ui/dom.js';
 import { BENCH, nearestStop, readAddress, titleOf, writeAddress } from './address.js';
 
 /** @import { Setup, StopsOptions } from './types.js' */
 
-/** The part of the page where work is collected. */
+/** The part of the page for collecting work. */
 const COLLECT = 'collect';
-/** Height of what stays at the top of the window, in pixels. */
+/** Height of the bar at the top of the window, in pixels. */
 export const HEAD_PX = 60;
 
-/** Shows what collects the answers to an assignment. @param {Pick<StopsOptions, 'teach' | 'say'>} about */
+/** Shows the part that collects answers to an assignment. @param {Pick<StopsOptions, 'teach' | 'say'>} about */
 async function collect({ teach, say }) {
   try {
     (await teach()).mountCollect(byId(COLLECT));
@@ -27,7 +27,7 @@ export function mountStops({ stops, others, onBench, teach, say }) {
     void onBench(id, parts);
   };
 
-  /** Goes where the address says. */
+  /** Goes to the stop in the address. */
   function go() {
     const { stop, parts } = readAddress(location.hash);
     const found = nearestStop(stop, all);
@@ -45,7 +45,7 @@ export function mountStops({ stops, others, onBench, teach, say }) {
 
   let leave = new AbortController();
   /**
-   * Brings a stop to the top, again whenever a figure above it changes its height, until the reader acts.
+   * Scrolls a stop to the top, again whenever a figure above it changes its height, until the reader acts.
    * @param {HTMLElement | null} target
    */
   function settleOn(target) {
@@ -65,7 +65,7 @@ export function mountStops({ stops, others, onBench, teach, say }) {
       addEventListener(act, () => leave.abort(), { signal, passive: true });
   }
 
-  // A link of the page names only a stop. The other parts of the address stay in it.
+  // A link in the page names only a stop; the other parts of the address are kept.
   document.addEventListener('click', (event) => {
     const link = event.target instanceof Element ? event.target.closest('a[href^="#"]') : null;
     if (!link || event.ctrlKey || event.metaKey || event.shiftKey || event.button !== 0) return;
@@ -75,7 +75,7 @@ export function mountStops({ stops, others, onBench, teach, say }) {
     const next = writeAddress({ stop, parts });
     if (next === location.hash) go();
     else location.hash = next;
-    // The focus moves to the target, as it does with an anchor.
+    // The focus moves to the target, as with an anchor.
     const target = document.getElementById(others.includes(stop) ? BENCH : stop);
     target?.setAttribute('tabindex', '-1');
     target?.focus({ preventScroll: true });
@@ -83,7 +83,7 @@ export function mountStops({ stops, others, onBench, teach, say }) {
   addEventListener('hashchange', go);
   go();
 
-  // The comparison runs when it comes near, as figures do.
+  // The comparison runs when it comes near the window, like figures.
   const bench = document.getElementById(BENCH);
   const observer = new IntersectionObserver(
     (entries) => {

@@ -1,4 +1,4 @@
-/** Assignments as plain data: in a link, and as what a learner hands in. */
+/** Assignments as plain data, in a link and in a learner's file. */
 import { packed, unpacked } from '../ui/surface-link.js';
 import { setupOf, WHAT_IFS } from './whatifs.js';
 
@@ -10,7 +10,7 @@ export const LONGEST_TITLE = 120;
 const LONGEST_QUESTION = 500;
 const MOST_QUESTIONS = 20;
 /**
- * The controls that may be locked. `words` name them to a learner; `usual` ones are locked unless the teacher
+ * The controls that may be locked. `words` describe them to a learner; `usual` ones are locked unless the teacher
  * unlocks them.
  * @type {readonly { value: Control, label: string, words: string, usual?: boolean }[]}
  */
@@ -20,7 +20,7 @@ export const CONTROLS = [
   { value: 'right', label: 'Right', words: 'the picture on the right', usual: true },
 ];
 
-/** Returns the locked controls in words for the learner; empty if none is locked. @param {readonly Control[]} locks */
+/** Describes the locked controls to the learner; empty if none is locked. @param {readonly Control[]} locks */
 export const lockedWords = (locks) => {
   const names = CONTROLS.filter(({ value }) => locks.includes(value)).map(({ words }) => words);
   return names.length > 0 ? `Locked: ${names.join('; ')}.` : '';
@@ -30,7 +30,7 @@ export const lockedWords = (locks) => {
 export const packTask = (task) => packed(task);
 
 /**
- * Reads an assignment from an address, where anything may stand; null if it is none.
+ * Reads an assignment from an address, which may contain anything; null if it is not one.
  * @param {string} text
  * @returns {Task | null}
  */
@@ -52,13 +52,13 @@ export function unpackTask(text) {
 /** A cell of a table of comma-separated values. @param {unknown} value */
 function cell(value) {
   const text = typeof value === 'object' ? JSON.stringify(value) : String(value ?? '');
-  // A formula at the beginning of a cell would be run by a spreadsheet.
+  // A spreadsheet would run a formula at the beginning of a cell.
   const safe = /^[=+@-]/.test(text) && Number.isNaN(Number(text)) ? `'${text}` : text;
   return /[",\n]/.test(safe) ? `"${safe.replaceAll('"', '""')}"` : safe;
 }
 
 /**
- * A record as rows of a name, a number and one value: those of a list are numbered, as levels and steps are.
+ * A record as rows of a name, a number and one value; entries of a list are numbered, as are levels and steps.
  * @param {object} record
  * @returns {unknown[][]}
  */
@@ -95,12 +95,12 @@ const rowsOf = ({ assignment, surface, name: learner, group, answers, prediction
   ...runs.flatMap((run, k) => flat(run).map((row) => [`run ${k + 1}`, ...row])),
 ];
 
-/** The works of many as one table, whose first column is the number of the work. @param {readonly Work[]} works */
+/** The works of several learners as one table; the first column numbers the works. @param {readonly Work[]} works */
 export const tableOfAll = (works) =>
   written([['work', ...COLUMNS], ...works.flatMap((work, k) => rowsOf(work).map((row) => [k + 1, ...row]))]);
 
 /**
- * Reads the work of a learner from a file, in which anything may stand; null if it is none.
+ * Reads a learner's work from a file, which may contain anything; null if it is not one.
  * @param {string} text
  * @returns {Work | null}
  */

@@ -1,22 +1,22 @@
 /**
- * Terms of the text that a figure of their chapter can mark: while one is hovered, focused or
- * pressed, the figure shows what it means.
+ * Terms of the text that a figure of their chapter can explain: while a term is hovered, focused or pressed, the figure
+ * marks its meaning.
  */
 import { signal } from '@preact/signals-core';
 import { queryAll } from '../ui/dom.js';
 
 const shown = signal('');
 
-/** The term that is marked now; empty for none. An effect that asks runs again once it changes. */
+/** The current term; empty for none. An effect that calls this runs again when it changes. */
 export const termShown = () => shown.value;
 
-/** Makes the terms of the text marks of the figures: each names itself in `data-term`. */
+/** Connects the terms of the text, named in `data-term`, to the figures. */
 export function mountTerms() {
   for (const term of queryAll(document, '[data-term]')) {
     const { term: name = '' } = term.dataset;
     const stages = queryAll(term.closest('.chapter') ?? document, '.stage');
     const mark = (/** @type {boolean} */ isOn) => {
-      // The pointer may leave a term once another one has the focus.
+      // A term may lose the pointer after another one has received the focus.
       if (!isOn && shown.peek() !== name) return;
       shown.value = isOn ? name : '';
       for (const stage of stages) stage.dataset.marks = shown.peek();

@@ -1,4 +1,4 @@
-/** The choices of the method that can be seen side by side. */
+/** The choices of the method that can be compared side by side. */
 import { formatFixed } from '../ui/format.js';
 import { adaptiveRun, LAWS } from './adaptive.js';
 import { BENCH } from './address.js';
@@ -10,12 +10,12 @@ import { BENCH } from './address.js';
  */
 
 /**
- * Runs whose particles are counted and drawn, and not asked for events.
+ * Runs that are only counted and drawn, without events.
  * @param {(value: string) => Partial<LessonSettings>} settings
  */
 const even = (settings) => (/** @type {Lab} */ lab, /** @type {string} */ value) => lab.run(settings(value));
 
-/** The value of a seed that was pressed is this and its place. */
+/** The value of a pressed seed begins with this, followed by its coordinates. */
 const AT = 'at ';
 
 /** @param {readonly number[]} place */
@@ -34,7 +34,7 @@ function parsePlace(value) {
 const values = (pairs) => pairs.map(([value, label]) => ({ value, label }));
 
 /**
- * The values and the runs of a choice that is one setting.
+ * The values and runs of a choice that is a single setting.
  * @template {keyof LessonSettings} K
  * @param {K} key
  * @param {readonly (readonly [string & LessonSettings[K], string])[]} pairs
@@ -45,22 +45,22 @@ const setting = (key, pairs, others) => ({
   make: even((value) => ({ [key]: value, ...others })),
 });
 
-/** What stands between the values of knobs. */
+/** Separates the values of knobs. */
 const BETWEEN = '~';
 
 /** The values of the knobs. @param {string} value */
 export const partsOf = (value) => value.split(BETWEEN);
 
-/** The value of knobs in which one is turned. @param {string} value @param {number} k @param {string} part */
+/** The value of knobs with one of them changed. @param {string} value @param {number} k @param {string} part */
 export const turned = (value, k, part) => partsOf(value).with(k, part).join(BETWEEN);
 
-/** The range of the tolerance, in 2r. */
+/** Range of the tolerance, in 2r. */
 export const TOLERANCES = { min: 0.4, max: 0.95, step: 0.05 };
 
-/** A tolerance as it is written, in radii as every length of the lesson. @param {number} of2r */
+/** A tolerance in words, in radii like every length of the lesson. @param {number} of2r */
 export const toleranceWords = (of2r) => `${formatFixed(2 * of2r, 1)} r`;
 
-/** The choices that can be made at once. @type {readonly Knob[]} */
+/** The choices that can be combined. @type {readonly Knob[]} */
 export const KNOBS = [
   {
     name: 'Who comes next',
@@ -107,10 +107,10 @@ export const KNOBS = [
     why: () => 'Another seed moves the rings, and the seams with them. Their number hardly changes.',
   },
 ];
-/** The number of the knob of the tolerance, and of the one that takes a place, too. */
+/** Index of the tolerance's knob, and of the seed's, which also accepts a point. */
 export const [TOLERANCE, SEED] = [1, 3];
 
-/** The knobs as they stand in the lesson. */
+/** The knobs as in the lesson. */
 export const USUAL = ['queue', '0.7', '10', '0'].join(BETWEEN);
 
 /** A value of a knob in words. @param {number} k @param {string} part */
@@ -140,17 +140,17 @@ function hasValue({ values: all, knobs }, value) {
 
 const ONE_SIZE = 'one_size';
 
-/** A surface that bends so much within 2r that it matters how a child is brought to it. @type {FormulaSurface} */
+/** A surface with so much curvature within 2r that the projection matters. @type {FormulaSurface} */
 export const TANGLECUBE = {
   formula: 'x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8 = 0',
   parameters: [],
   bounds: { min: [-3, -3, -3], max: [3, 3, 3] },
 };
-/** Particles on it. */
+/** Number of particles on it. */
 const FEW = 400;
 
 /**
- * A run on the tanglecube before relaxation, with as many particles whatever brings the children to the surface.
+ * A run on the tanglecube before relaxation, with the same number of particles for every projection.
  * @param {Lab} lab @param {string} projection
  */
 export async function projected(lab, projection) {
@@ -295,10 +295,10 @@ export const WHAT_IFS = [
   },
 ];
 
-/** The choices of the bench. The others have cards. */
+/** The choices on the bench; the others have cards. */
 export const COMMON = WHAT_IFS.filter(({ isRare }) => !isRare);
 
-/** Stops of the bench in the address: one for each choice. */
+/** Stops of the bench in the address, one per choice. */
 export const stopsOfBench = WHAT_IFS.map(({ id }) => `${BENCH}-${id}`);
 
 /** @param {WhatIf} whatIf @param {readonly [string, string]} chosen @returns {[Side, Side]} */
@@ -315,7 +315,7 @@ export function sidesOf({ values: all, knobs, make }, [left, right]) {
 export const whatIfOf = (id) => WHAT_IFS.find((whatIf) => whatIf.id === id) ?? WHAT_IFS[0];
 
 /**
- * The setup of a choice with the values that are given, and those that are first shown where there is none of its own.
+ * The setup of a choice with the given values, and the default ones for those that are missing or invalid.
  * @param {string} id @param {{ on?: unknown, left?: unknown, right?: unknown }} [given]
  * @returns {Setup}
  */

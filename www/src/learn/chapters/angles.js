@@ -1,4 +1,4 @@
-/** How children of another size find room around a particle: the angles φ and τ, with a handle on each radius. */
+/** How children of another size find room around a particle: the angles φ and τ, with a handle for each radius. */
 import { computed, signal } from '@preact/signals-core';
 import { adaptivePlane } from '../../figures/adaptive.js';
 import { algorithmList } from '../../figures/algorithm.js';
@@ -15,15 +15,15 @@ import { createRangeRow, facts } from '../parts.js';
 import sheet from '../plane.css?url';
 import { roomEvents, takenAngle } from '../room.js';
 
-/** Limits of the two radii, in any unit: what counts is one over the other. */
+/** Limits of the two radii, in any unit, since only their ratio matters. */
 const SCALE = { min: 0.5, max: 1.25, step: 0.01 };
-/** Half size of the drawing, in the same unit: both radii at their largest, and a margin. */
+/** Half size of the drawing, in the same unit: both radii at their largest, plus a margin. */
 const HALF = 4;
-/** Where the handle of the particle is: on the side that is filled last. */
+/** Direction of the particle's handle, on the side that is filled last. */
 const HANDLE_RAD = -1.1;
 /** Size of a handle. */
 const HANDLE = 0.16;
-/** The figure opens with some children placed. */
+/** The figure starts with some children already placed. */
 const OPENS_AT = 16;
 
 export async function angles() {
@@ -53,7 +53,7 @@ export async function angles() {
       at.value = to;
     },
   });
-  // Fewer events may leave its place behind.
+  // With fewer events the current position may no longer exist.
   live(range.input, () => {
     range.place.value = Math.min(at.value, last());
   });
@@ -68,7 +68,7 @@ export async function angles() {
   live(box, () => fill(box, drawingOf(own.value, other.value, moment.value)));
   let held = own;
   dragIn(box, ([x, y], isFirst) => {
-    // In the drawing the particle has the radius 1.
+    // In the drawing the particle has radius 1.
     const [far, right] = [own.value * Math.hypot(x, y), own.value * x];
     if (isFirst) held = far < 1.25 * own.value ? own : other;
     const value = held === own ? far : (right - own.value) / 2;
@@ -117,7 +117,7 @@ function drawingOf(own, other, moment) {
     },
     moment,
   );
-  // Both radii are drawn to one scale; the drawing's own unit is the radius of the particle.
+  // Both radii are drawn to the same scale; the drawing's own unit is the radius of the particle.
   const half = HALF / own;
   svg.setAttribute('viewBox', `${-half} ${-half} ${2 * half} ${2 * half}`);
   svg.style.setProperty('--unit', String(1 / own));

@@ -1,4 +1,4 @@
-/** One slot from the side: the surface bends under the finger, and both children keep their distance or lose it. */
+/** One slot from the side: dragging bends the surface; one child keeps its distance, the other loses it. */
 import { computed, signal } from '@preact/signals-core';
 import { asideWords } from '../../figures/drawings.js';
 import { label, line, ring, segments } from '../../figures/svg.js';
@@ -14,11 +14,11 @@ import { openBend } from '../measure.js';
 /** @import { Point } from '../../figures/types.js' */
 /** @import { Context, SlotCase } from '../types.js' */
 
-/** Limits of the numbers, with r that of the run: the circle stays in the drawing, and always meets the surface. */
+/** Limits of the numbers, relative to the run's r: the circle stays in the drawing and always meets the surface. */
 const [LEAST_R, MOST_R, MOST_BEND] = [0.25, 1.1, 0.9];
-/** Edges of the drawing in radii of the run, and where the ruler begins below it. */
+/** Edges of the drawing, in radii of the run, and the position of the ruler below it. */
 const VIEW = { left: -1.4, right: 2.9, top: 1.2, bottom: -2.4, ruler: 1.25 };
-/** A press nearer to p than this, in radii, bends nothing. */
+/** A press nearer to p than this, in radii, has no effect. */
 const AT_P = 0.4;
 
 /** @param {Context} context */

@@ -1,4 +1,4 @@
-/** The chapter on the cost of placing, of relaxing and of the other method: in evaluations, in pushes and in rounds. */
+/** The cost of placing, of relaxing and of the other method, in evaluations, pushes and rounds. */
 import { h } from '../../ui/dom.js';
 import { formatCount, formatSignificant } from '../../ui/format.js';
 import { costOf } from '../measure.js';

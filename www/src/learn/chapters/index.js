@@ -1,4 +1,4 @@
-/** The live figure of each chapter, by the name that the page's markup gives it. Its script is loaded with it. */
+/** The live figure of each chapter, by its name in the page's markup. Its script is loaded on demand. */
 
 /** @import { Context } from '../types.js' */
 

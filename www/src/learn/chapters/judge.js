@@ -1,7 +1,6 @@
 /**
- * Two samplings that the learner judges, side by side under one camera: by eye, then by figures,
- * then with marks. Those
- * at the end of the lesson are drawn at random.
+ * Two samplings for the learner to judge, side by side with one camera: first by eye, then by figures, then with marks.
+ * The pairs at the end of the lesson are drawn at random.
  */
 import { signal } from '@preact/signals-core';
 import { button } from '../../ui/button.js';
@@ -18,14 +17,14 @@ import { createScorecard } from '../scorecard.js';
 /** @import { Context, Judged, Lab, Score, ScoreFigures, Stops } from '../types.js' */
 
 const LETTERS = ['A', 'B'];
-/** How many pairs there are, and the number of the present one: by these names they are kept. */
+/** Names under which the number of pairs, and the current pair, are stored. */
 const [COUNT, AT] = ['judge-count', 'judge-at'];
 
-/** The pair at the beginning, which is judged by eye. @param {Context} context */
+/** The pair at the beginning, judged by eye. @param {Context} context */
 export const opening = async ({ lab, stops }) => picturesOf(await lab, OPENING, { stops, id: 'predict-first' });
 
 /**
- * The pictures of a pair, and its figures where it has a purpose.
+ * The pictures of a pair, and its figures if there is a purpose.
  * @param {Lab} lab @param {Judged} pair
  * @param {{ stops: Stops, id: string, key?: keyof ScoreFigures }} how  `id`: of the question; `key`: the
  *   figure that the purpose needs
@@ -51,7 +50,7 @@ async function picturesOf(lab, pair, { stops, id, key }) {
       const { end } = run;
       captions[k].textContent = names[k];
       const score = scores.value[k];
-      // One colour, which tells nothing of how they were made.
+      // A single colour, which tells nothing about the method.
       const plain = byValue(new Float32Array(end.radii.length).fill(1), 0, 2);
       const colours = now && score ? byNeighbours(score.valence) : plain;
       pictures[k].show({ particles: end, isClosed: isClosed(run), colours });
@@ -68,11 +67,11 @@ async function picturesOf(lab, pair, { stops, id, key }) {
   return [h('div', { class: 'pair' }, figures), createMarkKey({ hidden: () => !isOpen() }), box];
 }
 
-/** Pairs drawn at random, one after the other, once they are asked for. @param {Context} context */
+/** Random pairs, one after the other, on request. @param {Context} context */
 export async function draws({ lab, stops, series }) {
   const own = await lab;
   const place = h('div', { 'aria-live': 'polite' });
-  /** Number of the pair that is shown; −1 before the first. */
+  /** Number of the pair shown; −1 before the first. */
   const at = signal(-1);
   const count = signal(Number(stops.more(COUNT) ?? 0));
   const status = signal('');
@@ -138,9 +137,9 @@ export async function draws({ lab, stops, series }) {
 /** @param {number} number */
 const idOf = (number) => `judge-${number + 1}`;
 
-/** How many guesses were right so far. @param {Stops} stops @param {number} count  of pairs */
+/** How many guesses have been right. @param {Stops} stops @param {number} count of pairs */
 function tallyOf(stops, count) {
-  // A pair of an earlier visit is open once it is shown again; its guesses are kept.
+  // A pair from an earlier visit opens when it is shown again; its guesses were stored.
   const isJudged = (/** @type {string} */ id) => stops.isOpen(id) || stops.outcomes.has(`${id}-eye`);
   const judged = Array.from({ length: count }, (_, number) => idOf(number)).filter(isJudged);
   if (judged.length === 0) return '';

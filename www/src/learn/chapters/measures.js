@@ -1,6 +1,6 @@
 /**
- * The three figures by which samplings are judged, in a patch of sampling B of the beginning, and what
- * another seed does to them: five runs as dots, whose width is chance.
+ * The three figures by which samplings are judged, in a patch of sampling B from the beginning, and how they vary with
+ * the seed: five runs as dots, whose spread is chance.
  */
 import { signal } from '@preact/signals-core';
 import { clamp } from '../../engine/vector.js';
@@ -21,14 +21,14 @@ import { chanceOf, DECIDING, rowOf, scoreAtEnd, widthOf, written } from '../scor
 /** @param {Context} context */
 export async function measures({ lab }) {
   const own = await lab;
-  /** Those so far, by their seeds. @type {{ run: LabRun, score: Score }[]} */
+  /** The runs so far, by seed. @type {{ run: LabRun, score: Score }[]} */
   const all = [];
   /** @type {import('../../engine/types.js').Signal<readonly Score[]>} */
   const scores = signal([]);
-  /** The seed that is shown. */
+  /** The seed shown. */
   const at = signal(0);
   const isBusy = signal(false);
-  /** Shows a seed, after those before it. @param {number} seed */
+  /** Makes the run of a seed, and those before it. @param {number} seed */
   async function make(seed) {
     while (all.length <= seed) {
       const run = await fromSeed(own, all.length);
@@ -88,11 +88,11 @@ function widthWords(key, scores) {
   return writeChance(widthOf(key, scores));
 }
 
-/** Half the width of an axis, over what is called chance. */
+/** Half the width of an axis, divided by the width called chance. */
 const ROOM = 1.25;
 
 /**
- * A figure of several runs as dots, around the first. The band behind them is as wide as what
+ * The values of a figure in several runs as dots, centred on the first run. The band behind them is as wide as what the
  * tables call chance.
  * @param {typeof DECIDING[number]} key @param {readonly Score[]} scores @param {number} shown  number of the run
  */

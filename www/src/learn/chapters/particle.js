@@ -1,4 +1,4 @@
-/** One particle event by event, amid the front. */
+/** One particle within the front, event by event. */
 import { computed, signal } from '@preact/signals-core';
 import { nearest } from '../../engine/vector.js';
 import { algorithmList } from '../../figures/algorithm.js';
@@ -26,10 +26,10 @@ import sheet from '../plane.css?url';
 
 /** The match tolerance of the lesson. */
 const USUAL_TOLERANCE = 0.7;
-/** The fates that are explained in any case. */
+/** The fates that are always explained. */
 const USUAL_FATES = ['parent', 'added', 'matched'];
 
-/** The shapes of fates in words. @param {Opened} opened */
+/** The shapes of fates, explained. @param {Opened} opened */
 function keyOf({ events }) {
   const met = events.flatMap((event) => (event.type === 'fate' ? [event.fate] : []));
   return h(
@@ -45,10 +45,10 @@ function keyOf({ events }) {
 
 /**
  * Views of a particle at one of its events: its tangent plane, the event in words, the line of the algorithm, and the
- * slot from the side with both landings.
+ * slot from the side with both landing points.
  * @param {Opened} opened
  * @param {{ at: number, go: (by: 1 | -1) => void }} how  `at`: the event that is shown first; −1 for the
- *   last; `go` leads to the particle before or after
+ * last; `go` shows the previous or the next particle
  */
 function viewsOf(opened, { at, go }) {
   const { events, subject } = opened;
@@ -101,13 +101,13 @@ function viewsOf(opened, { at, go }) {
 }
 
 /**
- * The plane of the slot that an event is about; null if it holds the parent.
+ * The plane of an event's slot; null if the slot holds the parent.
  * @param {Opened} opened @param {Moment} moment
  */
 const profileAt = ({ profiles }, { slot }) =>
   profiles[slot ?? profiles.findIndex((profile) => profile !== null)] ?? null;
 
-/** The slot from the side, and where both searches land. @param {Opened} opened @param {Moment} moment */
+/** The slot from the side, with the landing points of both searches. @param {Opened} opened @param {Moment} moment */
 function sideOf(opened, moment) {
   const profile = profileAt(opened, moment);
   if (!profile) return null;
@@ -133,8 +133,8 @@ function sideOf(opened, moment) {
 }
 
 /**
- * The run whose particles are shown, and the first of them as a share of all: the one that the address names, in a run
- * with its radius from the same seeds, else one in the middle of a coarse run.
+ * The run to show, and its first particle as a share of all: the particle in the address, in a run with its radius and
+ * the same seeds; else a middle one of a coarse run.
  * @param {Lab} own
  */
 async function asked(own) {
@@ -142,7 +142,7 @@ async function asked(own) {
   const coarse = await own.coarse();
   if (!wanted) return { usual: coarse, first: 0.5 };
   const { place, radius, seeds } = wanted;
-  // With particles this small there may be too many of them to be followed.
+  // With such small particles there may be too many for an event log.
   const usual = await own.run({ relax_steps: 0, radius, seeds }, { keep: true }).catch(() => coarse);
   const { positions, radii } = usual.placed;
   const found = nearest(positions, radii.length, place);
@@ -159,10 +159,10 @@ export async function whoWasFirst({ lab }) {
   const place = h('div', { class: 'particle' });
   const runAt = async (/** @type {number} */ to) =>
     to === USUAL_TOLERANCE ? usual : own.run({ ...usual.settings, match_tolerance: to }, { keep: true });
-  /** The particle that is shown, as a share of all. */
+  /** The particle shown, as a share of all. */
   let share = first;
   const status = h('p', { class: 'figure-status', role: 'status' });
-  /** Goes to the particle before or after. @param {1 | -1} by */
+  /** Shows the previous or the next particle. @param {1 | -1} by */
   function go(by) {
     const { length } = run.peek().end.radii;
     const to = Math.floor(share * length) + by;
@@ -171,7 +171,7 @@ export async function whoWasFirst({ lab }) {
     isBackwards = by < 0;
     void show(tolerance.peek());
   }
-  /** Whether a particle is come to from behind, at its last event. */
+  /** Whether a particle is reached backwards, at its last event. */
   let isBackwards = false;
   let isFirst = true;
   const show = latest(async (/** @type {number} */ to, isOld) => {
@@ -191,7 +191,7 @@ export async function whoWasFirst({ lab }) {
       isFirst = false;
       const held = place.contains(document.activeElement) ? document.activeElement?.getAttribute('aria-label') : null;
       fill(place, viewsOf(opened, { at, go }));
-      // The button that was pressed has been made anew.
+      // The pressed button has been replaced.
       if (held)
         queryAll(place, 'button')
           .find((one) => one.getAttribute('aria-label') === held)

@@ -1,6 +1,6 @@
 /**
- * The learner is the algorithm: slot by slot they decide what the run decided, for two particles of a plane, and
- * where the front meets itself on a cap. The run objects to a decision that is not its own.
+ * The learner plays the algorithm: slot by slot they make the run's decisions, for two particles of a plane and for the
+ * place on a cap where the front meets itself. The run objects to a different decision.
  */
 import { signal } from '@preact/signals-core';
 import { triple } from '../../engine/vector.js';
@@ -27,7 +27,7 @@ import sheet from '../plane.css?url';
 
 /** @typedef {{ opened: Opened, decisions: Decision[], at: number, moment: Moment }} Shown */
 
-/** The shapes of what became of a child. */
+/** The shapes of a child's fates. */
 const SHAPES = [
   ['open', 'a child, not decided yet'],
   ['parent', 'the parent'],
@@ -46,14 +46,14 @@ export async function plane(context) {
     const exercise = made.get(k) ?? (await begin(context, PATCHES[k], () => void choose(k + 1)));
     made.set(k, exercise);
     chosen.value = k;
-    // Without `fill`, which would end the one that goes: it comes back.
+    // `fill` would dispose of the old exercise, which may be shown again.
     place.replaceChildren(exercise.element);
   }
   const buttons = PATCHES.map(({ name }, k) =>
     button({ 'aria-pressed': () => String(chosen.value === k), press: () => void choose(k) }, name),
   );
   await choose(0);
-  // The question gives the seed away, and asks for its first child.
+  // The question reveals the seed's fates, and asks for its first child.
   live(place, () => {
     if (context.stops.isOpen('predict-children')) made.get(0)?.leaveSeed();
   });
@@ -86,12 +86,12 @@ class Exercise {
   #treated;
   #stops;
   #box = h('div', { class: 'drawing-box plane-drawing', on: { click: (event) => this.#press(event) } });
-  /** The algorithm, once it was gone through. */
+  /** The algorithm, shown after it was played. */
   #lines = h('div', { class: 'plane-lines', hidden: true });
   #question = h('p', { class: 'plane-question', 'aria-live': 'polite' });
   #told = h('p', { class: 'told', role: 'status' });
   #score = h('p', { class: 'figure-count' });
-  /** The particles around, of which one may be there. @type {Signal<readonly Choice<number>[]>} */
+  /** Neighbours that may be the matching particle. @type {Signal<readonly Choice<number>[]>} */
   #near = signal([]);
   #which = createSelect({ name: 'The particle that is there', choices: () => this.#near.value });
   #matched = button({ press: () => this.#meet() }, 'It is there already:');
@@ -100,9 +100,9 @@ class Exercise {
   #back;
   /** @type {Round} */
   #round;
-  /** What takes its time follows one after the other. */
+  /** Jobs that take time run one after the other. */
   #last = Promise.resolve();
-  /** What is shown. @type {Shown | null} */
+  /** The current slot. @type {Shown | null} */
   #now = null;
 
   /** @param {Patch} patch @param {{ run: LabRun, treated: number[], stops: Stops, goOn: () => void }} about */
@@ -139,12 +139,12 @@ class Exercise {
     );
   }
 
-  /** Does something once what is under way is done. @param {() => Promise<unknown>} job */
+  /** Runs a job after the current one. @param {() => Promise<unknown>} job */
   #queue(job) {
     this.#last = this.#last.then(job, job).then(() => {});
   }
 
-  /** Has the run decide the seed, if it is the seed's turn. */
+  /** Lets the run decide for the seed, if it is the seed's turn. */
   leaveSeed() {
     this.#queue(async () => {
       if (this.#now?.opened.subject.particle !== 0) return;
@@ -153,7 +153,7 @@ class Exercise {
     });
   }
 
-  /** Shows the slot at which the round stands, or its end. */
+  /** Shows the current slot of the round, or its end. */
   async take() {
     const { turn, at } = this.#round;
     const isOver = turn >= this.#treated.length;
@@ -165,14 +165,14 @@ class Exercise {
     this.#count();
   }
 
-  /** Takes back all decisions. Mistakes stay counted. */
+  /** Undoes all decisions; mistakes still count. */
   async #beginAgain() {
     this.#round = { ...newRound(), mistakes: this.#round.mistakes };
     this.#tell('', '');
     await this.take();
   }
 
-  /** Goes back to the slot that was decided last. Mistakes stay counted. */
+  /** Goes back to the last decided slot; mistakes still count. */
   async #takeBack() {
     const past = this.#round.past.pop();
     if (!past) return;
@@ -181,7 +181,7 @@ class Exercise {
     await this.take();
   }
 
-  /** Shows the slot that is to be decided. @param {Shown} now */
+  /** Shows the slot to decide. @param {Shown} now */
   #ask(now) {
     const { opened, decisions, at } = now;
     const { slot, at: event } = decisions[at];
@@ -198,7 +198,7 @@ class Exercise {
     this.#next.hidden = true;
   }
 
-  /** Writes the score, also for an assignment, and keeps the round. */
+  /** Writes the score, for an assignment too, and stores the round. */
   #count() {
     const { turn, past, mistakes, right, left } = this.#round;
     const treated = formatCount(Math.min(turn + 1, this.#treated.length));
@@ -206,14 +206,14 @@ class Exercise {
     const score = scoreOf(this.#round);
     this.#score.textContent = `${[`Particle ${treated} of ${formatCount(this.#treated.length)}`, ...score].join(' · ')}.`;
     const stop = stopOf(this.#patch);
-    // Nothing is answered before the first decision.
+    // Without a decision there is no answer.
     if (right + left + mistakes.length === 0) return;
     this.#stops.keepMore(stop, this.#round);
     const question = `${this.#patch.name}, slot by slot: number of mistakes`;
     this.#stops.record({ stop, question, guess: mistakes.length, answer: [...score, ...mistakes].join('; ') });
   }
 
-  /** Goes on to the next slot, or the next particle. @param {string} words */
+  /** Continues with the next slot or particle. @param {string} words */
   async #goOn(words) {
     const now = this.#now;
     if (!now) return;
@@ -228,7 +228,7 @@ class Exercise {
     this.#answers.hidden = true;
     this.#next.hidden = this.#patch === PATCHES.at(-1);
     fill(this.#box, tangentPlane(opened, momentAt(opened.events, opened.events.length - 1)));
-    // Code comes after what it stands for.
+    // The code follows the steps that it describes.
     this.#lines.hidden = this.#patch !== PATCHES.at(-1);
     fill(this.#lines, h('p', null, 'What you have done, as the paper writes it:'), algorithmList(-1));
     this.#question.textContent = this.#patch.ends;
@@ -240,7 +240,7 @@ class Exercise {
     this.#told.textContent = words;
   }
 
-  /** Where the round stands. */
+  /** The position in the round. */
   #place() {
     const { turn, at, right, left } = this.#round;
     return { turn, at, right, left };
@@ -273,7 +273,7 @@ class Exercise {
     this.#decide({ fate: 'matched', particle: Number(this.#which.value) });
   }
 
-  /** Lets the run decide slots of a particle. @param {number} most */
+  /** Lets the run decide some slots of a particle. @param {number} most */
   async #leave(most) {
     const { turn } = this.#round;
     for (let slots = 0; slots < most && this.#now && this.#round.turn === turn && !this.#answers.hidden; slots += 1) {
@@ -284,7 +284,7 @@ class Exercise {
     }
   }
 
-  /** Decides by what is pressed in the drawing: a particle or the slot. @param {MouseEvent} event */
+  /** Decides by a press on the drawing: on a particle or the slot. @param {MouseEvent} event */
   #press({ clientX, clientY }) {
     const now = this.#now;
     const matrix = this.#box.querySelector('svg')?.getScreenCTM()?.inverse();
@@ -294,9 +294,9 @@ class Exercise {
     const { opened } = now;
     const at = { centre: opened.place, right: frame.u, up: frame.w, radius: opened.subject.radius };
     const { slot } = now.decisions[now.at];
-    // What the particle in the middle covers is not pressed.
+    // A press on the middle particle decides nothing.
     if (Math.hypot(x, y) < 1) return this.#tell('', `That is particle ${letterOf(opened.subject.particle)} itself.`);
-    // The whole disc of a particle is the particle; a slot is what is left of its circle.
+    // A press on a particle's disc means the particle; the slot is the rest of its circle.
     const near = { particle: -1, far: 1 };
     for (const { particle } of gathered?.neighbours ?? []) {
       const far = farFrom([x, -y], inPlane(at, triple(opened.positions, particle)));
@@ -312,7 +312,7 @@ class Exercise {
 const stopOf = ({ id }) => `plane-${id}`;
 
 /**
- * A round: `turn` and `at` are the particle and the slot that come next, and `past` where it stood at each decision.
+ * A round: `turn` and `at` are the next particle and slot, and `past` has the positions of all decisions.
  * @typedef {object} Round
  * @property {number} turn
  * @property {number} at
@@ -331,7 +331,7 @@ function scoreOf({ mistakes, right, left }) {
   return left > 0 ? [...parts, `${formatCount(left)} left to the run`] : parts;
 }
 
-/** What the run says of its decision. @param {Opened} opened @param {Decision} decision */
+/** What the run says about its decision. @param {Opened} opened @param {Decision} decision */
 function wordsOf({ events, subject }, { end, met }) {
   const words = tell(momentAt(events, end), subject);
   return met ? `${tell(momentAt(events, events.indexOf(met)), subject)} ${words}` : words;

@@ -1,4 +1,4 @@
-/** The front that grows ring by ring. */
+/** The front growing ring by ring. */
 import { h, live } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
 import { offerNumber } from '../drag.js';
@@ -11,16 +11,16 @@ import { byLevel, Orbit, Picture } from '../picture.js';
  * @import { Context } from '../types.js'
  */
 
-/** Time in which the whole front grows. */
+/** Time for the growth of the whole front. */
 const GROWTH_MS = 4500;
 
-/** Counts of the particles up to each level. @param {LessonParticles} particles */
+/** Number of particles up to each level. @param {LessonParticles} particles */
 function countsOf({ levels }) {
   const last = levels.reduce((most, level) => Math.max(most, level), 0);
   return Array.from({ length: last + 1 }, (_, level) => levels.reduce((sum, own) => sum + (own <= level ? 1 : 0), 0));
 }
 
-/** The particles of some levels. @param {LessonParticles} all @param {(level: number) => boolean} isKept */
+/** The particles on some levels. @param {LessonParticles} all @param {(level: number) => boolean} isKept */
 function onLevels(all, isKept) {
   const kept = [...all.levels.keys()].filter((i) => isKept(all.levels[i]));
   const vectors = (/** @type {Float32Array} */ column) =>
@@ -34,7 +34,7 @@ function onLevels(all, isKept) {
   };
 }
 
-/** Creates the figure of the rings, with a bar for each once its prediction was made. @param {Context} context */
+/** Creates the figure of the rings, with a bar for each after its prediction was made. @param {Context} context */
 export async function rings(context) {
   const run = await (await context.lab).run({}, { keep: true });
   const { placed } = run;
@@ -46,7 +46,7 @@ export async function rings(context) {
   const range = createRangeRow({
     name: 'Level',
     max: counts.length - 1,
-    // The ring of the question.
+    // The ring in the question.
     value: Math.min(RING, counts.length - 1),
     say: (level) => `${formatCount(level)} of ${formatCount(counts.length - 1)}`,
     change: (level) => show(level),
@@ -84,7 +84,7 @@ export async function rings(context) {
     chart: () => ({
       kind: 'bars',
       rows: [{ fate: 'new', name: 'new particles', counts: sizes }],
-      // As far as the bars reach.
+      // Up to the height of the bars.
       guide: sizes.map((_, level) => 6 * level).filter((flat) => flat <= Math.max(...sizes)),
       ends: ['level 0', 'dashed: on a plane, 6k', `level ${formatCount(sizes.length - 1)}`],
       first: 0,

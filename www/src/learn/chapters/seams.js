@@ -1,4 +1,4 @@
-/** The front, its seams, and the relaxation after it, as one course that a slider goes through. */
+/** The front, its seams, and the relaxation after it, as one sequence with a slider. */
 import { signal } from '@preact/signals-core';
 import { triple } from '../../engine/vector.js';
 import { byId, fill, h, live } from '../../ui/dom.js';
@@ -17,17 +17,17 @@ import { termShown } from '../terms.js';
  * @import { Context, Lab, LabRun, Mark, Score } from '../types.js'
  */
 
-/** Time from one place of the slider to the next. */
+/** Time between two positions of the slider. */
 const STEP_MS = 400;
-/** The share of the particles that the front has placed when the widest hole is asked for. */
+/** The share of particles placed when the widest hole is asked for. */
 const QUARTER = 0.25;
-/** Arrows are so many times as long as the moves; shorter moves, in r, have none. */
+/** Arrows are this many times as long as the moves; moves shorter than this, in r, get none. */
 const [LONGER, SHORTEST] = [6, 0.03];
-/** Size of a cross, over that of other marks, which are wider than a disc. */
+/** Size of a cross relative to other marks, which are wider than a disc. */
 const CROSS = 0.5;
 
 /**
- * The particles of each level whose front met itself or another one out of step.
+ * For each level, the particles whose front met itself or another one out of step.
  * @param {LabRun} run
  */
 async function meetingsOf({ client, chapters }) {
@@ -51,7 +51,7 @@ const firstOf = (all, count) => ({
 });
 
 /**
- * Arrows from where particles are to where they go.
+ * Arrows from particles to their next positions.
  * @param {LessonParticles} now @param {LessonParticles} next
  */
 function arrowsOf(now, next) {
@@ -68,8 +68,7 @@ function arrowsOf(now, next) {
 }
 
 /**
- * What the slider goes through: the levels of the front, then the states after each step of
- * relaxation.
+ * The states that the slider shows: the levels of the front, then each step of the relaxation.
  * @param {Lab} own
  */
 async function courseOf(own) {
@@ -85,10 +84,10 @@ async function courseOf(own) {
   const quarter = levels.findIndex(({ after }) => after >= QUARTER * placed.radii.length);
   return {
     ...{ run, placed, levels, found, steps, states, front, quarter: Math.max(0, quarter), last: front + steps.length },
-    // The body of another run, whose particles tell nothing of where this one leaves a hole.
+    // The body comes from another run, so that it does not show where this one leaves a hole.
     body: (await own.run({ seed: 1, relax_steps: 0 })).placed,
     widest: await widestHole(own),
-    /** The particles at a place of the slider. @param {number} place */
+    /** The particles at a position of the slider. @param {number} place */
     at: (place) => (place < front ? firstOf(placed, levels[place].after) : states[Math.max(0, place - front)]),
   };
 }
@@ -107,7 +106,7 @@ export async function seams({ lab, stops }) {
     name: 'The front and its relaxation, with particles of five and of seven neighbours marked',
     onPick(particle) {
       if (isFree()) return;
-      // Where the front has been there is no hole to come.
+      // Where the front has been, no hole is left.
       isCovered.value = !isBare(course.at(range.get()).radii.length, particle);
       if (!isCovered.peek()) stops.pick('predict-hole', particle);
     },
@@ -116,7 +115,7 @@ export async function seams({ lab, stops }) {
   const isCovered = signal(false);
   const isFree = () => stops.isOpen('predict-hole');
   const isRelaxing = () => isFree() && stops.isOpen('predict-rest');
-  /** The slider goes on with every answer. */
+  /** Every answer lets the slider go further. */
   const limit = () => (isRelaxing() ? last : isFree() ? front : quarter);
   const range = createRangeRow({
     name: 'Front and relaxation',
@@ -129,9 +128,9 @@ export async function seams({ lab, stops }) {
     change() {},
   });
   const step = () => Math.max(0, range.place.value - front);
-  /** Those of the states so far, in their order. @type {Signal<Score[]>} */
+  /** Scores of the states so far, in order. @type {Signal<Score[]>} */
   const scores = signal([]);
-  // The states are measured as far as they are shown.
+  // States are measured when they are shown.
   const measure = latest(async (/** @type {number} */ count, isOld) => {
     for (const [k, state] of course.states.slice(0, count).entries()) {
       const known = scores.peek()[k];
@@ -161,14 +160,13 @@ export async function seams({ lab, stops }) {
       isFree() && measured
         ? byNeighbours(measured.valence.subarray(0, particles.radii.length))
         : byValue(particles.radii, 0, 2 * particles.radii[0]);
-    // Before the end of the front a press chooses one of the particles to come, where the surface
-    // is still bare, too.
+    // Before the end of the front a press chooses one of the particles to come, so bare surface can be pressed.
     const places = place < front ? placed : course.at(place);
     picture.show({ particles, body: course.body, isClosed: isClosed(course.run), places, colours, marks });
     const hole = scores.value[step()]?.places.hole ?? (step() === 0 ? widest?.hole : null) ?? null;
     picture.ringed.value = place >= front && isFree() ? hole : null;
   });
-  // The answer is about the whole front, and the next one about the steps after it.
+  // The answer concerns the whole front; the next one concerns the steps after it.
   let [wasFree, wasRelaxing] = [isFree(), isRelaxing()];
   live(picture.element, () => {
     const [isNow, isAfter] = [isFree() && !wasFree, isRelaxing() && !wasRelaxing];
@@ -198,8 +196,8 @@ export async function seams({ lab, stops }) {
 }
 
 /**
- * The sentence of the text about a step of the relaxation, whose number is a handle. It gives the answer away, so it
- * comes with the score.
+ * The sentence of the text about a relaxation step, whose number is a handle. It would give the answer away, so it
+ * appears with the score.
  * @param {{ last: number, step: () => number, stage: () => HTMLElement | null, go: (step: number) => void,
  *   score: () => Score | undefined }} about  `score`: that of the step
  */
@@ -214,7 +212,7 @@ function mountSteps({ last, step, stage, go, score }) {
   });
 }
 
-/** What is said while a place is asked for. @param {boolean} isCovered @param {number | null} picked */
+/** Said while the question asks for a place. @param {boolean} isCovered @param {number | null} picked */
 function asking(isCovered, picked) {
   if (isCovered) return 'Particles lie there already. Press a place that is still bare.';
   return picked === null
@@ -222,7 +220,7 @@ function asking(isCovered, picked) {
     : 'Your place has a dot. Press another one, or reveal.';
 }
 
-/** What there is to say of a place of the slider. @param {Course} course @param {number} place */
+/** The words for a position of the slider. @param {Course} course @param {number} place */
 function wordsAt({ at, found, front, steps }, place) {
   if (place > front)
     return `The longest move of this step: ${formatSignificant(Number(steps[place - front - 1].largest_move), 2)} r.`;
@@ -231,8 +229,7 @@ function wordsAt({ at, found, front, steps }, place) {
 }
 
 /**
- * Crosses where the front met itself on a level, a dot where the learner pressed, and arrows of the
- * step that comes next.
+ * Crosses where the front met itself on a level, a dot where the learner pressed, and arrows for the next step.
  * @param {Course} course @param {number} place
  * @param {{ picked: number | null, isFree: boolean, isRelaxing: boolean }} state
  */

@@ -1,4 +1,4 @@
-/** Particles as small as the curvature asks for. */
+/** Particles whose size follows the curvature. */
 import { triple } from '../../engine/vector.js';
 import { fill, h, live } from '../../ui/dom.js';
 import { formatSignificant, plural } from '../../ui/format.js';
@@ -40,7 +40,7 @@ export async function sizes({ lab, stops }) {
     change: (value) => void show(value),
   });
   await show('max_curvature');
-  // The answer is about the smallest discs.
+  // The answer concerns the smallest discs.
   live(words, () => {
     const { radii, normals } = picture.scene.peek()?.particles ?? {};
     if (!stops.isOpen('predict-sizes') || !radii || !normals) return;
